@@ -1,0 +1,121 @@
+//! The contract between a law and whoever integrates it.
+
+/// A half plane of the `(xi, xi_dot)` plane in which a branch is valid:
+/// `per_compression * xi + per_rate * xi_dot >= level`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Boundary {
+    /// Coefficient of the compression.
+    pub per_compression: f64,
+    /// Coefficient of the compression's rate (same unit as `per_compression` times seconds).
+    pub per_rate: f64,
+    /// The value at which the boundary is met.
+    pub level: f64,
+}
+
+impl Boundary {
+    /// A boundary that is never met.
+    pub const NEVER: Boundary = Boundary { per_compression: 0.0, per_rate: 0.0, level: -1.0 };
+
+    /// The branch ends when the compression falls to `level_m`.
+    pub const fn compression_falls_to(level_m: f64) -> Boundary {
+        Boundary { per_compression: 1.0, per_rate: 0.0, level: level_m }
+    }
+
+    /// The branch ends when the compression rises to `level_m`.
+    pub const fn compression_rises_to(level_m: f64) -> Boundary {
+        Boundary { per_compression: -1.0, per_rate: 0.0, level: -level_m }
+    }
+
+    /// The branch ends when the rate falls to `level_m_s` (0: end of loading).
+    pub const fn rate_falls_to(level_m_s: f64) -> Boundary {
+        Boundary { per_compression: 0.0, per_rate: 1.0, level: level_m_s }
+    }
+
+    /// The branch ends when the rate rises to `level_m_s` (0: end of unloading).
+    pub const fn rate_rises_to(level_m_s: f64) -> Boundary {
+        Boundary { per_compression: 0.0, per_rate: -1.0, level: -level_m_s }
+    }
+
+    /// Signed distance to the boundary, positive inside the branch.
+    pub fn margin(&self, compression_m: f64, rate_m_s: f64) -> f64 {
+        self.per_compression * compression_m + self.per_rate * rate_m_s - self.level
+    }
+}
+
+/// What kind of smooth piece a branch is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The law's only curve, valid for loading and unloading alike.
+    Single,
+    /// Compression grows on a curve that differs from unloading.
+    Loading,
+    /// Compression falls on a curve that differs from loading.
+    Unloading,
+    /// The law's formula would pull; the force is zero while the surfaces recover.
+    Slack,
+}
+
+/// One smooth piece of a law, with the numbers the law needs to evaluate it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Branch {
+    /// The kind of piece.
+    pub stage: Stage,
+    /// Compression at which the branch began (m), where the law needs it.
+    pub anchor_m: f64,
+    /// The law's internal variable at that place; each law states its meaning.
+    pub internal: f64,
+}
+
+/// What outlives a contact: all zero for a fresh surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Memory {
+    /// Compression at which the surfaces touch (m): zero, or the permanent indentation.
+    pub touch_m: f64,
+    /// The law's own history variable; each law states its meaning.
+    pub internal: f64,
+}
+
+/// What follows when a branch meets one of its boundaries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum After {
+    /// Contact goes on along another branch.
+    Continue(Branch),
+    /// The surfaces part, leaving this memory.
+    Release(Memory),
+}
+
+/// Contact force and its two partial derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Force {
+    /// Force (N).
+    pub force_n: f64,
+    /// Derivative with respect to the compression (N/m).
+    pub per_compression_n_m: f64,
+    /// Derivative with respect to the rate of compression (N s/m).
+    pub per_rate_n_s_m: f64,
+}
+
+impl Force {
+    /// No force, no stiffness.
+    pub const ZERO: Force = Force { force_n: 0.0, per_compression_n_m: 0.0, per_rate_n_s_m: 0.0 };
+}
+
+/// A force-compression law made of smooth branches.
+pub trait ContactLaw {
+    /// The branch on which a contact begins, when surfaces with this memory meet at
+    /// `approach_speed_m_s` (the rate of compression at first touch, not negative).
+    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch;
+
+    /// Force and derivatives on a branch. Outside the branch's boundaries it returns a finite,
+    /// continuous extension, so that an iteration may step over them.
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force;
+
+    /// The half planes within which the branch is valid.
+    fn boundaries(&self, branch: &Branch) -> [Boundary; 2];
+
+    /// What follows when boundary number `which` is met at this compression and rate.
+    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After;
+
+    /// Whether the force depends on the rate of compression.
+    fn depends_on_rate(&self) -> bool;
+}
