@@ -4,6 +4,9 @@
 //! Williams) and a characteristic function. The count splits an interval until each part holds one frequency; there
 //! the characteristic function changes sign once, and Chandrupatla's method converges to the last digits. Where
 //! frequencies coincide to rounding, the count alone closes in on them.
+//!
+//! The two are computed differently, so that each checks the other: the sign of the characteristic function must be
+//! the parity of the count.
 
 use crate::error::InvalidInput;
 use crate::modes::RESOLVABLE;
@@ -27,6 +30,9 @@ struct Trial {
 /// Relative width at which an interval has closed.
 const CLOSED: f64 = 4.0 * f64::EPSILON;
 
+/// Where an interval is split.
+const SPLITS: [f64; 4] = [0.487_139, 0.531_477, 0.461_893, 0.549_917];
+
 /// The first `wanted` roots after `rigid` zero ones, in ascending order.
 pub(crate) fn elastic_roots(
     problem: &impl Characteristic,
@@ -41,20 +47,21 @@ pub(crate) fn elastic_roots(
         let (below, value) = problem.count_and_function(q);
         Trial { q, below, value }
     };
-
-    let mut high = trial(problem.estimate(rigid + wanted));
-    for _ in 0..200 {
-        if high.below >= rigid + wanted {
-            break;
-        }
-        high = trial(1.25 * high.q);
-    }
-    let mut low = trial(0.5 * problem.estimate(1).min(high.q));
-    for _ in 0..40 {
+    let mut low = trial(0.4137 * problem.estimate(1));
+    for _ in 0..60 {
         if low.below == rigid {
             break;
         }
-        low = trial(0.5 * low.q);
+        low = trial(0.4871 * low.q);
+    }
+    // each root changes the sign once: from here on the sign must agree with the count's parity
+    let agrees = |t: &Trial| (t.value * low.value > 0.0) == ((t.below - rigid.min(t.below)) % 2 == 0);
+    let mut high = trial(problem.estimate(rigid + wanted));
+    for _ in 0..200 {
+        if high.below >= rigid + wanted && agrees(&high) {
+            break;
+        }
+        high = trial(1.2137 * high.q);
     }
     if high.below < rigid + wanted || low.below != rigid {
         return Err(InvalidInput::new("segments", "as given", RESOLVABLE));
@@ -66,14 +73,15 @@ pub(crate) fn elastic_roots(
         if inside == 0 || roots.len() >= wanted {
             continue;
         }
-        let middle = 0.5 * (low.q + high.q);
         if high.q - low.q <= CLOSED * high.q {
-            roots.extend(std::iter::repeat_n(middle, inside));
+            roots.extend(std::iter::repeat_n(0.5 * (low.q + high.q), inside));
         } else if inside == 1 && low.value * high.value < 0.0 {
             roots.push(chandrupatla(|q| problem.count_and_function(q).1, (low.q, low.value), (high.q, high.value)));
         } else {
-            let mut split = trial(middle);
-            // at a pole of a part's stiffness rounding can miscount by one; the ends, already trusted, bound it
+            // within rounding of a pole of a part's stiffness the count can err by one, and the parity shows it;
+            // fractions that hit no pole by design, and a second choice
+            let at = |fraction: f64| trial(low.q + fraction * (high.q - low.q));
+            let mut split = SPLITS.iter().map(|&f| at(f)).find(&agrees).unwrap_or_else(|| at(SPLITS[0]));
             split.below = split.below.clamp(low.below, high.below);
             pending.push((split, high));
             pending.push((low, split));
