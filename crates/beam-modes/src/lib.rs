@@ -1,4 +1,5 @@
 //! beam-modes
+mod axial;
 mod beam;
 mod compliance;
 mod error;
@@ -6,6 +7,7 @@ mod flexure;
 mod modes;
 mod piece;
 mod plane;
+mod rod;
 mod roots;
 mod shapes;
 mod span;
@@ -14,3 +16,4 @@ mod uniform;
 pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
 pub use modes::Modes;
+pub use rod::{Rod, RodEnd, RodSegment};
