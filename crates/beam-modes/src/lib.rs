@@ -3,6 +3,7 @@ mod axial;
 mod beam;
 mod compliance;
 mod error;
+pub mod fem;
 mod flexure;
 mod modes;
 mod piece;
