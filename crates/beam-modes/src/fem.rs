@@ -188,8 +188,7 @@ impl ModelModes {
 /// Stiffness and consistent mass of one element.
 fn element(h: f64, rigidity: f64, mass_per_length: f64) -> ([[f64; 4]; 4], [[f64; 4]; 4]) {
     let scale = [1.0, h, 1.0, h];
-    let stiffness =
-        [[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]];
+    let stiffness = [[12.0, 6.0, -12.0, 6.0], [6.0, 4.0, -6.0, 2.0], [-12.0, -6.0, 12.0, -6.0], [6.0, 2.0, -6.0, 4.0]];
     let mass =
         [[156.0, 22.0, 54.0, -13.0], [22.0, 4.0, 13.0, -3.0], [54.0, 13.0, 156.0, -22.0], [-13.0, -3.0, -22.0, 4.0]];
     let (k, m) = (rigidity / h.powi(3), mass_per_length * h / 420.0);
