@@ -87,7 +87,8 @@ impl Model {
             }
             start_m += segment.length_m;
         }
-        let coordinate = |dof: usize| if dof % 2 == 0 { Coordinate::Displacement } else { Coordinate::Rotation };
+        let coordinate =
+            |dof: usize| if dof.is_multiple_of(2) { Coordinate::Displacement } else { Coordinate::Rotation };
         let dofs = kept.into_iter().map(|dof| (dof / 2, coordinate(dof))).collect();
         Ok(Self { nodes_m, dofs, stiffness, mass, rigid: beam.rigid_body_count() })
     }
