@@ -33,7 +33,7 @@ fn fourth_order_from_above() {
 fn shapes_converge_with_order_four() {
     let beam = stepped([End::Clamped, End::Pinned]);
     let exact = beam.modes(5).unwrap();
-    let errors = [20, 40].map(|elements| {
+    let errors = [10, 20].map(|elements| {
         let discrete = fem::Model::new(&beam, elements).unwrap().modes().unwrap();
         [0, 1, 2, 3, 4].map(|k| {
             let sign = (exact.shape(k, 0.61).unwrap() * discrete.shape(k, 0.61).unwrap()).signum();
@@ -43,7 +43,7 @@ fn shapes_converge_with_order_four() {
     });
     for k in 0..5 {
         let order = (errors[0][k] / errors[1][k]).log2();
-        assert!((order - 4.0).abs() < 0.2 && errors[1][k] < 2e-5, "mode {k}: order {order}, {errors:?}");
+        assert!((order - 4.0).abs() < 0.2 && errors[1][k] < 3e-4, "mode {k}: order {order}, {errors:?}");
     }
 }
 
