@@ -15,7 +15,7 @@ use crate::damped::{self, damped_law};
 ///
 /// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
-/// | obtained | HC_ROW |
+/// | obtained | 0.952 | 0.909 | 0.833 | 0.768 | 0.663 | 0.581 | 0.516 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HuntCrossley {
     /// Stiffness `k` (N/m^n).
