@@ -140,11 +140,9 @@ fn first_met(
             continue;
         }
         let (mut low, mut high) = (start, if beyond(boundary, start) { start } else { end });
-        loop {
+        // to the rounding of the interval
+        for _ in 0..54 {
             let middle = low + 0.5 * (high - low);
-            if middle <= low || middle >= high {
-                break;
-            }
             *(if beyond(boundary, middle) { &mut high } else { &mut low }) = middle;
         }
         if met.is_none_or(|(earlier, _)| high < earlier) {

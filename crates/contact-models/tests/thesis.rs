@@ -75,3 +75,22 @@ fn hysteresis_loops_satisfy_the_differential_equation() {
     // the motion has minor loops, and theta uses its range
     assert!(reversals >= 4 && lowest < theta_m - 0.99 * beta, "{reversals} {lowest}");
 }
+
+/// What the law's documentation says of minor loops: below `theta_m` they return more work than
+/// they take, while complete contacts lose energy.
+#[test]
+fn minor_loops_of_the_hysteretic_law() {
+    let law = Hysteretic::new(1.0, 1.6, 1.4, 4.0, 0.0).unwrap();
+    // from each of these compressions to the next in unit time, along half a cosine
+    let turns = [-0.1, 1.0, 0.5, 0.55, 0.5, -0.1];
+    let motion = |t: f64| {
+        let i = (t as usize).min(turns.len() - 2);
+        let (phase, swing) = (PI * (t - i as f64), turns[i + 1] - turns[i]);
+        (turns[i] + 0.5 * swing * (1.0 - phase.cos()), 0.5 * PI * swing * phase.sin())
+    };
+    let times: Vec<f64> = (0..=500).map(|i| f64::from(i) / 100.0).collect();
+    let path = trace(&law, &times, motion).unwrap();
+    let at = |time: f64| path.iter().find(|point| point.time_s == time).unwrap();
+    assert!(at(4.0).work_j < at(2.0).work_j - 1e-4 && at(4.0).stored_energy_j > at(2.0).stored_energy_j + 1e-4);
+    assert!(at(5.0).work_j > 0.5);
+}

@@ -123,6 +123,8 @@ pub struct Visit {
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
     pub branch_before: Branch,
+    /// None after a release.
+    pub branch_after: Option<Branch>,
     pub compression_m: f64,
     pub rate_m_s: f64,
     pub force_before_n: f64,
@@ -183,6 +185,7 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
             };
             walk.crossings.push(Crossing {
                 branch_before: before,
+                branch_after: contact,
                 compression_m: land.0,
                 rate_m_s: land.1,
                 force_before_n: force(&before),
