@@ -1,7 +1,7 @@
 //! Flores, Machado, Silva and Martins's law.
 
 use crate::InvalidInput;
-use crate::damped::{LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::damped::{Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 8 (1 - e) / (5 e v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -50,12 +50,15 @@ impl Flores {
     }
 }
 
-damped_law!(
-    Flores,
-    stiffness: stiffness_n_m1_5,
-    exponent: |_law| 1.5,
-    damping_s_m: |law, speed_m_s| {
-        let e = law.restitution;
-        1.6 * (1.0 - e) / e / speed_m_s.max(law.lowest_approach_speed_m_s)
+impl Damped for Flores {
+    fn stiffness(&self) -> f64 {
+        self.stiffness_n_m1_5
     }
-);
+
+    fn damping_s_m(&self, approach_speed_m_s: f64) -> f64 {
+        let e = self.restitution;
+        1.6 * (1.0 - e) / e / approach_speed_m_s.max(self.lowest_approach_speed_m_s)
+    }
+}
+
+damped_law!(Flores);

@@ -85,7 +85,7 @@ fn damping_by_approach_speed_is_bounded() {
     assert!(wall(law, 0.01) > 0.9 && wall(law, 1e-20) <= 1.0);
 }
 
-/// Thornton's closed form for the restitution, Eq. 31 of his paper in terms of the yield speed.
+/// Thornton's own closed form for the restitution, in terms of the yield speed.
 #[test]
 fn thornton_closed_form() {
     let law = Thornton::new(1.1e11, 0.015, 1.2e9).unwrap();
