@@ -141,10 +141,12 @@ impl<L: ContactLaw> Approach<'_, L> {
                 break;
             }
             if best_margin <= 0.0 {
-                (high, high_margin, low_margin) = (next, best_margin, if side < 0 { 0.5 * low_margin } else { low_margin });
+                (high, high_margin, low_margin) =
+                    (next, best_margin, if side < 0 { 0.5 * low_margin } else { low_margin });
                 side = -1;
             } else {
-                (low, low_margin, high_margin) = (next, best_margin, if side > 0 { 0.5 * high_margin } else { high_margin });
+                (low, low_margin, high_margin) =
+                    (next, best_margin, if side > 0 { 0.5 * high_margin } else { high_margin });
                 side = 1;
             }
         }
