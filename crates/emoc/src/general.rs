@@ -1,6 +1,6 @@
 //! Energy minimisation under outward constraints for several contacts and a structure already vibrating.
 
-use crate::program::{Engine, Failure};
+use crate::program::Engine;
 use crate::scaled::Scaled;
 use crate::{InvalidInput, Outcome, Problem, Solution};
 use alloc::vec;
@@ -61,8 +61,7 @@ impl Solver {
         let reference = scaled.least_energy(&mut self.least_energy)?;
         let attained = scaled.attained(&reference);
         match scaled.attempt(&mut self.emoc, &attained, 1.0) {
-            Ok(point) if !scaled.gains_energy(&point) => return Ok(scaled.solution(Outcome::Solved, &point)),
-            Err(Failure::Stopped(reason)) => return Err(SolveError::Stopped(reason)),
+            Ok(point) if scaled.admissible(&point) => return Ok(scaled.solution(Outcome::Solved, &point)),
             _ => {}
         }
         // The set of shares that can be met is an interval from 0, as rows and energy are convex: halve it.
@@ -71,7 +70,7 @@ impl Solver {
         for _ in 0..HALVINGS {
             let share = 0.5 * (met + too_much);
             match scaled.attempt(&mut self.emoc, &attained, share) {
-                Ok(point) if !scaled.gains_energy(&point) => (met, best) = (share, point),
+                Ok(point) if scaled.admissible(&point) => (met, best) = (share, point),
                 _ => too_much = share,
             }
         }

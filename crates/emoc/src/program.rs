@@ -115,10 +115,18 @@ impl Engine {
             }
         }
         let cones = [NonnegativeConeT(program.bounds.len())];
-        let solver = DefaultSolver::new(&hessian, &program.linear, &rows, &program.bounds, &cones, settings());
-        let Ok(mut solver) = solver else { return Err(Failure::Stopped("the solver refused the data")) };
-        solver.solve();
-        self.kept.insert(Kept { pattern, solver: Box::new(solver), active: None }).finish(program)
+        let run = |tolerance: f64| {
+            let settings = settings(tolerance);
+            let solver = DefaultSolver::new(&hessian, &program.linear, &rows, &program.bounds, &cones, settings);
+            let mut solver = solver.map_err(|_| Failure::Stopped("the solver refused the data"))?;
+            solver.solve();
+            Ok(Kept { pattern: pattern.clone(), solver: Box::new(solver), active: None })
+        };
+        match self.kept.insert(run(1e-12)?).finish(program) {
+            // with less asked of it, it can tell a minimum from infeasibility
+            Err(Failure::Stopped(_)) => self.kept.insert(run(1e-8)?).finish(program),
+            result => result,
+        }
     }
 }
 
@@ -146,18 +154,18 @@ impl Kept {
     }
 }
 
-/// Tight tolerances, and a last resort ("almost solved") that still means six digits.
-fn settings() -> DefaultSettings<f64> {
+/// One thread, no output, no change of the pattern; "almost solved" means a thousandth of the digits lost.
+fn settings(tolerance: f64) -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
         max_threads: 1,
         presolve_enable: false,
-        tol_gap_abs: 1e-12,
-        tol_gap_rel: 1e-12,
-        tol_feas: 1e-12,
-        reduced_tol_gap_abs: 1e-9,
-        reduced_tol_gap_rel: 1e-9,
-        reduced_tol_feas: 1e-9,
+        tol_gap_abs: tolerance,
+        tol_gap_rel: tolerance,
+        tol_feas: tolerance,
+        reduced_tol_gap_abs: 1e3 * tolerance,
+        reduced_tol_gap_rel: 1e3 * tolerance,
+        reduced_tol_feas: 1e3 * tolerance,
         ..DefaultSettings::default()
     }
 }

@@ -7,6 +7,10 @@ use core::f64::consts::PI;
 
 /// Share of the energy at hand by which a numerical solution may exceed it.
 const ENERGY_ROUNDING: f64 = 1e-10;
+/// Speed, over the fastest one, at which a contact may close numerically.
+const CLOSING_ROUNDING: f64 = 1e-9;
+/// Impulse, over what stops the fastest contact by itself, from which on bodies count as wedged.
+const WEDGED: f64 = 1e6;
 /// Mode shapes smaller than this share of the largest response do not count.
 const OUT_OF_REACH: f64 = 1e-8;
 
@@ -188,11 +192,14 @@ impl<'a> Scaled<'a> {
         Attained { opening: self.normals.iter().map(|&i| solution.opening_m_s[i]).collect(), outward }
     }
 
-    /// Whether a point has more energy than there was, beyond rounding.
-    pub(crate) fn gains_energy(&self, point: &Point) -> bool {
+    /// Whether a numerical solution is what it should be: no energy gained and no contact closing beyond rounding,
+    /// and no impulses that only cancel each other up to rounding, as between wedged bodies.
+    pub(crate) fn admissible(&self, point: &Point) -> bool {
         let solution = self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point));
         let modes: f64 = self.problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
-        !(solution.energy_change_j <= ENERGY_ROUNDING * (1.0 + modes))
+        solution.energy_change_j <= ENERGY_ROUNDING * (1.0 + modes)
+            && self.normals.iter().all(|&i| solution.opening_m_s[i] >= -CLOSING_ROUNDING)
+            && point.impulse.iter().all(|p| p.abs() <= WEDGED)
     }
 
     fn rates(&self, point: &Point) -> Vec<f64> {
