@@ -44,7 +44,7 @@ pub struct Settings {
     /// transformed coordinates). Default 8.
     pub starts: usize,
     /// Relative change in the sum of squares and in the parameters at which a search ends, from 1e-15 to 0.1.
-    /// Default 1e-10.
+    /// Default 1e-10. The search from each start ends at 1e-5 already, and the best goes on from there.
     pub tolerance: f64,
     /// Evaluations of the residuals that one search may take, those for differences aside. Default 2000.
     pub max_evaluations: usize,
@@ -73,7 +73,7 @@ pub enum Outcome {
 pub struct Start {
     /// The starting point.
     pub from: Vec<f64>,
-    /// Where the search ended.
+    /// Where its search ended, to about five digits.
     pub parameters: Vec<f64>,
     /// Sum of squares there.
     pub sum_of_squares: f64,
@@ -167,9 +167,11 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     let mut buffer = vec![0.0; problem.count];
     let mut starts = Vec::with_capacity(settings.starts);
     let mut best: Option<(Vec<f64>, f64, Outcome)> = None;
+    // where a start leads needs few digits; the best one is then followed to the end
+    let scouting = Settings { tolerance: settings.tolerance.max(1e-5), ..*settings };
     for index in 0..settings.starts {
         let from = starting_point(problem, index);
-        let (u, outcome) = search(&objective, settings, &from, &mut buffer);
+        let (u, outcome) = search(&objective, &scouting, &from, &mut buffer);
         let value = objective.sum_of_squares(&u, &mut buffer);
         starts.push(Start {
             from: objective.parameters(&from),
@@ -184,6 +186,11 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     let Some((mut u, mut value, mut outcome)) = best else {
         return Err(FitError::NonFiniteModel { starts: settings.starts });
     };
+    let (end, ended) = search(&objective, settings, &u, &mut buffer);
+    let reached = objective.sum_of_squares(&end, &mut buffer);
+    if reached <= value {
+        (u, value, outcome) = (end, reached, ended);
+    }
     if settings.method == Method::Both {
         let found = simplex_search(&objective, settings, &u, 0.1, &mut buffer);
         if found.value <= value {
