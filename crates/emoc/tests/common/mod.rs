@@ -1,5 +1,7 @@
 //! Numbers for random cases, the same on every machine.
 
+pub mod enumeration;
+
 use emoc::Coefficients;
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
@@ -30,6 +32,7 @@ impl Random {
     }
 
     /// Coefficients anywhere in their ranges, the ends included one time in five.
+    #[allow(dead_code)]
     pub fn coefficients(&mut self) -> Coefficients<f64> {
         let end = |random: &mut Random| match random.below(10) {
             0 => 0.0,
