@@ -18,10 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut solver = Solver::new();
     for ebar in [1.0, 0.6] {
         println!("restitution {ebar}");
-        let contact = Contact {
-            friction: Friction::None,
-            coefficients: Coefficients { ebar, beta0: 0.2, beta1: 0.3 },
-        };
+        let contact = Contact { friction: Friction::None, coefficients: Coefficients { ebar, beta0: 0.2, beta1: 0.3 } };
         let problem = Problem::from_bodies(vec![contact; 3], &mass, &jacobian, &falling, vec![])?;
         print("complementarity (Newton)", lcp::newton_impact(&problem)?.as_ref());
         print("least energy (Todorov)", Some(&solver.least_energy(&problem)?));

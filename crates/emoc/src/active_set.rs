@@ -108,7 +108,7 @@ fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
         }
         let ratios = residual.iter().zip(&terms).map(|(r, t)| if *t > 0.0 { r.abs() / t } else { 0.0 });
         let error = ratios.fold(0.0, |m: f64, x| if x > m || x.is_nan() { x } else { m });
-        if !(error < best) {
+        if error >= best || error.is_nan() {
             break;
         }
         (best, solution) = (error, trial);

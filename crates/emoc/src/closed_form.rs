@@ -68,12 +68,7 @@ impl<T: Real> Rebound<T> {
     /// An error if the lists differ in length or a number is not finite.
     pub fn modal_rates(&self, speed_m_s: T, phi: &[T], rates: &mut [T]) -> Result<(), InvalidInput> {
         require_non_negative("speed_m_s", speed_m_s)?;
-        require(
-            phi.len() == rates.len(),
-            "rates.len()",
-            T::from_count(rates.len()),
-            "as many rates as mode shapes",
-        )?;
+        require(phi.len() == rates.len(), "rates.len()", T::from_count(rates.len()), "as many rates as mode shapes")?;
         let sum = sum_of_squares(phi)?;
         let s = if sum > T::ZERO { self.recoil * speed_m_s / sum } else { T::ZERO };
         for (rate, &phi_k) in rates.iter_mut().zip(phi) {
@@ -133,7 +128,7 @@ impl<T: Real> Coefficients<T> {
         let outward = (self.beta0 + self.beta1) / (one + self.beta0);
         let kink_margin = basic - outward;
         let (branch, share, recoil) = if kink_margin >= T::ZERO {
-            (Branch::Basic, basic, z / (one + z))
+            (Branch::Basic, basic, z * basic)
         } else {
             (Branch::Outward, outward, (one - self.beta1) / (one + self.beta0))
         };
@@ -182,14 +177,9 @@ pub(crate) fn sum_of_squares<T: Real>(phi: &[T]) -> Result<T, InvalidInput> {
     for (index, &phi_k) in phi.iter().enumerate() {
         sum = sum + phi_k * phi_k;
         // false for NaN and for overflow alike
-        if !(sum <= T::MAX) {
-            return Err(InvalidInput {
-                field: "phi",
-                index: Some(index),
-                value: phi_k.to_f64(),
-                allowed: "finite mode shapes whose sum of squares is finite",
-            });
-        }
+        let finite = sum <= T::MAX;
+        require(finite, "phi", phi_k, "finite mode shapes whose sum of squares is finite")
+            .map_err(|error| InvalidInput { index: Some(index), ..error })?;
     }
     Ok(sum)
 }

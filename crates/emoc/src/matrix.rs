@@ -17,7 +17,7 @@ pub(crate) fn require_finite(field: &'static str, values: &[f64], length: usize)
         let allowed = "a length that fits the number of contact coordinates (or velocities)";
         return Err(InvalidInput { field, index: None, value: values.len() as f64, allowed });
     }
-    match values.iter().position(|value| !(value.abs() <= 1e100)) {
+    match values.iter().position(|value| value.is_nan() || value.abs() > 1e100) {
         Some(index) => {
             let allowed = "a number of magnitude up to 1e100";
             Err(InvalidInput { field, index: Some(index), value: values[index], allowed })
@@ -41,11 +41,7 @@ pub(crate) fn require_symmetric(field: &'static str, a: &[f64], n: usize) -> Res
 }
 
 /// `L D L^T` of a symmetric positive definite matrix; `D` on the diagonal, `L` below it.
-pub(crate) fn factor_positive_definite(
-    field: &'static str,
-    a: &[f64],
-    n: usize,
-) -> Result<Vec<f64>, InvalidInput> {
+pub(crate) fn factor_positive_definite(field: &'static str, a: &[f64], n: usize) -> Result<Vec<f64>, InvalidInput> {
     let mut f = a.to_vec();
     for j in 0..n {
         let mut d = f[j * n + j];

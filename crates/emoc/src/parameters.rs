@@ -177,12 +177,12 @@ impl<T: Real> Parameters<T> {
     }
 }
 
-/// `g(t) = t / (t^2 + t + 1)`, so that `ebar = e (1 - g(mu_0 Z))` is Eq. 7.5. Written in `1/t` for large `t`,
-/// where `t^2` would overflow.
+/// `g(t) = t / (t^2 + t + 1)`, so that `ebar = e (1 - g(mu_0 Z))` is Eq. 7.5. Where `t^2` overflows, `g` is
+/// less than any rounding of 1.
 #[inline]
 fn dip<T: Real>(t: T) -> T {
-    let one = T::ONE;
-    if t < one { t / (one + t * (one + t)) } else { one / (one + t + one / t) }
+    let square = t * (T::ONE + t);
+    if square <= T::MAX { t / (T::ONE + square) } else { T::ZERO }
 }
 
 /// `g'(t) = (1 - t^2) / (t^2 + t + 1)^2`.
@@ -206,8 +206,7 @@ fn dip_log_slope<T: Real>(t: T) -> T {
 /// `x / (1 + x)`, Eqs. 7.6 and 7.7, also for an `x` that has overflowed.
 #[inline]
 fn saturate<T: Real>(x: T) -> T {
-    let one = T::ONE;
-    if x < one { x / (one + x) } else { one / (one + one / x) }
+    if x <= T::MAX { x / (T::ONE + x) } else { T::ONE }
 }
 
 /// Derivative of [`saturate`], `1 / (1 + x)^2`.

@@ -18,9 +18,12 @@ fn assert_agreement(impact: &SingleImpact) {
     let mut rates = vec![0.0; impact.phi.len()];
     closed.modal_rates(1.0, impact.phi, &mut rates).unwrap();
     let energy = closed.restitution.powi(2) + closed.modal_energy_fraction(z);
+    // with beta_1 = 1 more rows are active at the minimum than there are variables, no active set proves it, and
+    // the interior point's own floor shows
+    let floor = if impact.coefficients.beta1 == 1.0 { 1e-9 * (1.0 + z).sqrt() } else { 2e-12 };
     for solution in [impact.solve_full().unwrap(), impact.solve_reduced().unwrap()] {
-        assert!((solution.restitution - closed.restitution).abs() < 2e-12, "{impact:?}\n{solution:?}\n{closed:?}");
-        assert!((solution.energy_ratio - energy).abs() < 1e-10, "{impact:?}\n{solution:?}\n{energy}");
+        assert!((solution.restitution - closed.restitution).abs() < floor, "{impact:?}\n{solution:?}\n{closed:?}");
+        assert!((solution.energy_ratio - energy).abs() < 50.0 * floor, "{impact:?}\n{solution:?}\n{energy}");
         for (found, rate) in solution.modal_rates_per_speed.iter().zip(&rates) {
             // the energy is flat in a mode, so its speed has half the digits that the tolerances give the energy
             assert!((found - rate).abs() < 1e-6 * impact.mass_kg.sqrt(), "{impact:?}\n{solution:?}\n{rates:?}");
@@ -36,11 +39,8 @@ fn quadratic_programs_agree_with_the_closed_form_in_random_cases() {
         let many = random.below(10) == 0;
         let n = 1 + random.below(if many { 50 } else { 12 });
         let phi: Vec<f64> = (0..n).map(|_| random.range(-2.0, 2.0)).collect();
-        let impact = SingleImpact {
-            mass_kg: random.log_range(1e-4, 1e2),
-            phi: &phi,
-            coefficients: random.coefficients(),
-        };
+        let impact =
+            SingleImpact { mass_kg: random.log_range(1e-4, 1e2), phi: &phi, coefficients: random.coefficients() };
         let branch = impact.coefficients.rebound(moderated_mass_ratio(&impact)).unwrap().branch;
         branches[usize::from(branch == Branch::Outward)] += 1;
         assert_agreement(&impact);

@@ -24,11 +24,10 @@ fn random_problems_are_solved_to_the_definition() {
                 m[i * n + j] = (0..rank).map(|k| factor[i * rank + k] * factor[j * rank + k]).sum();
             }
         }
-        // q = -M x + y with x, y >= 0 has a solution even where M is singular
+        // q = -M x + y with x >= 0, y > 0 has a solution even where M is singular
         let x: Vec<f64> = (0..n).map(|_| random.range(-1.0, 1.0).max(0.0)).collect();
-        let q: Vec<f64> = (0..n)
-            .map(|i| random.range(-1.0, 1.0).max(0.0) - (0..n).map(|j| m[i * n + j] * x[j]).sum::<f64>())
-            .collect();
+        let q: Vec<f64> =
+            (0..n).map(|i| random.range(0.01, 1.0) - (0..n).map(|j| m[i * n + j] * x[j]).sum::<f64>()).collect();
         let Lcp::Solved(z) = solve(&m, &q).unwrap() else { panic!("{m:?} {q:?}") };
         for i in 0..n {
             let w = q[i] + (0..n).map(|j| m[i * n + j] * z[j]).sum::<f64>();

@@ -56,11 +56,8 @@ fn gradients_are_those_of_differences_on_both_branches() {
 fn gradient_in_the_coefficients_is_that_of_differences() {
     let mut random = Random(4);
     for _ in 0..1000 {
-        let c = Coefficients {
-            ebar: random.range(0.1, 0.9),
-            beta0: random.range(0.1, 3.0),
-            beta1: random.range(0.1, 0.9),
-        };
+        let c =
+            Coefficients { ebar: random.range(0.1, 0.9), beta0: random.range(0.1, 3.0), beta1: random.range(0.1, 0.9) };
         let z = random.log_range(1e-2, 1e2);
         let (rebound, gradient) = c.rebound_with_gradient(z).unwrap();
         if rebound.kink_margin.abs() < 0.01 {

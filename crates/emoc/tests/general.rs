@@ -101,7 +101,7 @@ fn energy_never_grows_and_nothing_interpenetrates() {
     let mut random = Random(12);
     let mut solver = Solver::new();
     let mut counts = [0, 0, 0];
-    for _ in 0..2000 {
+    for _ in 0..800 {
         let problem = random_problem(&mut random);
         let solution = solver.solve(&problem).unwrap();
         counts[match solution.outcome {
@@ -115,7 +115,7 @@ fn energy_never_grows_and_nothing_interpenetrates() {
         }
     }
     // each of the three outcomes is exercised
-    assert!(counts.iter().all(|count| *count > 50), "{counts:?}");
+    assert!(counts.iter().all(|count| *count > 20), "{counts:?}");
 }
 
 /// Where the demands are met as stated, they are met.
@@ -159,10 +159,7 @@ fn the_outward_constraints_hold_where_the_outcome_says_so() {
 
 #[test]
 fn two_strikers_on_separate_structures_are_two_single_impacts() {
-    let c = [
-        Coefficients { ebar: 0.9, beta0: 0.3, beta1: 0.1 },
-        Coefficients { ebar: 0.7, beta0: 0.1, beta1: 0.6 },
-    ];
+    let c = [Coefficients { ebar: 0.9, beta0: 0.3, beta1: 0.1 }, Coefficients { ebar: 0.7, beta0: 0.1, beta1: 0.6 }];
     let problem = Problem {
         contacts: c.map(frictionless).to_vec(),
         inverse_inertia_per_kg: vec![1.0 / 0.3, 0.0, 0.0, 1.0 / 2.0],

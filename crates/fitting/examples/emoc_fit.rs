@@ -22,7 +22,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     for method in [Method::LevenbergMarquardt, Method::Simplex, Method::Both] {
         let found = fit(&problem, &Settings { method, ..Settings::default() })?;
-        println!("{method:?}: {:.5?}, rms {:.6}, {} evaluations", found.parameters, found.report.rms, found.evaluations);
+        println!(
+            "{method:?}: {:.5?}, rms {:.6}, {} evaluations",
+            found.parameters, found.report.rms, found.evaluations
+        );
     }
     let found = fit(&problem, &Settings::default())?;
     let ends: Vec<f64> = found.starts.iter().map(|start| start.sum_of_squares).collect();

@@ -126,7 +126,7 @@ pub(crate) fn covariance(
     objective.jacobian(u, &mut rows);
     let jacobian = DMatrix::from_row_slice(m, n, &rows);
     let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    if lengths.iter().any(|length| !(*length > 0.0)) {
+    if !lengths.iter().all(|length| *length > 0.0) {
         return None;
     }
     let scaled = DMatrix::from_fn(m, n, |i, j| jacobian[(i, j)] / lengths[j]);
@@ -156,7 +156,8 @@ mod tests {
     fn student_quantiles_are_those_of_the_tables() {
         // exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables
         let level: f64 = 0.95;
-        let exact = [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
+        let exact =
+            [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
         for (freedom, t) in exact {
             assert!((student_quantile(level, freedom) / t - 1.0).abs() < 1e-8, "{freedom}");
         }

@@ -72,7 +72,7 @@ impl<'a> Objective<'a> {
             None => self.differences(u, jacobian),
         }
         for entry in jacobian {
-            if !(entry.abs() < HUGE) {
+            if entry.is_nan() || entry.abs() >= HUGE {
                 *entry = 0.0;
             }
         }

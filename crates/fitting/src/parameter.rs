@@ -50,10 +50,11 @@ impl Parameter {
     /// Checks that the numbers are finite and the start and the search interval lie in the range.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let field = |part: &str| format!("parameter {} {part}", self.name);
-        if let Range::Between { low, high } = self.range {
-            if !(low.is_finite() && high.is_finite() && low < high && (high - low).is_finite()) {
-                return Err(InvalidInput::new(field("range"), format!("{low}..{high}"), "two finite numbers, low < high"));
-            }
+        if let Range::Between { low, high } = self.range
+            && !(low < high && (high - low).is_finite())
+        {
+            let allowed = "two finite numbers, low < high";
+            return Err(InvalidInput::new(field("range"), format!("{low}..{high}"), allowed));
         }
         for (part, value) in [("start", self.start), ("search.0", self.search.0), ("search.1", self.search.1)] {
             let inside = match self.range {

@@ -43,6 +43,6 @@ pub(crate) fn halton(index: usize, dimension: usize) -> f64 {
 }
 
 fn prime(place: usize) -> usize {
-    let is_prime = |n: &usize| (2..).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+    let is_prime = |n: &usize| (2..).take_while(|d| d * d <= *n).all(|d| !n.is_multiple_of(d));
     (2..).filter(is_prime).nth(place).unwrap_or(2)
 }

@@ -111,7 +111,12 @@ fn ranges_hold_at_the_boundary() {
     let problem = Problem {
         parameters: vec![
             Parameter::positive("p", 1.0, (0.1, 10.0)),
-            Parameter { name: "q".into(), start: 0.5, range: Range::Between { low: 0.0, high: 1.0 }, search: (0.1, 0.9) },
+            Parameter {
+                name: "q".into(),
+                start: 0.5,
+                range: Range::Between { low: 0.0, high: 1.0 },
+                search: (0.1, 0.9),
+            },
         ],
         count: 3,
         residuals: &|p, r| r.copy_from_slice(&[p[0] + 1.0, p[1] - 2.0, 0.0]),

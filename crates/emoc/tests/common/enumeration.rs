@@ -30,8 +30,7 @@ fn optimal(h: &[f64], rows: &[(Vec<f64>, f64)], chosen: &[usize]) -> Option<Vec<
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     // x = H^-1 A^T lambda, A H^-1 A^T lambda = bound
     let n = chosen.len();
-    let scaled: Vec<Vec<f64>> =
-        chosen.iter().map(|&i| rows[i].0.iter().zip(h).map(|(a, h)| a / h).collect()).collect();
+    let scaled: Vec<Vec<f64>> = chosen.iter().map(|&i| rows[i].0.iter().zip(h).map(|(a, h)| a / h).collect()).collect();
     let mut system: Vec<Vec<f64>> = (0..n)
         .map(|i| {
             let row = &rows[chosen[i]];
