@@ -107,7 +107,7 @@ impl<T: Real> Coefficients<T> {
     ///
     /// ```
     /// use emoc::{Branch, Coefficients};
-    /// let coefficients = Coefficients { ebar: 0.9, beta0: 0.5, beta1: 0.25 };
+    /// let coefficients = Coefficients::<f64> { ebar: 0.9, beta0: 0.5, beta1: 0.25 };
     /// let rebound = coefficients.rebound(4.0)?;
     /// assert_eq!(rebound.branch, Branch::Outward);
     /// assert!((rebound.restitution - 0.9 * 0.75 / 1.5).abs() < 1e-15);
@@ -128,7 +128,8 @@ impl<T: Real> Coefficients<T> {
         let outward = (self.beta0 + self.beta1) / (one + self.beta0);
         let kink_margin = basic - outward;
         let (branch, share, recoil) = if kink_margin >= T::ZERO {
-            (Branch::Basic, basic, z * basic)
+            // z/(1+z) without a division, without cancellation for small z and without overflow for large
+            (Branch::Basic, basic, if z < one { z * basic } else { one - basic })
         } else {
             (Branch::Outward, outward, (one - self.beta1) / (one + self.beta0))
         };

@@ -156,3 +156,8 @@ pub use problem::{Contact, Friction, Mode, Outcome, Problem, Solution};
 pub use real::Real;
 #[cfg(feature = "qp")]
 pub use single::{SingleImpact, SingleSolution};
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

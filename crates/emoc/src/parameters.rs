@@ -110,7 +110,7 @@ impl<T: Real> Parameters<T> {
     /// `ebar`, `beta_0` and `beta_1` of an impact (Eqs. 7.5 to 7.7).
     ///
     /// ```
-    /// let site = emoc::Site::new(&[1.0, 1.0])?;
+    /// let site = emoc::Site::<f64>::new(&[1.0, 1.0])?;
     /// let impact = emoc::Impact::new(0.5, &site)?; // Z = 1, S_0 = 1/2, S_1 = 1/2
     /// let coefficients = emoc::Parameters::default().coefficients(&impact)?;
     /// assert!((coefficients.ebar - 2.0 / 3.0).abs() < 1e-15);
@@ -146,7 +146,7 @@ impl<T: Real> Parameters<T> {
     ///
     /// ```
     /// use emoc::{Impact, Parameters, Site};
-    /// let impact = Impact::new(0.2, &Site::new(&[1.2, 0.4, 0.9])?)?;
+    /// let impact = Impact::<f64>::new(0.2, &Site::new(&[1.2, 0.4, 0.9])?)?;
     /// let (rebound, gradient) = Parameters::default().rebound_with_gradient(&impact)?;
     /// assert!((gradient.per_notional_restitution - rebound.restitution).abs() < 1e-15);
     /// # Ok::<(), emoc::InvalidInput>(())

@@ -220,8 +220,9 @@ pub enum Outcome {
     NoImpact,
     /// The model's inequalities hold as stated.
     Solved,
-    /// The rebound demanded is not to be had: it would take energy that is not there, or bodies are wedged. All
-    /// demands were lowered by a common share, from the least-energy impact (0) towards those stated (1).
+    /// The rebound demanded is not to be had: it would take energy that is not there, bodies are wedged, or the
+    /// numbers are beyond the solver. All demands were lowered by a common share, between the least-energy impact
+    /// (0) and those stated (1).
     Relaxed {
         /// The share kept, 0 to 1.
         share: f64,

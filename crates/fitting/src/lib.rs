@@ -56,3 +56,8 @@ pub use intervals::{Interval, bootstrap};
 pub use parameter::{Parameter, Range};
 pub use report::Residuals;
 pub use validation::{CrossValidation, Fold, cross_validate, k_folds};
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
