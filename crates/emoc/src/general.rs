@@ -33,11 +33,12 @@ impl From<InvalidInput> for SolveError {
     }
 }
 
-/// Solves impacts at several contacts. Keep one for a sequence of impacts of the same kind: while the
-/// contacts' friction and the number of modes stay the same, Clarabel's ordering, symbolic factorisation and
-/// memory are reused and only numbers are exchanged. The interior-point iteration itself always starts from
-/// its own point, so nothing of an earlier solution enters a later one beyond its scaling (differences near
-/// the tolerance).
+/// Solves impacts at several contacts. Keep one for a sequence of impacts of the same kind (the same friction at
+/// the same number of contacts, the same number of modes): it then starts from the rows that were active last
+/// time, and while these stay the same, one factorisation replaces the iteration and proves the result. Where
+/// they have changed too much, Clarabel runs with its ordering, symbolic factorisation and memory kept; an
+/// interior-point iteration itself has no warm start. Solutions differ from those of a new solver by rounding, or
+/// near the tolerance where no proof was reached; impulses that `W` leaves undetermined may differ.
 #[derive(Default)]
 pub struct Solver {
     emoc: Engine,
