@@ -4,6 +4,7 @@
 mod common;
 
 use common::Random;
+use common::enumeration::minimise;
 use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, Solution, SolveError, Solver};
 
 const ELASTIC: Coefficients<f64> = Coefficients { ebar: 1.0, beta0: 0.0, beta1: 0.0 };
@@ -155,6 +156,61 @@ fn the_outward_constraints_hold_where_the_outcome_says_so() {
             }
         }
     }
+}
+
+/// Two strikers on a structure that vibrates already, against brute force over all signs and active sets.
+#[test]
+fn a_vibrating_structure_agrees_with_enumeration() {
+    let mut random = Random(16);
+    let mut solver = Solver::new();
+    let mut compared = 0;
+    for _ in 0..400 {
+        let coefficients = [random.coefficients(), random.coefficients()];
+        let masses = [random.range(0.1, 2.0), random.range(0.1, 2.0)];
+        let speeds = [random.range(-1.0, 0.2), random.range(-1.0, 0.2)];
+        let shapes: Vec<[f64; 2]> = (0..2).map(|_| [random.range(-1.0, 1.0), random.range(-1.0, 1.0)]).collect();
+        let rates = [random.range(-0.3, 0.3), random.range(-0.3, 0.3)];
+        let problem = Problem {
+            contacts: coefficients.map(frictionless).to_vec(),
+            inverse_inertia_per_kg: vec![1.0 / masses[0], 0.0, 0.0, 1.0 / masses[1]],
+            velocity_m_s: speeds.to_vec(),
+            modes: (0..2).map(|k| Mode { rate: rates[k], shape: shapes[k].to_vec() }).collect(),
+        };
+        let solution = solver.solve(&problem).unwrap();
+        if solution.outcome != Outcome::Solved {
+            continue;
+        }
+        // variables: the strikers' velocities and the modal speeds
+        let mut rows = Vec::new();
+        for i in 0..2 {
+            let own = |j: usize| if i == j { 1.0 } else { 0.0 };
+            let closing = shapes[0][i] * rates[0] + shapes[1][i] * rates[1] - speeds[i];
+            let Coefficients { ebar, beta0, beta1 } = coefficients[i];
+            rows.push((vec![own(0), own(1), 0.0, 0.0], speeds[i])); // p >= 0
+            rows.push((vec![own(0), own(1), -shapes[0][i], -shapes[1][i]], ebar * closing.max(0.0)));
+            for signs in [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]] {
+                if closing > 0.0 {
+                    let buzz = |k: usize| -beta0 * signs[k] * shapes[k][i];
+                    rows.push((vec![own(0), own(1), buzz(0), buzz(1)], beta1 * ebar * closing));
+                }
+            }
+        }
+        for k in 0..2 {
+            let reach = [shapes[k][0].abs() * masses[0], shapes[k][1].abs() * masses[1]];
+            for sign in [1.0, -1.0] {
+                let modal = |l: usize| if k == l { sign } else { 0.0 };
+                let bound = reach[0] * speeds[0] + reach[1] * speeds[1] + sign * rates[k];
+                rows.push((vec![reach[0], reach[1], modal(0), modal(1)], bound));
+            }
+        }
+        let oracle = minimise(&[masses[0], masses[1], 1.0, 1.0], &rows).unwrap();
+        let found = [&solution.velocity_m_s[..], &solution.modal_rate[..]].concat();
+        for (a, b) in found.iter().zip(&oracle) {
+            assert!((a - b).abs() < 1e-6, "{problem:?}\n{found:?}\n{oracle:?}");
+        }
+        compared += 1;
+    }
+    assert!(compared > 200, "{compared}");
 }
 
 #[test]
