@@ -1,1 +1,163 @@
-//! emoc
+#![no_std]
+#![forbid(unsafe_code)]
+//! Net restitution without time integration: **e**nergy **m**inimisation under **o**utward **c**onstraints.
+//!
+//! A compact body of mass `m` strikes a vibrating structure at rest with speed `u = -v_i`. What follows, a row of
+//! sub-impacts within one macroscopic impact, is not resolved in time. Instead the velocity `v_f` after it and
+//! the modal speeds `a_k'` are those of the least kinetic energy
+//!
+//! ```text
+//! (m v_f^2 + sum a_k'^2) / 2                                   (6.4)
+//! ```
+//!
+//! that the impact can leave behind, given that the impulse `m (v_f + u)` bounds what each mode can have taken up,
+//! and that the bodies part:
+//!
+//! ```text
+//! |a_k'| <= phi_k m (v_f + u)                                  (6.5, fundamental)
+//! v_f - sum phi_k a_k'          >= ebar u                      (6.6, restitution)
+//! v_f - beta_0 sum phi_k |a_k'| >= beta_1 ebar u               (6.7, outward)
+//! ```
+//!
+//! The thesis (A. Bhattacharjee, IIT Kanpur, 2019, chapters 5 to 8) solves this problem P_0 as a quadratic program
+//! in `2 N + 1` variables. It has a closed form in two numbers, `Z` and the coefficients:
+//!
+//! ```text
+//! e = v_f / u = ebar max( 1/(1+Z), (beta_0+beta_1)/(1+beta_0) ),      Z = m sum phi_k^2.
+//! ```
+//!
+//! # Why
+//!
+//! In short, with `x = v_f/u` and `y = -sum phi_k a_k'/u`, the speed at which the contact point recoils:
+//!
+//! 1. For a given `y >= 0` the modal energy is least for `a_k' = -phi_k y u / sum phi^2` (Cauchy and Schwarz), and
+//!    the same choice makes `sum phi_k |a_k'|` least; a negative `y` only costs energy. So P_0 is a problem in
+//!    `(x, y)`: least `x^2 + y^2/Z` with `x + y >= ebar`, `x - beta_0 y >= beta_1 ebar`, `0 <= y <= Z (1+x)`.
+//! 2. On `x + y = ebar` alone the least energy is at `x = ebar/(1+Z)`. If the outward inequality holds there, that
+//!    is the solution; if not, both hold with equality, which gives the second term, and the multipliers of
+//!    both are positive.
+//! 3. In either case `y <= ebar Z/(1+Z) < Z (1+x)`: the fundamental inequalities (6.5) are never active.
+//!
+//! Every step is in `docs/emoc-closed-form.md` of the repository. The tests compare the closed form with P_1
+//! (Eqs. 6.8 to 6.13), its reduced form, and P_0 with all `2^N` sign combinations of (6.7).
+//!
+//! # Symbols
+//!
+//! | symbol | meaning | unit | equation |
+//! |---|---|---|---|
+//! | `m` | mass of the striker | kg | 6.4 |
+//! | `phi_k` | mass-normalised mode shape at the contact | kg^-1/2 | 6.1 |
+//! | `a_k'` | modal speed after the impact | kg^1/2 m/s | 6.2 |
+//! | `u`, `v_f` | speed of approach, velocity after the impact | m/s | 6.4 |
+//! | `e` | restitution `v_f/u` | 1 | |
+//! | `Z` | moderated mass ratio `m sum phi_k^2` | 1 | 7.3 |
+//! | `S_0`, `S_1` | `Z/N`, `m phi_1^2` | 1 | 7.6, 7.7 |
+//! | `ebar` | restitution of the contact points, `e (mu_0^2 Z^2 + 1)/(mu_0^2 Z^2 + mu_0 Z + 1)` | 1 | 7.5 |
+//! | `beta_0` | `alpha_0 S_0/(1 + alpha_0 S_0)` | 1 | 7.6 |
+//! | `beta_1` | `alpha_1 S_1/(1 + alpha_1 S_1)` | 1 | 7.7 |
+//! | `mu_0`, `alpha_0`, `alpha_1` | fitted parameters, not negative | 1 | 7.4 to 7.7 |
+//! | `y` | recoil of the structure's point over `u` | 1 | |
+//! | `W` | inverse of the contact inertia `M_C` | 1/kg | 5.1 |
+//!
+//! # What is where
+//!
+//! - [`Coefficients::rebound`]: the closed form. [`Parameters::rebound`]: the three-parameter form of chapter 7, for
+//!   an [`Impact`] at a [`Site`]. Both in `f64` or `f32`, without allocation, with derivatives, and with the
+//!   [`Branch`] of the maximum that is active. The restitution is continuous and has a kink where both terms are
+//!   equal ([`Rebound::kink_margin`] is zero); nowhere else.
+//! - [`newton_restitution`]: a constant coefficient at the contact points, for comparison.
+//! - `Problem` and `lcp` (feature `alloc`): several contacts at once; the linear complementarity baseline.
+//! - `Solver` (feature `qp`): energy minimisation under outward constraints for several contacts, a structure that
+//!   vibrates already, friction; `Solver::least_energy` is Todorov's rule (5.3). `SingleImpact`: P_1 and its
+//!   reduced form as quadratic programs.
+//!
+//! Without features the crate depends on nothing and needs neither `std` nor an allocator. `qp` (default) brings
+//! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel).
+//!
+//! # Several contacts
+//!
+//! In contact coordinates (all contacts, normals and tangents, stacked) impulses `P` change the strikers' contact
+//! velocities by `W P`, and `g = v - sum shape_k a_k'` is the velocity at which contacts open. The program is
+//!
+//! ```text
+//! min  P.W P/2 + v.P + sum (a_k'^2 - a_k'(0)^2)/2                  change of kinetic energy
+//!      p_i >= 0, (p_i, tau_i) in the friction pyramid              5.2.2
+//!      g_i >= ebar_i max(u_i, 0),  u_i = -g_i(0)                   6.6; no interpenetration
+//!      v_i - beta_0 sum |shape_ki| |a_k'| >= beta_1 ebar_i u_i     6.7, where u_i > 0
+//!      |a_k' - a_k'(0)| <= sum_j (|shape_kj| + mu_j |shape_kj,t|) p_j   6.5
+//! ```
+//!
+//! For one striker and a structure at rest this is P_1. With a structure that vibrates, or bodies that touch each
+//! other in several places, the demands on the right can ask for more than is there. Then all demands are lowered
+//! by a common share `s`, `(1-s)` times what the least-energy impact attains plus `s` times what was demanded, with
+//! the largest `s` (to 1e-6) at which the energy does not grow. At `s = 0` that impact itself is feasible,
+//! so that there always is such an `s`.
+//!
+//! Clarabel's iterate is completed on its active rows, where optimality is then proven by signs; a sequence starts
+//! from the rows of its last solution and needs no iteration while these stay the same.
+#![cfg_attr(
+    feature = "qp",
+    doc = r#"
+```
+use emoc::{Coefficients, Contact, Friction, Mode, Problem, Solver};
+// two strikers of 0.2 kg meet a structure with one mode that moves towards them
+let contact = Contact {
+    friction: Friction::None,
+    coefficients: Coefficients { ebar: 0.9, beta0: 0.2, beta1: 0.1 },
+};
+let problem = Problem {
+    contacts: vec![contact; 2],
+    inverse_inertia_per_kg: vec![5.0, 0.0, 0.0, 5.0],
+    velocity_m_s: vec![-1.0, -0.5],
+    modes: vec![Mode { rate: 0.1, shape: vec![1.0, 0.6] }],
+};
+let solution = Solver::new().solve(&problem)?;
+assert!(solution.opening_m_s.iter().all(|g| *g > 0.0) && solution.energy_change_j < 0.0);
+# Ok::<(), emoc::SolveError>(())
+```
+"#
+)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+#[cfg(feature = "qp")]
+extern crate std;
+
+#[cfg(feature = "qp")]
+mod active_set;
+mod closed_form;
+mod error;
+#[cfg(feature = "qp")]
+mod general;
+#[cfg(feature = "alloc")]
+pub mod lcp;
+#[cfg(feature = "alloc")]
+mod matrix;
+mod newton;
+mod parameters;
+#[cfg(feature = "alloc")]
+mod problem;
+#[cfg(feature = "qp")]
+mod program;
+mod real;
+#[cfg(feature = "qp")]
+mod scaled;
+#[cfg(feature = "qp")]
+mod single;
+
+pub use closed_form::{Branch, CoefficientGradient, Coefficients, Rebound};
+pub use error::InvalidInput;
+#[cfg(feature = "qp")]
+pub use general::{SolveError, Solver};
+pub use newton::newton_restitution;
+pub use parameters::{Impact, ParameterGradient, Parameters, Site};
+#[cfg(feature = "alloc")]
+pub use problem::{Contact, Friction, Mode, Outcome, Problem, Solution};
+pub use real::Real;
+#[cfg(feature = "qp")]
+pub use single::{SingleImpact, SingleSolution};
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,22 @@
+//! Newton's restitution at the contact points, with the modes struck by a single impulse.
+
+use crate::error::{require_fraction, require_non_negative};
+use crate::{InvalidInput, Real};
+
+/// Net restitution when the striker and a structure at rest exchange one impulse after which the contact
+/// points part at `restitution` times the speed of approach: `(restitution - Z) / (1 + Z)`.
+///
+/// This is what a constant coefficient means once modes are there (generalised momentum balance, thesis 5.1).
+/// From `Z > restitution` on the striker goes on towards the structure, so that further sub-impacts must
+/// follow, which this rule does not see. For a rigid structure (`Z = 0`) it is the constant itself.
+///
+/// ```
+/// assert_eq!(emoc::newton_restitution(0.8, 0.0)?, 0.8);
+/// assert_eq!(emoc::newton_restitution(1.0, 3.0)?, -0.5);
+/// # Ok::<(), emoc::InvalidInput>(())
+/// ```
+pub fn newton_restitution<T: Real>(restitution: T, z: T) -> Result<T, InvalidInput> {
+    require_fraction("restitution", restitution)?;
+    require_non_negative("z", z)?;
+    Ok((restitution - z) / (T::ONE + z))
+}

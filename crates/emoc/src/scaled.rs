@@ -1,0 +1,218 @@
+//! The quadratic programs of a contact problem, in units in which everything is of order one.
+
+use crate::program::{Engine, Failure, Program};
+use crate::{Friction, InvalidInput, Mode, Outcome, Problem, Solution};
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+/// Share of the energy at hand by which a numerical solution may exceed it.
+const ENERGY_ROUNDING: f64 = 1e-10;
+/// Speed, over the fastest one, at which a contact may close numerically.
+const CLOSING_ROUNDING: f64 = 1e-9;
+/// Impulse, over what stops the fastest contact by itself, from which on bodies count as wedged.
+const WEDGED: f64 = 1e6;
+/// Mode shapes smaller than this share of the largest response do not count.
+const OUT_OF_REACH: f64 = 1e-8;
+
+/// Impulses and changes of the modal speeds.
+pub(crate) struct Point {
+    impulse: Vec<f64>,
+    rate_changes: Vec<f64>,
+}
+
+/// What the left-hand sides of the demands amount to at some point, one number a contact.
+pub(crate) struct Attained {
+    opening: Vec<f64>,
+    outward: Vec<f64>,
+}
+
+/// The problem with velocities over the fastest one and inverse inertias over the largest one. Modes out of
+/// reach of every contact are left out: they keep their speed, and would leave the program without interior.
+pub(crate) struct Scaled<'a> {
+    stated: &'a Problem,
+    problem: Problem,
+    /// Places of the modes kept.
+    kept: Vec<usize>,
+    normals: Vec<usize>,
+    /// Speed at which each contact closes before the impact, 0 if it opens.
+    closing: Vec<f64>,
+    /// Unit of velocity (m/s).
+    speed: f64,
+    /// Square root of the unit of inverse inertia (kg^-1/2).
+    root: f64,
+}
+
+impl<'a> Scaled<'a> {
+    /// `None` if no contact is closing.
+    pub(crate) fn new(stated: &'a Problem) -> Result<Option<Scaled<'a>>, InvalidInput> {
+        let d = stated.coordinates();
+        let combined = stated.combined_inverse_inertia();
+        let root = (0..d).fold(0.0_f64, |m, i| m.max(combined[i * d + i])).sqrt();
+        let opening = stated.opening(&stated.velocity_m_s, stated.modes.iter().map(|mode| mode.rate));
+        let mut speed = stated.velocity_m_s.iter().chain(&opening).fold(0.0_f64, |m, v| m.max(v.abs()));
+        for mode in &stated.modes {
+            speed = mode.shape.iter().fold(speed, |m, shape| m.max((shape * mode.rate).abs()));
+        }
+        let normals = stated.normals();
+        if root == 0.0 || !normals.iter().any(|&i| opening[i] < -1e-14 * speed) {
+            return Ok(None);
+        }
+        let mut kept = Vec::new();
+        let mut modes = Vec::new();
+        for (place, mode) in stated.modes.iter().enumerate() {
+            if mode.shape.iter().any(|shape| shape.abs() > OUT_OF_REACH * root) {
+                kept.push(place);
+                let shape = mode.shape.iter().map(|shape| shape / root).collect();
+                modes.push(Mode { rate: mode.rate / speed * root, shape });
+            }
+        }
+        let problem = Problem {
+            contacts: stated.contacts.clone(),
+            inverse_inertia_per_kg: stated.inverse_inertia_per_kg.iter().map(|w| w / root / root).collect(),
+            velocity_m_s: stated.velocity_m_s.iter().map(|v| v / speed).collect(),
+            modes,
+        };
+        // the modes left out still move the contact points a little: that counts in how fast they close
+        let closing = normals.iter().map(|&i| (-opening[i] / speed).max(0.0)).collect();
+        Ok(Some(Scaled { stated, problem, kept, normals, closing, speed, root }))
+    }
+
+    /// Least energy over the impulses within the friction cones, with `a_k' = a_k'(0) - shape_k . P`:
+    /// `min P.G P/2 + g.P`, whose optimality conditions keep every contact from closing.
+    pub(crate) fn least_energy(&self, engine: &mut Engine) -> Result<Point, Failure> {
+        let d = self.problem.coordinates();
+        let mut program = Program::new(d);
+        let combined = self.problem.combined_inverse_inertia();
+        let rates = self.problem.modes.iter().map(|mode| mode.rate);
+        let opening = self.problem.opening(&self.problem.velocity_m_s, rates);
+        for i in 0..d {
+            program.linear(i, opening[i]);
+            for j in i..d {
+                program.quadratic(i, j, combined[i * d + j]);
+            }
+        }
+        self.friction_rows(&mut program);
+        let impulse = engine.minimise(&program)?.x;
+        let struck = self.problem.struck_rates(&impulse);
+        let rate_changes = struck.iter().zip(&self.problem.modes).map(|(rate, mode)| rate - mode.rate).collect();
+        Ok(Point { impulse, rate_changes })
+    }
+
+    /// P_1 for many contacts: least energy under the outward constraints, whose demands are lowered to `share`
+    /// of the way from `attained` to those stated.
+    ///
+    /// Variables: impulses `P`, changes `x_k` of the modal speeds, and `c_k = |a_k'|`.
+    pub(crate) fn attempt(&self, engine: &mut Engine, attained: &Attained, share: f64) -> Result<Point, Failure> {
+        let Problem { contacts, inverse_inertia_per_kg: w, velocity_m_s: v, modes } = &self.problem;
+        let (d, n) = (v.len(), modes.len());
+        let (x, c) = (d, d + n);
+        let mut p1 = Program::new(d + 2 * n);
+        // change of energy: P.W P/2 + v.P + sum (a + x)^2/2, half of the sum in c as in Eq. 6.8
+        for i in 0..d {
+            p1.linear(i, v[i]);
+            for j in i..d {
+                p1.quadratic(i, j, w[i * d + j]);
+            }
+        }
+        for (k, mode) in modes.iter().enumerate() {
+            p1.linear(x + k, 0.5 * mode.rate);
+            p1.quadratic(x + k, x + k, 0.5);
+            p1.quadratic(c + k, c + k, 0.5);
+        }
+        self.friction_rows(&mut p1);
+        let lowered = |demand: f64, had: f64| if demand > had { had + share * (demand - had) } else { demand };
+        let before = self.problem.opening(v, modes.iter().map(|mode| mode.rate));
+        for (place, (&i, contact)) in self.normals.iter().zip(contacts).enumerate() {
+            let demand = contact.coefficients.ebar * self.closing[place];
+            let after = (0..d).map(|j| (j, w[i * d + j]));
+            // Eq. 6.9: g_i + (W P)_i - sum shape x >= ebar u; without approach it forbids interpenetration
+            let modal = modes.iter().enumerate().map(|(k, mode)| (x + k, -mode.shape[i]));
+            p1.at_least(after.clone().chain(modal), lowered(demand, attained.opening[place]) - before[i]);
+            // Eq. 6.10, for closing contacts only; a row of zeros keeps the pattern for the others
+            let acts = if self.closing[place] > 0.0 { 1.0 } else { 0.0 };
+            let beta0 = contact.coefficients.beta0;
+            let modal = modes.iter().enumerate().map(|(k, mode)| (c + k, -acts * beta0 * mode.shape[i].abs()));
+            let demand = lowered(contact.coefficients.beta1 * demand, attained.outward[place]);
+            let bound = if acts > 0.0 { demand - v[i] } else { -1.0 };
+            p1.at_least(after.map(|(j, w)| (j, acts * w)).chain(modal), bound);
+        }
+        for (k, mode) in modes.iter().enumerate() {
+            p1.at_most([(x + k, 1.0), (c + k, -1.0)], -mode.rate); // 6.11
+            p1.at_most([(x + k, -1.0), (c + k, -1.0)], mode.rate); // 6.12
+            // 6.13: no mode changes by more than the impulses can give
+            p1.at_most(self.reach(mode).chain([(x + k, 1.0)]), 0.0);
+            p1.at_most(self.reach(mode).chain([(x + k, -1.0)]), 0.0);
+        }
+        let mut found = engine.minimise(&p1)?.x;
+        found.truncate(d + n);
+        let rate_changes = found.split_off(d);
+        Ok(Point { impulse: found, rate_changes })
+    }
+
+    /// `-(|shape_normal| + mu |shape_tangent|)` for the normal impulse of each contact.
+    fn reach<'b>(&'b self, mode: &'b Mode) -> impl Iterator<Item = (usize, f64)> + 'b {
+        self.normals.iter().zip(&self.problem.contacts).map(|(&i, contact)| {
+            let tangents = &mode.shape[i + 1..i + contact.friction.coordinates()];
+            let tangent = tangents.iter().map(|shape| shape * shape).sum::<f64>().sqrt();
+            (i, -(mode.shape[i].abs() + contact.friction.coefficient() * tangent))
+        })
+    }
+
+    /// `p >= 0`, and the friction cone or the pyramid inscribed in it.
+    fn friction_rows(&self, program: &mut Program) {
+        for (&i, contact) in self.normals.iter().zip(&self.problem.contacts) {
+            program.at_least([(i, 1.0)], 0.0);
+            match contact.friction {
+                Friction::None => {}
+                Friction::Planar { coefficient } => {
+                    program.at_most([(i, -coefficient), (i + 1, 1.0)], 0.0);
+                    program.at_most([(i, -coefficient), (i + 1, -1.0)], 0.0);
+                }
+                Friction::Spatial { coefficient, facets } => {
+                    let inner = coefficient * (PI / facets as f64).cos();
+                    for facet in 0..facets {
+                        let (sin, cos) = (2.0 * PI * facet as f64 / facets as f64).sin_cos();
+                        program.at_most([(i, -inner), (i + 1, cos), (i + 2, sin)], 0.0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// What the demands of Eqs. 6.9 and 6.10 find at a point.
+    pub(crate) fn attained(&self, point: &Point) -> Attained {
+        let solution = self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point));
+        let buzz = |i: usize| -> f64 {
+            let terms = self.problem.modes.iter().zip(&solution.modal_rate);
+            terms.map(|(mode, rate)| (mode.shape[i] * rate).abs()).sum()
+        };
+        let contacts = self.normals.iter().zip(&self.problem.contacts);
+        let outward =
+            contacts.map(|(&i, contact)| solution.velocity_m_s[i] - contact.coefficients.beta0 * buzz(i)).collect();
+        Attained { opening: self.normals.iter().map(|&i| solution.opening_m_s[i]).collect(), outward }
+    }
+
+    /// Whether a numerical solution is what it should be: no energy gained and no contact closing beyond rounding,
+    /// and no impulses that only cancel each other up to rounding, as between wedged bodies.
+    pub(crate) fn admissible(&self, point: &Point) -> bool {
+        let solution = self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point));
+        let modes: f64 = self.problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
+        solution.energy_change_j <= ENERGY_ROUNDING * (1.0 + modes)
+            && self.normals.iter().all(|&i| solution.opening_m_s[i] >= -CLOSING_ROUNDING)
+            && point.impulse.iter().all(|p| p.abs() <= WEDGED)
+    }
+
+    fn rates(&self, point: &Point) -> Vec<f64> {
+        self.problem.modes.iter().zip(&point.rate_changes).map(|(mode, change)| mode.rate + change).collect()
+    }
+
+    /// The point as a solution of the problem as stated.
+    pub(crate) fn solution(&self, outcome: Outcome, point: &Point) -> Solution {
+        let mut rates: Vec<f64> = self.stated.modes.iter().map(|mode| mode.rate).collect();
+        for (&place, change) in self.kept.iter().zip(&point.rate_changes) {
+            rates[place] += change * self.speed / self.root;
+        }
+        let impulse = point.impulse.iter().map(|p| p * self.speed / self.root / self.root).collect();
+        self.stated.solution(outcome, impulse, rates)
+    }
+}

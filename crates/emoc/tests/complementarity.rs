@@ -1,0 +1,77 @@
+//! Lemke's method against the definition, and the baseline against known impacts.
+#![cfg(feature = "alloc")]
+
+mod common;
+
+use common::Random;
+use emoc::lcp::{Lcp, newton_impact, solve};
+use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, newton_restitution};
+
+fn contact(ebar: f64) -> Contact {
+    Contact { friction: Friction::None, coefficients: Coefficients { ebar, beta0: 0.0, beta1: 0.0 } }
+}
+
+#[test]
+fn random_problems_are_solved_to_the_definition() {
+    let mut random = Random(6);
+    for _ in 0..2000 {
+        let n = 1 + random.below(8);
+        let rank = 1 + random.below(n);
+        let factor: Vec<f64> = (0..n * rank).map(|_| random.range(-1.0, 1.0)).collect();
+        let mut m = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..n {
+                m[i * n + j] = (0..rank).map(|k| factor[i * rank + k] * factor[j * rank + k]).sum();
+            }
+        }
+        // q = -M x + y with x >= 0, y > 0 has a solution even where M is singular
+        let x: Vec<f64> = (0..n).map(|_| random.range(-1.0, 1.0).max(0.0)).collect();
+        let q: Vec<f64> =
+            (0..n).map(|i| random.range(0.01, 1.0) - (0..n).map(|j| m[i * n + j] * x[j]).sum::<f64>()).collect();
+        let Lcp::Solved(z) = solve(&m, &q).unwrap() else { panic!("{m:?} {q:?}") };
+        for i in 0..n {
+            let w = q[i] + (0..n).map(|j| m[i * n + j] * z[j]).sum::<f64>();
+            assert!(z[i] >= 0.0 && w >= -1e-9 && (w * z[i]).abs() < 1e-8, "{m:?} {q:?} {z:?}");
+        }
+    }
+}
+
+#[test]
+fn a_problem_without_solution_ends_on_a_ray() {
+    assert_eq!(solve(&[0.0], &[-1.0]).unwrap(), Lcp::Ray);
+    assert_eq!(solve(&[1.0, -1.0, -1.0, 1.0], &[-1.0, -1.0]).unwrap(), Lcp::Ray);
+    assert_eq!(solve(&[], &[]).unwrap(), Lcp::Solved(vec![]));
+    assert!(solve(&[1.0], &[f64::NAN]).is_err() && solve(&[1.0, 2.0], &[1.0]).is_err());
+}
+
+#[test]
+fn one_striker_rebounds_as_the_formula_says() {
+    let mut random = Random(7);
+    for _ in 0..500 {
+        let (mass, e) = (random.log_range(1e-3, 1e3), random.range(0.0, 1.0));
+        let phi: Vec<f64> = (0..random.below(9)).map(|_| random.range(-1.0, 1.0)).collect();
+        let problem = Problem {
+            contacts: vec![contact(e)],
+            inverse_inertia_per_kg: vec![1.0 / mass],
+            velocity_m_s: vec![-2.0],
+            modes: phi.iter().map(|&shape| Mode { rate: 0.0, shape: vec![shape] }).collect(),
+        };
+        let z = mass * phi.iter().map(|p| p * p).sum::<f64>();
+        let solution = newton_impact(&problem).unwrap().unwrap();
+        assert!((solution.velocity_m_s[0] / 2.0 - newton_restitution(e, z).unwrap()).abs() < 1e-12);
+        assert!((solution.opening_m_s[0] - 2.0 * e).abs() < 1e-10);
+        assert!(solution.energy_change_j <= 1e-12);
+    }
+}
+
+#[test]
+fn contacts_that_open_are_left_alone() {
+    let problem = Problem {
+        contacts: vec![contact(1.0)],
+        inverse_inertia_per_kg: vec![1.0],
+        velocity_m_s: vec![1.0],
+        modes: vec![],
+    };
+    let solution = newton_impact(&problem).unwrap().unwrap();
+    assert_eq!((solution.outcome, solution.velocity_m_s[0]), (Outcome::NoImpact, 1.0));
+}

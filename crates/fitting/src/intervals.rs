@@ -1,0 +1,168 @@
+//! How well the parameters are known.
+
+use crate::fit::{Fit, Problem, Settings, fit_weighted};
+use crate::objective::Objective;
+use crate::random::Random;
+use crate::{FitError, InvalidInput};
+use nalgebra::DMatrix;
+
+/// An interval for a parameter, in its own unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Fit {
+    /// Intervals that each hold their parameter with probability `level` (0 to 1, for instance 0.95), one by one:
+    /// `u +- t se(u)` in the transformed coordinate, so that a positive parameter keeps a positive interval. Here
+    /// `se` comes from `s^2 (J^T J)^-1` with `s^2` the sum of squares over `m - n`, and `t` from Student's
+    /// distribution with `m - n` degrees of freedom.
+    ///
+    /// **Assumed:** residuals that are independent, of equal variance and normal, and a model that is close to
+    /// linear within the interval and has no kink there. Where the misfit is the model's own, as with a law of few
+    /// parameters, residuals are not independent and the intervals too narrow; see [`bootstrap`] and
+    /// [`cross_validate`](crate::cross_validate).
+    ///
+    /// `Ok(None)` if the residuals do not determine the parameters (singular `J^T J`, or `m = n`).
+    pub fn intervals(&self, level: f64) -> Result<Option<Vec<Interval>>, InvalidInput> {
+        require_level(level)?;
+        let n = self.parameters.len();
+        let Some(covariance) = &self.covariance else { return Ok(None) };
+        let t = student_quantile(level, self.report.count - n);
+        let interval = |(j, parameter): (usize, &crate::Parameter)| {
+            let (u, half) = (parameter.inward(self.parameters[j]), t * covariance[j * n + j].sqrt());
+            Interval { low: parameter.outward(u - half), high: parameter.outward(u + half) }
+        };
+        Ok(Some(self.transforms.iter().enumerate().map(interval).collect()))
+    }
+
+    /// Correlation of the transformed coordinates, row by row; `None` as with [`Fit::intervals`].
+    pub fn correlation(&self) -> Option<Vec<f64>> {
+        let n = self.parameters.len();
+        let c = self.covariance.as_ref()?;
+        let at = |k: usize| c[k] / (c[(k / n) * (n + 1)] * c[(k % n) * (n + 1)]).sqrt();
+        Some((0..n * n).map(at).collect())
+    }
+}
+
+/// Percentile intervals from refits to residuals drawn with replacement (Efron and Tibshirani 1993, ch. 13), each
+/// started at the fit. It needs no normal residuals and no linear model, but independent ones.
+///
+/// The same `seed` gives the same bits. Refits whose model is not finite are left out.
+pub fn bootstrap(
+    problem: &Problem,
+    settings: &Settings,
+    fit: &Fit,
+    resamples: usize,
+    seed: u64,
+    level: f64,
+) -> Result<Vec<Interval>, FitError> {
+    problem.validate()?;
+    settings.validate()?;
+    require_level(level)?;
+    if !(20..=1_000_000).contains(&resamples) {
+        return Err(InvalidInput::new("resamples", resamples, "20 to 1000000 resamples").into());
+    }
+    let n = problem.parameters.len();
+    if fit.parameters.len() != n {
+        let allowed = "a fit of the same problem";
+        return Err(InvalidInput::new("fit.parameters.len()", fit.parameters.len(), allowed).into());
+    }
+    let mut local = Problem { parameters: problem.parameters.clone(), ..*problem };
+    for (parameter, &found) in local.parameters.iter_mut().zip(&fit.parameters) {
+        // a fit may have run to the edge of its range, where no search can start
+        let moved = crate::Parameter { start: found, ..parameter.clone() };
+        if moved.validate().is_ok() {
+            *parameter = moved;
+        }
+    }
+    let settings = Settings { starts: 1, ..*settings };
+    let mut random = Random::new(seed);
+    let mut found: Vec<Vec<f64>> = vec![Vec::with_capacity(resamples); n];
+    for _ in 0..resamples {
+        let mut weights = vec![0.0; problem.count];
+        for _ in 0..problem.count {
+            weights[random.below(problem.count)] += 1.0;
+        }
+        if let Ok(refit) = fit_weighted(&local, &settings, Some(&weights)) {
+            found.iter_mut().zip(refit.parameters).for_each(|(values, p)| values.push(p));
+        }
+    }
+    found
+        .into_iter()
+        .map(|mut values| {
+            values.sort_by(f64::total_cmp);
+            let (Some(last), tail) = (values.len().checked_sub(1), 0.5 * (1.0 - level)) else {
+                return Err(FitError::NonFiniteModel { starts: resamples });
+            };
+            let at = |share: f64| values[(share * last as f64).round() as usize];
+            Ok(Interval { low: at(tail), high: at(1.0 - tail) })
+        })
+        .collect()
+}
+
+fn require_level(level: f64) -> Result<(), InvalidInput> {
+    if (0.01..=0.9999).contains(&level) {
+        Ok(())
+    } else {
+        Err(InvalidInput::new("level", level, "a probability from 0.01 to 0.9999"))
+    }
+}
+
+/// `s^2 (J^T J)^-1` in the transformed coordinates, with columns scaled to length one before the inversion.
+pub(crate) fn covariance(
+    objective: &Objective,
+    u: &[f64],
+    sum_of_squares: f64,
+    weights: Option<&[f64]>,
+) -> Option<Vec<f64>> {
+    let (m, n) = (objective.problem.count, u.len());
+    let taking_part = weights.map_or(m, |weights| weights.iter().filter(|w| **w > 0.0).count());
+    let freedom = taking_part.checked_sub(n).filter(|&f| f > 0)?;
+    let mut rows = vec![0.0; m * n];
+    objective.jacobian(u, &mut rows);
+    let jacobian = DMatrix::from_row_slice(m, n, &rows);
+    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
+    if !lengths.iter().all(|length| *length > 0.0) {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(m, n, |i, j| jacobian[(i, j)] / lengths[j]);
+    let factor = (scaled.transpose() * &scaled).cholesky()?;
+    // the square of a pivot is the share of a column that the others cannot imitate
+    if factor.l_dirty().diagonal().iter().any(|pivot| pivot * pivot < 1e-12) {
+        return None;
+    }
+    let inverse = factor.inverse();
+    let variance = sum_of_squares / freedom as f64;
+    Some((0..n * n).map(|k| variance * inverse[(k / n, k % n)] / (lengths[k / n] * lengths[k % n])).collect())
+}
+
+/// `t` such that Student's variable lies within `-t..t` with probability `level`:
+/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`.
+fn student_quantile(level: f64, freedom: usize) -> f64 {
+    let f = freedom.max(1) as f64;
+    let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
+    (f * (1.0 - x) / x).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::student_quantile;
+
+    #[test]
+    fn student_quantiles_are_those_of_the_tables() {
+        // exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables
+        let level: f64 = 0.95;
+        let exact =
+            [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
+        for (freedom, t) in exact {
+            assert!((student_quantile(level, freedom) / t - 1.0).abs() < 1e-8, "{freedom}");
+        }
+        for (freedom, t) in [(10, 2.228138852), (30, 2.042272456), (100, 1.983971519)] {
+            assert!((student_quantile(level, freedom) - t).abs() < 1e-7, "{freedom}");
+        }
+    }
+}

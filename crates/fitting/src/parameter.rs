@@ -1,0 +1,104 @@
+//! Parameters and the coordinates in which they are sought.
+
+use crate::InvalidInput;
+
+/// The numbers that a parameter may take. A restricted parameter is sought in a coordinate `u` without
+/// restriction, so that no method can leave the range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Range {
+    /// Any number: `u = p`.
+    Free,
+    /// Greater than zero: `u = ln p`.
+    Positive,
+    /// Strictly between two numbers: `u = ln((p - low)/(high - p))`.
+    Between {
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+}
+
+/// A parameter: where it may lie and where to look for it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Name, for messages.
+    pub name: String,
+    /// First starting point.
+    pub start: f64,
+    /// Allowed range.
+    pub range: Range,
+    /// Interval `(low, high)`, within the range, from which further starting points are taken; its length in `u`
+    /// also sets the size of the first steps of the derivative-free method.
+    pub search: (f64, f64),
+}
+
+/// Largest `|u|` of a transformed coordinate: `exp` neither overflows nor vanishes.
+const LARGEST: f64 = 690.0;
+
+impl Parameter {
+    /// A parameter of any sign.
+    pub fn free(name: &str, start: f64, search: (f64, f64)) -> Parameter {
+        Parameter { name: name.into(), start, range: Range::Free, search }
+    }
+
+    /// A parameter greater than zero.
+    pub fn positive(name: &str, start: f64, search: (f64, f64)) -> Parameter {
+        Parameter { name: name.into(), start, range: Range::Positive, search }
+    }
+
+    /// Checks that the numbers are finite and the start and the search interval lie in the range.
+    pub fn validate(&self) -> Result<(), InvalidInput> {
+        let field = |part: &str| format!("parameter {} {part}", self.name);
+        if let Range::Between { low, high } = self.range
+            && !(low < high && (high - low).is_finite())
+        {
+            let allowed = "two finite numbers, low < high";
+            return Err(InvalidInput::new(field("range"), format!("{low}..{high}"), allowed));
+        }
+        for (part, value) in [("start", self.start), ("search.0", self.search.0), ("search.1", self.search.1)] {
+            let inside = match self.range {
+                Range::Free => value.abs() <= 1e100,
+                Range::Positive => (1e-100..=1e100).contains(&value),
+                Range::Between { low, high } => value > low && value < high && self.inward(value).is_finite(),
+            };
+            if !inside {
+                let allowed = "a number within the parameter's range (and of magnitude 1e-100 to 1e100 if positive)";
+                return Err(InvalidInput::new(field(part), value, allowed));
+            }
+        }
+        if self.search.0 > self.search.1 {
+            let value = format!("{}..{}", self.search.0, self.search.1);
+            return Err(InvalidInput::new(field("search"), value, "an interval, low <= high"));
+        }
+        Ok(())
+    }
+
+    /// `u` of a parameter `p`.
+    pub(crate) fn inward(&self, p: f64) -> f64 {
+        match self.range {
+            Range::Free => p,
+            Range::Positive => p.ln(),
+            Range::Between { low, high } => ((p - low) / (high - p)).ln(),
+        }
+    }
+
+    /// The parameter at `u`.
+    pub(crate) fn outward(&self, u: f64) -> f64 {
+        let clamped = u.clamp(-LARGEST, LARGEST);
+        match self.range {
+            Range::Free => u,
+            Range::Positive => clamped.exp(),
+            Range::Between { low, high } => low + (high - low) / (1.0 + (-clamped).exp()),
+        }
+    }
+
+    /// `dp/du` at a parameter `p`.
+    pub(crate) fn slope(&self, p: f64) -> f64 {
+        match self.range {
+            Range::Free => 1.0,
+            Range::Positive => p,
+            Range::Between { low, high } => (p - low) * ((high - p) / (high - low)),
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! Fits against certified values and closed forms, and input that tries to break them.
+
+use fitting::*;
+
+const METHODS: [Method; 3] = [Method::LevenbergMarquardt, Method::Simplex, Method::Both];
+
+/// NIST StRD "Misra1a" (lower difficulty): y = b1 (1 - exp(-b2 x)), certified to 11 digits.
+const MISRA_X: [f64; 14] =
+    [77.6, 114.9, 141.1, 190.8, 239.9, 289.0, 332.8, 378.4, 434.8, 477.3, 536.8, 593.1, 689.1, 760.0];
+const MISRA_Y: [f64; 14] =
+    [10.07, 14.73, 17.94, 23.93, 29.61, 35.18, 40.02, 44.82, 50.76, 55.05, 61.01, 66.40, 75.47, 81.78];
+
+fn misra(p: &[f64], r: &mut [f64]) {
+    for ((r, x), y) in r.iter_mut().zip(MISRA_X).zip(MISRA_Y) {
+        *r = p[0] * (1.0 - (-p[1] * x).exp()) - y;
+    }
+}
+
+fn misra_jacobian(p: &[f64], rows: &mut [f64]) {
+    for (row, x) in rows.chunks_exact_mut(2).zip(MISRA_X) {
+        let decay = (-p[1] * x).exp();
+        row.copy_from_slice(&[1.0 - decay, p[0] * x * decay]);
+    }
+}
+
+fn misra_problem<'a>(jacobian: Option<&'a ResidualsFn<'a>>) -> Problem<'a> {
+    Problem {
+        parameters: vec![
+            Parameter::positive("b1", 500.0, (10.0, 1000.0)),
+            Parameter::positive("b2", 1e-4, (1e-5, 1e-2)),
+        ],
+        count: 14,
+        residuals: &misra,
+        jacobian,
+    }
+}
+
+#[test]
+fn certified_parameters_and_standard_deviations_are_found() {
+    for jacobian in [None, Some(&misra_jacobian as &ResidualsFn)] {
+        for method in METHODS {
+            let settings = Settings { method, ..Settings::default() };
+            let found = fit(&misra_problem(jacobian), &settings).unwrap();
+            assert_eq!(found.outcome, Outcome::Converged);
+            assert!((found.parameters[0] / 2.3894212918e2 - 1.0).abs() < 1e-6, "{method:?} {:?}", found.parameters);
+            assert!((found.parameters[1] / 5.5015643181e-4 - 1.0).abs() < 1e-6);
+            assert!((found.sum_of_squares / 1.2455138894e-1 - 1.0).abs() < 1e-9);
+            // certified standard deviations 2.7070075241 and 7.2668688436e-6; t = 2.178812830 at 12 degrees
+            let intervals = found.intervals(0.95).unwrap().unwrap();
+            for (j, deviation) in [(0, 2.7070075241), (1, 7.2668688436e-6)] {
+                let relative = deviation / found.parameters[j];
+                let half = 0.5 * (intervals[j].high / intervals[j].low).ln();
+                assert!((half / (2.178812830 * relative) - 1.0).abs() < 1e-4, "{method:?} {j}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bits() {
+    let once = fit(&misra_problem(None), &Settings::default()).unwrap();
+    let again = fit(&misra_problem(None), &Settings::default()).unwrap();
+    assert_eq!(once, again);
+    let interval =
+        |seed| bootstrap(&misra_problem(None), &Settings::default(), &once, 50, seed, 0.9).unwrap()[0].low.to_bits();
+    assert_eq!(interval(3), interval(3));
+    assert_ne!(interval(3), interval(4));
+}
+
+/// (1 + |a - 0.3|)(1 + |a - b|) + 0.01 (b - 3)^2: the derivative jumps at the minimum in both directions.
+#[test]
+fn a_kinked_minimum_is_found_without_derivatives() {
+    let problem = Problem {
+        parameters: vec![Parameter::free("a", 2.0, (-5.0, 5.0)), Parameter::free("b", -1.0, (-5.0, 5.0))],
+        count: 2,
+        residuals: &|p, r| {
+            r[0] = (1.0 + (p[0] - 0.3).abs()).sqrt() * (1.0 + (p[0] - p[1]).abs()).sqrt();
+            r[1] = 0.1 * (p[1] - 3.0);
+        },
+        jacobian: None,
+    };
+    // at a = 0.3 the sum is 1 + |0.3 - b| + 0.01 (b - 3)^2, whose slope in b is 1 - 0.054 > 0 to the right of 0.3
+    let least = 1.0 + 0.01 * 2.7 * 2.7;
+    for method in [Method::Simplex, Method::Both] {
+        let found = fit(&problem, &Settings { method, ..Settings::default() }).unwrap();
+        assert!((found.sum_of_squares - least).abs() < 1e-6, "{method:?} {found:?}");
+        assert!(found.parameters.iter().all(|p| (p - 0.3).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn several_starts_find_the_deeper_of_two_minima() {
+    // (p^2 - 4)^2 + (p - 1)^2 / 4: a local minimum near -2, the least near 2
+    let problem = Problem {
+        parameters: vec![Parameter::free("p", -3.0, (-4.0, 4.0))],
+        count: 2,
+        residuals: &|p, r| (r[0], r[1]) = (p[0] * p[0] - 4.0, 0.5 * (p[0] - 1.0)),
+        jacobian: None,
+    };
+    let from_one = fit(&problem, &Settings { starts: 1, method: Method::LevenbergMarquardt, ..Settings::default() });
+    assert!(from_one.unwrap().parameters[0] < 0.0);
+    for method in METHODS {
+        let from_many = fit(&problem, &Settings { method, ..Settings::default() }).unwrap();
+        assert!((from_many.parameters[0] - 1.984).abs() < 1e-2, "{:?}", from_many.parameters);
+    }
+}
+
+#[test]
+fn ranges_hold_at_the_boundary() {
+    // the least squares lie outside both ranges; the fit stays within
+    let problem = Problem {
+        parameters: vec![
+            Parameter::positive("p", 1.0, (0.1, 10.0)),
+            Parameter {
+                name: "q".into(),
+                start: 0.5,
+                range: Range::Between { low: 0.0, high: 1.0 },
+                search: (0.1, 0.9),
+            },
+        ],
+        count: 3,
+        residuals: &|p, r| r.copy_from_slice(&[p[0] + 1.0, p[1] - 2.0, 0.0]),
+        jacobian: None,
+    };
+    for method in METHODS {
+        let found = fit(&problem, &Settings { method, ..Settings::default() }).unwrap();
+        assert!(found.parameters[0] > 0.0 && found.parameters[0] < 1e-3, "{:?}", found.parameters);
+        assert!(found.parameters[1] > 0.999 && found.parameters[1] <= 1.0);
+    }
+}
+
+#[test]
+fn wild_closures_give_outcomes_or_errors() {
+    let parameter = || vec![Parameter::positive("p", 1.0, (0.1, 10.0))];
+    let wild: [&ResidualsFn; 7] = [
+        &|_, r| r.fill(f64::NAN),
+        &|_, r| r.fill(f64::INFINITY),
+        &|_, _| (),
+        &|p, r| r.fill(if p[0] > 0.5 { 1.0 } else { f64::NAN }),
+        &|p, r| r.fill(1e99 * p[0]),
+        &|_, r| r.fill(0.0),
+        &|p, r| r.fill((1e6 * p[0]).sin()),
+    ];
+    for (case, residuals) in wild.into_iter().enumerate() {
+        for method in METHODS {
+            let settings = Settings { method, max_evaluations: 300, ..Settings::default() };
+            let problem = Problem { parameters: parameter(), count: 4, residuals, jacobian: None };
+            let found = fit(&problem, &settings);
+            match case {
+                0..=2 => assert_eq!(found, Err(FitError::NonFiniteModel { starts: 8 })),
+                _ => assert!(found.is_ok_and(|found| found.parameters[0].is_finite())),
+            }
+            // a Jacobian that is nonsense must not break anything either
+            for jacobian in [&(|_: &[f64], j: &mut [f64]| j.fill(f64::NAN)) as &ResidualsFn, &|_, _| ()] {
+                let problem = Problem { parameters: parameter(), count: 4, residuals, jacobian: Some(jacobian) };
+                assert_eq!(fit(&problem, &settings).is_err(), case <= 2);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_limit_of_evaluations_is_an_outcome() {
+    let settings = Settings { method: Method::Simplex, starts: 1, max_evaluations: 5, ..Settings::default() };
+    assert_eq!(fit(&misra_problem(None), &settings).unwrap().outcome, Outcome::LimitReached);
+}
+
+#[test]
+fn undetermined_parameters_have_no_intervals() {
+    let problem = Problem {
+        parameters: vec![Parameter::free("a", 0.0, (-1.0, 1.0)), Parameter::free("b", 0.0, (-1.0, 1.0))],
+        count: 5,
+        residuals: &|p, r| (0..5).for_each(|i| r[i] = p[0] + p[1] - i as f64),
+        jacobian: None,
+    };
+    let found = fit(&problem, &Settings::default()).unwrap();
+    assert_eq!(found.intervals(0.95).unwrap(), None);
+    assert_eq!(found.correlation(), None);
+    assert!((found.parameters[0] + found.parameters[1] - 2.0).abs() < 1e-6);
+}
+
+#[test]
+fn intervals_cover_as_often_as_they_say() {
+    // straight line, 20 points, uniform errors: 95 % intervals should hold the slope in about 95 of 100 cases
+    let mut random = 12345_u64;
+    let mut uniform = || {
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (random >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let (mut jacobian, mut bootstrapped) = (0, 0);
+    for case in 0..200 {
+        let y: Vec<f64> = (0..20).map(|i| 1.0 + 2.0 * f64::from(i) + uniform()).collect();
+        let problem = Problem {
+            parameters: vec![Parameter::free("a", 0.0, (-9.0, 9.0)), Parameter::free("b", 0.0, (-9.0, 9.0))],
+            count: 20,
+            residuals: &|p, r| (0..20).for_each(|i| r[i] = p[0] + p[1] * i as f64 - y[i]),
+            jacobian: None,
+        };
+        let settings = Settings { method: Method::LevenbergMarquardt, starts: 1, ..Settings::default() };
+        let found = fit(&problem, &settings).unwrap();
+        let holds = |interval: Interval| usize::from(interval.low <= 2.0 && 2.0 <= interval.high);
+        jacobian += holds(found.intervals(0.95).unwrap().unwrap()[1]);
+        if case < 60 {
+            bootstrapped += holds(bootstrap(&problem, &settings, &found, 100, case, 0.95).unwrap()[1]);
+        }
+    }
+    assert!((181..=198).contains(&jacobian), "{jacobian} of 200");
+    assert!((49..=60).contains(&bootstrapped), "{bootstrapped} of 60");
+}
+
+#[test]
+fn cross_validation_predicts_each_residual_once_and_without_its_group() {
+    let problem = misra_problem(None);
+    let labels = k_folds(14, 7, 5).unwrap();
+    assert!((0..7).all(|label| labels.iter().filter(|l| **l == label).count() == 2));
+    let result = cross_validate(&problem, &Settings::default(), &labels).unwrap();
+    assert_eq!(result.report.count, 14);
+    for fold in &result.folds {
+        let mut all = vec![0.0; 14];
+        misra(&fold.parameters, &mut all);
+        for i in (0..14).filter(|&i| labels[i] == fold.label) {
+            assert_eq!(all[i], result.residuals[i]);
+        }
+        // the same fit, made by hand on the other twelve
+        let kept: Vec<usize> = (0..14).filter(|&i| labels[i] != fold.label).collect();
+        let by_hand = Problem {
+            count: 12,
+            residuals: &|p, r| {
+                let mut all = vec![0.0; 14];
+                misra(p, &mut all);
+                kept.iter().zip(r).for_each(|(&i, r)| *r = all[i]);
+            },
+            ..misra_problem(None)
+        };
+        let by_hand = fit(&by_hand, &Settings::default()).unwrap();
+        assert!((by_hand.parameters[0] / fold.parameters[0] - 1.0).abs() < 1e-6);
+    }
+    let fitted = fit(&problem, &Settings::default()).unwrap();
+    assert!(result.report.rms > fitted.report.rms);
+}
+
+#[test]
+fn bad_input_names_field_value_and_what_is_allowed() {
+    let good = || misra_problem(None);
+    let with = |change: &dyn Fn(&mut Problem, &mut Settings)| {
+        let (mut problem, mut settings) = (good(), Settings::default());
+        change(&mut problem, &mut settings);
+        match fit(&problem, &settings) {
+            Err(FitError::Invalid(error)) => error.field,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(with(&|p, _| p.parameters[0].start = -1.0), "parameter b1 start");
+    assert_eq!(with(&|p, _| p.parameters[1].search = (f64::NAN, 1.0)), "parameter b2 search.0");
+    assert_eq!(with(&|p, _| p.parameters[1].search = (2.0, 1.0)), "parameter b2 search");
+    assert_eq!(with(&|p, _| p.parameters[0].range = Range::Between { low: 1.0, high: 1.0 }), "parameter b1 range");
+    assert_eq!(with(&|p, _| p.parameters.clear()), "parameters.len()");
+    assert_eq!(with(&|p, _| p.count = 1), "count");
+    assert_eq!(with(&|_, s| s.tolerance = f64::NAN), "tolerance");
+    assert_eq!(with(&|_, s| s.starts = 0), "starts");
+    assert_eq!(with(&|_, s| s.max_evaluations = 0), "max_evaluations");
+    let fitted = fit(&good(), &Settings::default()).unwrap();
+    assert!(fitted.intervals(1.0).is_err() && fitted.intervals(f64::NAN).is_err());
+    assert!(k_folds(3, 4, 0).is_err() && k_folds(3, 1, 0).is_err());
+    assert!(cross_validate(&good(), &Settings::default(), &[0; 14]).is_err());
+    assert!(cross_validate(&good(), &Settings::default(), &[0, 1]).is_err());
+    assert!(bootstrap(&good(), &Settings::default(), &fitted, 1, 0, 0.9).is_err());
+}
+
+#[test]
+fn the_report_of_residuals_is_what_it_says() {
+    let report = Residuals::of(&[-3.0, 1.0, 2.0, 0.0]);
+    assert_eq!((report.count, report.mean, report.max_abs, report.median_abs), (4, 0.0, 3.0, 1.0));
+    assert!((report.rms - 3.5_f64.sqrt()).abs() < 1e-15);
+    assert_eq!(Residuals::of(&[]).count, 0);
+}
