@@ -1,1 +1,3 @@
 //! vibroimpact
+
+pub mod plot;
