@@ -1,3 +1,4 @@
 //! vibroimpact
 
 pub mod plot;
+pub mod report;

@@ -31,6 +31,7 @@ pub use axis::Axis;
 pub use colour::Colour;
 pub use heat::HeatMap;
 pub use series::{Marker, Series};
+pub(crate) use text::superscript;
 
 use std::io;
 use std::path::Path;

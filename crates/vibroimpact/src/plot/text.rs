@@ -24,7 +24,7 @@ pub(super) fn printable(text: &str) -> String {
 }
 
 /// A whole number in superscript digits.
-pub(super) fn superscript(number: i32) -> String {
+pub(crate) fn superscript(number: i32) -> String {
     number
         .to_string()
         .chars()
