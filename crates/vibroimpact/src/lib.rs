@@ -1,1 +1,7 @@
 //! vibroimpact
+
+pub mod plot;
+pub mod report;
+pub mod scene;
+
+pub use scene::{InvalidInput, Scene, SceneError};
