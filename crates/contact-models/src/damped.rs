@@ -16,7 +16,7 @@
 //! It follows that `alpha e < 1`: a free striker never reaches the tensile tail.
 
 use crate::error::bounded;
-use crate::{After, Boundary, Branch, Force, Memory, Stage};
+use crate::{After, Boundary, Branch, Force, InvalidInput, Memory, Stage};
 
 /// Implements the contract for a law with this exponent `n`, and this damping factor `D` (s/m)
 /// chosen at first touch. The branch's `internal` is `D`.
@@ -68,6 +68,16 @@ macro_rules! damped_law {
     };
 }
 pub(crate) use damped_law;
+
+/// Default approach speed (m/s) below which a damping factor that goes as `1/v0` stays constant.
+pub(crate) const LOWEST_APPROACH_SPEED_M_S: f64 = 1e-6;
+
+/// The damping factor `D` (s/m) from a rule `alpha(e)`, with `e` and the speed checked.
+pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> Result<f64, InvalidInput> {
+    InvalidInput::require_restitution("restitution", e)?;
+    InvalidInput::require_positive("speed_m_s", speed_m_s)?;
+    Ok(alpha(e) / speed_m_s)
+}
 
 /// `k <xi>^n` and its derivative.
 pub(crate) fn elastic(k: f64, n: f64, compression_m: f64) -> (f64, f64) {

@@ -1,6 +1,9 @@
 //! Every law behind one type.
 
-use crate::{After, Boundary, Branch, ContactLaw, Force, Hertz, Hysteretic, InvalidInput, Memory, Viscous};
+use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory};
+use crate::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, LinearSpring, Thornton, Viscous,
+};
 
 /// Writes the enum, its name table and its dispatch from one list of laws.
 macro_rules! laws {
@@ -41,6 +44,18 @@ laws! {
     Viscous = "viscous",
     /// The thesis's rate-independent contact hysteresis.
     Hysteretic = "hysteretic",
+    /// The linear spring.
+    LinearSpring = "linear",
+    /// Spring and dashpot in parallel.
+    KelvinVoigt = "kelvin-voigt",
+    /// Hunt and Crossley's damped power law.
+    HuntCrossley = "hunt-crossley",
+    /// Lankarani and Nikravesh's law.
+    LankaraniNikravesh = "lankarani-nikravesh",
+    /// The law of Flores, Machado, Silva and Martins.
+    Flores = "flores",
+    /// Thornton's elastic, perfectly plastic contact.
+    Thornton = "thornton",
 }
 
 impl Law {
