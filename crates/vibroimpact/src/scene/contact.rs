@@ -1,34 +1,38 @@
 //! The contact between striker and structure.
 
-use contact_models::{Body, Hertz, Hysteretic, Law, Viscous, effective_modulus_pa};
+use contact_models::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::error::InvalidInput;
 use super::json::{quote, read};
+use super::materials::{HertzStiffness, Materials, in_contact};
 use super::sets::one_of_sets;
 use super::{Striker, fields};
 
-/// The law of the contact; `"law"` in JSON tells which, beside its parameters.
+/// The law of the contact; `"law"` in JSON tells which, beside its parameters. A `restitution` is that at an immovable
+/// wall, at the striker's speed, from which the law's damping follows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "law", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Contact {
-    /// `"hertz"`: elastic contact, [`contact_models::Hertz`].
+    /// `"hertz"`: elastic contact of curved bodies, [`contact_models::Hertz`].
     Hertz(HertzStiffness),
     /// `"viscous"`: the thesis's viscous dissipation, [`contact_models::Viscous`].
     Viscous {
         /// The elastic part.
         #[serde(flatten)]
         stiffness: HertzStiffness,
-        /// Damping `c` of thesis Eq. 3.15 (s/m).
+        /// Damping `c` of thesis Eq. 3.15 (s/m), or `restitution` in its place.
         damping_s_m: Option<f64>,
-        /// In place of the damping: the restitution at an immovable wall at the striker's speed.
+        /// Restitution at a wall.
         restitution: Option<f64>,
     },
-    /// `"hysteretic"`: the thesis's rate-independent dissipation, [`contact_models::Hysteretic`]. Where the
-    /// stiffness comes from materials it is divided by `1 + theta_m + beta`, so that first loading follows Hertz
-    /// (thesis 3.3.4); `stiffness_n_m1_5` is taken as it stands.
+    /// `"hysteretic"`: the thesis's rate-independent dissipation, [`contact_models::Hysteretic`]. A stiffness from
+    /// materials is divided by `1 + theta_m + beta`, so that first loading follows Hertz (thesis 3.3.4);
+    /// `stiffness_n_m1_5` is taken as it stands.
     Hysteretic {
         /// The elastic part.
         #[serde(flatten)]
@@ -39,133 +43,168 @@ pub enum Contact {
         beta: f64,
         /// How fast the internal variable follows the compression.
         k_bar: f64,
-        /// Regularisation (m) at zero compression; 0 when left out, which stands for its limit.
+        /// Regularisation at zero compression (m); 0, which stands for its limit, when left out.
         #[serde(default)]
         epsilon_m: f64,
     },
-}
-
-/// Stiffness of a Hertzian contact: given, or from the materials and the striker's radius.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct HertzStiffness {
-    /// The stiffness itself (N/m^1.5).
-    pub stiffness_n_m1_5: Option<f64>,
-    /// Young's modulus of both bodies, or of the structure where the striker's own is given (Pa).
-    pub youngs_modulus_pa: Option<f64>,
-    /// Poisson's ratio of both bodies, or of the structure where the striker's own is given.
-    pub poissons_ratio: Option<f64>,
-    /// Young's modulus of a striker of another material (Pa).
-    pub striker_youngs_modulus_pa: Option<f64>,
-    /// Poisson's ratio of a striker of another material.
-    pub striker_poissons_ratio: Option<f64>,
+    /// `"linear-spring"`: [`contact_models::LinearSpring`].
+    #[serde(alias = "linear")]
+    LinearSpring {
+        /// Stiffness (N/m).
+        stiffness_n_m: f64,
+    },
+    /// `"kelvin-voigt"`: spring and dashpot side by side, [`contact_models::KelvinVoigt`].
+    KelvinVoigt {
+        /// Stiffness (N/m).
+        stiffness_n_m: f64,
+        /// Damping (N s/m), or `restitution` in its place.
+        damping_n_s_m: Option<f64>,
+        /// Restitution at a wall.
+        restitution: Option<f64>,
+    },
+    /// `"hunt-crossley"`: [`contact_models::HuntCrossley`].
+    HuntCrossley {
+        /// The elastic part with Hertz's exponent, or `stiffness_n_m_n` and `exponent` in its place.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Stiffness (N/m^n) that goes with `exponent`.
+        stiffness_n_m_n: Option<f64>,
+        /// Exponent `n` of the compression.
+        exponent: Option<f64>,
+        /// Damping factor (s/m), or `restitution` in its place.
+        damping_s_m: Option<f64>,
+        /// Restitution at a wall.
+        restitution: Option<f64>,
+    },
+    /// `"lankarani-nikravesh"`: [`contact_models::LankaraniNikravesh`].
+    LankaraniNikravesh {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Restitution that the damping is meant to give.
+        restitution: f64,
+        /// Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
+        lowest_approach_speed_m_s: Option<f64>,
+    },
+    /// `"flores"`: [`contact_models::Flores`].
+    Flores {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Restitution that the damping is meant to give.
+        restitution: f64,
+        /// Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
+        lowest_approach_speed_m_s: Option<f64>,
+    },
+    /// `"elastoplastic"`: Thornton's law, [`contact_models::Thornton`].
+    #[serde(alias = "thornton")]
+    Elastoplastic {
+        /// What the bodies are made of.
+        #[serde(flatten)]
+        materials: Materials,
+        /// Contact pressure at first yield (Pa), about 1.6 times the yield strength.
+        yield_pressure_pa: f64,
+    },
 }
 
 impl Contact {
     pub(crate) fn from_value(value: &Value) -> Result<Contact, InvalidInput> {
-        let contact = match value.as_object() {
-            None => return Err(fault("", Some(value))),
-            Some(entries) if !entries.get("law").is_some_and(Value::is_string) => {
-                return Err(fault("law", entries.get("law")));
-            }
-            Some(entries) => {
-                let numeric = |(key, value): &(&String, &Value)| *key == "law" || value.is_number();
-                if let Some((key, value)) = entries.iter().find(|entry| !numeric(entry)) {
-                    return Err(fault(key, Some(value)));
-                }
-                read::<Contact>(value).map_err(|found| if found.field.is_empty() { fault("law", entries.get("law")) } else { found })?
-            }
+        let fault = |field: &str, value: Option<&Value>| {
+            let name = if field.is_empty() { "contact" } else { field };
+            let allowed = fields::allowed(name).unwrap_or("a number").to_owned();
+            InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
         };
-        // serde cannot refuse unknown fields beside flattened ones: what is not written back was not read
-        let known = serde_json::to_value(contact).unwrap_or_default();
-        match value.as_object().into_iter().flatten().find(|(key, _)| known.get(key).is_none()) {
-            Some((key, value)) => {
-                let fields: Vec<&str> = known.as_object().into_iter().flatten().map(|(key, _)| key.as_str()).collect();
-                let allowed = format!("no such field; here stand {}", fields.join(", "));
-                Err(InvalidInput { field: key.clone(), value: Some(quote(value)), allowed })
-            }
+        let Value::Object(entries) = value else { return Err(fault("", Some(value))) };
+        let law = entries.get("law");
+        if !law.is_some_and(Value::is_string) {
+            return Err(fault("law", law));
+        }
+        // serde loses the path of a mistyped field behind a tag, but all of them are numbers
+        if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
+            return Err(fault(field, Some(value)));
+        }
+        let contact: Contact = read(value).map_err(|found| if found.field.is_empty() { fault("law", law) } else { found })?;
+        // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
+        let written = serde_json::to_value(contact).unwrap_or_default();
+        match entries.iter().find(|(field, _)| written.get(field).is_none()) {
             None => Ok(contact),
+            Some((field, value)) => {
+                let known: Vec<&str> = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str()).collect();
+                Err(InvalidInput::new(field, quote(value), format!("no such field; here stand {}", known.join(", "))))
+            }
         }
     }
 
     /// The law with its parameters, for this striker.
     pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
-        let law = match *self {
-            Contact::Hertz(stiffness) => Hertz::new(stiffness.with(striker)?).map(Law::from),
+        let speed = striker.speed_m_s;
+        let law: Result<Law, contact_models::InvalidInput> = match *self {
+            Contact::Hertz(stiffness) => Hertz::new(stiffness.of(striker)?).map(Law::from),
             Contact::Viscous { stiffness, damping_s_m, restitution } => {
-                let k = stiffness.with(striker)?;
-                let given = [("damping_s_m", damping_s_m), ("restitution", restitution)];
-                one_of_sets(&given, &[&["damping_s_m"], &["restitution"]]).map_err(in_contact)?;
-                match (damping_s_m, restitution) {
-                    (_, Some(restitution)) => Viscous::with_restitution(k, restitution, striker.speed_m_s),
-                    (damping_s_m, None) => Viscous::new(k, damping_s_m.unwrap_or_default()),
+                let k = stiffness.of(striker)?;
+                match damping(("damping_s_m", damping_s_m), restitution)? {
+                    Damping::Given(c) => Viscous::new(k, c),
+                    Damping::FromRestitution(e) => Viscous::with_restitution(k, e, speed),
                 }
                 .map(Law::from)
             }
             Contact::Hysteretic { stiffness, theta_m, beta, k_bar, epsilon_m } => {
-                let share = if stiffness.stiffness_n_m1_5.is_some() { 1.0 } else { 1.0 + theta_m + beta };
-                Hysteretic::new(stiffness.with(striker)? / share, theta_m, beta, k_bar, epsilon_m).map(Law::from)
+                let share = if stiffness.is_given() { 1.0 } else { 1.0 + theta_m + beta };
+                Hysteretic::new(stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m).map(Law::from)
+            }
+            Contact::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m).map(Law::from),
+            Contact::KelvinVoigt { stiffness_n_m: k, damping_n_s_m, restitution } => {
+                match damping(("damping_n_s_m", damping_n_s_m), restitution)? {
+                    Damping::Given(c) => KelvinVoigt::new(k, c),
+                    Damping::FromRestitution(e) => KelvinVoigt::with_restitution(k, e, striker.mass_kg()?),
+                }
+                .map(Law::from)
+            }
+            Contact::HuntCrossley { stiffness, stiffness_n_m_n, exponent, damping_s_m, restitution } => {
+                let (k, n) = match (stiffness_n_m_n, exponent) {
+                    (None, None) => (stiffness.of(striker)?, 1.5),
+                    general => stiffness.or_general(general)?,
+                };
+                match damping(("damping_s_m", damping_s_m), restitution)? {
+                    Damping::Given(c) => HuntCrossley::new(k, n, c),
+                    Damping::FromRestitution(e) => HuntCrossley::with_restitution(k, n, e, speed),
+                }
+                .map(Law::from)
+            }
+            Contact::LankaraniNikravesh { stiffness, restitution, lowest_approach_speed_m_s } => {
+                LankaraniNikravesh::new(stiffness.of(striker)?, restitution).and_then(|law| {
+                    let lowest_approach_speed_m_s = lowest_approach_speed_m_s.unwrap_or(law.lowest_approach_speed_m_s);
+                    LankaraniNikravesh { lowest_approach_speed_m_s, ..law }.validated().map(Law::from)
+                })
+            }
+            Contact::Flores { stiffness, restitution, lowest_approach_speed_m_s } => {
+                Flores::new(stiffness.of(striker)?, restitution).and_then(|law| {
+                    let lowest_approach_speed_m_s = lowest_approach_speed_m_s.unwrap_or(law.lowest_approach_speed_m_s);
+                    Flores { lowest_approach_speed_m_s, ..law }.validated().map(Law::from)
+                })
+            }
+            Contact::Elastoplastic { materials, yield_pressure_pa } => {
+                let (ball, structure) = materials.bodies(striker)?;
+                Thornton::from_bodies(&ball, &structure, yield_pressure_pa).map(Law::from)
             }
         };
         law.map_err(|fault| match fault.field.as_str() {
-            "speed_m_s" => InvalidInput::from(fault).within("striker"),
+            "speed_m_s" | "mass_kg" | "radius_m" => InvalidInput::from(fault).within("striker"),
             _ => in_contact(fault),
         })
     }
 }
 
-fn fault(field: &str, value: Option<&Value>) -> InvalidInput {
-    let allowed = fields::allowed(if field.is_empty() { "contact" } else { field }).unwrap_or("a number").to_owned();
-    InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
+enum Damping {
+    Given(f64),
+    FromRestitution(f64),
 }
 
-fn in_contact(fault: impl Into<InvalidInput>) -> InvalidInput {
-    fault.into().within("contact")
-}
-
-impl HertzStiffness {
-    const SETS: [&[&str]; 3] = [
-        &["stiffness_n_m1_5"],
-        &["youngs_modulus_pa", "poissons_ratio"],
-        &["youngs_modulus_pa", "poissons_ratio", "striker_youngs_modulus_pa", "striker_poissons_ratio"],
-    ];
-
-    /// The stiffness (N/m^1.5) of this striker against a flat structure.
-    fn with(&self, striker: &Striker) -> Result<f64, InvalidInput> {
-        let given = [
-            ("stiffness_n_m1_5", self.stiffness_n_m1_5),
-            ("youngs_modulus_pa", self.youngs_modulus_pa),
-            ("poissons_ratio", self.poissons_ratio),
-            ("striker_youngs_modulus_pa", self.striker_youngs_modulus_pa),
-            ("striker_poissons_ratio", self.striker_poissons_ratio),
-        ];
-        one_of_sets(&given, &HertzStiffness::SETS).map_err(in_contact)?;
-        if let Some(stiffness) = self.stiffness_n_m1_5 {
-            return Ok(stiffness);
-        }
-        let radius_m = striker.radius_m.ok_or_else(|| InvalidInput {
-            field: "striker.radius_m".to_owned(),
-            value: None,
-            allowed: "needed for a contact given by materials: a finite number greater than 0".to_owned(),
-        })?;
-        // both are there: a whole set was given
-        let [modulus, ratio] = [self.youngs_modulus_pa, self.poissons_ratio].map(|value| value.unwrap_or(f64::NAN));
-        let structure = Body::flat(modulus, ratio);
-        let ball = Body {
-            youngs_modulus_pa: self.striker_youngs_modulus_pa.unwrap_or(modulus),
-            poissons_ratio: self.striker_poissons_ratio.unwrap_or(ratio),
-            radius_m,
-        };
-        // each material against a rigid partner, so that a fault is laid at the right door
-        let partner = Body::rigid(1.0);
-        effective_modulus_pa(&structure, &partner).map_err(in_contact)?;
-        effective_modulus_pa(&ball, &partner).map_err(|mut fault| {
-            fault.field.insert_str(0, "striker_");
-            in_contact(fault)
-        })?;
-        let hertz = Hertz::from_bodies(&ball, &structure).map_err(|fault| match fault.field.as_str() {
-            "radius_m" => InvalidInput::from(fault).within("striker"),
-            _ => in_contact(fault),
-        })?;
-        Ok(hertz.stiffness_n_m1_5)
-    }
+/// Damping comes either as itself or from a restitution.
+fn damping(given: (&str, Option<f64>), restitution: Option<f64>) -> Result<Damping, InvalidInput> {
+    one_of_sets(&[given, ("restitution", restitution)], &[&[given.0], &["restitution"]]).map_err(in_contact)?;
+    Ok(match (given.1, restitution) {
+        (Some(damping), _) => Damping::Given(damping),
+        (None, restitution) => Damping::FromRestitution(restitution.unwrap_or(f64::NAN)),
+    })
 }

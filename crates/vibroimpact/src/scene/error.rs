@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use super::json::number;
+
 /// A field of a scene that cannot be used: where it stands, what it holds, and what would be allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InvalidInput {
@@ -15,6 +17,23 @@ pub struct InvalidInput {
 }
 
 impl InvalidInput {
+    pub(crate) fn new(field: impl Into<String>, value: impl Into<String>, allowed: impl Into<String>) -> InvalidInput {
+        InvalidInput { field: field.into(), value: Some(value.into()), allowed: allowed.into() }
+    }
+
+    pub(crate) fn missing(field: impl Into<String>, allowed: impl Into<String>) -> InvalidInput {
+        InvalidInput { field: field.into(), value: None, allowed: allowed.into() }
+    }
+
+    /// Passes a finite number greater than zero.
+    pub(crate) fn require_positive(field: &str, value: f64) -> Result<(), InvalidInput> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(InvalidInput::new(field, number(value), "a finite number greater than 0"))
+        }
+    }
+
     /// The same fault, seen from an object that holds the field's object under the name `parent`.
     pub(crate) fn within(mut self, parent: &str) -> InvalidInput {
         let joint = if self.field.is_empty() || self.field.starts_with('[') { "" } else { "." };
@@ -34,7 +53,7 @@ macro_rules! from_crate {
     };
 }
 
-from_crate!(contact_models);
+from_crate!(beam_modes, contact_models, vibroimpact_sim);
 
 impl fmt::Display for InvalidInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -7,6 +7,7 @@ mod contact;
 mod error;
 mod fields;
 mod json;
+mod materials;
 mod sets;
 mod striker;
 mod structure;
@@ -18,8 +19,9 @@ use std::path::Path;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
-pub use contact::{Contact, HertzStiffness};
+pub use contact::Contact;
 pub use error::{InvalidInput, SceneError};
+pub use materials::{HertzStiffness, Materials};
 pub use striker::Striker;
 pub use structure::{Beam, End, Modal, Segment, Structure};
 

@@ -13,11 +13,11 @@ pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Re
     let set = sets.get(nearest).copied().unwrap_or(&[]);
     let ways = || sets.iter().map(|set| set.join(" and ")).collect::<Vec<_>>().join(", or ");
     if let Some(field) = set.iter().find(|field| here.iter().all(|(name, _)| name != *field)) {
-        return Err(InvalidInput { field: (*field).to_owned(), value: None, allowed: format!("give {}", ways()) });
+        return Err(InvalidInput::missing(*field, format!("give {}", ways())));
     }
     if let Some(&(field, value)) = here.iter().find(|(name, _)| !set.contains(name)) {
         let allowed = format!("left out beside {}; give {}", set.join(" and "), ways());
-        return Err(InvalidInput { field: field.to_owned(), value: Some(number(value)), allowed });
+        return Err(InvalidInput::new(field, number(value), allowed));
     }
     Ok(nearest)
 }

@@ -31,31 +31,22 @@ impl Striker {
     /// # Errors
     /// Neither is given, they contradict each other, or a value is not positive.
     pub fn mass_kg(&self) -> Result<f64, InvalidInput> {
-        let positive = |field: &str, value: Option<f64>| match value {
-            Some(x) if !(x > 0.0 && x.is_finite()) => {
-                let allowed = "a finite number greater than 0".to_owned();
-                Err(InvalidInput { field: field.to_owned(), value: Some(number(x)), allowed })
+        let Striker { mass_kg, density_kg_m3, radius_m, .. } = *self;
+        for (field, value) in [("mass_kg", mass_kg), ("density_kg_m3", density_kg_m3), ("radius_m", radius_m)] {
+            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+        }
+        let sphere = density_kg_m3.zip(radius_m).map(|(density, radius)| 4.0 / 3.0 * PI * radius.powi(3) * density);
+        let agrees = |mass: f64, sphere: f64| ((mass - sphere) / sphere).abs() <= MASS_AGREEMENT;
+        match (mass_kg, sphere) {
+            (Some(mass), Some(sphere)) if !agrees(mass, sphere) => {
+                let sphere = number(sphere);
+                let allowed = format!("left out beside density_kg_m3 and radius_m, or within 0.1 % of that sphere's {sphere} kg");
+                Err(InvalidInput::new("mass_kg", number(mass), allowed))
             }
-            _ => Ok(value),
-        };
-        let mass = positive("mass_kg", self.mass_kg)?;
-        let density = positive("density_kg_m3", self.density_kg_m3)?;
-        let radius = positive("radius_m", self.radius_m)?;
-        let sphere = density.zip(radius).map(|(density, radius)| 4.0 / 3.0 * PI * radius.powi(3) * density);
-        match (mass, sphere) {
-            (Some(mass), Some(sphere)) if ((mass - sphere) / sphere).abs() > MASS_AGREEMENT => Err(InvalidInput {
-                field: "mass_kg".to_owned(),
-                value: Some(number(mass)),
-                allowed: format!(
-                    "left out beside density_kg_m3 and radius_m, or within 0.1 % of the {} kg of that sphere",
-                    number(sphere)
-                ),
-            }),
             (Some(mass), _) | (None, Some(mass)) => Ok(mass),
             (None, None) => {
-                let field = if density.is_some() { "radius_m" } else { "mass_kg" };
-                let allowed = "give mass_kg, or density_kg_m3 and radius_m of a solid sphere".to_owned();
-                Err(InvalidInput { field: field.to_owned(), value: None, allowed })
+                let field = if density_kg_m3.is_some() { "radius_m" } else { "mass_kg" };
+                Err(InvalidInput::missing(field, "give mass_kg, or density_kg_m3 and radius_m of a solid sphere"))
             }
         }
     }
