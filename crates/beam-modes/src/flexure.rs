@@ -17,8 +17,16 @@ pub(crate) struct Flexure {
     ends: [End; 2],
     /// `(m/EI)^(1/4)` of each span.
     wave_numbers: Vec<f64>,
+    /// `sum k l / q`.
+    phase: f64,
     /// Factors of the state from span `i` to span `i + 1`.
     steps: Vec<State>,
+}
+
+/// The planes from both ends at one frequency.
+pub(crate) struct Sweeps {
+    left: Vec<Crossing>,
+    right: Vec<Crossing>,
 }
 
 /// The states an end allows: two of the four unit vectors.
@@ -60,7 +68,8 @@ impl Flexure {
                 [rho, rho * slower, 1.0 / (rho * slower), 1.0 / rho]
             })
             .collect();
-        Self { spans, ends, wave_numbers, steps }
+        let phase = spans.iter().zip(&wave_numbers).map(|(span, k)| span.length * k).sum();
+        Self { spans, ends, wave_numbers, phase, steps }
     }
 
     fn wave_number(&self, i: usize, q: f64) -> f64 {
@@ -101,6 +110,12 @@ impl Flexure {
     /// The left-hand plane at the left end of span `i`.
     fn entry_plane(&self, left: &[Crossing], i: usize) -> Plane {
         if i == 0 { end_plane(self.ends[0]) } else { left[i - 1].exit.rescaled(&self.steps[i - 1]) }
+    }
+
+    /// The characteristic function: zero when the plane holds a state that the right end allows.
+    fn at_right_end(&self, Plane([u, v]): &Plane) -> f64 {
+        let [m, n] = constrained(self.ends[1]);
+        u[m] * v[n] - v[m] * u[n]
     }
 
     /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, the common power of `q` left out.
@@ -176,17 +191,28 @@ impl Characteristic for Flexure {
                 negative_eigenvalues(entry(&u, &u), 0.5 * (entry(&u, &v) + entry(&v, &u)), entry(&v, &v))
             }
         };
-        let [m, n] = constrained(self.ends[1]);
-        (count, u[m] * v[n] - v[m] * u[n])
+        (count, self.at_right_end(&plane))
+    }
+
+    fn function(&self, q: f64) -> f64 {
+        let mut plane = end_plane(self.ends[0]);
+        for (i, span) in self.spans.iter().enumerate() {
+            plane = plane.cross(self.wave_number(i, q), span.length).exit;
+            if let Some(scale) = self.steps.get(i) {
+                plane = plane.rescaled(scale);
+            }
+        }
+        self.at_right_end(&plane)
     }
 
     fn estimate(&self, count: usize) -> f64 {
-        let phase: f64 = self.spans.iter().zip(&self.wave_numbers).map(|(span, k)| span.length * k).sum();
-        (count as f64 + 1.0) * std::f64::consts::PI / phase
+        (count as f64 + 1.0) * std::f64::consts::PI / self.phase
     }
 }
 
 impl Waveguide for Flexure {
+    type Sweeps = Sweeps;
+
     fn spans(&self) -> &[Span] {
         &self.spans
     }
@@ -195,11 +221,18 @@ impl Waveguide for Flexure {
         allowed(self.ends[0])[0]
     }
 
-    fn matches(&self, q: f64) -> Vec<Match> {
-        let (left, right) = (self.from_left(q), self.from_right(q));
+    fn spacing(&self) -> f64 {
+        std::f64::consts::PI / self.phase
+    }
+
+    fn sweeps(&self, q: f64) -> Sweeps {
+        Sweeps { left: self.from_left(q), right: self.from_right(q) }
+    }
+
+    fn matches(&self, Sweeps { left, right }: &Sweeps) -> Vec<Match> {
         let mut found = Vec::with_capacity(2 * self.spans.len());
         for i in 0..self.spans.len() {
-            let Plane([l0, l1]) = self.entry_plane(&left, i);
+            let Plane([l0, l1]) = self.entry_plane(left, i);
             let [r0, r1] = right[i].exit.0.map(|z| reflect(&z));
             let rows = [[form(&l0, &r0), form(&l0, &r1)], [form(&l1, &r0), form(&l1, &r1)]];
             let size = |row: [f64; 2]| row[0] * row[0] + row[1] * row[1];
@@ -216,8 +249,7 @@ impl Waveguide for Flexure {
         found
     }
 
-    fn unroll(&self, q: f64, at: &Match) -> Vec<Piece> {
-        let (left, right) = (self.from_left(q), self.from_right(q));
+    fn unroll(&self, Sweeps { left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
         let mut pieces = vec![None; self.spans.len()];
         let mut state = at.state;
         for i in (0..at.span).rev() {

@@ -43,7 +43,13 @@ impl Modes {
         elastic: Vec<Vec<Piece>>,
     ) -> Result<Self, InvalidInput> {
         let omega_rad_s: Vec<f64> = std::iter::repeat_n(0.0, rigid.len()).chain(omega_rad_s).collect();
-        let modes = Self { rigid: rigid.len(), pieces: rigid.into_iter().chain(elastic).flatten().collect(), spans, units, omega_rad_s };
+        let modes = Self {
+            rigid: rigid.len(),
+            pieces: rigid.into_iter().chain(elastic).flatten().collect(),
+            spans,
+            units,
+            omega_rad_s,
+        };
         let resolved = modes.pieces.len() == modes.len() * modes.spans.len()
             && modes.pieces.iter().all(|p| p.size().is_finite())
             && modes.omega_rad_s.iter().all(|omega| omega.is_finite());

@@ -15,6 +15,8 @@ use crate::modes::RESOLVABLE;
 pub(crate) trait Characteristic {
     /// How many natural frequencies, rigid-body ones included, lie below `q`, and the characteristic function there.
     fn count_and_function(&self, q: f64) -> (usize, f64);
+    /// The characteristic function alone.
+    fn function(&self, q: f64) -> f64;
     /// A rough value of `q` below which `count` natural frequencies are expected.
     fn estimate(&self, count: usize) -> f64;
 }
@@ -76,7 +78,7 @@ pub(crate) fn elastic_roots(
         if high.q - low.q <= CLOSED * high.q {
             roots.extend(std::iter::repeat_n(0.5 * (low.q + high.q), inside));
         } else if inside == 1 && low.value * high.value < 0.0 {
-            roots.push(chandrupatla(|q| problem.count_and_function(q).1, (low.q, low.value), (high.q, high.value)));
+            roots.push(chandrupatla(|q| problem.function(q), (low.q, low.value), (high.q, high.value)));
         } else {
             // within rounding of a pole of a part's stiffness the count can err by one, and the parity shows it;
             // fractions that hit no pole by design, and a second choice

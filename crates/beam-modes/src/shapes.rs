@@ -16,13 +16,18 @@ pub(crate) struct Match {
 
 /// A chain of spans that carries waves.
 pub(crate) trait Waveguide {
+    /// What both ends allow at one frequency, at every span.
+    type Sweeps;
     fn spans(&self) -> &[Span];
     /// The lowest derivative that the left end leaves free; shapes are positive in it.
     fn leading_order(&self) -> usize;
-    /// Candidates for the mode at `q`, at every span.
-    fn matches(&self, q: f64) -> Vec<Match>;
+    /// Mean distance between roots `q`.
+    fn spacing(&self) -> f64;
+    fn sweeps(&self, q: f64) -> Self::Sweeps;
+    /// Candidates for the mode, at every span.
+    fn matches(&self, sweeps: &Self::Sweeps) -> Vec<Match>;
     /// The solution that passes through a match, span by span.
-    fn unroll(&self, q: f64, at: &Match) -> Vec<Piece>;
+    fn unroll(&self, sweeps: &Self::Sweeps, at: &Match) -> Vec<Piece>;
 }
 
 /// Mass inner product of two shapes.
@@ -40,8 +45,8 @@ fn normalise(spans: &[Span], pieces: &mut [Piece]) {
     }
 }
 
-/// Roots closer than this, relatively, leave their shapes too uncertain to be orthogonal by themselves.
-const CLUSTER: f64 = 1e-4;
+/// Roots closer than this fraction of their mean distance leave shapes too uncertain to be orthogonal by themselves.
+const CLUSTER: f64 = 0.02;
 /// A candidate whose part orthogonal to the shapes already chosen is smaller than this is one of them again.
 const NEW: f64 = 0.1;
 
@@ -51,17 +56,18 @@ pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
     let mut shapes: Vec<Vec<Piece>> = Vec::with_capacity(roots.len());
     let mut cluster = 0;
     for (n, &q) in roots.iter().enumerate() {
-        if n > 0 && q - roots[n - 1] > CLUSTER * q {
+        if n > 0 && q - roots[n - 1] > CLUSTER * guide.spacing() {
             cluster = n;
         }
-        let mut candidates = guide.matches(q);
+        let sweeps = guide.sweeps(q);
+        let mut candidates = guide.matches(&sweeps);
         candidates.sort_by(|a, b| a.defect.total_cmp(&b.defect));
         if cluster == n {
             candidates.truncate(1);
         }
         let mut best = (-1.0, Vec::new());
         for candidate in &candidates {
-            let mut shape = guide.unroll(q, candidate);
+            let mut shape = guide.unroll(&sweeps, candidate);
             normalise(spans, &mut shape);
             let mut part = 1.0;
             // twice is enough (Kahan and Parlett)

@@ -33,10 +33,7 @@ const SCALE: &str = "between 1e-60 and 1e60";
 /// Checks raw segments `[length, rigidity, mass per length]` and makes them dimensionless.
 ///
 /// Equal neighbours are merged: a uniform beam is one span, however it was cut.
-pub(crate) fn nondimensional(
-    raw: &[[f64; 3]],
-    names: [&str; 3],
-) -> Result<(Vec<Span>, Units), InvalidInput> {
+pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<Span>, Units), InvalidInput> {
     let Some(first) = raw.first() else {
         return Err(InvalidInput::new("segments", "[]", "at least one segment"));
     };
