@@ -12,17 +12,37 @@ pub struct InvalidInput {
     pub allowed: &'static str,
 }
 
+/// Smallest positive parameter. With [`LARGEST`] it bounds every product a law forms, so that
+/// no force overflows; both lie far outside any physics.
+pub(crate) const SMALLEST: f64 = 1e-30;
+/// Largest parameter, compression and rate that a law computes with.
+pub(crate) const LARGEST: f64 = 1e30;
+
 impl InvalidInput {
-    /// Passes a finite number greater than zero, and reports anything else.
-    pub(crate) fn require_positive(field: &str, value: f64) -> Result<f64, InvalidInput> {
-        if value.is_finite() && value > 0.0 {
-            Ok(value)
-        } else {
-            Err(InvalidInput {
-                field: field.into(),
-                value: value.to_string(),
-                allowed: "a finite number greater than 0",
-            })
-        }
+    /// Passes `value` if `holds`, and reports it with what is `allowed` otherwise.
+    pub(crate) fn require(field: &str, value: f64, holds: bool, allowed: &'static str) -> Result<(), InvalidInput> {
+        if holds { Ok(()) } else { Err(InvalidInput { field: field.into(), value: value.to_string(), allowed }) }
     }
+
+    /// Passes a number greater than zero within the crate's range.
+    pub(crate) fn require_positive(field: &str, value: f64) -> Result<(), InvalidInput> {
+        let holds = (SMALLEST..=LARGEST).contains(&value);
+        InvalidInput::require(field, value, holds, "a number greater than 0 (from 1e-30 to 1e30)")
+    }
+
+    /// Passes zero and any positive number up to the crate's limit.
+    pub(crate) fn require_not_negative(field: &str, value: f64) -> Result<(), InvalidInput> {
+        InvalidInput::require(field, value, (0.0..=LARGEST).contains(&value), "a number from 0 to 1e30")
+    }
+
+    /// Passes a coefficient of restitution that a damped law can have.
+    pub(crate) fn require_restitution(field: &str, value: f64) -> Result<(), InvalidInput> {
+        let holds = (0.001..=1.0).contains(&value);
+        InvalidInput::require(field, value, holds, "a coefficient of restitution from 0.001 to 1")
+    }
+}
+
+/// A compression or rate, held within what the laws compute with.
+pub(crate) fn bounded(value: f64) -> f64 {
+    value.clamp(-LARGEST, LARGEST)
 }

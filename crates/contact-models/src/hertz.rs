@@ -1,10 +1,24 @@
 //! Hertz: elastic contact of curved, frictionless bodies. Conservative.
 
+use crate::error::bounded;
+use crate::pair::{Body, effective_modulus_pa, effective_radius_m};
 use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
 
-/// `F = k_H <xi>^(3/2)` (thesis Eqs. 3.12 to 3.14; Hertz 1882; K. L. Johnson, *Contact
-/// Mechanics*, 1985, ch. 4). Valid while the contact radius stays small against the radii of
-/// the bodies and the material elastic. The force never pulls.
+/// `F = k_H <xi>^(3/2)` (thesis Eqs. 3.12 to 3.14).
+///
+/// Source: H. Hertz, *J. reine angew. Math.* 92 (1882) 156; K. L. Johnson, *Contact Mechanics*
+/// (1985), ch. 4. Valid while the contact radius stays small against the bodies' radii, the
+/// material elastic, and the contact long against the travel of waves through the bodies.
+/// Tensile tail: none, the formula never pulls.
+///
+/// ```
+/// use contact_models::{Body, Hertz};
+///
+/// let (ball, flat) = (Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m: 0.015 }, Body::flat(2e11, 0.3));
+/// let law = Hertz::from_bodies(&ball, &flat)?;
+/// assert!((law.stiffness_n_m1_5 - 1.7945e10).abs() < 1e6); // thesis Eq. 3.20
+/// # Ok::<(), contact_models::InvalidInput>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hertz {
     /// Stiffness `k_H` (N/m^1.5).
@@ -12,10 +26,36 @@ pub struct Hertz {
 }
 
 impl Hertz {
-    /// The law with a given stiffness `k_H` (N/m^1.5), which must be finite and positive.
+    /// The law with stiffness `k_H` (N/m^1.5).
+    ///
+    /// # Errors
+    /// A stiffness that is not positive.
     pub fn new(stiffness_n_m1_5: f64) -> Result<Hertz, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", stiffness_n_m1_5)
-            .map(|stiffness_n_m1_5| Hertz { stiffness_n_m1_5 })
+        Hertz { stiffness_n_m1_5 }.validated()
+    }
+
+    /// The law of two spheres: `k_H = (4/3) E* sqrt(R*)`. For equal materials and one flat this
+    /// is thesis Eq. 3.14, `k_H = 2 E sqrt(R) / (3 (1 - nu^2))`.
+    ///
+    /// # Errors
+    /// A body outside the range stated at [`Body`], or a pair that is rigid or not touching at
+    /// a point.
+    pub fn from_bodies(first: &Body, second: &Body) -> Result<Hertz, InvalidInput> {
+        Hertz::new(4.0 / 3.0 * effective_modulus_pa(first, second)? * effective_radius_m(first, second)?.sqrt())
+    }
+
+    /// The law itself if its parameters are in range.
+    ///
+    /// # Errors
+    /// As [`Hertz::new`].
+    pub fn validated(self) -> Result<Hertz, InvalidInput> {
+        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        Ok(self)
+    }
+
+    /// Rebound speed over approach speed of a rigid striker at a wall.
+    pub(crate) fn wall_restitution(&self, _mass_kg: f64, _speed_m_s: f64) -> f64 {
+        1.0
     }
 }
 
@@ -25,13 +65,18 @@ impl ContactLaw for Hertz {
     }
 
     fn force(&self, _branch: &Branch, compression_m: f64, _rate_m_s: f64) -> Force {
-        let xi = compression_m.max(0.0);
+        let xi = bounded(compression_m).max(0.0);
         let root = xi.sqrt();
         Force {
             force_n: self.stiffness_n_m1_5 * xi * root,
             per_compression_n_m: 1.5 * self.stiffness_n_m1_5 * root,
             per_rate_n_s_m: 0.0,
         }
+    }
+
+    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
+        let xi = bounded(compression_m).max(0.0);
+        0.4 * self.force(branch, xi, 0.0).force_n * xi
     }
 
     fn boundaries(&self, _branch: &Branch) -> [Boundary; 2] {

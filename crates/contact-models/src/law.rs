@@ -110,7 +110,12 @@ pub trait ContactLaw {
     /// continuous extension, so that an iteration may step over them.
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force;
 
-    /// The half planes within which the branch is valid.
+    /// Energy (J) that the contact would give back if it were unloaded from here slowly and
+    /// without reversal until it releases. What the bodies put in beyond that is dissipated.
+    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64;
+
+    /// The half planes within which the branch is valid. A branch may begin on one of them
+    /// (unloading begins where the rate is zero): it is met when its margin falls below zero.
     fn boundaries(&self, branch: &Branch) -> [Boundary; 2];
 
     /// What follows when boundary number `which` is met at this compression and rate.

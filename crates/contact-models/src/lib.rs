@@ -12,54 +12,81 @@
 //! | symbol | meaning | unit | thesis |
 //! |---|---|---|---|
 //! | `xi` | compression, structure minus striker displacement | m | Eq. 3.11 |
+//! | `<xi>` | `xi` where positive, zero elsewhere | m | Eq. 3.13 |
 //! | `F` | contact force, never negative | N | Eqs. 3.12, 3.15, 3.16 |
 //! | `k_H` | Hertz stiffness | N/m^1.5 | Eq. 3.14 |
-#![doc = ""]
+//! | `c`, `D` | damping factor, of one law or set at first touch | s/m | Eq. 3.15 |
+//! | `theta` | internal variable of the hysteretic law | 1 | Eq. 3.17 |
+//! | `theta_m`, `beta` | centre and half width of its range | 1 | Eq. 3.17 |
+//! | `K`, `eps` | how fast it follows `xi`; regularisation at `xi = 0` | 1, m | Eq. 3.17 |
+//! | `E*`, `R*` | effective modulus and radius of two bodies | Pa, m | Eq. 3.14, general |
+//! | `p_y` | contact pressure at first yield | Pa | |
+//! | `v0`, `e` | approach speed; rebound speed over it | m/s, 1 | Eq. 3.19 |
+//!
+//! # The laws
+//!
+//! | law | force | parameters | source | valid for | where the formula would pull |
+//! |---|---|---|---|---|---|
+//! | [`Hertz`] | `k_H xi^1.5` | `k_H`, or two bodies | Hertz 1882; thesis 3.12 | small contact, elastic | never does |
+//! | [`Viscous`] | `k_H xi^1.5 (1 + c xi')` | `k_H`, `c` | thesis 3.15 | `c xi'` well below 1 | slack |
+//! | [`Hysteretic`] | `k_H xi^1.5 (1 + theta)` | `k_H`, `theta_m`, `beta`, `K`, `eps` | thesis 3.16, 3.17 | damping without rate, no indentation | never does |
+//! | [`LinearSpring`] | `k xi` | `k` | textbook | constant contact area, penalty | never does |
+//! | [`KelvinVoigt`] | `k xi + c xi'` | `k`, `c` | Schwager and Poschel 2007 | simple model, `e` without speed | slack |
+//! | [`HuntCrossley`] | `k xi^n (1 + D xi')` | `k`, `n`, `D` | Hunt and Crossley 1975 | light damping | slack |
+//! | [`LankaraniNikravesh`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Lankarani and Nikravesh 1990 | `e` near 1 | slack |
+//! | [`Flores`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Flores et al. 2011 | any `e`, approximately | slack |
+//! | [`Thornton`] | Hertz, line after yield, flattened Hertz back | `E*`, `R*`, `p_y` | Thornton 1997 | moderate plastic indentation | never does |
+//!
+//! *Slack* means that the surfaces recover without touching: the force is zero until the formula
+//! pushes again or the compression is gone. It is a branch of its own ([`Stage::Slack`]), and the
+//! force is continuous on the way in and out. [`Law`] holds any of them; it also gives the
+//! restitution of a rigid striker at a wall, [`Law::wall_restitution`], for any law. Between the
+//! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
+//! has dissipated. [`trace`] drives a law with a prescribed motion.
+//!
+//! Parameters are checked by each law's `new`. Fields are public; after changing one,
+//! `validated` checks again. Checked laws give finite numbers for every finite compression and
+//! rate; beyond 1e30 (SI units) either counts as 1e30.
+//!
+//! ```
+//! use contact_models::{ContactLaw, Law, Memory, Viscous};
+//!
+//! let law = Law::from(Viscous::with_restitution(1.7945e10, 0.95, 1.0)?);
+//! let branch = law.touch(&Memory::default(), 1.0);
+//! let force = law.force(&branch, 2e-5, 0.5);
+//! assert!(force.force_n > 1600.0 && force.per_compression_n_m > 0.0);
+//! assert!((law.wall_restitution(0.11, 1.0)? - 0.95).abs() < 1e-14);
+//! # Ok::<(), contact_models::InvalidInput>(())
+//! ```
 
+mod damped;
 mod error;
+mod flores;
 mod hertz;
+mod hunt_crossley;
+mod hysteretic;
+mod kelvin_voigt;
+mod lankarani_nikravesh;
 mod law;
+mod laws;
+mod linear;
+mod pair;
+mod quadrature;
+mod thornton;
+mod trace;
+mod viscous;
 
 pub use error::InvalidInput;
+pub use flores::Flores;
 pub use hertz::Hertz;
+pub use hunt_crossley::HuntCrossley;
+pub use hysteretic::Hysteretic;
+pub use kelvin_voigt::KelvinVoigt;
+pub use lankarani_nikravesh::LankaraniNikravesh;
 pub use law::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
-
-/// Every law of the crate behind one type, for scenes that choose their law at run time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Law {
-    /// Elastic contact of curved bodies.
-    Hertz(Hertz),
-}
-
-impl ContactLaw for Law {
-    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
-        match self {
-            Law::Hertz(law) => law.touch(memory, approach_speed_m_s),
-        }
-    }
-
-    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
-        match self {
-            Law::Hertz(law) => law.force(branch, compression_m, rate_m_s),
-        }
-    }
-
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        match self {
-            Law::Hertz(law) => law.boundaries(branch),
-        }
-    }
-
-    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
-        match self {
-            Law::Hertz(law) => law.cross(branch, which, compression_m, rate_m_s),
-        }
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        match self {
-            Law::Hertz(law) => law.depends_on_rate(),
-        }
-    }
-}
+pub use laws::Law;
+pub use linear::LinearSpring;
+pub use pair::{Body, effective_modulus_pa, effective_radius_m};
+pub use thornton::Thornton;
+pub use trace::{TracePoint, trace};
+pub use viscous::Viscous;

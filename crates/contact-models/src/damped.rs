@@ -1,0 +1,167 @@
+//! What the laws `F = k <xi>^n (1 + D xi_dot)` have in common.
+//!
+//! The viscous law of the thesis, Hunt-Crossley, Lankarani-Nikravesh and Flores differ only in
+//! how they choose the damping factor `D` (s/m). While surfaces part faster than `1/D` the
+//! formula would pull; there the force is zero ([`Stage::Slack`]).
+//!
+//! Against a wall the striker obeys `m v dv/dxi = -k xi^n (1 + D v)`. Separating the variables,
+//! the elastic side is the same on the way in and out, so that approach speed `v0` and rebound
+//! speed `e v0` satisfy, for any mass, stiffness and exponent (Marhefka and Orin, *IEEE Trans.
+//! Syst. Man Cybern. A* 29 (1999) 566),
+//!
+//! ```text
+//! L(alpha) = L(-alpha e),   L(x) = x - ln(1 + x),   alpha = D v0.
+//! ```
+//!
+//! It follows that `alpha e < 1`: a free striker never reaches the tensile tail.
+
+use crate::error::bounded;
+use crate::{After, Boundary, Branch, Force, InvalidInput, Memory, Stage};
+
+/// Implements the contract for a law with this exponent `n`, and this damping factor `D` (s/m)
+/// chosen at first touch. The branch's `internal` is `D`.
+macro_rules! damped_law {
+    ($law:ty, stiffness: $stiffness:ident, exponent: |$a:ident| $n:expr, damping_s_m: |$b:ident, $speed:ident| $damping:expr) => {
+        impl $law {
+            fn exponent(&self) -> f64 {
+                let $a = self;
+                $n
+            }
+
+            fn damping_at_touch_s_m(&self, $speed: f64) -> f64 {
+                let $b = self;
+                $damping
+            }
+
+            /// Rebound speed over approach speed of a rigid striker at a wall.
+            pub(crate) fn wall_restitution(&self, _mass_kg: f64, speed_m_s: f64) -> f64 {
+                $crate::damped::restitution(self.damping_at_touch_s_m(speed_m_s) * speed_m_s)
+            }
+        }
+
+        impl $crate::ContactLaw for $law {
+            fn touch(&self, _memory: &$crate::Memory, approach_speed_m_s: f64) -> $crate::Branch {
+                let internal = self.damping_at_touch_s_m(approach_speed_m_s);
+                $crate::Branch { stage: $crate::Stage::Single, anchor_m: 0.0, internal }
+            }
+
+            fn force(&self, branch: &$crate::Branch, compression_m: f64, rate_m_s: f64) -> $crate::Force {
+                $crate::damped::force(self.$stiffness, self.exponent(), branch, compression_m, rate_m_s)
+            }
+
+            fn stored_energy_j(&self, _branch: &$crate::Branch, compression_m: f64) -> f64 {
+                $crate::damped::stored_energy_j(self.$stiffness, self.exponent(), compression_m)
+            }
+
+            fn boundaries(&self, branch: &$crate::Branch) -> [$crate::Boundary; 2] {
+                $crate::damped::boundaries(branch)
+            }
+
+            fn cross(&self, branch: &$crate::Branch, which: usize, _xi: f64, _rate: f64) -> $crate::After {
+                $crate::damped::cross(branch, which)
+            }
+
+            fn depends_on_rate(&self) -> bool {
+                true
+            }
+        }
+    };
+}
+pub(crate) use damped_law;
+
+/// Default approach speed (m/s) below which a damping factor that goes as `1/v0` stays constant.
+pub(crate) const LOWEST_APPROACH_SPEED_M_S: f64 = 1e-6;
+
+/// The damping factor `D` (s/m) from a rule `alpha(e)`, with `e` and the speed checked.
+pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> Result<f64, InvalidInput> {
+    InvalidInput::require_restitution("restitution", e)?;
+    InvalidInput::require_positive("speed_m_s", speed_m_s)?;
+    Ok(alpha(e) / speed_m_s)
+}
+
+/// `k <xi>^n` and its derivative.
+pub(crate) fn elastic(k: f64, n: f64, compression_m: f64) -> (f64, f64) {
+    let xi = bounded(compression_m).max(0.0);
+    // the square root is several times faster than a general power
+    let lower = if n == 1.5 { xi.sqrt() } else { xi.powf(n - 1.0) };
+    (k * lower * xi, n * k * lower)
+}
+
+/// Force on the branch; `branch.internal` is `D`.
+pub(crate) fn force(k: f64, n: f64, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+    if branch.stage == Stage::Slack {
+        return Force::ZERO;
+    }
+    let (f, slope) = elastic(k, n, compression_m);
+    let factor = 1.0 + branch.internal * bounded(rate_m_s);
+    Force { force_n: f * factor, per_compression_n_m: slope * factor, per_rate_n_s_m: f * branch.internal }
+}
+
+/// Energy in the spring.
+pub(crate) fn stored_energy_j(k: f64, n: f64, compression_m: f64) -> f64 {
+    elastic(k, n, compression_m).0 * bounded(compression_m).max(0.0) / (n + 1.0)
+}
+
+/// The contact ends at `xi = 0`; between pressing and slack lies `1 + D xi_dot = 0`.
+pub(crate) fn boundaries(branch: &Branch) -> [Boundary; 2] {
+    let side = if branch.stage == Stage::Slack { -1.0 } else { 1.0 };
+    let pulls = Boundary { per_compression: 0.0, per_rate: side * branch.internal, level: -side };
+    [Boundary::compression_falls_to(0.0), pulls]
+}
+
+pub(crate) fn cross(branch: &Branch, which: usize) -> After {
+    if which == 0 {
+        return After::Release(Memory::default());
+    }
+    let stage = if branch.stage == Stage::Slack { Stage::Single } else { Stage::Slack };
+    After::Continue(Branch { stage, ..*branch })
+}
+
+/// `L(x) = x - ln(1 + x)` for `x > -1`, without cancellation near zero.
+fn log_excess(x: f64) -> f64 {
+    if x.abs() > 0.1 {
+        return x - x.ln_1p();
+    }
+    // x^2/2 - x^3/3 + x^4/4 - ...
+    (2..=17).rev().fold(0.0, |sum, n| 1.0 / f64::from(n) - x * sum) * x * x
+}
+
+/// The restitution at a wall that belongs to `alpha = D v0`.
+pub(crate) fn restitution(alpha: f64) -> f64 {
+    if alpha < 1e-8 {
+        return 1.0 - 2.0 / 3.0 * alpha;
+    }
+    // With alpha e = 1 - exp(-w): L(-alpha e) = w - 1 + exp(-w), convex, so that Newton's
+    // iteration falls monotonically on w after its first step.
+    let target = log_excess(alpha);
+    let mut w = (2.0 * target).sqrt();
+    for _ in 0..100 {
+        let y = -(-w).exp_m1();
+        // below 1 the logarithm of 1 - y is w to rounding, and the series avoids w - y
+        let value = if y < 0.1 { log_excess(-y) } else { w - y };
+        let step = (value - target) / y;
+        w -= step;
+        if step.abs() <= 1e-16 * w {
+            break;
+        }
+    }
+    -(-w).exp_m1() / alpha
+}
+
+/// The `alpha = D v0` that gives the restitution `e` at a wall, `0 < e <= 1`.
+pub(crate) fn damping_ratio(e: f64) -> f64 {
+    // bisection on y = alpha e in (0, 1), where the residual falls through zero once
+    let residual = |y: f64| log_excess(y / e) - log_excess(-y);
+    let (mut low, mut high) = (0.0, 1.0);
+    if e >= 1.0 {
+        return 0.0;
+    }
+    for _ in 0..200 {
+        let y = 0.5 * (low + high);
+        if y <= low || y >= high {
+            break;
+        }
+        *(if residual(y) > 0.0 { &mut low } else { &mut high }) = y;
+    }
+    0.5 * (low + high) / e
+}

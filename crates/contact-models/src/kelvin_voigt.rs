@@ -1,0 +1,126 @@
+//! Spring and dashpot in parallel.
+
+use crate::error::bounded;
+use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
+
+/// `F = k xi + c xi_dot` while that pushes.
+///
+/// Source: T. Schwager and T. Poschel, *Granular Matter* 9 (2007) 465, who treat the end of the
+/// contact as done here. Valid as a simple model with a restitution that does not depend on the
+/// speed; its force jumps to `c v0` at first touch, which no material does. Tensile tail: the
+/// formula would pull before the compression is gone. There the force is zero and the surface
+/// recovers behind the striker (slack); the contact resumes where `k xi + c xi_dot` turns
+/// positive again, and ends at `xi = 0`. With `zeta = c / (2 sqrt(k m))` the restitution at a
+/// wall is
+///
+/// ```text
+/// e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),   beyond zeta = 1 with acosh and zeta^2 - 1.
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KelvinVoigt {
+    /// Stiffness `k` (N/m).
+    pub stiffness_n_m: f64,
+    /// Damping `c` (N s/m).
+    pub damping_n_s_m: f64,
+}
+
+impl KelvinVoigt {
+    /// The law with stiffness `k` (N/m) and damping `c` (N s/m).
+    ///
+    /// # Errors
+    /// A parameter that is not positive; without damping, use [`LinearSpring`](crate::LinearSpring).
+    pub fn new(stiffness_n_m: f64, damping_n_s_m: f64) -> Result<KelvinVoigt, InvalidInput> {
+        KelvinVoigt { stiffness_n_m, damping_n_s_m }.validated()
+    }
+
+    /// The law whose restitution at a wall is `restitution` for a striker of this mass, at any
+    /// speed. The closed relation is solved to rounding.
+    ///
+    /// # Errors
+    /// A restitution outside 0.001 to 1 or equal to 1, a stiffness or mass that is not positive.
+    pub fn with_restitution(stiffness_n_m: f64, restitution: f64, mass_kg: f64) -> Result<KelvinVoigt, InvalidInput> {
+        InvalidInput::require_positive("stiffness_n_m", stiffness_n_m)?;
+        InvalidInput::require_positive("mass_kg", mass_kg)?;
+        let allowed = "a coefficient of restitution from 0.001 to below 1";
+        InvalidInput::require("restitution", restitution, (0.001..1.0).contains(&restitution), allowed)?;
+        // bisection on zeta, of which the restitution is a falling function: e(0) = 1, e(20) < 0.001
+        let (mut low, mut high) = (0.0, 20.0);
+        for _ in 0..200 {
+            let zeta = 0.5 * (low + high);
+            if zeta <= low || zeta >= high {
+                break;
+            }
+            *(if restitution_at(zeta) > restitution { &mut low } else { &mut high }) = zeta;
+        }
+        KelvinVoigt::new(stiffness_n_m, (low + high) * (stiffness_n_m * mass_kg).sqrt())
+    }
+
+    /// The law itself if its parameters are in range.
+    ///
+    /// # Errors
+    /// As [`KelvinVoigt::new`].
+    pub fn validated(self) -> Result<KelvinVoigt, InvalidInput> {
+        InvalidInput::require_positive("stiffness_n_m", self.stiffness_n_m)?;
+        InvalidInput::require_positive("damping_n_s_m", self.damping_n_s_m)?;
+        Ok(self)
+    }
+
+    /// Rebound speed over approach speed of a rigid striker at a wall.
+    pub(crate) fn wall_restitution(&self, mass_kg: f64, _speed_m_s: f64) -> f64 {
+        restitution_at(0.5 * self.damping_n_s_m / (self.stiffness_n_m * mass_kg).sqrt())
+    }
+
+    /// Where the formula pushes (`side = 1`) or pulls (`side = -1`).
+    fn formula_side(&self, side: f64) -> Boundary {
+        Boundary { per_compression: side * self.stiffness_n_m, per_rate: side * self.damping_n_s_m, level: 0.0 }
+    }
+}
+
+/// Restitution at a wall against the damping ratio `zeta`.
+fn restitution_at(zeta: f64) -> f64 {
+    let root = ((1.0 - zeta).abs() * (1.0 + zeta)).sqrt();
+    if root == 0.0 {
+        return (-2.0_f64).exp();
+    }
+    if zeta < 1.0 { (-2.0 * zeta * zeta.acos() / root).exp() } else { (-2.0 * zeta * zeta.acosh() / root).exp() }
+}
+
+impl ContactLaw for KelvinVoigt {
+    fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
+        Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
+    }
+
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+        if branch.stage == Stage::Slack {
+            return Force::ZERO;
+        }
+        let (k, c) = (self.stiffness_n_m, self.damping_n_s_m);
+        let force_n = k * bounded(compression_m) + c * bounded(rate_m_s);
+        Force { force_n, per_compression_n_m: k, per_rate_n_s_m: c }
+    }
+
+    fn stored_energy_j(&self, _branch: &Branch, compression_m: f64) -> f64 {
+        let xi = bounded(compression_m).max(0.0);
+        0.5 * self.stiffness_n_m * xi * xi
+    }
+
+    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
+        match branch.stage {
+            Stage::Slack => [Boundary::compression_falls_to(0.0), self.formula_side(-1.0)],
+            // the formula stops pushing before the compression is gone
+            _ => [self.formula_side(1.0), Boundary::NEVER],
+        }
+    }
+
+    fn cross(&self, branch: &Branch, which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
+        match (branch.stage, which) {
+            (Stage::Slack, 0) => After::Release(Memory::default()),
+            (Stage::Slack, _) => After::Continue(Branch { stage: Stage::Single, ..*branch }),
+            _ => After::Continue(Branch { stage: Stage::Slack, ..*branch }),
+        }
+    }
+
+    fn depends_on_rate(&self) -> bool {
+        true
+    }
+}

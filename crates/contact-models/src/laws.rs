@@ -1,0 +1,106 @@
+//! Every law behind one type.
+
+use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory};
+use crate::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, LinearSpring, Thornton, Viscous,
+};
+
+/// Writes the enum, its name table and its dispatch from one list of laws.
+macro_rules! laws {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal,)*) => {
+        /// Every law of the crate behind one type, for scenes that choose their law at run time.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[non_exhaustive]
+        pub enum Law {
+            $($(#[$doc])* $variant($variant),)*
+        }
+
+        $(impl From<$variant> for Law {
+            fn from(law: $variant) -> Law {
+                Law::$variant(law)
+            }
+        })*
+
+        /// The same expression for whichever law it is.
+        macro_rules! each {
+            ($law:expr, $inner:ident => $value:expr) => {
+                match $law { $(Law::$variant($inner) => $value,)* }
+            };
+        }
+
+        impl Law {
+            /// The law's name in scene files and tables.
+            pub fn name(&self) -> &'static str {
+                match self { $(Law::$variant(_) => $name,)* }
+            }
+        }
+    };
+}
+
+laws! {
+    /// Elastic contact of curved bodies.
+    Hertz = "hertz",
+    /// The thesis's viscous contact dissipation.
+    Viscous = "viscous",
+    /// The thesis's rate-independent contact hysteresis.
+    Hysteretic = "hysteretic",
+    /// The linear spring.
+    LinearSpring = "linear",
+    /// Spring and dashpot in parallel.
+    KelvinVoigt = "kelvin-voigt",
+    /// Hunt and Crossley's damped power law.
+    HuntCrossley = "hunt-crossley",
+    /// Lankarani and Nikravesh's law.
+    LankaraniNikravesh = "lankarani-nikravesh",
+    /// The law of Flores, Machado, Silva and Martins.
+    Flores = "flores",
+    /// Thornton's elastic, perfectly plastic contact.
+    Thornton = "thornton",
+}
+
+impl Law {
+    /// The law itself if its parameters are in range.
+    ///
+    /// # Errors
+    /// As the `new` of the law.
+    pub fn validated(self) -> Result<Law, InvalidInput> {
+        each!(self, law => law.validated().map(Law::from))
+    }
+
+    /// Rebound speed over approach speed of a rigid striker at an immovable wall covered by this
+    /// law (the thesis's `N = 0`), from closed or implicit relations, to rounding.
+    ///
+    /// # Errors
+    /// A mass or speed that is not positive.
+    pub fn wall_restitution(&self, mass_kg: f64, speed_m_s: f64) -> Result<f64, InvalidInput> {
+        InvalidInput::require_positive("mass_kg", mass_kg)?;
+        InvalidInput::require_positive("speed_m_s", speed_m_s)?;
+        Ok(each!(self, law => law.wall_restitution(mass_kg, speed_m_s)))
+    }
+}
+
+impl ContactLaw for Law {
+    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
+        each!(self, law => law.touch(memory, approach_speed_m_s))
+    }
+
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+        each!(self, law => law.force(branch, compression_m, rate_m_s))
+    }
+
+    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
+        each!(self, law => law.stored_energy_j(branch, compression_m))
+    }
+
+    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
+        each!(self, law => law.boundaries(branch))
+    }
+
+    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
+        each!(self, law => law.cross(branch, which, compression_m, rate_m_s))
+    }
+
+    fn depends_on_rate(&self) -> bool {
+        each!(self, law => law.depends_on_rate())
+    }
+}

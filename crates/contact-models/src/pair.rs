@@ -1,0 +1,72 @@
+//! Two bodies in contact: effective modulus and radius.
+
+use crate::InvalidInput;
+use crate::error::LARGEST;
+
+/// One of two elastic bodies where they touch: an isotropic material and a sphere's curvature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Young's modulus `E` (Pa).
+    pub youngs_modulus_pa: f64,
+    /// Poisson's ratio `nu`, greater than -1 and at most 0.5.
+    pub poissons_ratio: f64,
+    /// Radius of curvature `R` (m): positive for a ball, infinite for a flat, negative for a
+    /// spherical seat.
+    pub radius_m: f64,
+}
+
+impl Body {
+    /// A body with a flat surface.
+    pub const fn flat(youngs_modulus_pa: f64, poissons_ratio: f64) -> Body {
+        Body { youngs_modulus_pa, poissons_ratio, radius_m: f64::INFINITY }
+    }
+
+    /// A rigid body of this radius: its modulus is infinite.
+    pub const fn rigid(radius_m: f64) -> Body {
+        Body { youngs_modulus_pa: f64::INFINITY, poissons_ratio: 0.0, radius_m }
+    }
+
+    /// `(1 - nu^2) / E` (1/Pa).
+    fn compliance_per_pa(&self) -> Result<f64, InvalidInput> {
+        if self.youngs_modulus_pa != f64::INFINITY {
+            InvalidInput::require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
+        }
+        let nu = self.poissons_ratio;
+        let allowed = "a number greater than -1 and not greater than 0.5";
+        InvalidInput::require("poissons_ratio", nu, nu > -1.0 && nu <= 0.5, allowed)?;
+        Ok((1.0 - nu * nu) / self.youngs_modulus_pa)
+    }
+
+    /// `1 / R` (1/m), zero for a flat.
+    fn curvature_per_m(&self) -> Result<f64, InvalidInput> {
+        if self.radius_m != f64::INFINITY {
+            let allowed = "a radius other than 0, positive for a ball, infinite for a flat, negative for a seat";
+            let holds = self.radius_m.abs() >= 1.0 / LARGEST && self.radius_m.abs() <= LARGEST;
+            InvalidInput::require("radius_m", self.radius_m, holds, allowed)?;
+        }
+        Ok(1.0 / self.radius_m)
+    }
+}
+
+/// Effective modulus `E*` (Pa): `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
+///
+/// # Errors
+/// A modulus that is not positive, a Poisson's ratio outside `(-1, 0.5]`, or two rigid bodies.
+pub fn effective_modulus_pa(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
+    let modulus = 1.0 / (first.compliance_per_pa()? + second.compliance_per_pa()?);
+    InvalidInput::require("youngs_modulus_pa", modulus, modulus.is_finite(), "at most one rigid body in a pair")?;
+    Ok(modulus)
+}
+
+/// Effective radius `R*` (m): `1/R* = 1/R1 + 1/R2`.
+///
+/// # Errors
+/// A radius of zero or NaN, or a pair that does not touch at a single point (two flats, or a
+/// ball in a seat that is not wider).
+pub fn effective_radius_m(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
+    let radius = 1.0 / (first.curvature_per_m()? + second.curvature_per_m()?);
+    let holds = radius > 0.0 && radius <= LARGEST;
+    let allowed = "1/R1 + 1/R2 greater than 0, so that the bodies meet at a point";
+    InvalidInput::require("radius_m", radius, holds, allowed)?;
+    Ok(radius)
+}
