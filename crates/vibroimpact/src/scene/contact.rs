@@ -135,6 +135,21 @@ impl Contact {
         }
     }
 
+    /// The name of the law in scene files.
+    pub fn law_name(&self) -> &'static str {
+        match self {
+            Contact::Hertz(_) => "hertz",
+            Contact::Viscous { .. } => "viscous",
+            Contact::Hysteretic { .. } => "hysteretic",
+            Contact::LinearSpring { .. } => "linear-spring",
+            Contact::KelvinVoigt { .. } => "kelvin-voigt",
+            Contact::HuntCrossley { .. } => "hunt-crossley",
+            Contact::LankaraniNikravesh { .. } => "lankarani-nikravesh",
+            Contact::Flores { .. } => "flores",
+            Contact::Elastoplastic { .. } => "elastoplastic",
+        }
+    }
+
     /// The law with its parameters, for this striker.
     pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
         let speed = striker.speed_m_s;
