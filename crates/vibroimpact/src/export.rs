@@ -1,11 +1,11 @@
 //! The files of one impact: histories and contacts as CSV, the picture as SVG, the result as JSON.
 
 use std::error::Error;
-use std::io::Write;
+use std::fs;
 use std::path::Path;
 
 use contact_models::Law;
-use tempfile::NamedTempFile;
+use tempfile::TempDir;
 use vibroimpact_sim::modal::{History, Sample};
 
 use crate::plot::{Axis, Figure, Panel, Series};
@@ -50,15 +50,13 @@ impl Files {
     /// A folder or file that cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), Failure> {
         let blame = |error: std::io::Error| format!("cannot write to {}: {error}", folder.display());
-        std::fs::create_dir_all(folder).map_err(blame)?;
-        let mut written = Vec::new();
+        fs::create_dir_all(folder).map_err(blame)?;
+        let aside = TempDir::new_in(folder).map_err(blame)?;
         for (name, content) in &self.0 {
-            let mut file = NamedTempFile::new_in(folder).map_err(blame)?;
-            file.write_all(content).map_err(blame)?;
-            written.push((name, file));
+            fs::write(aside.path().join(name), content).map_err(blame)?;
         }
-        for (name, file) in written {
-            file.persist(folder.join(name)).map_err(|fault| blame(fault.error))?;
+        for name in self.names() {
+            fs::rename(aside.path().join(name), folder.join(name)).map_err(blame)?;
         }
         Ok(())
     }

@@ -47,7 +47,12 @@ macro_rules! from_crate {
     ($($krate:ident),*) => {
         $(impl From<$krate::InvalidInput> for InvalidInput {
             fn from(fault: $krate::InvalidInput) -> InvalidInput {
-                InvalidInput { field: fault.field, value: Some(fault.value), allowed: fault.allowed.to_owned() }
+                // a huge or tiny number is told by its power of ten, not by all its zeros
+                let value = match fault.value.parse::<f64>() {
+                    Ok(value) if fault.value.len() > 20 => number(value),
+                    _ => fault.value,
+                };
+                InvalidInput::new(fault.field, value, fault.allowed)
             }
         })*
     };
