@@ -1,0 +1,36 @@
+//! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps.
+
+use beam_modes::{Beam, End, Segment};
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+
+fn segment(length_m: f64, flexural_rigidity_n_m2: f64, mass_per_length_kg_m: f64) -> Segment {
+    Segment { length_m, flexural_rigidity_n_m2, mass_per_length_kg_m }
+}
+
+fn modes(c: &mut Criterion) {
+    let uniform = Beam { segments: vec![segment(1.0, 273.0, 1.0)], ends: [End::Pinned, End::Pinned] };
+    let stepped =
+        Beam { segments: vec![segment(0.5, 273.0, 1.0), segment(0.5, 34.2, 0.5)], ends: [End::Clamped, End::Free] };
+    let taper = Beam {
+        segments: (0..80)
+            .map(|i| 1.0 - 0.75 * (f64::from(i) + 0.5) / 80.0)
+            .map(|h| segment(0.0125, h.powi(3), h))
+            .collect(),
+        ends: [End::Clamped, End::Free],
+    };
+    for (name, beam, count) in [
+        ("uniform", &uniform, 40),
+        ("uniform", &uniform, 200),
+        ("stepped", &stepped, 40),
+        ("stepped", &stepped, 500),
+        ("taper", &taper, 40),
+    ] {
+        c.bench_function(&format!("{name}, {count} modes"), |b| b.iter(|| black_box(beam).modes(black_box(count))));
+    }
+    let found = uniform.modes(40).expect("a valid beam");
+    c.bench_function("40 shapes at one place", |b| b.iter(|| found.shapes_at(black_box(0.4))));
+}
+
+criterion_group!(benches, modes);
+criterion_main!(benches);

@@ -1,0 +1,138 @@
+//! Natural modes, and what can be asked of them.
+
+use crate::error::InvalidInput;
+use crate::piece::Piece;
+use crate::span::{Span, Units, locate};
+
+/// Natural modes of a beam or a rod, in ascending order of frequency.
+///
+/// Shapes are mass-normalised, `int m phi_i phi_j dx = delta_ij` (thesis Eq. 4.4), so their unit is kg^(-1/2). The sign
+/// of a shape is fixed at the left end: the lowest derivative that the end leaves free is positive there (displacement
+/// at a free or guided end, slope at a pinned or, for rods, fixed end, curvature at a clamped end). The rotation of a
+/// free-free beam has positive slope.
+#[derive(Debug, Clone)]
+pub struct Modes {
+    spans: Vec<Span>,
+    units: Units,
+    omega_rad_s: Vec<f64>,
+    rigid: usize,
+    /// Mode by mode, span by span; dimensionless.
+    pieces: Vec<Piece>,
+}
+
+/// Guards memory: `count` modes of `spans` pieces each.
+pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInput> {
+    const MOST: usize = 100_000;
+    const MOST_PIECES: usize = 20_000_000;
+    if count > MOST || count.saturating_mul(spans) > MOST_PIECES {
+        return Err(InvalidInput::new("count", count, "at most 100000, and at most 20 million times segments"));
+    }
+    Ok(())
+}
+
+/// What an extreme chain of segments lacks.
+pub(crate) const RESOLVABLE: &str = "contrasts and sizes for which double precision resolves the modes";
+
+impl Modes {
+    /// From dimensionless, mass-normalised shapes: rigid-body ones first, then elastic ones with their frequencies.
+    pub(crate) fn assemble(
+        spans: Vec<Span>,
+        units: Units,
+        rigid: Vec<Vec<Piece>>,
+        omega_rad_s: impl Iterator<Item = f64>,
+        elastic: Vec<Vec<Piece>>,
+    ) -> Result<Self, InvalidInput> {
+        let omega_rad_s: Vec<f64> = std::iter::repeat_n(0.0, rigid.len()).chain(omega_rad_s).collect();
+        let modes = Self {
+            rigid: rigid.len(),
+            pieces: rigid.into_iter().chain(elastic).flatten().collect(),
+            spans,
+            units,
+            omega_rad_s,
+        };
+        let resolved = modes.pieces.len() == modes.len() * modes.spans.len()
+            && modes.pieces.iter().all(|p| p.size().is_finite())
+            && modes.omega_rad_s.iter().all(|omega| omega.is_finite());
+        if resolved { Ok(modes) } else { Err(InvalidInput::new("segments", "as given", RESOLVABLE)) }
+    }
+
+    /// How many modes there are.
+    pub fn len(&self) -> usize {
+        self.omega_rad_s.len()
+    }
+
+    /// Whether no mode was asked for.
+    pub fn is_empty(&self) -> bool {
+        self.omega_rad_s.is_empty()
+    }
+
+    /// How many of them are rigid-body motions; these come first and have `omega = 0`.
+    pub fn rigid_body_count(&self) -> usize {
+        self.rigid
+    }
+
+    /// Length of the structure, m.
+    pub fn length_m(&self) -> f64 {
+        self.units.length_m
+    }
+
+    /// Natural frequencies, rad/s.
+    pub fn omega_rad_s(&self) -> &[f64] {
+        &self.omega_rad_s
+    }
+
+    /// Shape of mode `k` (from 0) at `x_m`, kg^(-1/2).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a mode that is not there or a place off the structure. The same holds for
+    /// [`slope`](Self::slope) and [`curvature`](Self::curvature).
+    pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+        self.derivative(0, k, x_m)
+    }
+
+    /// Slope of mode `k` at `x_m`, kg^(-1/2)/m.
+    ///
+    /// # Errors
+    /// As for [`shape`](Self::shape).
+    pub fn slope(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+        self.derivative(1, k, x_m)
+    }
+
+    /// Second derivative of mode `k` at `x_m`, kg^(-1/2)/m^2; times `E I` it is the bending moment. At a step, where it
+    /// jumps, the value on the right.
+    ///
+    /// # Errors
+    /// As for [`shape`](Self::shape).
+    pub fn curvature(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+        self.derivative(2, k, x_m)
+    }
+
+    /// Shapes of all modes at `x_m`, kg^(-1/2).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a place off the structure.
+    pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
+        let (span, x) = self.place(x_m)?;
+        let unit = self.unit(0);
+        Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].derivative(0, x)).collect())
+    }
+
+    fn derivative(&self, order: usize, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+        if k >= self.len() {
+            return Err(InvalidInput::new("k", k, "the number of a mode, from 0 to len() - 1"));
+        }
+        let (span, x) = self.place(x_m)?;
+        Ok(self.unit(order) * self.pieces[k * self.spans.len() + span].derivative(order, x))
+    }
+
+    fn place(&self, x_m: f64) -> Result<(usize, f64), InvalidInput> {
+        let x_m = InvalidInput::require_on("x_m", x_m, self.units.length_m)?;
+        Ok(locate(&self.spans, x_m / self.units.length_m))
+    }
+
+    /// From dimensionless shapes to kg^(-1/2) m^(-order).
+    fn unit(&self, order: usize) -> f64 {
+        let Units { length_m, mass_per_length_kg_m, .. } = self.units;
+        length_m.powi(-(order as i32)) / (length_m.sqrt() * mass_per_length_kg_m.sqrt())
+    }
+}

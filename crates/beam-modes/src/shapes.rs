@@ -1,0 +1,97 @@
+//! From natural frequencies to orthonormal mode shapes.
+
+use crate::piece::Piece;
+use crate::plane::State;
+use crate::span::Span;
+
+/// A state at the left end of a span that (nearly) satisfies the conditions of both ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Match {
+    /// Sine of the angle between what the left and the right end allow: zero for a mode, and least sensitive to
+    /// rounding where the mode is large.
+    pub defect: f64,
+    pub span: usize,
+    pub state: State,
+}
+
+/// A chain of spans that carries waves.
+pub(crate) trait Waveguide {
+    /// What both ends allow at one frequency, at every span.
+    type Sweeps;
+    fn spans(&self) -> &[Span];
+    /// The lowest derivative that the left end leaves free; shapes are positive in it.
+    fn leading_order(&self) -> usize;
+    /// Mean distance between roots `q`.
+    fn spacing(&self) -> f64;
+    fn sweeps(&self, q: f64) -> Self::Sweeps;
+    /// Candidates for the mode, at every span.
+    fn matches(&self, sweeps: &Self::Sweeps) -> Vec<Match>;
+    /// The solution that passes through a match, span by span.
+    fn unroll(&self, sweeps: &Self::Sweeps, at: &Match) -> Vec<Piece>;
+}
+
+/// Mass inner product of two shapes.
+fn inner(spans: &[Span], u: &[Piece], v: &[Piece]) -> f64 {
+    spans.iter().zip(u.iter().zip(v)).map(|(span, (u, v))| span.mass * u.product(v)).sum()
+}
+
+fn normalise(spans: &[Span], pieces: &mut [Piece]) {
+    // first to size one, lest the squares leave the range of f64
+    let size = pieces.iter().map(Piece::size).fold(0.0, f64::max);
+    if size > 0.0 {
+        pieces.iter_mut().for_each(|p| *p = p.scaled(1.0 / size));
+        let norm = inner(spans, pieces, pieces).sqrt();
+        pieces.iter_mut().for_each(|p| *p = p.scaled(1.0 / norm));
+    }
+}
+
+/// Roots closer than this fraction of their mean distance leave shapes too uncertain to be orthogonal by themselves.
+const CLUSTER: f64 = 0.02;
+/// A candidate whose part orthogonal to the shapes already chosen is smaller than this is one of them again.
+const NEW: f64 = 0.1;
+
+/// Mass-normalised shapes (dimensionless) of the ascending roots.
+pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
+    let spans = guide.spans();
+    let mut shapes: Vec<Vec<Piece>> = Vec::with_capacity(roots.len());
+    let mut cluster = 0;
+    for (n, &q) in roots.iter().enumerate() {
+        if n > 0 && q - roots[n - 1] > CLUSTER * guide.spacing() {
+            cluster = n;
+        }
+        let sweeps = guide.sweeps(q);
+        let mut candidates = guide.matches(&sweeps);
+        candidates.sort_by(|a, b| a.defect.total_cmp(&b.defect));
+        if cluster == n {
+            candidates.truncate(1);
+        }
+        let mut best = (-1.0, Vec::new());
+        for candidate in &candidates {
+            let mut shape = guide.unroll(&sweeps, candidate);
+            normalise(spans, &mut shape);
+            let mut part = 1.0;
+            // twice is enough (Kahan and Parlett)
+            for _ in 0..2 {
+                for other in &shapes[cluster..n] {
+                    let overlap = inner(spans, &shape, other);
+                    shape.iter_mut().zip(other).for_each(|(piece, o)| *piece = piece.plus(-overlap, o));
+                }
+                let left = inner(spans, &shape, &shape).max(0.0).sqrt();
+                part *= left;
+                normalise(spans, &mut shape);
+            }
+            if part > best.0 {
+                best = (part, shape);
+            }
+            if best.0 > NEW {
+                break;
+            }
+        }
+        let mut shape: Vec<Piece> = best.1;
+        if shape.first().is_some_and(|piece| piece.derivative(guide.leading_order(), 0.0) < 0.0) {
+            shape.iter_mut().for_each(|piece| *piece = piece.scaled(-1.0));
+        }
+        shapes.push(shape);
+    }
+    shapes
+}
