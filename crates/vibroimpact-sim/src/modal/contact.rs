@@ -1,0 +1,336 @@
+//! One interval of contact: from first touch to separation.
+
+use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s};
+use super::landing::{self, Approach, Landed, REACH};
+use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
+use super::motion::{ContactPiece, Motion, Piece};
+use super::solution::{Counts, SubImpact};
+use super::step::{Collocated, Given, collocate, first_crossing};
+use contact_models::{After, Branch, ContactLaw, Memory};
+
+/// How a contact ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum ContactEnd {
+    /// The surfaces parted, leaving this memory.
+    Released(Memory),
+    /// Nothing moves any more.
+    AtRest,
+    /// The settings' limit on steps, or the finest step, was reached.
+    Limit,
+}
+
+/// The impact as seen by one contact.
+pub(crate) struct Setting<'a, L> {
+    pub law: &'a L,
+    /// Inverse mass of striker and rigid-body modes together (1/kg).
+    pub mu: f64,
+    pub residual_compliance: f64,
+    /// Impulse that a step may get wrong (N s).
+    pub impulse_tolerance: f64,
+    /// Energy below which the impact counts as died down (J).
+    pub rest_energy: f64,
+    pub max_steps: u64,
+}
+
+/// Energy is looked at once in this many steps.
+const REST_CHECK: u64 = 64;
+/// A step is doubled when its error is this many times below the tolerance.
+const GROWTH: f64 = 10.0;
+/// Part of the way to the expected end of a branch that one step may take.
+const SHARE: f64 = 0.7;
+
+pub(crate) struct Contact<'a, L> {
+    setting: &'a Setting<'a, L>,
+    ladder: &'a mut Ladder,
+    motion: &'a mut Motion,
+    /// The motion before the step that is being tried.
+    before: Motion,
+    counts: &'a mut Counts,
+    record: &'a mut Option<Vec<Piece>>,
+    branch: Branch,
+    needs_rate: bool,
+    level: i32,
+    /// Legendre coefficients of the last step's force, and its length.
+    previous: Option<(Nodal, f64)>,
+    /// Compression and rate now.
+    compression: f64,
+    rate: f64,
+    /// Where the branch is expected to end: which boundary, and when.
+    horizon: Option<(usize, f64)>,
+    found: SubImpact,
+}
+
+impl<'a, L: ContactLaw> Contact<'a, L> {
+    /// Follows the contact that begins now, and says how it ended.
+    pub fn run(
+        setting: &'a Setting<'a, L>,
+        ladder: &'a mut Ladder,
+        motion: &'a mut Motion,
+        memory: &Memory,
+        counts: &'a mut Counts,
+        record: &'a mut Option<Vec<Piece>>,
+    ) -> (SubImpact, ContactEnd) {
+        // the surfaces touch: remove the rounding of the search for this moment
+        motion.drift += memory.touch_m - motion.gap();
+        let rate = motion.gap_rate().max(0.0);
+        let (start_s, impulse_before) = (motion.time, motion.impulse);
+        let mut contact = Contact {
+            setting,
+            ladder,
+            before: motion.clone(),
+            motion,
+            counts,
+            record,
+            branch: setting.law.touch(memory, rate),
+            needs_rate: false,
+            level: J_MIN,
+            previous: None,
+            compression: memory.touch_m,
+            rate,
+            horizon: None,
+            found: SubImpact { start_s, end_s: start_s, impulse_n_s: 0.0, peak_force_n: 0.0, peak_compression_m: 0.0 },
+        };
+        contact.enter(contact.branch);
+        contact.level = contact.first_level();
+        let end = contact.follow();
+        contact.found.end_s = contact.motion.time;
+        contact.found.impulse_n_s = contact.motion.impulse - impulse_before;
+        (contact.found, end)
+    }
+
+    fn enter(&mut self, branch: Branch) {
+        self.branch = branch;
+        self.horizon = None;
+        self.needs_rate = self.setting.law.depends_on_rate()
+            || self.setting.law.boundaries(&branch).iter().any(|b| b.per_rate != 0.0);
+    }
+
+    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
+    fn first_level(&self) -> i32 {
+        let state = &self.motion.vibration;
+        let mut acceleration = 0.0;
+        for ((mode, a), b) in self.ladder.modes.iter().zip(&state.alpha).zip(&state.beta) {
+            acceleration -= mode.omega_rad_s * (2.0 * mode.damping_ratio * b + mode.omega_rad_s * a);
+        }
+        // a polynomial through Q nodes follows t^1.5 to about this fraction of its size
+        const SINGULAR: f64 = 1e-4;
+        (J_MIN..J_MAX)
+            .find(|&j| {
+                let h = step_s(j);
+                let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
+                let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
+                SINGULAR * force * h <= self.setting.impulse_tolerance
+            })
+            .unwrap_or(J_MAX)
+    }
+
+    fn follow(&mut self) -> ContactEnd {
+        loop {
+            let steps = self.counts.contact_steps + self.counts.rejected_steps;
+            if steps >= self.setting.max_steps || self.level > J_MAX {
+                return ContactEnd::Limit;
+            }
+            if steps % REST_CHECK == REST_CHECK - 1 && self.energy() < self.setting.rest_energy {
+                return ContactEnd::AtRest;
+            }
+            if let Some(end) = self.advance() {
+                return end;
+            }
+        }
+    }
+
+    /// Kinetic and elastic energy of everything that moves, without what the striker shares with the rigid bodies (J).
+    fn energy(&self) -> f64 {
+        let state = &self.motion.vibration;
+        let mut energy = 0.5 * self.motion.drift_rate.powi(2) / self.setting.mu;
+        for (k, mode) in self.ladder.modes.iter().enumerate() {
+            let (a, b) = (mode.omega_rad_s * state.alpha[k], state.beta[k]);
+            energy += 0.5 * (a * a + b * b) / self.ladder.weight[k];
+        }
+        let force = self.setting.law.force(&self.branch, self.compression, self.rate).force_n;
+        energy + (force * self.compression).abs()
+    }
+
+    /// One try: a step forward, a return to a finer level, or the end of the contact.
+    fn advance(&mut self) -> Option<ContactEnd> {
+        if let Some((which, at)) = self.horizon
+            && at - self.motion.time <= self.reach()
+        {
+            self.horizon = None;
+            return self.approach(which, (at - self.motion.time).max(0.0), self.reach());
+        }
+        let h = step_s(self.level);
+        let Some((step, force)) = self.attempt(h) else {
+            return self.refine(self.level + 1);
+        };
+        let boundaries = self.setting.law.boundaries(&self.branch);
+        let start = (self.compression, self.rate);
+        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h) {
+            return self.approach(which, place * h, h);
+        }
+        let tolerance = self.setting.impulse_tolerance;
+        let error = truncation(&force) * h;
+        if error > tolerance {
+            // the error falls at least like h^3
+            let finer = ((error / tolerance).log2() / 3.0) as i32;
+            return self.refine(self.level + finer.clamp(1, 4));
+        }
+        self.before.clone_from(self.motion);
+        self.ladder.advance(self.level, &mut self.motion.vibration, &force);
+        self.motion.advance_drift(h, &force, self.setting.mu);
+        let end = self.end_of_step(&step, &force, h);
+        if let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
+            std::mem::swap(self.motion, &mut self.before);
+            return self.approach(which, place * h, h);
+        }
+        self.note(h, &step, &force);
+        (self.compression, self.rate) = end;
+        self.previous = Some((force, h));
+        if error * GROWTH < tolerance {
+            self.level = (self.level - 1).max(J_MIN);
+        }
+        if let Some((_, at)) = self.horizon {
+            self.level = self.level.max(level_within(SHARE * (at - self.motion.time)));
+        }
+        None
+    }
+
+    /// Longest step for a landing (s).
+    fn reach(&self) -> f64 {
+        let slowest = if self.level < J_MIN { step_s(J_MIN) } else { step_s(self.level) * 2.0 };
+        if self.ladder.fastest_rad_s > 0.0 { (REACH / self.ladder.fastest_rad_s).min(slowest) } else { slowest }
+    }
+
+    fn refine(&mut self, level: i32) -> Option<ContactEnd> {
+        self.counts.rejected_steps += 1;
+        self.level = level;
+        None
+    }
+
+    /// Goes towards the end of the branch, expected after `expected` seconds of a step of `h`: lands there if it is
+    /// near, or takes shorter steps.
+    fn approach(&mut self, which: usize, expected: f64, h: f64) -> Option<ContactEnd> {
+        let reach = self.reach().min(h);
+        let mut expected = expected;
+        if expected <= reach {
+            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration);
+            let mut approach = Approach {
+                law: self.setting.law,
+                branch: &self.branch,
+                which,
+                needs_rate: self.needs_rate,
+                start_compression: self.compression,
+                gap: series,
+                kernel: self.ladder.kernel,
+                residual_compliance: self.setting.residual_compliance,
+            };
+            approach.gap[0] += self.motion.drift;
+            approach.gap[1] += self.motion.drift_rate;
+            approach.kernel[1] += self.setting.mu;
+            match approach.land(expected, reach, self.counts) {
+                Some(landed) if truncation(&landed.force) * landed.length <= self.setting.impulse_tolerance => {
+                    return self.cross(which, landed);
+                }
+                Some(landed) => expected = landed.length,
+                // not so near after all: go on, until a step meets the boundary again
+                None => return self.refine((self.level + 1).max(level_within(reach))),
+            }
+        }
+        self.horizon = Some((which, self.motion.time + expected));
+        self.refine((self.level + 1).max(level_within(SHARE * expected)))
+    }
+
+    /// Commits a landing and asks the law what follows.
+    fn cross(&mut self, which: usize, landed: Landed) -> Option<ContactEnd> {
+        self.before.clone_from(self.motion);
+        landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
+        self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
+        self.note(landed.length, &landed.step, &landed.force);
+        (self.compression, self.rate) = (landed.compression, landed.rate);
+        self.previous = Some((landed.force, landed.length));
+        match self.setting.law.cross(&self.branch, which, landed.compression, landed.rate) {
+            After::Release(memory) => Some(ContactEnd::Released(memory)),
+            After::Continue(branch) => {
+                self.enter(branch);
+                None
+            }
+        }
+    }
+
+    /// Solves one ladder step of the present level: its nodal values, and the force's Legendre coefficients.
+    fn attempt(&mut self, h: f64) -> Option<(Collocated, Nodal)> {
+        let basis = &*BASIS;
+        let (mut free, structure) = self.ladder.at_nodes(self.level, &self.motion.vibration);
+        let mut response = *structure;
+        let inertia = self.setting.mu * h * h;
+        for i in 0..Q {
+            free[i] += self.motion.drift + self.motion.drift_rate * basis.nodes[i] * h;
+            for j in 0..Q {
+                response[i][j] -= inertia * basis.power[1][i][j];
+            }
+        }
+        let mut guess = [0.0; Q];
+        if let Some((coefficients, length)) = &self.previous {
+            for i in 0..Q {
+                guess[i] = evaluate(coefficients, 1.0 + basis.nodes[i] * h / length).max(0.0);
+            }
+        }
+        let given = Given {
+            h,
+            start_compression: self.compression,
+            free,
+            response: &response,
+            residual_compliance: self.setting.residual_compliance,
+        };
+        let step = collocate(self.setting.law, &self.branch, &given, self.needs_rate, guess, self.counts)?;
+        Some((step, basis.coefficients(&step.force)))
+    }
+
+    /// Compression and rate at the end of a step that the motion has just made.
+    fn end_of_step(&self, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
+        let gap = self.motion.gap();
+        if self.setting.residual_compliance == 0.0 {
+            return (gap, self.motion.gap_rate());
+        }
+        let slope = BASIS.end_slope_from_start * self.compression + dot(&BASIS.end_slope_from_nodes, &step.compression);
+        (gap - self.setting.residual_compliance * evaluate(force, 1.0), slope / h)
+    }
+
+    /// Books a step that has been made: peaks, counts, record.
+    fn note(&mut self, h: f64, step: &Collocated, force: &Nodal) {
+        self.counts.contact_steps += 1;
+        self.found.peak_force_n = peak(self.found.peak_force_n, &step.force, force);
+        let compression = BASIS.coefficients(&step.compression);
+        self.found.peak_compression_m = peak(self.found.peak_compression_m, &step.compression, &compression);
+        if let Some(pieces) = self.record.as_mut() {
+            let contact = ContactPiece { length: h, force: *force, branch: self.branch };
+            pieces.push(Piece { start: self.before.clone(), contact: Some(contact) });
+        }
+    }
+}
+
+/// What the polynomial may be missing: the larger of its last two coefficients (one alone vanishes by accident).
+fn truncation(force: &Nodal) -> f64 {
+    force[Q - 1].abs().max(force[Q - 2].abs())
+}
+
+/// The larger of `so_far` and the largest value on a step, given at the nodes and as coefficients.
+fn peak(so_far: f64, nodal: &Nodal, coefficients: &Nodal) -> f64 {
+    let largest = nodal.iter().fold(f64::MIN, |a, b| a.max(*b));
+    // the polynomial rises above its nodal values by little: look closer only where it can matter
+    if largest < 0.9 * so_far {
+        return so_far;
+    }
+    // golden section around the best of a fine grid
+    let grid = 4 * Q;
+    let at = |i: usize| i as f64 / grid as f64;
+    let best = (0..=grid).max_by(|&a, &b| evaluate(coefficients, at(a)).total_cmp(&evaluate(coefficients, at(b))));
+    let best = best.unwrap_or(0);
+    let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(grid)));
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    for _ in 0..24 {
+        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        if evaluate(coefficients, left) > evaluate(coefficients, right) { high = right } else { low = left }
+    }
+    so_far.max(evaluate(coefficients, 0.5 * (low + high)))
+}

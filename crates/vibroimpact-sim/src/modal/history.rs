@@ -1,0 +1,262 @@
+//! The whole motion of an impact, at any time, and where its energy went.
+
+use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
+use super::motion::{ContactPiece, Motion, Piece};
+use super::oscillator::{propagate, response};
+use super::problem::{Mode, Start, Striker};
+use super::solution::Solution;
+use super::solve::Solver;
+use contact_models::ContactLaw;
+
+/// Motion and force at one time. Displacements are positive away from the side that is struck.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Time since the clock started (s).
+    pub time_s: f64,
+    /// Displacement of the structure at the contact (m).
+    pub structure_displacement_m: f64,
+    /// Its velocity (m/s).
+    pub structure_velocity_m_s: f64,
+    /// Displacement of the striker (m).
+    pub striker_displacement_m: f64,
+    /// Its velocity (m/s).
+    pub striker_velocity_m_s: f64,
+    /// Compression of the contact, negative when the surfaces are apart (m).
+    pub compression_m: f64,
+    /// Contact force (N).
+    pub force_n: f64,
+}
+
+/// Where the energy went (J).
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnergyLedger {
+    /// Kinetic energy of the striker and energy of the structure when the clock starts.
+    pub initial_j: f64,
+    /// Kinetic energy of the striker at the end.
+    pub striker_j: f64,
+    /// Energy of each mode at the end, in the order of `Structure::modes`.
+    pub modes_j: Vec<f64>,
+    /// Lost to modal damping, from the modes' velocities.
+    pub modal_damping_j: f64,
+    /// Work that the contact law took up over the compression: dissipated, where all contacts have ended.
+    pub contact_j: f64,
+    /// What is missing: initial less all others. Measures the defect of the collocated force.
+    pub residual_j: f64,
+}
+
+/// The recorded motion of one impact; evaluates itself exactly at any time, given its contact force.
+pub struct History<L> {
+    law: L,
+    striker: Striker,
+    start: Start,
+    modes: Vec<Mode>,
+    place: Vec<Option<usize>>,
+    elastic: Vec<Mode>,
+    residual_compliance: f64,
+    mu: f64,
+    pieces: Vec<Piece>,
+    end_s: f64,
+    end: (Vec<f64>, Vec<f64>, f64),
+}
+
+/// A moment of the motion with the force's time derivative, which the residual compliance needs.
+struct Moment {
+    motion: Motion,
+    force: f64,
+    force_rate: f64,
+}
+
+impl<L: ContactLaw> History<L> {
+    pub(crate) fn new(
+        solver: &Solver,
+        striker: Striker,
+        law: L,
+        start: Start,
+        pieces: Vec<Piece>,
+        solution: &Solution,
+    ) -> History<L> {
+        History {
+            law,
+            striker,
+            start,
+            modes: solver.modes().to_vec(),
+            place: solver.places().to_vec(),
+            elastic: solver.elastic().to_vec(),
+            residual_compliance: solver.residual_compliance_m_n(),
+            mu: solver.inverse_mass(&striker),
+            pieces,
+            end_s: solution.end_s,
+            end: (solution.amplitude.clone(), solution.rate.clone(), solution.striker_velocity_m_s),
+        }
+    }
+
+    /// Time of the last event (s). Later times are answered by free motion.
+    pub fn duration_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact.
+    pub fn times(&self, until_s: f64, count: usize) -> Vec<f64> {
+        let mut times: Vec<f64> = (0..=count.max(1)).map(|i| until_s * i as f64 / count.max(1) as f64).collect();
+        for piece in &self.pieces {
+            if let Some(contact) = &piece.contact {
+                times.extend(BASIS.nodes.iter().map(|c| piece.start.time + c * contact.length));
+            }
+            times.push(piece.start.time);
+        }
+        times.retain(|t| (0.0..=until_s).contains(t));
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// Motion and force at `time_s` (s); times before 0 and not-a-number are answered as 0.
+    pub fn at(&self, time_s: f64) -> Sample {
+        let moment = self.moment(time_s);
+        let motion = &moment.motion;
+        let (displacement, velocity) = self.structure(motion);
+        let gap = motion.gap();
+        Sample {
+            time_s: motion.time,
+            structure_displacement_m: displacement,
+            structure_velocity_m_s: velocity,
+            striker_displacement_m: displacement - gap,
+            striker_velocity_m_s: velocity - motion.gap_rate(),
+            compression_m: gap - self.residual_compliance * moment.force,
+            force_n: moment.force,
+        }
+    }
+
+    /// Energy of each mode at `time_s` (J), in the order of `Structure::modes`.
+    pub fn modal_energies_j(&self, time_s: f64) -> Vec<f64> {
+        let motion = self.moment(time_s).motion;
+        let (amplitude, rate) = super::solve::modal_state(&self.modes, &self.place, &motion, &self.start);
+        self.energies(&amplitude, &rate)
+    }
+
+    /// Where the energy went until the last event. The dissipation is integrated from the motion, independently of
+    /// the balance: `residual_j` can fail to vanish.
+    pub fn energy_ledger(&self) -> EnergyLedger {
+        let kinetic = |speed: f64| if self.mu_striker() > 0.0 { 0.5 * speed * speed / self.mu_striker() } else { 0.0 };
+        let initial_j = kinetic(self.striker.speed_m_s)
+            + self.energies(&self.start.amplitude, &self.start.rate).iter().sum::<f64>();
+        let striker_j = kinetic(self.end.2);
+        let modes_j = self.energies(&self.end.0, &self.end.1);
+
+        let (mut modal_damping_j, mut contact_j, mut stored) = (self.spectators_loss(), 0.0, 0.0);
+        for (i, piece) in self.pieces.iter().enumerate() {
+            match &piece.contact {
+                None => {
+                    // a free mode loses what its exact motion loses
+                    let next = self.pieces.get(i + 1).map_or(&piece.start, |next| &next.start);
+                    modal_damping_j += self.elastic_energy(&piece.start) - self.elastic_energy(next);
+                }
+                Some(contact) => {
+                    let (damped, taken) = self.dissipation(piece, contact);
+                    modal_damping_j += damped;
+                    contact_j += taken;
+                    stored = 0.5 * self.residual_compliance * evaluate(&contact.force, 1.0).powi(2);
+                }
+            }
+            if piece.contact.is_none() {
+                stored = 0.0;
+            }
+        }
+        let residual_j = initial_j - striker_j - modes_j.iter().sum::<f64>() - modal_damping_j - contact_j - stored;
+        EnergyLedger { initial_j, striker_j, modes_j, modal_damping_j, contact_j, residual_j }
+    }
+
+    /// Energy lost to modal damping and taken up by the law over one step in contact, by fine quadrature.
+    fn dissipation(&self, piece: &Piece, contact: &ContactPiece) -> (f64, f64) {
+        let fastest = self.elastic.iter().map(|mode| mode.omega_rad_s).fold(0.0, f64::max);
+        let panels = (fastest * contact.length / 6.0).ceil().clamp(1.0, 1e4) as usize;
+        let (mut damped, mut taken) = (0.0, 0.0);
+        for panel in 0..panels {
+            for &(x, w) in &BASIS.fine {
+                let weight = w * contact.length / panels as f64;
+                let moment = self.within(piece, (panel as f64 + x) * contact.length / panels as f64);
+                let motion = &moment.motion;
+                for (mode, beta) in self.elastic.iter().zip(&motion.vibration.beta) {
+                    damped += weight * 2.0 * mode.damping_ratio * mode.omega_rad_s * (beta / mode.shape).powi(2);
+                }
+                let compression = motion.gap() - self.residual_compliance * moment.force;
+                let rate = motion.gap_rate() - self.residual_compliance * moment.force_rate;
+                taken += weight * self.law.force(&contact.branch, compression, rate).force_n * rate;
+            }
+        }
+        (damped, taken)
+    }
+
+    /// What the elastic modes that the contact does not excite lose until the end.
+    fn spectators_loss(&self) -> f64 {
+        let before = self.energies(&self.start.amplitude, &self.start.rate);
+        let after = self.energies(&self.end.0, &self.end.1);
+        let spectators = (0..self.modes.len()).filter(|&k| self.place[k].is_none() && !self.modes[k].is_rigid());
+        spectators.map(|k| before[k] - after[k]).sum()
+    }
+
+    fn mu_striker(&self) -> f64 {
+        self.striker.mass_kg.recip()
+    }
+
+    fn energies(&self, amplitude: &[f64], rate: &[f64]) -> Vec<f64> {
+        let energy = |(k, mode): (usize, &Mode)| 0.5 * (rate[k].powi(2) + (mode.omega_rad_s * amplitude[k]).powi(2));
+        self.modes.iter().enumerate().map(energy).collect()
+    }
+
+    fn elastic_energy(&self, motion: &Motion) -> f64 {
+        let state = &motion.vibration;
+        let energy = |(k, mode): (usize, &Mode)| {
+            0.5 * ((state.beta[k] / mode.shape).powi(2) + (mode.omega_rad_s * state.alpha[k] / mode.shape).powi(2))
+        };
+        self.elastic.iter().enumerate().map(energy).sum()
+    }
+
+    /// Displacement and velocity of the structure at the contact.
+    fn structure(&self, motion: &Motion) -> (f64, f64) {
+        let (amplitude, rate) = super::solve::modal_state(&self.modes, &self.place, motion, &self.start);
+        let sum = |values: &[f64]| self.modes.iter().zip(values).map(|(mode, a)| mode.shape * a).sum();
+        (sum(&amplitude), sum(&rate))
+    }
+
+    fn moment(&self, time_s: f64) -> Moment {
+        let time_s = if time_s > 0.0 { time_s } else { 0.0 };
+        let after = self.pieces.partition_point(|piece| piece.start.time <= time_s);
+        let piece = &self.pieces[after.saturating_sub(1)];
+        self.within(piece, time_s - piece.start.time)
+    }
+
+    /// The motion `t` seconds into a piece: free motion, plus the exact response to the force until then.
+    fn within(&self, piece: &Piece, t: f64) -> Moment {
+        let mut motion = piece.start.clone();
+        for (k, mode) in self.elastic.iter().enumerate() {
+            let (a, b) = (piece.start.vibration.alpha[k], piece.start.vibration.beta[k]);
+            let p = propagate(mode, t);
+            motion.vibration.alpha[k] = p.p11 * a + p.p12 * b;
+            motion.vibration.beta[k] = p.p21 * a + p.p22 * b;
+        }
+        let Some(contact) = &piece.contact else {
+            motion.coast(t);
+            return Moment { motion, force: 0.0, force_rate: 0.0 };
+        };
+        let t = t.min(contact.length);
+        let part = t / contact.length;
+        let nodal: Nodal = BASIS.nodes.map(|c| evaluate(&contact.force, part * c));
+        let force = BASIS.coefficients(&nodal);
+        for (k, mode) in self.elastic.iter().enumerate().filter(|_| t > 0.0) {
+            let (displacement, velocity) = response(mode, t);
+            motion.vibration.alpha[k] -= mode.shape.powi(2) * dot(&displacement, &force);
+            motion.vibration.beta[k] -= mode.shape.powi(2) * dot(&velocity, &force);
+        }
+        motion.advance_drift(t, &force, self.mu);
+        let value = evaluate(&contact.force, part);
+        // derivative of the polynomial: sum of (4 j + ...) lower polynomials, P_n' = sum over n-1, n-3, ..
+        let mut slope = [0.0; Q];
+        for n in 0..Q {
+            for m in (0..n).rev().step_by(2) {
+                slope[m] += 2.0 * (2 * m + 1) as f64 * contact.force[n];
+            }
+        }
+        Moment { motion, force: value, force_rate: evaluate(&slope, part) / contact.length }
+    }
+}

@@ -1,0 +1,216 @@
+//! Tables of the steps `h = 2^-j` s: everything about the structure that does not depend on the striker.
+//!
+//! The excited elastic modes are carried as `alpha_k = phi_k a_k`, so that the structure's displacement at the
+//! contact is their plain sum and `alpha_k'' + 2 zeta_k omega_k alpha_k' + omega_k^2 alpha_k = -phi_k^2 F`.
+
+use super::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR};
+use super::oscillator::{propagate, response};
+use super::problem::Mode;
+
+/// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of a second.
+pub(crate) const J_MIN: i32 = -120;
+pub(crate) const J_MAX: i32 = 200;
+
+/// Step length of a level (s).
+pub(crate) fn step_s(j: i32) -> f64 {
+    2f64.powi(-j)
+}
+
+/// The coarsest level whose step is not longer than `t` (s).
+pub(crate) fn level_within(t: f64) -> i32 {
+    if t >= step_s(J_MIN) {
+        return J_MIN;
+    }
+    if t <= step_s(J_MAX) {
+        return J_MAX;
+    }
+    let mut j = (-t.log2()).ceil() as i32;
+    if step_s(j) > t {
+        j += 1;
+    }
+    j
+}
+
+/// Excited elastic modes: displacement and velocity at the contact, one entry a mode.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Vibration {
+    pub alpha: Vec<f64>,
+    pub beta: Vec<f64>,
+}
+
+/// Free motion over one step of the ladder.
+struct Rotation {
+    p11: Vec<f64>,
+    p12: Vec<f64>,
+    p21: Vec<f64>,
+    p22: Vec<f64>,
+}
+
+/// What a step in contact needs beyond the rotation.
+struct Forcing {
+    /// Free displacement at the nodes, per mode: from `alpha`, from `beta`.
+    at_nodes: Vec<(Nodal, Nodal)>,
+    /// Response at the nodes, summed over the modes, to nodal forces.
+    compliance: Matrix,
+    /// Response of each mode at the end of the step, `[n][k]` for Legendre force `n`.
+    displacement: [Vec<f64>; Q],
+    velocity: [Vec<f64>; Q],
+}
+
+#[derive(Default)]
+struct Level {
+    rotation: Option<Box<Rotation>>,
+    forcing: Option<Box<Forcing>>,
+}
+
+/// The excited elastic modes of one structure with their tables, filled as levels are first used.
+pub(crate) struct Ladder {
+    /// The modes, by rising frequency.
+    pub modes: Vec<Mode>,
+    /// `phi_k^2` (1/kg).
+    pub weight: Vec<f64>,
+    /// Derivatives at zero of the impulse response at the contact, `sum_k phi_k^2 k_k^(p)(0)`.
+    pub kernel: [f64; TAYLOR],
+    /// No motion is faster than this (rad/s).
+    pub fastest_rad_s: f64,
+    levels: Vec<Level>,
+}
+
+impl Ladder {
+    pub fn new(mut modes: Vec<Mode>) -> Ladder {
+        modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
+        let weight: Vec<f64> = modes.iter().map(|mode| mode.shape * mode.shape).collect();
+        let mut kernel = [0.0; TAYLOR];
+        let mut fastest_rad_s: f64 = 0.0;
+        for (mode, w) in modes.iter().zip(&weight) {
+            let (square, drag) = (mode.omega_rad_s * mode.omega_rad_s, 2.0 * mode.damping_ratio * mode.omega_rad_s);
+            fastest_rad_s = fastest_rad_s.max(mode.omega_rad_s + drag);
+            let (mut here, mut next) = (0.0, *w);
+            for value in kernel.iter_mut() {
+                *value += here;
+                (here, next) = (next, -drag * next - square * here);
+            }
+        }
+        let levels = std::iter::repeat_with(Level::default).take((J_MAX - J_MIN + 1) as usize).collect();
+        Ladder { modes, weight, kernel, fastest_rad_s, levels }
+    }
+
+    /// Free motion over one step of level `j`.
+    pub fn rotate(&mut self, j: i32, state: &mut Vibration) {
+        let rotation = rotation(&mut self.levels[(j - J_MIN) as usize], &self.modes, j);
+        rotation.apply(state);
+    }
+
+    /// Free displacement at the nodes of a step of level `j`, and the compliance there to nodal forces.
+    pub fn at_nodes(&mut self, j: i32, state: &Vibration) -> (Nodal, &Matrix) {
+        let forcing = forcing(&mut self.levels[(j - J_MIN) as usize], &self.modes, &self.weight, j);
+        let mut free = [0.0; Q];
+        for ((from_alpha, from_beta), (&alpha, &beta)) in
+            forcing.at_nodes.iter().zip(state.alpha.iter().zip(&state.beta))
+        {
+            for i in 0..Q {
+                free[i] += from_alpha[i] * alpha + from_beta[i] * beta;
+            }
+        }
+        (free, &forcing.compliance)
+    }
+
+    /// Motion over one step of level `j` under a force with these Legendre coefficients.
+    pub fn advance(&mut self, j: i32, state: &mut Vibration, force: &Nodal) {
+        let level = &mut self.levels[(j - J_MIN) as usize];
+        rotation(level, &self.modes, j).apply(state);
+        let forcing = forcing(level, &self.modes, &self.weight, j);
+        accumulate(&mut state.alpha, &forcing.displacement, force);
+        accumulate(&mut state.beta, &forcing.velocity, force);
+    }
+}
+
+/// `state[k] += sum_n table[n][k] force[n]`.
+fn accumulate(state: &mut [f64], table: &[Vec<f64>; Q], force: &Nodal) {
+    let [t0, t1, t2, t3, t4, t5, t6] = table.each_ref().map(|row| &row[..state.len()]);
+    for k in 0..state.len() {
+        state[k] += t0[k] * force[0]
+            + t1[k] * force[1]
+            + t2[k] * force[2]
+            + t3[k] * force[3]
+            + t4[k] * force[4]
+            + t5[k] * force[5]
+            + t6[k] * force[6];
+    }
+}
+
+fn rotation<'a>(level: &'a mut Level, modes: &[Mode], j: i32) -> &'a Rotation {
+    level.rotation.get_or_insert_with(|| Box::new(Rotation::new(modes, step_s(j))))
+}
+
+fn forcing<'a>(level: &'a mut Level, modes: &[Mode], weight: &[f64], j: i32) -> &'a Forcing {
+    level.forcing.get_or_insert_with(|| Box::new(Forcing::new(modes, weight, step_s(j))))
+}
+
+impl Rotation {
+    fn new(modes: &[Mode], h: f64) -> Rotation {
+        let (mut p11, mut p12, mut p21, mut p22) = (vec![], vec![], vec![], vec![]);
+        for mode in modes {
+            let p = propagate(mode, h);
+            p11.push(p.p11);
+            p12.push(p.p12);
+            p21.push(p.p21);
+            p22.push(p.p22);
+        }
+        Rotation { p11, p12, p21, p22 }
+    }
+
+    fn apply(&self, state: &mut Vibration) {
+        let n = self.p11.len();
+        let (p11, p12, p21, p22) = (&self.p11[..n], &self.p12[..n], &self.p21[..n], &self.p22[..n]);
+        let (alpha, beta) = (&mut state.alpha[..n], &mut state.beta[..n]);
+        for k in 0..n {
+            let (a, b) = (alpha[k], beta[k]);
+            alpha[k] = p11[k] * a + p12[k] * b;
+            beta[k] = p21[k] * a + p22[k] * b;
+        }
+    }
+}
+
+impl Forcing {
+    fn new(modes: &[Mode], weight: &[f64], h: f64) -> Forcing {
+        let basis = &*BASIS;
+        let n = modes.len();
+        let mut at_nodes = Vec::with_capacity(n);
+        let mut legendre_compliance = [[0.0; Q]; Q];
+        let mut displacement = [const { Vec::new() }; Q];
+        let mut velocity = [const { Vec::new() }; Q];
+        for table in displacement.iter_mut().chain(velocity.iter_mut()) {
+            table.reserve_exact(n);
+        }
+        for (mode, w) in modes.iter().zip(weight) {
+            let (whole_displacement, whole_velocity) = response(mode, h);
+            for m in 0..Q {
+                displacement[m].push(-w * whole_displacement[m]);
+                velocity[m].push(-w * whole_velocity[m]);
+            }
+            let (mut from_alpha, mut from_beta) = ([0.0; Q], [0.0; Q]);
+            for i in 0..Q {
+                let part = basis.nodes[i] * h;
+                let p = propagate(mode, part);
+                (from_alpha[i], from_beta[i]) = (p.p11, p.p12);
+                let (to_node, _) = response(mode, part);
+                for l in 0..Q {
+                    for m in 0..=l {
+                        legendre_compliance[i][l] -= w * basis.restricted[i][l][m] * to_node[m];
+                    }
+                }
+            }
+            at_nodes.push((from_alpha, from_beta));
+        }
+        let mut compliance = [[0.0; Q]; Q];
+        for i in 0..Q {
+            for l in 0..Q {
+                for m in 0..Q {
+                    compliance[i][m] += legendre_compliance[i][l] * basis.to_coefficients[l][m];
+                }
+            }
+        }
+        Forcing { at_nodes, compliance, displacement, velocity }
+    }
+}

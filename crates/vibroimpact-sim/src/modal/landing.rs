@@ -1,0 +1,195 @@
+//! The short last step of a branch, whose length is unknown: it ends where the branch meets its boundary.
+//!
+//! It is shorter than the period of every mode, so free motion and impulse responses are Taylor series, whose terms
+//! at the contact are the same few numbers whatever the length tried.
+
+use super::ladder::{Ladder, Vibration};
+use super::legendre::{BASIS, Nodal, Q, TAYLOR, dot, evaluate};
+use super::solution::Counts;
+use super::step::{Collocated, Given, collocate};
+use contact_models::{Branch, ContactLaw};
+
+/// The series is used while the fastest motion turns by at most this many radians.
+pub(crate) const REACH: f64 = 0.7;
+
+/// The state at the start of a landing.
+pub(crate) struct Approach<'a, L> {
+    pub law: &'a L,
+    pub branch: &'a Branch,
+    /// Which of the branch's boundaries is met.
+    pub which: usize,
+    pub needs_rate: bool,
+    /// Compression at the start (m), and the gap's derivatives in free motion, `g^(p)/p!`.
+    pub start_compression: f64,
+    pub gap: [f64; TAYLOR],
+    /// Derivatives of the impulse response at the contact, striker included.
+    pub kernel: [f64; TAYLOR],
+    pub residual_compliance: f64,
+}
+
+/// A landing found.
+pub(crate) struct Landed {
+    pub length: f64,
+    pub step: Collocated,
+    /// Legendre coefficients of the force.
+    pub force: Nodal,
+    /// Compression and rate on arrival.
+    pub compression: f64,
+    pub rate: f64,
+}
+
+impl<L: ContactLaw> Approach<'_, L> {
+    /// The step of this length: its force, its end, and the margin of the boundary there.
+    fn attempt(&self, length: f64, guess: Nodal, counts: &mut Counts) -> Option<(Landed, f64)> {
+        let basis = &*BASIS;
+        let mut response = [[0.0; Q]; Q];
+        let (mut end_response, mut end_rate_response) = ([0.0; Q], [0.0; Q]);
+        let mut power = length;
+        for p in 0..TAYLOR {
+            let kernel = self.kernel[p] * power;
+            if kernel != 0.0 {
+                for i in 0..Q {
+                    for j in 0..Q {
+                        response[i][j] -= kernel * basis.power[p][i][j];
+                    }
+                    end_response[i] -= kernel * basis.power_end[p][i];
+                }
+            }
+            if p > 0 {
+                let kernel = self.kernel[p] * power / length;
+                for i in 0..Q {
+                    end_rate_response[i] -= kernel * basis.power_end[p - 1][i];
+                }
+            }
+            power *= length;
+        }
+        let free = basis.nodes.map(|c| self.free(c * length).0);
+        let given = Given {
+            h: length,
+            start_compression: self.start_compression,
+            free,
+            response: &response,
+            residual_compliance: self.residual_compliance,
+        };
+        let step = collocate(self.law, self.branch, &given, self.needs_rate, guess, counts)?;
+        let force = basis.coefficients(&step.force);
+        let (free_gap, free_rate) = self.free(length);
+        let (gap, gap_rate) =
+            (free_gap + dot(&end_response, &step.force), free_rate + dot(&end_rate_response, &step.force));
+        let (compression, rate) = if self.residual_compliance == 0.0 {
+            (gap, gap_rate)
+        } else {
+            let slope = basis.end_slope_from_start * self.start_compression
+                + dot(&basis.end_slope_from_nodes, &step.compression);
+            (gap - self.residual_compliance * evaluate(&force, 1.0), slope / length)
+        };
+        let margin = self.law.boundaries(self.branch)[self.which].margin(compression, rate);
+        Some((Landed { length, step, force, compression, rate }, margin))
+    }
+
+    /// Gap and its rate after `t` of free motion.
+    fn free(&self, t: f64) -> (f64, f64) {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for p in (0..TAYLOR).rev() {
+            slope = slope * t + value;
+            value = value * t + self.gap[p];
+        }
+        (value, slope)
+    }
+
+    /// Searches `(0, longest]` for the length at which the boundary is met, starting near `expected`; `None` if the
+    /// branch does not end there.
+    pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
+        let start = self.free(0.0);
+        let initial = self.law.boundaries(self.branch)[self.which].margin(self.start_compression, start.1).max(0.0);
+        let (mut low, mut low_margin) = (0.0, initial);
+        let mut high = (1.2 * expected).min(longest);
+        let mut guess = [0.0; Q];
+        let (mut best, mut high_margin) = loop {
+            let (landed, margin) = self.attempt(high, guess, counts)?;
+            guess = landed.step.force;
+            if margin <= 0.0 {
+                break (landed, margin);
+            }
+            if high >= longest {
+                return None;
+            }
+            (low, low_margin) = (high, margin);
+            high = (2.0 * high).min(longest);
+        };
+        // Illinois: regula falsi whose stagnant end is halved
+        let mut side = 0;
+        for _ in 0..100 {
+            if high - low <= 4.0 * f64::EPSILON * high || high_margin == 0.0 {
+                break;
+            }
+            let guess_length = (low * high_margin - high * low_margin) / (high_margin - low_margin);
+            let middle = if guess_length > low && guess_length < high { guess_length } else { 0.5 * (low + high) };
+            if middle <= low || middle >= high {
+                break;
+            }
+            let (landed, margin) = self.attempt(middle, best.step.force, counts)?;
+            let moved = (best.length - middle).abs();
+            best = landed;
+            if margin <= 0.0 {
+                if side == -1 {
+                    low_margin *= 0.5;
+                }
+                (high, high_margin, side) = (middle, margin, -1);
+            } else {
+                if side == 1 {
+                    high_margin *= 0.5;
+                }
+                (low, low_margin, side) = (middle, margin, 1);
+            }
+            if moved <= 1e-14 * high {
+                break;
+            }
+        }
+        Some(best)
+    }
+}
+
+/// `g^(p)/p!` of the structure's free motion at the contact.
+pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration) -> [f64; TAYLOR] {
+    let mut here = state.alpha.clone();
+    let mut next = state.beta.clone();
+    let mut series = [0.0; TAYLOR];
+    let mut factorial = 1.0;
+    for (p, value) in series.iter_mut().enumerate() {
+        if p > 1 {
+            factorial *= p as f64;
+        }
+        *value = here.iter().sum::<f64>() / factorial;
+        for ((mode, a), b) in ladder.modes.iter().zip(&mut here).zip(&mut next) {
+            let after = -mode.omega_rad_s * (2.0 * mode.damping_ratio * *b + mode.omega_rad_s * *a);
+            (*a, *b) = (*b, after);
+        }
+    }
+    series
+}
+
+/// Advances the modes over a landing of this length under these nodal forces.
+pub(crate) fn advance(ladder: &Ladder, state: &mut Vibration, length: f64, force: &Nodal) {
+    // free motion and impulse response both follow the derivatives of the mode's own equation
+    let (mut moments, mut powers) = ([0.0; TAYLOR], [0.0; TAYLOR]);
+    let (mut undivided, mut divided) = (length, 1.0);
+    for p in 0..TAYLOR {
+        (moments[p], powers[p]) = (undivided * dot(&BASIS.power_end[p], force), divided);
+        undivided *= length;
+        divided *= length / (p + 1) as f64;
+    }
+    for (k, mode) in ladder.modes.iter().enumerate() {
+        let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s * mode.omega_rad_s);
+        let (mut free, mut free_next) = (state.alpha[k], state.beta[k]);
+        let (mut forced, mut forced_next) = (0.0, -ladder.weight[k]);
+        let (mut alpha, mut beta) = (0.0, 0.0);
+        for p in 0..TAYLOR {
+            alpha += free * powers[p] + forced * moments[p];
+            beta += free_next * powers[p] + forced_next * moments[p];
+            (free, free_next) = (free_next, -drag * free_next - square * free);
+            (forced, forced_next) = (forced_next, -drag * forced_next - square * forced);
+        }
+        (state.alpha[k], state.beta[k]) = (alpha, beta);
+    }
+}

@@ -1,0 +1,214 @@
+//! The step's polynomial basis: Legendre polynomials on [0, 1] and their Gauss nodes.
+
+use gauss_quad::legendre::GaussLegendre;
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+
+/// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
+pub(crate) const Q: usize = 7;
+/// Powers of time kept in a Taylor series over a landing step.
+pub(crate) const TAYLOR: usize = 14;
+/// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
+const FINE: usize = 20;
+
+pub(crate) type Nodal = [f64; Q];
+pub(crate) type Matrix = [[f64; Q]; Q];
+
+/// Constant matrices of the basis, computed once.
+pub(crate) struct Basis {
+    /// Gauss nodes on (0, 1).
+    pub nodes: Nodal,
+    /// `to_coefficients[n][j]`: nodal values to Legendre coefficients.
+    pub to_coefficients: Matrix,
+    /// `restricted[i][n][m]`: `P_n` on [0, 1], seen on [0, c_i], in Legendre polynomials of that part.
+    pub restricted: [Matrix; Q],
+    /// `power[p][i][j]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
+    pub power: Vec<Matrix>,
+    /// `power_end[p][j]`: the same over [0, 1].
+    pub power_end: Vec<Nodal>,
+    /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
+    pub slope_from_start: Nodal,
+    pub slope_from_nodes: Matrix,
+    /// Derivative at the end of that polynomial.
+    pub end_slope_from_start: f64,
+    pub end_slope_from_nodes: Nodal,
+    /// The finer rule on (0, 1): node and weight.
+    pub fine: Vec<(f64, f64)>,
+}
+
+/// The basis, built at first use.
+pub(crate) static BASIS: LazyLock<Basis> = LazyLock::new(Basis::new);
+
+/// `P_0 .. P_{Q-1}` of `2 s - 1`.
+pub(crate) fn legendre(s: f64) -> Nodal {
+    let x = 2.0 * s - 1.0;
+    let mut p = [1.0; Q];
+    p[1] = x;
+    for n in 1..Q - 1 {
+        let m = n as f64;
+        p[n + 1] = ((2.0 * m + 1.0) * x * p[n] - m * p[n - 1]) / (m + 1.0);
+    }
+    p
+}
+
+/// The polynomial with these Legendre coefficients at `s`.
+pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
+    dot(coefficients, &legendre(s))
+}
+
+/// Inner product of two short vectors.
+pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..Q {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// A Gauss-Legendre rule on (0, 1).
+fn rule(n: NonZeroUsize) -> Vec<(f64, f64)> {
+    let mut rule: Vec<(f64, f64)> = GaussLegendre::new(n).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
+    rule.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rule
+}
+
+impl Basis {
+    fn new() -> Basis {
+        let gauss = rule(const { NonZeroUsize::new(Q).unwrap() });
+        let fine = rule(const { NonZeroUsize::new(FINE).unwrap() });
+        let mut nodes = [0.0; Q];
+        let mut to_coefficients = [[0.0; Q]; Q];
+        for (j, &(x, w)) in gauss.iter().enumerate() {
+            nodes[j] = x;
+            for (n, value) in legendre(x).into_iter().enumerate() {
+                to_coefficients[n][j] = (2 * n + 1) as f64 * w * value;
+            }
+        }
+
+        let mut restricted = [[[0.0; Q]; Q]; Q];
+        for i in 0..Q {
+            for &(x, w) in &gauss {
+                let (part, whole) = (legendre(x), legendre(nodes[i] * x));
+                for n in 0..Q {
+                    for m in 0..Q {
+                        restricted[i][n][m] += (2 * m + 1) as f64 * w * part[m] * whole[n];
+                    }
+                }
+            }
+        }
+
+        // nodal polynomial j at s is sum_n to_coefficients[n][j] P_n(s)
+        let nodal = |s: f64| {
+            let p = legendre(s);
+            let mut values = [0.0; Q];
+            for j in 0..Q {
+                for n in 0..Q {
+                    values[j] += to_coefficients[n][j] * p[n];
+                }
+            }
+            values
+        };
+        let moments = |end: f64| {
+            let mut table = vec![[0.0; Q]; TAYLOR];
+            for &(x, w) in &fine {
+                let values = nodal(end * x);
+                let mut kernel = w * end;
+                for (p, row) in table.iter_mut().enumerate() {
+                    if p > 0 {
+                        kernel *= end * (1.0 - x) / p as f64;
+                    }
+                    for j in 0..Q {
+                        row[j] += kernel * values[j];
+                    }
+                }
+            }
+            table
+        };
+        let mut power = vec![[[0.0; Q]; Q]; TAYLOR];
+        for i in 0..Q {
+            for (p, row) in moments(nodes[i]).into_iter().enumerate() {
+                power[p][i] = row;
+            }
+        }
+        let power_end = moments(1.0);
+
+        let slopes = |at: f64| derivative_weights(&nodes, at);
+        let mut slope_from_start = [0.0; Q];
+        let mut slope_from_nodes = [[0.0; Q]; Q];
+        for i in 0..Q {
+            (slope_from_start[i], slope_from_nodes[i]) = slopes(nodes[i]);
+        }
+        let (end_slope_from_start, end_slope_from_nodes) = slopes(1.0);
+        Basis {
+            nodes,
+            to_coefficients,
+            restricted,
+            power,
+            power_end,
+            slope_from_start,
+            slope_from_nodes,
+            end_slope_from_start,
+            end_slope_from_nodes,
+            fine,
+        }
+    }
+
+    /// Legendre coefficients of the polynomial with these nodal values.
+    pub fn coefficients(&self, nodal: &Nodal) -> Nodal {
+        let mut coefficients = [0.0; Q];
+        for n in 0..Q {
+            coefficients[n] = dot(&self.to_coefficients[n], nodal);
+        }
+        coefficients
+    }
+}
+
+/// Weights of the derivative at `at` of the polynomial through 0 and the nodes.
+fn derivative_weights(nodes: &Nodal, at: f64) -> (f64, Nodal) {
+    let mut points = vec![0.0];
+    points.extend_from_slice(nodes);
+    let weight = |j: usize| {
+        // derivative of the Lagrange polynomial j: sum over the factor that is differentiated
+        let mut sum = 0.0;
+        for m in (0..points.len()).filter(|&m| m != j) {
+            let mut product = 1.0 / (points[j] - points[m]);
+            for l in (0..points.len()).filter(|&l| l != j && l != m) {
+                product *= (at - points[l]) / (points[j] - points[l]);
+            }
+            sum += product;
+        }
+        sum
+    };
+    let mut weights = [0.0; Q];
+    for (i, w) in weights.iter_mut().enumerate() {
+        *w = weight(i + 1);
+    }
+    (weight(0), weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_constant_matrices_are_exact_on_polynomials() {
+        let basis = &*BASIS;
+        // f(s) = s^3: coefficients reproduce it, slopes differentiate it, powers integrate it
+        let cube: Nodal = basis.nodes.map(|c| c.powi(3));
+        assert!((evaluate(&basis.coefficients(&cube), 0.37) - 0.37f64.powi(3)).abs() < 1e-14);
+        for i in 0..Q {
+            let slope = dot(&basis.slope_from_nodes[i], &cube);
+            assert!((slope - 3.0 * basis.nodes[i].powi(2)).abs() < 1e-11);
+            // int_0^c (c-s)^2/2 s^3 ds = c^6/120
+            let integral = dot(&basis.power[2][i], &cube);
+            assert!((integral - basis.nodes[i].powi(6) / 120.0).abs() < 1e-15);
+            // P_3 on [0, c_i] in polynomials of the part
+            let (at, mut sum) = (0.3, 0.0);
+            for (m, p) in legendre(at).into_iter().enumerate() {
+                sum += basis.restricted[i][3][m] * p;
+            }
+            assert!((sum - legendre(at * basis.nodes[i])[3]).abs() < 1e-13);
+        }
+        assert!((dot(&basis.end_slope_from_nodes, &cube) - 3.0).abs() < 1e-10);
+    }
+}

@@ -1,0 +1,187 @@
+//! One mode on its own: exact free motion and exact response to a polynomial force, at any step.
+
+use super::legendre::{BASIS, Nodal, Q, legendre};
+use super::problem::Mode;
+use num_complex::Complex64;
+
+/// Free motion over a time: `(a, a')` at the end are `p11 a + p12 a'` and `p21 a + p22 a'`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Propagator {
+    pub p11: f64,
+    pub p12: f64,
+    pub p21: f64,
+    pub p22: f64,
+}
+
+/// Damping ratios in this band have nearly equal roots: the response is integrated by quadrature.
+const NEARLY_CRITICAL: f64 = 0.99;
+
+/// Exact free motion of `a'' + 2 zeta omega a' + omega^2 a = 0` over `t` (s).
+pub(crate) fn propagate(mode: &Mode, t: f64) -> Propagator {
+    let (omega, zeta) = (mode.omega_rad_s, mode.damping_ratio);
+    let sigma = zeta * omega;
+    // `cosine` and `sine / omega_d`, both times exp(-sigma t)
+    let (cosine, sine) = if zeta < 1.0 {
+        let omega_d = omega * ((1.0 - zeta) * (1.0 + zeta)).sqrt();
+        let decay = (-sigma * t).exp();
+        let (s, c) = (omega_d * t).sin_cos();
+        (decay * c, decay * if omega_d * t < 1e-8 { t } else { s / omega_d })
+    } else {
+        let split = omega * ((zeta - 1.0) * (zeta + 1.0)).sqrt();
+        let slow = if omega == 0.0 { 0.0 } else { omega * omega / (sigma + split) };
+        let decay = (-slow * t).exp();
+        let fast = (-2.0 * split * t).exp();
+        let sine = if split * t < 1e-8 { t } else { -(-2.0 * split * t).exp_m1() / (2.0 * split) };
+        (decay * 0.5 * (1.0 + fast), decay * sine)
+    };
+    Propagator { p11: cosine + sigma * sine, p12: sine, p21: -omega * omega * sine, p22: cosine - sigma * sine }
+}
+
+/// Response of a mode starting at rest to unit Legendre forces on a step of length `h`:
+/// displacement and velocity at its end, one of each a polynomial.
+pub(crate) fn response(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+    if mode.damping_ratio >= NEARLY_CRITICAL {
+        return response_by_quadrature(mode, h);
+    }
+    let sigma = mode.damping_ratio * mode.omega_rad_s;
+    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
+    let lambda = Complex64::new(-sigma, omega_d);
+    let moments = exponential_moments(lambda * h);
+    (moments.map(|e| h * e.im / omega_d), moments.map(|e| h * (lambda * e).im / omega_d))
+}
+
+/// As [`response`], for any damping, on panels that grow away from the end of the step.
+fn response_by_quadrature(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+    let (mut displacement, mut velocity) = ([0.0; Q], [0.0; Q]);
+    let fastest = mode.omega_rad_s * 2.0 * mode.damping_ratio;
+    let mut from = 0.0;
+    let mut to = (2.0 / (fastest * h)).min(1.0);
+    while from < 1.0 {
+        for &(x, w) in &BASIS.fine {
+            let u = from + (to - from) * x;
+            let kernel = propagate(mode, u * h);
+            let weight = w * (to - from) * h;
+            for (n, p) in legendre(1.0 - u).into_iter().enumerate() {
+                displacement[n] += weight * kernel.p12 * p;
+                velocity[n] += weight * kernel.p22 * p;
+            }
+        }
+        from = to;
+        to = (2.0 * to).min(1.0);
+    }
+    (displacement, velocity)
+}
+
+/// `int_0^1 P_n(2s-1) e^{z(1-s)} ds` for `n < Q`: `(-1)^n e^w i_n(w)` with `w = z/2` and `i_n` the modified
+/// spherical Bessel function. Power series for small `w`, downward recurrence (Miller) up to `|w| = Q`, upward
+/// beyond, where it is stable. Needs `Re z <= 0`.
+fn exponential_moments(z: Complex64) -> [Complex64; Q] {
+    let w = 0.5 * z;
+    let size = w.norm();
+    let mut moments = [Complex64::ZERO; Q];
+    if size < 0.7 {
+        let (scale, square) = (w.exp(), w * w * 0.5);
+        let mut power = scale;
+        for n in 0..Q {
+            let (mut term, mut sum) = (Complex64::ONE, Complex64::ONE);
+            for k in 1..9 {
+                term *= square / (k * (2 * n + 2 * k + 1)) as f64;
+                sum += term;
+            }
+            moments[n] = power * sum;
+            power *= w / (2 * n + 3) as f64;
+        }
+    } else {
+        let end = z.exp();
+        let inverse = w.inv();
+        let first = 0.5 * (end - 1.0) * inverse;
+        let second = (0.5 * (end + 1.0) - first) * inverse;
+        if size > Q as f64 {
+            (moments[0], moments[1]) = (first, second);
+            for n in 1..Q - 1 {
+                moments[n + 1] = moments[n - 1] - (2 * n + 1) as f64 * inverse * moments[n];
+            }
+        } else {
+            let top = Q + 14 + size as usize;
+            let (mut above, mut here) = (Complex64::ZERO, Complex64::new(1e-100, 0.0));
+            for n in (1..=top).rev() {
+                let below = above + (2 * n + 1) as f64 * inverse * here;
+                (above, here) = (here, below);
+                if n <= Q {
+                    moments[n - 1] = here;
+                }
+            }
+            // fix the scale by whichever of the two known functions is not near a zero
+            let scale = if first.norm() > second.norm() { first / moments[0] } else { second / moments[1] };
+            moments = moments.map(|e| e * scale);
+        }
+    }
+    for n in (1..Q).step_by(2) {
+        moments[n] = -moments[n];
+    }
+    moments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mode(omega_rad_s: f64, damping_ratio: f64) -> Mode {
+        Mode { omega_rad_s, damping_ratio, shape: 1.0 }
+    }
+
+    /// Fixed fine composite Gauss quadrature of the defining integral.
+    fn reference(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+        let (mut a, mut v) = ([0.0; Q], [0.0; Q]);
+        let panels = 400;
+        for i in 0..panels {
+            for &(x, w) in &BASIS.fine {
+                let s = (i as f64 + x) / panels as f64;
+                let kernel = propagate(mode, (1.0 - s) * h);
+                for (n, p) in legendre(s).into_iter().enumerate() {
+                    a[n] += w * h / panels as f64 * kernel.p12 * p;
+                    v[n] += w * h / panels as f64 * kernel.p22 * p;
+                }
+            }
+        }
+        (a, v)
+    }
+
+    #[test]
+    fn responses_equal_their_integrals_for_all_frequencies_and_dampings() {
+        for omega in [1e-3, 0.3, 1.3, 1.5, 2.9, 6.2, 12.0, 13.9, 14.1, 40.0, 300.0] {
+            for zeta in [0.0, 0.02, 0.5, 0.98, 0.995, 1.0, 1.3, 20.0] {
+                let (mode, h) = (mode(omega, zeta), 1.0);
+                let ((a, v), (ra, rv)) = (response(&mode, h), reference(&mode, h));
+                for n in 0..Q {
+                    let floor = 1e-14 / omega.max(1.0);
+                    assert!(
+                        (a[n] - ra[n]).abs() < 2e-13 * ra[n].abs() + floor,
+                        "{omega} {zeta} {n}: {} {}",
+                        a[n],
+                        ra[n]
+                    );
+                    assert!(
+                        (v[n] - rv[n]).abs() < 2e-13 * rv[n].abs() + 1e-13,
+                        "{omega} {zeta} {n}: {} {}",
+                        v[n],
+                        rv[n]
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn free_motion_composes_and_solves_the_equation() {
+        for zeta in [0.0, 0.02, 0.999, 1.0, 1.001, 7.0] {
+            let mode = mode(3.0, zeta);
+            let (whole, half) = (propagate(&mode, 0.8), propagate(&mode, 0.4));
+            assert!((whole.p11 - (half.p11 * half.p11 + half.p12 * half.p21)).abs() < 1e-14);
+            assert!((whole.p22 - (half.p21 * half.p12 + half.p22 * half.p22)).abs() < 1e-13);
+            let d = 1e-4;
+            let (before, after) = (propagate(&mode, 0.4 - d), propagate(&mode, 0.4 + d));
+            assert!(((after.p11 - before.p11) / (2.0 * d) - half.p21).abs() < 1e-6);
+        }
+    }
+}

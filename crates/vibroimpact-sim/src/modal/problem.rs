@@ -1,0 +1,165 @@
+//! The problem as the field poses it: a structure in modes, a striker, how both start.
+
+use crate::InvalidInput;
+
+/// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
+const OMEGA_MAX_RAD_S: f64 = 1e15;
+/// Bounds on masses, speeds and shapes: wide enough for any unit system, narrow enough that no product overflows.
+const SCALE_MIN: f64 = 1e-30;
+const SCALE_MAX: f64 = 1e30;
+/// A mode that moves less than this (kg^-1/2) at the contact is not excited by it.
+const SHAPE_FLOOR: f64 = 1e-30;
+
+/// One mode of the structure, as seen from the point of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
+    pub omega_rad_s: f64,
+    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`.
+    pub damping_ratio: f64,
+    /// Mass-normalised shape at the contact, `phi_k(b)` (kg^-1/2).
+    pub shape: f64,
+}
+
+impl Mode {
+    /// Whether the mode is a rigid-body motion.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.omega_rad_s == 0.0
+    }
+
+    /// Whether a force at the contact moves the mode at all.
+    pub(crate) fn is_excited(&self) -> bool {
+        self.shape.abs() > SHAPE_FLOOR
+    }
+}
+
+/// A linear structure: its modes, and what the modes left out would add to its static compliance.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Structure {
+    /// The modes kept, in any order. None at all is a rigid, immovable structure.
+    pub modes: Vec<Mode>,
+    /// Static compliance at the contact of the modes left out (m/N), in series with the contact:
+    /// `G(b,b) - sum phi_k^2/omega_k^2`. Zero is plain truncation.
+    pub residual_compliance_m_n: f64,
+}
+
+impl Structure {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        for (k, mode) in self.modes.iter().enumerate() {
+            InvalidInput::unless(
+                (0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s),
+                format!("modes[{k}].omega_rad_s"),
+                mode.omega_rad_s,
+                "0 (rigid body) up to 1e15 rad/s",
+            )?;
+            InvalidInput::unless(
+                (0.0..=1e6).contains(&mode.damping_ratio),
+                format!("modes[{k}].damping_ratio"),
+                mode.damping_ratio,
+                "0 up to 1e6",
+            )?;
+            InvalidInput::unless(
+                mode.shape.abs() <= SCALE_MAX,
+                format!("modes[{k}].shape"),
+                mode.shape,
+                "a finite number, at most 1e30 in size",
+            )?;
+        }
+        let c = self.residual_compliance_m_n;
+        InvalidInput::unless(
+            (0.0..=SCALE_MAX).contains(&c),
+            "residual_compliance_m_n",
+            c,
+            "0 (plain truncation) or a positive finite number",
+        )
+    }
+}
+
+/// The compact body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Striker {
+    /// Mass (kg); `f64::INFINITY` makes it an immovable stop.
+    pub mass_kg: f64,
+    /// Speed towards the structure (m/s); negative when it moves away.
+    pub speed_m_s: f64,
+}
+
+impl Striker {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        let mass = self.mass_kg;
+        InvalidInput::unless(
+            (SCALE_MIN..=SCALE_MAX).contains(&mass) || mass == f64::INFINITY,
+            "mass_kg",
+            mass,
+            "a positive number from 1e-30 to 1e30, or infinity for an immovable stop",
+        )?;
+        InvalidInput::unless(
+            self.speed_m_s.abs() <= SCALE_MAX,
+            "speed_m_s",
+            self.speed_m_s,
+            "a finite number, at most 1e30 in size",
+        )
+    }
+}
+
+/// How the structure moves when the clock starts, and how far away the striker then is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// Modal amplitudes `a_k` (m kg^1/2), one a mode.
+    pub amplitude: Vec<f64>,
+    /// Their rates (m kg^1/2 / s), one a mode.
+    pub rate: Vec<f64>,
+    /// Distance from the striker to the structure's deflected surface (m); 0 is touching.
+    pub gap_m: f64,
+}
+
+impl Start {
+    /// A structure of `modes` modes at rest, touched by the striker.
+    pub fn at_rest(modes: usize) -> Start {
+        Start { amplitude: vec![0.0; modes], rate: vec![0.0; modes], gap_m: 0.0 }
+    }
+
+    pub(crate) fn check(&self, modes: usize) -> Result<(), InvalidInput> {
+        for (field, values) in [("amplitude", &self.amplitude), ("rate", &self.rate)] {
+            InvalidInput::unless(values.len() == modes, field, format!("{} values", values.len()), "one value a mode")?;
+            for (k, value) in values.iter().enumerate() {
+                let ok = value.abs() <= SCALE_MAX;
+                InvalidInput::unless(ok, format!("{field}[{k}]"), value, "a finite number, at most 1e30 in size")?;
+            }
+        }
+        InvalidInput::unless(
+            (0.0..=SCALE_MAX).contains(&self.gap_m),
+            "gap_m",
+            self.gap_m,
+            "0 (touching) or a positive finite number",
+        )
+    }
+}
+
+/// How accurately, and how far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Accuracy aimed at, relative to the striker's momentum, a contact: 1e-13 to 0.1. Default 1e-9.
+    /// An impact that amplifies errors ends with fewer digits; `Solution::restitution_uncertainty` tells.
+    pub tolerance: f64,
+    /// Solve a second time, more coarsely, to estimate the uncertainty of the restitution. Default true.
+    pub estimate_uncertainty: bool,
+    /// Stop after this many contacts (outcome `LimitReached`). Default 10,000.
+    pub max_sub_impacts: usize,
+    /// Stop after this many steps, in contact and in flight together. Default 10,000,000.
+    pub max_steps: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { tolerance: 1e-9, estimate_uncertainty: true, max_sub_impacts: 10_000, max_steps: 10_000_000 }
+    }
+}
+
+impl Settings {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
+        InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")?;
+        InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")
+    }
+}

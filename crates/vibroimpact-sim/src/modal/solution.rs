@@ -1,0 +1,82 @@
+//! What an impact came to.
+
+/// How an impact ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The striker left, and it is certain that the structure can never catch it again.
+    Rebound,
+    /// The bodies never met.
+    NoContact,
+    /// The motion died down with the bodies still in contact.
+    Sustained,
+    /// A limit of the settings was reached first; the solution holds what was found until then.
+    LimitReached,
+}
+
+impl Outcome {
+    /// The outcome as a word for tables and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Outcome::Rebound => "rebound",
+            Outcome::NoContact => "no contact",
+            Outcome::Sustained => "sustained",
+            Outcome::LimitReached => "limit reached",
+        }
+    }
+}
+
+/// One interval of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SubImpact {
+    /// First touch (s).
+    pub start_s: f64,
+    /// Separation (s), or the end of the computation if it came first.
+    pub end_s: f64,
+    /// Impulse of the contact force (N s).
+    pub impulse_n_s: f64,
+    /// Largest contact force (N).
+    pub peak_force_n: f64,
+    /// Largest compression (m).
+    pub peak_compression_m: f64,
+}
+
+/// What the computation cost, in deterministic counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Steps accepted in contact.
+    pub contact_steps: u64,
+    /// Steps tried in contact and taken back.
+    pub rejected_steps: u64,
+    /// Newton iterations over all steps.
+    pub newton_iterations: u64,
+    /// Evaluations of the contact law.
+    pub law_evaluations: u64,
+    /// Steps of the search for the next contact.
+    pub flight_steps: u64,
+}
+
+/// The result of one impact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Net restitution: relative speed of separation over that of approach, both of the rigid-body motions
+    /// (for a structure without rigid-body modes: of the striker alone). `None` unless the bodies approached
+    /// each other and the impact ended.
+    pub restitution: Option<f64>,
+    /// Estimated error of the restitution, from a second, coarser solution; `None` if not asked for.
+    pub restitution_uncertainty: Option<f64>,
+    /// Every interval of contact, in order of time.
+    pub sub_impacts: Vec<SubImpact>,
+    /// Costs, of the second solution included.
+    pub counts: Counts,
+    /// Time of the last separation, or at which the computation stopped (s).
+    pub end_s: f64,
+    /// Velocity of the striker at `end_s`, positive away from the structure (m/s).
+    pub striker_velocity_m_s: f64,
+    /// Modal amplitudes at `end_s` (m kg^1/2).
+    pub amplitude: Vec<f64>,
+    /// Their rates at `end_s` (m kg^1/2 / s).
+    pub rate: Vec<f64>,
+}
