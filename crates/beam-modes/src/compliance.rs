@@ -43,8 +43,12 @@ impl Bay {
 pub(crate) fn green(spans: &[Span], ends: [End; 2], motions: &[[f64; 2]], x: f64, y: f64) -> f64 {
     if y > 0.5 {
         // start from the nearer end, where a small deflection is not a difference of large ones
-        let mirrored: Vec<Span> =
-            spans.iter().rev().map(|s| Span { start: (1.0 - s.start - s.length).max(0.0), ..*s }).collect();
+        let mut mirrored: Vec<Span> = spans.iter().rev().copied().collect();
+        let mut start = 0.0;
+        for span in &mut mirrored {
+            span.start = start;
+            start += span.length;
+        }
         let motions: Vec<[f64; 2]> = motions.iter().map(|&[p, q]| [p + q, -q]).collect();
         return deflection(&mirrored, [ends[1], ends[0]], &motions, 1.0 - x, 1.0 - y);
     }

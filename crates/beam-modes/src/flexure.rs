@@ -6,7 +6,7 @@
 
 use crate::beam::End;
 use crate::piece::{Piece, SHORT, krylov};
-use crate::plane::{Crossing, Plane, State, combine, form, reflect};
+use crate::plane::{Crossing, Handover, Plane, State, combine, form, reflect};
 use crate::roots::Characteristic;
 use crate::shapes::{Match, Waveguide};
 use crate::span::Span;
@@ -23,10 +23,17 @@ pub(crate) struct Flexure {
     steps: Vec<State>,
 }
 
-/// The planes from both ends at one frequency.
+/// The plane of one end at one frequency, on its way along the beam; both lists in the order of the spans.
+struct Sweep {
+    crossings: Vec<Crossing>,
+    /// At every step between spans.
+    handovers: Vec<Handover>,
+}
+
+/// Those of both ends.
 pub(crate) struct Sweeps {
-    left: Vec<Crossing>,
-    right: Vec<Crossing>,
+    left: Sweep,
+    right: Sweep,
 }
 
 /// The states an end allows: two of the four unit vectors.
@@ -76,51 +83,42 @@ impl Flexure {
         q * self.wave_numbers[i]
     }
 
-    /// The plane that the left end allows, carried over every span from the left.
-    fn from_left(&self, q: f64) -> Vec<Crossing> {
-        let mut plane = end_plane(self.ends[0]);
-        let mut crossings = Vec::with_capacity(self.spans.len());
-        for (i, span) in self.spans.iter().enumerate() {
-            let crossing = plane.cross(self.wave_number(i, q), span.length);
-            plane = crossing.exit;
-            if let Some(scale) = self.steps.get(i) {
-                plane = plane.rescaled(scale);
+    /// The plane that one end allows, carried over every span from there; from the right, in reflected variables.
+    fn sweep(&self, q: f64, from_right: bool) -> Sweep {
+        let n = self.spans.len();
+        let mut plane = end_plane(self.ends[usize::from(from_right)]);
+        let mut crossings = Vec::with_capacity(n);
+        let mut handovers = Vec::with_capacity(n);
+        for step in 0..n {
+            let i = if from_right { n - 1 - step } else { step };
+            let crossing = plane.cross(self.wave_number(i, q), self.spans[i].length);
+            if step + 1 < n {
+                let handover = if from_right {
+                    crossing.exit.rescaled(&self.steps[i - 1].map(|s| 1.0 / s))
+                } else {
+                    crossing.exit.rescaled(&self.steps[i])
+                };
+                plane = handover.plane;
+                handovers.push(handover);
             }
             crossings.push(crossing);
         }
-        crossings
-    }
-
-    /// The same from the right; the crossings stand in the order of the spans and in reflected variables.
-    fn from_right(&self, q: f64) -> Vec<Crossing> {
-        let mut plane = end_plane(self.ends[1]);
-        let mut crossings = Vec::with_capacity(self.spans.len());
-        for (i, span) in self.spans.iter().enumerate().rev() {
-            let crossing = plane.cross(self.wave_number(i, q), span.length);
-            plane = crossing.exit;
-            if i > 0 {
-                plane = plane.rescaled(&self.steps[i - 1].map(|s| 1.0 / s));
-            }
-            crossings.push(crossing);
+        if from_right {
+            crossings.reverse();
+            handovers.reverse();
         }
-        crossings.reverse();
-        crossings
+        Sweep { crossings, handovers }
     }
 
-    /// The left-hand plane at the left end of span `i`.
-    fn entry_plane(&self, left: &[Crossing], i: usize) -> Plane {
-        if i == 0 { end_plane(self.ends[0]) } else { left[i - 1].exit.rescaled(&self.steps[i - 1]) }
+    /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, the common power of `q` left out.
+    fn amplitude(&self, i: usize) -> f64 {
+        1.0 / (self.spans[i].rigidity * self.wave_numbers[i].powi(3)).sqrt()
     }
 
     /// The characteristic function: zero when the plane holds a state that the right end allows.
     fn at_right_end(&self, Plane([u, v]): &Plane) -> f64 {
         let [m, n] = constrained(self.ends[1]);
         u[m] * v[n] - v[m] * u[n]
-    }
-
-    /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, the common power of `q` left out.
-    fn amplitude(&self, i: usize) -> f64 {
-        1.0 / (self.spans[i].rigidity * self.wave_numbers[i].powi(3)).sqrt()
     }
 }
 
@@ -176,7 +174,7 @@ impl Characteristic for Flexure {
             count += inside + negative_eigenvalues(entry(&u, &u), off_diagonal, entry(&v, &v));
             plane = plane.cross(k, span.length).exit;
             if let Some(scale) = self.steps.get(i) {
-                plane = plane.rescaled(scale);
+                plane = plane.rescaled(scale).plane;
             }
         }
         // the right end releases what it does not constrain
@@ -199,7 +197,7 @@ impl Characteristic for Flexure {
         for (i, span) in self.spans.iter().enumerate() {
             plane = plane.cross(self.wave_number(i, q), span.length).exit;
             if let Some(scale) = self.steps.get(i) {
-                plane = plane.rescaled(scale);
+                plane = plane.rescaled(scale).plane;
             }
         }
         self.at_right_end(&plane)
@@ -226,14 +224,14 @@ impl Waveguide for Flexure {
     }
 
     fn sweeps(&self, q: f64) -> Sweeps {
-        Sweeps { left: self.from_left(q), right: self.from_right(q) }
+        Sweeps { left: self.sweep(q, false), right: self.sweep(q, true) }
     }
 
     fn matches(&self, Sweeps { left, right }: &Sweeps) -> Vec<Match> {
         let mut found = Vec::with_capacity(2 * self.spans.len());
         for i in 0..self.spans.len() {
-            let Plane([l0, l1]) = self.entry_plane(left, i);
-            let [r0, r1] = right[i].exit.0.map(|z| reflect(&z));
+            let Plane([l0, l1]) = if i == 0 { end_plane(self.ends[0]) } else { left.handovers[i - 1].plane };
+            let [r0, r1] = right.crossings[i].exit.0.map(|z| reflect(&z));
             let rows = [[form(&l0, &r0), form(&l0, &r1)], [form(&l1, &r0), form(&l1, &r1)]];
             let size = |row: [f64; 2]| row[0] * row[0] + row[1] * row[1];
             let total = size(rows[0]) + size(rows[1]);
@@ -253,18 +251,16 @@ impl Waveguide for Flexure {
         let mut pieces = vec![None; self.spans.len()];
         let mut state = at.state;
         for i in (0..at.span).rev() {
-            let scale = &self.steps[i];
-            let exit = [state[0] / scale[0], state[1] / scale[1], state[2] / scale[2], state[3] / scale[3]];
-            let (piece, entry) = left[i].follow_back(&exit);
+            let (piece, entry) = left.crossings[i].follow_back(left.handovers[i].coefficients_before(&state));
             pieces[i] = Some(piece.scaled(self.amplitude(i)));
             state = entry;
         }
-        state = reflect(&at.state);
+        let mut coefficients = right.crossings[at.span].exit.coefficients(&reflect(&at.state));
         for i in at.span..self.spans.len() {
-            let (piece, entry) = right[i].follow_back(&state);
+            let (piece, entry) = right.crossings[i].follow_back(coefficients);
             pieces[i] = Some(piece.reflected().scaled(self.amplitude(i)));
-            if let Some(scale) = self.steps.get(i) {
-                state = [entry[0] * scale[0], entry[1] * scale[1], entry[2] * scale[2], entry[3] * scale[3]];
+            if let Some(handover) = right.handovers.get(i) {
+                coefficients = handover.coefficients_before(&entry);
             }
         }
         pieces.into_iter().flatten().collect()

@@ -24,10 +24,29 @@ pub(crate) struct Crossing {
     shrink: f64,
     /// The amplitude of the second column's growing exponential, measured at the far end.
     arrived: f64,
-    /// Columns as they arrived = `exit` times this upper triangle `(r11, r12, r22)`.
-    triangle: (f64, f64, f64),
+    /// Columns as they arrived = `exit` times this.
+    triangle: Triangle,
     /// The plane where the span was left.
     pub exit: Plane,
+}
+
+/// A plane handed to the next span, in that span's variables.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Handover {
+    pub plane: Plane,
+    /// The old basis, rescaled, = `plane` times this.
+    triangle: Triangle,
+}
+
+/// Upper triangle `(r11, r12, r22)`: what Gram and Schmidt divided out.
+#[derive(Debug, Clone, Copy)]
+struct Triangle(f64, f64, f64);
+
+impl Triangle {
+    fn solve(&self, [alpha, beta]: [f64; 2]) -> [f64; 2] {
+        let q = beta / self.2;
+        [(alpha - self.1 * q) / self.0, q]
+    }
 }
 
 pub(crate) fn dot(u: &State, v: &State) -> f64 {
@@ -60,7 +79,7 @@ fn from_waves([a, b, c, d]: [f64; 4]) -> State {
 
 impl Plane {
     /// Gram-Schmidt; positive factors only, so that orientation is kept.
-    fn orthonormal(u: State, v: State) -> (Plane, (f64, f64, f64)) {
+    fn orthonormal(u: State, v: State) -> (Plane, Triangle) {
         let r11 = dot(&u, &u).sqrt();
         let e1 = u.map(|c| c / r11);
         let r12 = dot(&e1, &v);
@@ -69,13 +88,19 @@ impl Plane {
         let again = dot(&e1, &rest);
         let rest = combine(1.0, &rest, -again, &e1);
         let r22 = dot(&rest, &rest).sqrt();
-        (Plane([e1, rest.map(|c| c / r22)]), (r11, r12 + again, r22))
+        (Plane([e1, rest.map(|c| c / r22)]), Triangle(r11, r12 + again, r22))
     }
 
     /// The same plane in the variables of a neighbouring span.
-    pub fn rescaled(&self, scale: &[f64; 4]) -> Plane {
+    pub fn rescaled(&self, scale: &[f64; 4]) -> Handover {
         let apply = |z: &State| [z[0] * scale[0], z[1] * scale[1], z[2] * scale[2], z[3] * scale[3]];
-        Self::orthonormal(apply(&self.0[0]), apply(&self.0[1])).0
+        let (plane, triangle) = Self::orthonormal(apply(&self.0[0]), apply(&self.0[1]));
+        Handover { plane, triangle }
+    }
+
+    /// Coefficients of a state of the plane.
+    pub fn coefficients(&self, z: &State) -> [f64; 2] {
+        [dot(&self.0[0], z), dot(&self.0[1], z)]
     }
 
     /// Carries the plane over a span.
@@ -116,14 +141,19 @@ impl Plane {
     }
 }
 
+impl Handover {
+    /// Coefficients, in the basis before the handover, of a state after it. (Taking the state itself back would lose
+    /// the digits of its small components where the spans differ much.)
+    pub fn coefficients_before(&self, z: &State) -> [f64; 2] {
+        self.triangle.solve(self.plane.coefficients(z))
+    }
+}
+
 impl Crossing {
-    /// From a state of the exit plane: the solution on the span, and the state where the span was entered.
-    /// Both in the variables of the span; the piece runs in the direction of travel.
-    pub fn follow_back(&self, exit: &State) -> (Piece, State) {
-        let (alpha, beta) = (dot(&self.exit.0[0], exit), dot(&self.exit.0[1], exit));
-        let (r11, r12, r22) = self.triangle;
-        let q = beta / r22;
-        let p = (alpha - r12 * q) / r11;
+    /// From a state's coefficients in the exit plane: the solution on the span, and the state where the span was
+    /// entered. Both in the variables of the span; the piece runs in the direction of travel.
+    pub fn follow_back(&self, coefficients: [f64; 2]) -> (Piece, State) {
+        let [p, q] = self.triangle.solve(coefficients);
         let (k, length) = (self.k, self.length);
         let entry = combine(p, &self.entry[0], q * self.shrink, &self.entry[1]);
         if k * length <= SHORT {

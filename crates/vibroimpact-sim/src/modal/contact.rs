@@ -36,6 +36,8 @@ pub(crate) struct Setting<'a, L> {
 const REST_CHECK: u64 = 64;
 /// A step is doubled when its error is this many times below the tolerance.
 const GROWTH: f64 = 10.0;
+/// Part of the tolerated error that the nodal forces may have.
+const NEWTON_SHARE: f64 = 1e-2;
 /// Part of the way to the expected end of a branch that one step may take.
 const SHARE: f64 = 0.7;
 
@@ -219,6 +221,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 branch: &self.branch,
                 which,
                 needs_rate: self.needs_rate,
+                accuracy: NEWTON_SHARE * self.setting.impulse_tolerance,
                 start_compression: self.compression,
                 gap: series,
                 kernel: self.ladder.kernel,
@@ -281,8 +284,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             free,
             response: &response,
             residual_compliance: self.setting.residual_compliance,
+            needs_rate: self.needs_rate,
+            accuracy: NEWTON_SHARE * self.setting.impulse_tolerance / h,
         };
-        let step = collocate(self.setting.law, &self.branch, &given, self.needs_rate, guess, self.counts)?;
+        let step = collocate(self.setting.law, &self.branch, &given, guess, self.counts)?;
         Some((step, basis.coefficients(&step.force)))
     }
 

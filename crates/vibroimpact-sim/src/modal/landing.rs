@@ -19,6 +19,8 @@ pub(crate) struct Approach<'a, L> {
     /// Which of the branch's boundaries is met.
     pub which: usize,
     pub needs_rate: bool,
+    /// Impulse to which the nodal forces are wanted (N s).
+    pub accuracy: f64,
     /// Compression at the start (m), and the gap's derivatives in free motion, `g^(p)/p!`.
     pub start_compression: f64,
     pub gap: [f64; TAYLOR],
@@ -70,8 +72,10 @@ impl<L: ContactLaw> Approach<'_, L> {
             free,
             response: &response,
             residual_compliance: self.residual_compliance,
+            needs_rate: self.needs_rate,
+            accuracy: self.accuracy / length,
         };
-        let step = collocate(self.law, self.branch, &given, self.needs_rate, guess, counts)?;
+        let step = collocate(self.law, self.branch, &given, guess, counts)?;
         let force = basis.coefficients(&step.force);
         let (free_gap, free_rate) = self.free(length);
         let (gap, gap_rate) =

@@ -4,10 +4,13 @@
 //! `F_i = law(xi_i, xi_dot_i)` with `xi = xi_free + (R - c) F`, `R` the structure's and the striker's exact response.
 
 use super::legendre::{BASIS, Matrix, Nodal, Q, dot};
-use contact_models::{Boundary, Branch, ContactLaw};
+use super::solution::Counts;
+use contact_models::{Boundary, Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the step is too long.
-const NEWTON_MAX: u32 = 12;
+const ITERATIONS_MAX: u32 = 16;
+/// A ratio of successive changes above this asks for a new matrix.
+const SLOW: f64 = 0.1;
 
 /// What is known before a step's force is.
 pub(crate) struct Given<'a> {
@@ -21,6 +24,10 @@ pub(crate) struct Given<'a> {
     pub response: &'a Matrix,
     /// Residual compliance (m/N).
     pub residual_compliance: f64,
+    /// Whether the branch asks for the rate of compression.
+    pub needs_rate: bool,
+    /// How well the force is wanted (N).
+    pub accuracy: f64,
 }
 
 /// A solved step.
@@ -32,111 +39,117 @@ pub(crate) struct Collocated {
     pub rate: Nodal,
 }
 
-/// Solves the law at the nodes by Newton's method; `None` if it does not converge. Adds to `evaluations` and
-/// `iterations`.
+/// Solves the law at the nodes; `None` if the iteration does not converge. Newton's matrix is kept from one iteration
+/// to the next while that converges fast.
 pub(crate) fn collocate<L: ContactLaw>(
     law: &L,
     branch: &Branch,
     given: &Given,
-    needs_rate: bool,
     guess: Nodal,
-    counts: &mut super::solution::Counts,
+    counts: &mut Counts,
 ) -> Option<Collocated> {
     let basis = &*BASIS;
-    let mut response = *given.response;
-    for i in 0..Q {
-        response[i][i] -= given.residual_compliance;
-    }
     let mut force = guess;
     let mut rate = [0.0; Q];
-    for _ in 0..NEWTON_MAX {
+    let mut newton: Option<Newton> = None;
+    let mut last_change = f64::INFINITY;
+    for _ in 0..ITERATIONS_MAX {
         let mut compression = given.free;
         for i in 0..Q {
-            compression[i] += dot(&response[i], &force);
+            compression[i] += dot(&given.response[i], &force) - given.residual_compliance * force[i];
         }
-        if needs_rate {
+        if given.needs_rate {
             for i in 0..Q {
                 rate[i] = (basis.slope_from_start[i] * given.start_compression
                     + dot(&basis.slope_from_nodes[i], &compression))
                     / given.h;
             }
         }
-        let mut jacobian = [[0.0; Q]; Q];
-        let mut defect = [0.0; Q];
-        for i in 0..Q {
-            let value = law.force(branch, compression[i], rate[i]);
-            defect[i] = value.force_n - force[i];
-            for j in 0..Q {
-                jacobian[i][j] = -value.per_compression_n_m * response[i][j];
-            }
-            if value.per_rate_n_s_m != 0.0 {
-                let drag = value.per_rate_n_s_m / given.h;
-                for l in 0..Q {
-                    let factor = drag * basis.slope_from_nodes[i][l];
-                    for j in 0..Q {
-                        jacobian[i][j] -= factor * response[l][j];
-                    }
-                }
-            }
-            jacobian[i][i] += 1.0;
-        }
+        let values: [Force; Q] = std::array::from_fn(|i| law.force(branch, compression[i], rate[i]));
         counts.newton_iterations += 1;
         counts.law_evaluations += Q as u64;
-        let change = solve(jacobian, defect)?;
+        let defect: Nodal = std::array::from_fn(|i| values[i].force_n - force[i]);
+        let change = newton.get_or_insert_with(|| Newton::new(given, &values)).solve(defect);
         let (mut largest, mut size) = (0.0f64, 0.0f64);
         for i in 0..Q {
             force[i] += change[i];
             largest = largest.max(change[i].abs());
             size = size.max(force[i].abs());
         }
-        if !largest.is_finite() {
+        if !(largest + size).is_finite() {
             return None;
         }
-        // quadratic convergence: a change of 1e-8 leaves an error near 1e-16
-        if largest <= 1e-8 * size || size < f64::MIN_POSITIVE {
-            let mut compression = given.free;
-            for i in 0..Q {
-                compression[i] += dot(&response[i], &force);
-            }
+        // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
+        let ratio = if last_change.is_finite() { largest / last_change } else { 1.0 };
+        if ratio * largest <= given.accuracy || largest <= 1e-15 * size {
             return Some(Collocated { force, compression, rate });
+        }
+        let first = !last_change.is_finite();
+        last_change = largest;
+        if ratio > SLOW && !first {
+            newton = None;
         }
     }
     None
 }
 
-/// Solves a small dense system by elimination with row pivoting; `None` if it is singular.
-fn solve(mut a: Matrix, mut b: Nodal) -> Option<Nodal> {
-    for column in 0..Q {
-        let mut pivot = column;
-        for row in column + 1..Q {
-            if a[row][column].abs() > a[pivot][column].abs() {
-                pivot = row;
+/// Newton's matrix `1 - F_xi (R - c) - F_rate D (R - c)`, factored. Its off-diagonal part is of the order of
+/// `(h omega)^2` with `omega` the contact's own frequency, so that elimination needs no pivoting.
+struct Newton {
+    /// Unit lower and upper triangle in one, the diagonal inverted.
+    triangles: Matrix,
+}
+
+impl Newton {
+    fn new(given: &Given, values: &[Force; Q]) -> Newton {
+        let mut a = [[0.0; Q]; Q];
+        for i in 0..Q {
+            let stiffness = values[i].per_compression_n_m;
+            for j in 0..Q {
+                a[i][j] = -stiffness * given.response[i][j];
+            }
+            a[i][i] += 1.0 + stiffness * given.residual_compliance;
+            if values[i].per_rate_n_s_m != 0.0 {
+                let drag = values[i].per_rate_n_s_m / given.h;
+                for l in 0..Q {
+                    let factor = drag * BASIS.slope_from_nodes[i][l];
+                    for j in 0..Q {
+                        a[i][j] -= factor * given.response[l][j];
+                    }
+                    a[i][l] += factor * given.residual_compliance;
+                }
             }
         }
-        if !(a[pivot][column].abs() > 0.0) {
-            return None;
-        }
-        a.swap(column, pivot);
-        b.swap(column, pivot);
-        let (upper, lower) = a.split_at_mut(column + 1);
-        let top = &upper[column];
-        let inverse = 1.0 / top[column];
-        for (offset, row) in lower.iter_mut().enumerate() {
-            let factor = row[column] * inverse;
-            for j in column + 1..Q {
-                row[j] -= factor * top[j];
+        for column in 0..Q {
+            let inverse = 1.0 / a[column][column];
+            let top = a[column];
+            for row in column + 1..Q {
+                let factor = a[row][column] * inverse;
+                for j in column + 1..Q {
+                    a[row][j] -= factor * top[j];
+                }
+                a[row][column] = factor;
             }
-            b[column + 1 + offset] -= factor * b[column];
+            a[column][column] = inverse;
         }
+        Newton { triangles: a }
     }
-    for row in (0..Q).rev() {
-        let mut value = b[row];
-        for j in row + 1..Q {
-            value -= a[row][j] * b[j];
+
+    fn solve(&self, mut b: Nodal) -> Nodal {
+        let a = &self.triangles;
+        for row in 1..Q {
+            for j in 0..row {
+                b[row] -= a[row][j] * b[j];
+            }
         }
-        b[row] = value / a[row][row];
+        for row in (0..Q).rev() {
+            for j in row + 1..Q {
+                b[row] -= a[row][j] * b[j];
+            }
+            b[row] *= a[row][row];
+        }
+        b
     }
-    Some(b)
 }
 
 /// The first place on a step where a branch ends: which of its boundaries, and the fraction of the step at which a

@@ -84,6 +84,12 @@ impl Report {
         }
     }
 
+    /// Adds the body of another report, without its title, at the end.
+    pub fn append(&mut self, other: Report) {
+        self.body += &other.body;
+        self.figures.extend(other.figures);
+    }
+
     /// The document as Markdown; figures are linked as files.
     pub fn markdown(&self) -> String {
         format!("# {}\n{}", one_line(&self.title), self.body)
