@@ -4,9 +4,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use crate::Failure;
+use crate::chapters::Failure;
 
-/// One call of cargo: its arguments, and the flags that its documentation run takes from the environment.
+/// One call of cargo: its arguments, and the flags for rustdoc.
 struct Step {
     name: &'static str,
     arguments: &'static [&'static str],
@@ -28,8 +28,8 @@ const STEPS: [Step; 4] = [
     Step { name: "tests", arguments: &["test", "--workspace", "--all-features", "--locked"], rustdocflags: "" },
 ];
 
-/// Runs format, clippy, docs (warnings denied), tests with doc tests, and the chapters in their quick form.
-pub fn run(root: &Path, chapters: impl Fn(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
+/// Runs format, clippy, docs (warnings denied), tests with doc tests, and at last the chapters in their quick form.
+pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
     for step in &STEPS {
         timed(step.name, || {
             let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -42,7 +42,7 @@ pub fn run(root: &Path, chapters: impl Fn(&Path) -> Result<(), Failure>) -> Resu
             if status.success() { Ok(()) } else { Err(format!("cargo {} failed", step.arguments.join(" ")).into()) }
         })?;
     }
-    timed("chapters, quick form", || chapters(&root.join("target/ci")))
+    timed("chapters, quick form", quick_chapters)
 }
 
 fn timed(name: &str, work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {

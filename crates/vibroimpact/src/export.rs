@@ -102,7 +102,8 @@ fn history_csv(samples: &[Sample]) -> Result<Vec<u8>, Failure> {
 
 fn energies_csv(history: &History<Law>, until_s: f64, modes: usize) -> Result<Vec<u8>, Failure> {
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(std::iter::once("time_s".to_owned()).chain((1..=modes).map(|k| format!("mode_{k}_energy_j"))))?;
+    table
+        .write_record(std::iter::once("time_s".to_owned()).chain((1..=modes).map(|k| format!("mode_{k}_energy_j"))))?;
     for i in 0..=ENERGY_INTERVALS {
         let time_s = until_s * i as f64 / ENERGY_INTERVALS as f64;
         table.serialize((time_s, history.modal_energies_j(time_s)))?;
@@ -130,8 +131,7 @@ fn picture(title: &str, samples: &[Sample]) -> Figure {
         let axes = Panel::new(Axis::new("time").unit("ms"), Axis::new(label).unit(unit));
         [series.into_iter().fold(axes, Panel::with)]
     };
-    let displacement =
-        pair(&column(1e3, |s| s.structure_displacement_m), &column(1e3, |s| s.striker_displacement_m));
+    let displacement = pair(&column(1e3, |s| s.structure_displacement_m), &column(1e3, |s| s.striker_displacement_m));
     let velocity = pair(&column(1.0, |s| s.structure_velocity_m_s), &column(1.0, |s| s.striker_velocity_m_s));
     let force = Series::line(&time, &column(1.0, |s| s.force_n));
     Figure::new(title)

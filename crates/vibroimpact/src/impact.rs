@@ -65,7 +65,11 @@ impl Scene {
         let modes = self.structure.modes(self.location_m, self.modes)?;
         let residual_compliance_m_n = if self.residual_compliance {
             let whole = self.structure.static_compliance_m_n(self.location_m)?;
-            let kept: f64 = modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
+            let kept: f64 = modes
+                .iter()
+                .filter(|mode| mode.omega_rad_s > 0.0)
+                .map(|mode| (mode.shape / mode.omega_rad_s).powi(2))
+                .sum();
             residual(whole, kept)?
         } else {
             0.0
@@ -106,7 +110,10 @@ impl Scene {
         let settings = Settings::default();
         Ok(Impact {
             structure: self.structure()?,
-            striker: Striker { mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?, speed_m_s: self.striker.speed_m_s },
+            striker: Striker {
+                mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
+                speed_m_s: self.striker.speed_m_s,
+            },
             law: self.contact.law(&self.striker)?,
             settings: Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings },
         })

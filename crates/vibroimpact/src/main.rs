@@ -99,10 +99,10 @@ fn run(command: Command) -> Result<(), Failure> {
             let scene = Scene::read(&scene)?;
             let impact = scene.impact()?;
             let (solution, history) = impact.record()?;
-            let summary =
-                Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
+            let summary = Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
             let headline = text::headline(&scene, &impact);
-            let mut printed = if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
+            let mut printed =
+                if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
             if let Some(folder) = out {
                 let files = Files::new(&headline, &summary, &history)?;
                 files.write(&folder)?;

@@ -82,14 +82,11 @@ pub struct Cost {
 impl Summary {
     /// Gathers a result for printing.
     pub fn new(solution: &Solution, energy: EnergyLedger, residual_compliance_m_n: f64) -> Summary {
-        let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| Contact {
-            start_s,
-            end_s,
-            impulse_n_s,
-            peak_force_n,
-            peak_compression_m,
+        let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
+            Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
         };
-        let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps } = solution.counts;
+        let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps } =
+            solution.counts;
         Summary {
             outcome: solution.outcome.as_str(),
             restitution: solution.restitution,

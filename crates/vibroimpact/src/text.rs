@@ -49,7 +49,8 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
         Structure::Beam(beam) => {
             let [left, right] = beam.ends.map(|end| format!("{end:?}").to_lowercase());
             let length: f64 = beam.segments.iter().map(|segment| segment.length_m).sum();
-            let steps = if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
+            let steps =
+                if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
             format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
         }
         Structure::Modal(_) => "structure given by its modes".to_owned(),
@@ -128,14 +129,16 @@ pub fn result(summary: &Summary) -> String {
         );
     }
     if summary.sub_impact_count > LISTED {
-        let _ = writeln!(text, "  ... and {} more (all of them with --json or --out)", summary.sub_impact_count - LISTED);
+        let _ =
+            writeln!(text, "  ... and {} more (all of them with --json or --out)", summary.sub_impact_count - LISTED);
     }
     text
 }
 
 /// A table of modes.
 pub fn modes(modes: &[Mode]) -> String {
-    let mut text = format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
+    let mut text =
+        format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
     for (k, mode) in modes.iter().enumerate() {
         let frequency = mode.omega_rad_s / std::f64::consts::TAU;
         let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);

@@ -55,7 +55,8 @@ fn altered(pointer: &str, value: Option<Value>) -> String {
 fn simulate_prints_one_json_object_with_the_promised_keys() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), SCENE).unwrap();
-    let result: Value = serde_json::from_str(&stdout(&run(folder.path(), &["simulate", "scene.json", "--json"]))).unwrap();
+    let result: Value =
+        serde_json::from_str(&stdout(&run(folder.path(), &["simulate", "scene.json", "--json"]))).unwrap();
 
     assert_eq!(result["outcome"], "rebound");
     assert_eq!(result["modes"], 40);
@@ -79,7 +80,8 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     assert!((impulse / (0.11027 * (1.0 + restitution)) - 1.0).abs() < 1e-9);
 
     let energy = &result["energy"];
-    let parts = ["striker_j", "structure_j", "modal_damping_j", "contact_j", "residual_j"].map(|key| number(energy, key));
+    let parts =
+        ["striker_j", "structure_j", "modal_damping_j", "contact_j", "residual_j"].map(|key| number(energy, key));
     let initial = number(energy, "initial_j");
     assert!((initial - 0.5 * 0.11027).abs() < 1e-15);
     assert!((parts.iter().sum::<f64>() - initial).abs() < 1e-14);
@@ -176,13 +178,23 @@ fn values_out_of_range_are_refused_by_field_value_and_range() {
     for (pointer, value, field, allowed) in [
         ("/structure/segments/0/length_m", json!(-0.5), "structure.segments[0].length_m = -0.5", "greater than 0"),
         ("/structure/segments/0/length_m", json!(0), "structure.segments[0].length_m = 0.0", "greater than 0"),
-        ("/structure/segments/1/mass_per_length_kg_m", json!(0), "structure.segments[1].mass_per_length_kg_m", "greater than 0"),
+        (
+            "/structure/segments/1/mass_per_length_kg_m",
+            json!(0),
+            "structure.segments[1].mass_per_length_kg_m",
+            "greater than 0",
+        ),
         ("/structure/segments/0/thickness_m", json!(-1), "structure.segments[0].thickness_m = -1.0", "greater than 0"),
         ("/structure/segments/0/length_m", json!(1e200), "structure.segments[0].length_m = 1e+200", "1e60"),
         ("/structure/segments", json!([]), "structure.segments = []", "at least one"),
         ("/structure/damping_ratio", json!(-0.02), "structure.damping_ratio = -0.02", "not less than 0"),
         ("/structure/kind", json!("plate"), "structure.kind = \"plate\"", "beam, modal"),
-        ("/structure/ends", json!(["clamped", "welded"]), "structure.ends[1] = \"welded\"", "clamped, pinned, free, guided"),
+        (
+            "/structure/ends",
+            json!(["clamped", "welded"]),
+            "structure.ends[1] = \"welded\"",
+            "clamped, pinned, free, guided",
+        ),
         ("/location_m", json!(1.5), "location_m = 1.5", "from 0 to its length"),
         ("/location_m", json!(-0.1), "location_m = -0.1", "from 0 to its length"),
         ("/striker/mass_kg", json!(0), "striker.mass_kg = 0.0", "greater than 0"),

@@ -13,7 +13,10 @@ fn gallery() -> Vec<(String, Scene)> {
     let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let name = |path: &PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
-    paths.iter().map(|path| (name(path), Scene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}")))).collect()
+    paths
+        .iter()
+        .map(|path| (name(path), Scene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}"))))
+        .collect()
 }
 
 fn named(name: &str) -> Scene {

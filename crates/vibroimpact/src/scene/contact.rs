@@ -123,13 +123,15 @@ impl Contact {
         if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
             return Err(fault(field, Some(value)));
         }
-        let contact: Contact = read(value).map_err(|found| if found.field.is_empty() { fault("law", law) } else { found })?;
+        let contact: Contact =
+            read(value).map_err(|found| if found.field.is_empty() { fault("law", law) } else { found })?;
         // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
         let written = serde_json::to_value(contact).unwrap_or_default();
         match entries.iter().find(|(field, _)| written.get(field).is_none()) {
             None => Ok(contact),
             Some((field, value)) => {
-                let known: Vec<&str> = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str()).collect();
+                let known: Vec<&str> =
+                    written.as_object().into_iter().flatten().map(|(field, _)| field.as_str()).collect();
                 Err(InvalidInput::new(field, quote(value), format!("no such field; here stand {}", known.join(", "))))
             }
         }

@@ -89,9 +89,9 @@ impl HertzStiffness {
             return Ok(stiffness);
         }
         let (ball, structure) = self.materials.bodies(striker)?;
-        Hertz::from_bodies(&ball, &structure).map(|hertz| hertz.stiffness_n_m1_5).map_err(|fault| {
-            InvalidInput::from(fault).within("striker")
-        })
+        Hertz::from_bodies(&ball, &structure)
+            .map(|hertz| hertz.stiffness_n_m1_5)
+            .map_err(|fault| InvalidInput::from(fault).within("striker"))
     }
 
     /// The stiffness and exponent of a general power law, which must then stand alone.

@@ -40,7 +40,8 @@ impl Striker {
         match (mass_kg, sphere) {
             (Some(mass), Some(sphere)) if !agrees(mass, sphere) => {
                 let sphere = number(sphere);
-                let allowed = format!("left out beside density_kg_m3 and radius_m, or within 0.1 % of that sphere's {sphere} kg");
+                let allowed =
+                    format!("left out beside density_kg_m3 and radius_m, or within 0.1 % of that sphere's {sphere} kg");
                 Err(InvalidInput::new("mass_kg", number(mass), allowed))
             }
             (Some(mass), _) | (None, Some(mass)) => Ok(mass),

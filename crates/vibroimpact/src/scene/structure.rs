@@ -49,8 +49,12 @@ impl Structure {
                     _ => fault.within("structure"),
                 })
             }
-            (Structure::Beam(_), None, _) => Err(InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default())),
-            (Structure::Beam(_), _, None) => Err(InvalidInput::missing("modes", fields::allowed("modes").unwrap_or_default())),
+            (Structure::Beam(_), None, _) => {
+                Err(InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default()))
+            }
+            (Structure::Beam(_), _, None) => {
+                Err(InvalidInput::missing("modes", fields::allowed("modes").unwrap_or_default()))
+            }
             (Structure::Modal(_), Some(location_m), _) => {
                 let allowed = "left out: a modal structure is given by its shapes at the point of impact";
                 Err(InvalidInput::new("location_m", number(location_m), allowed))
@@ -76,7 +80,11 @@ impl Structure {
                 let allowed = "needed for residual_compliance: a finite number not less than 0";
                 let field = "structure.static_compliance_m_n";
                 let value = listed.static_compliance_m_n.ok_or_else(|| InvalidInput::missing(field, allowed))?;
-                if value >= 0.0 && value.is_finite() { Ok(value) } else { Err(InvalidInput::new(field, number(value), allowed)) }
+                if value >= 0.0 && value.is_finite() {
+                    Ok(value)
+                } else {
+                    Err(InvalidInput::new(field, number(value), allowed))
+                }
             }
         }
     }
@@ -142,9 +150,7 @@ impl Segment {
         }
         let length_m = self.length_m;
         Ok(match set {
-            0 => {
-                beam_modes::Segment { length_m, flexural_rigidity_n_m2: rigidity, mass_per_length_kg_m: mass }
-            }
+            0 => beam_modes::Segment { length_m, flexural_rigidity_n_m2: rigidity, mass_per_length_kg_m: mass },
             1 => beam_modes::Segment::rectangular(length_m, modulus, density, width, thickness),
             _ => beam_modes::Segment {
                 length_m,
