@@ -51,6 +51,17 @@ fn what_is_written_is_read_back_the_same() {
 }
 
 #[test]
+fn the_readme_shows_a_scene_of_the_gallery_and_its_restitution() {
+    let readme = include_str!("../../../README.md");
+    let block = readme.split("```json").nth(1).unwrap().split("```").next().unwrap();
+    let gallery = Scene { description: None, ..named("pinned-beam-converged") };
+    assert_eq!(Scene::from_json(block).unwrap(), gallery);
+    let printed: f64 =
+        readme.split("  restitution ").nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap();
+    assert!((printed - restitution(&gallery)).abs() < 1e-7);
+}
+
+#[test]
 fn every_law_of_contact_models_can_be_named() {
     for (parameters, name) in [
         (r#""law": "hertz", "stiffness_n_m1_5": 1e9"#, "hertz"),
