@@ -46,7 +46,7 @@ pub struct Scene {
     pub modes: Option<usize>,
     /// Whether the modes left out answer with their static compliance; `false` when left out.
     pub residual_compliance: bool,
-    /// Accuracy aimed at in the restitution; that of [`vibroimpact_sim::Settings`] when left out.
+    /// Accuracy aimed at in the restitution; that of [`vibroimpact_sim::modal::Settings`] when left out.
     pub tolerance: Option<f64>,
 }
 
