@@ -1,0 +1,69 @@
+//! The palette and the colour map.
+
+use plotters::style::RGBColor;
+
+/// A colour of the palette of Okabe and Ito (2008), in the order in which series take them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colour {
+    /// First choice.
+    Blue,
+    /// Second choice; stands for red.
+    Vermilion,
+    /// Third choice.
+    Green,
+    /// Fourth choice.
+    Orange,
+    /// Fifth choice.
+    Purple,
+    /// Sixth choice.
+    Sky,
+    /// For data beside which the others are read.
+    Black,
+    /// For guides.
+    Grey,
+}
+
+impl Colour {
+    const CYCLE: [Colour; 6] =
+        [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Orange, Colour::Purple, Colour::Sky];
+
+    /// The colour of the series with this number, if it does not name one.
+    pub fn of_series(number: usize) -> Colour {
+        Colour::CYCLE[number % Colour::CYCLE.len()]
+    }
+
+    pub(super) fn rgb(self) -> RGBColor {
+        match self {
+            Colour::Blue => RGBColor(0, 114, 178),
+            Colour::Vermilion => RGBColor(213, 94, 0),
+            Colour::Green => RGBColor(0, 158, 115),
+            Colour::Orange => RGBColor(230, 159, 0),
+            Colour::Purple => RGBColor(170, 85, 140),
+            Colour::Sky => RGBColor(86, 180, 233),
+            Colour::Black => RGBColor(20, 20, 20),
+            Colour::Grey => RGBColor(130, 130, 130),
+        }
+    }
+}
+
+/// Viridis (van der Walt and Smith, 2015) at nine equidistant places.
+const VIRIDIS: [[f64; 3]; 9] = [
+    [68.0, 1.0, 84.0],
+    [72.0, 40.0, 120.0],
+    [62.0, 74.0, 137.0],
+    [49.0, 104.0, 142.0],
+    [38.0, 130.0, 142.0],
+    [31.0, 158.0, 137.0],
+    [53.0, 183.0, 121.0],
+    [109.0, 205.0, 89.0],
+    [253.0, 231.0, 37.0],
+];
+
+/// The colour at `fraction` of the map, from 0 (dark) to 1 (bright).
+pub(super) fn viridis(fraction: f64) -> RGBColor {
+    let place = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    let below = (place as usize).min(VIRIDIS.len() - 2);
+    let part = place - below as f64;
+    let [r, g, b] = [0, 1, 2].map(|c| VIRIDIS[below][c] + part * (VIRIDIS[below + 1][c] - VIRIDIS[below][c]));
+    RGBColor(r.round() as u8, g.round() as u8, b.round() as u8)
+}

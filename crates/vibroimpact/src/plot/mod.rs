@@ -1,0 +1,134 @@
+//! Charts in one consistent style, written as SVG.
+//!
+//! A [`Figure`] is rows of [`Panel`]s; a panel has two [`Axis`] descriptions and either series
+//! (lines, markers, steps, stems, bands, error bars) or a [`HeatMap`]. Axis limits, ticks,
+//! margins and legends are worked out from the data; the same figure always gives the same
+//! bytes. Values that are not finite are left out and interrupt a line. Colours are those of
+//! Okabe and Ito (2008), chosen to be told apart with any colour vision; maps use viridis.
+//!
+//! ```
+//! use vibroimpact::plot::{Axis, Figure, Marker, Panel, Series};
+//! let modes: Vec<f64> = (0..40).map(f64::from).collect();
+//! let restitution: Vec<f64> = modes.iter().map(|n| 0.2 + 0.8 / (1.0 + n)).collect();
+//! let svg = Figure::new("Restitution against the number of modes")
+//!     .row([Panel::new(Axis::new("modes N").integers(), Axis::new("restitution e"))
+//!         .with(Series::points(&modes, &restitution, Marker::Circle).label("undamped"))])
+//!     .svg()?;
+//! assert!(svg.starts_with("<svg"));
+//! # Ok::<(), std::io::Error>(())
+//! ```
+
+mod axis;
+mod canvas;
+mod colour;
+mod heat;
+mod layout;
+mod panel;
+mod series;
+mod text;
+
+pub use axis::Axis;
+pub use colour::Colour;
+pub use heat::HeatMap;
+pub use series::{Marker, Series};
+pub(crate) use text::superscript;
+
+use std::io;
+use std::path::Path;
+
+/// A picture: rows of panels under one title.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Text above the panels; may be empty.
+    pub title: String,
+    /// Panels from top to bottom, each row from left to right.
+    pub rows: Vec<Vec<Panel>>,
+    /// Width of the whole picture (px). The height follows from the panels.
+    pub width_px: f64,
+}
+
+impl Figure {
+    /// An empty figure of 760 px width.
+    pub fn new(title: impl Into<String>) -> Figure {
+        Figure { title: title.into(), rows: Vec::new(), width_px: 760.0 }
+    }
+
+    /// Adds a row of panels at the bottom.
+    #[must_use]
+    pub fn row(mut self, panels: impl IntoIterator<Item = Panel>) -> Figure {
+        self.rows.push(panels.into_iter().collect());
+        self
+    }
+
+    /// Sets the width of the picture (px), held between 200 and 4000.
+    #[must_use]
+    pub fn width(mut self, width_px: f64) -> Figure {
+        self.width_px = width_px;
+        self
+    }
+
+    /// The picture as an SVG document.
+    pub fn svg(&self) -> io::Result<String> {
+        layout::draw(self)
+    }
+
+    /// Writes the picture to a file.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        std::fs::write(path, self.svg()?)
+    }
+}
+
+/// One pair of axes with its data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Text above the axes; may be empty.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// Height of the rectangle between the axes (px).
+    pub height_px: f64,
+    /// What is drawn, the first at the bottom.
+    pub series: Vec<Series>,
+    /// A map under the series.
+    pub heat: Option<HeatMap>,
+}
+
+impl Panel {
+    /// An empty panel, 190 px high.
+    pub fn new(x: Axis, y: Axis) -> Panel {
+        Panel { title: String::new(), x, y, height_px: 190.0, series: Vec::new(), heat: None }
+    }
+
+    /// Sets the text above the axes.
+    #[must_use]
+    pub fn title(mut self, title: impl Into<String>) -> Panel {
+        self.title = title.into();
+        self
+    }
+
+    /// Sets the height of the rectangle between the axes (px), held between 20 and 2000.
+    #[must_use]
+    pub fn height(mut self, height_px: f64) -> Panel {
+        self.height_px = height_px;
+        self
+    }
+
+    /// Adds a series on top of those there are.
+    #[must_use]
+    pub fn with(mut self, series: Series) -> Panel {
+        self.series.push(series);
+        self
+    }
+
+    /// Lays a map under the series.
+    #[must_use]
+    pub fn map(mut self, heat: HeatMap) -> Panel {
+        self.heat = Some(heat);
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,158 @@
+//! The series of one panel.
+
+use super::Panel;
+use super::axis::{Scale, drawable};
+use super::canvas::{Canvas, Pen, Rectangle};
+use super::colour::Colour;
+use super::layout::{Entry, SMALL};
+use super::series::{Mark, Marker, Series};
+use plotters::style::text_anchor::VPos;
+use std::io;
+
+/// The series with their colours: their own, or the next of the palette.
+pub(super) fn coloured(panel: &Panel) -> impl Iterator<Item = Entry<'_>> {
+    let mut taken = 0;
+    panel.series.iter().map(move |series| {
+        let colour = series.colour.unwrap_or_else(|| {
+            taken += 1;
+            Colour::of_series(taken - 1)
+        });
+        (series, colour)
+    })
+}
+
+fn pen(series: &Series, colour: Colour) -> Pen {
+    Pen { dashed: series.dashed, ..Pen::new(colour.rgb(), series.width_px) }
+}
+
+/// Draws map and series between the axes.
+pub(super) fn draw(canvas: &Canvas, panel: &Panel, x: &Scale, y: &Scale, r: &Rectangle) -> io::Result<()> {
+    let place = |u: f64, v: f64| (r.left + x.fraction(u) * r.width(), r.bottom - y.fraction(v) * r.height());
+    if let Some(heat) = &panel.heat {
+        heat.draw(canvas, r, place)?;
+    }
+    // what cannot be drawn becomes None and interrupts a line
+    let at = |u: f64, v: f64| {
+        let drawn = drawable(u, panel.x.logarithmic) && drawable(v, panel.y.logarithmic);
+        drawn.then(|| place(u, v))
+    };
+    for (series, colour) in coloured(panel) {
+        draw_series(canvas, series, colour, r, &at)?;
+    }
+    let empty = panel.heat.is_none() && panel.series.iter().all(|s| s.x.is_empty());
+    if empty {
+        let middle = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom));
+        canvas.text("no data", middle, super::canvas::Lettering { vertical: VPos::Center, ..SMALL })?;
+    }
+    Ok(())
+}
+
+type Place<'a> = &'a dyn Fn(f64, f64) -> Option<(f64, f64)>;
+
+fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, at: Place) -> io::Result<()> {
+    let pen = pen(series, colour);
+    let pairs = || series.x.iter().copied().zip(series.y.iter().copied());
+    let points: Vec<Option<(f64, f64)>> = pairs().map(|(u, v)| at(u, v)).collect();
+    let runs = |points: &[Option<(f64, f64)>]| -> io::Result<()> {
+        for run in points.split(Option::is_none) {
+            let run: Vec<(f64, f64)> = run.iter().copied().flatten().collect();
+            canvas.clipped_path(&run, r, pen)?;
+        }
+        Ok(())
+    };
+    let markers = |marker: Marker| -> io::Result<()> {
+        let inside =
+            |p: &(f64, f64)| p.0 >= r.left - 0.5 && p.0 <= r.right + 0.5 && p.1 >= r.top - 0.5 && p.1 <= r.bottom + 0.5;
+        points.iter().flatten().filter(|p| inside(p)).try_for_each(|&p| canvas.marker(p, marker, colour.rgb()))
+    };
+    match series.mark {
+        Mark::Line => runs(&points),
+        Mark::Points(marker) => markers(marker),
+        Mark::LinePoints(marker) => {
+            runs(&points)?;
+            markers(marker)
+        }
+        Mark::Step => {
+            let corners: Vec<Option<(f64, f64)>> = points
+                .iter()
+                .enumerate()
+                .flat_map(|(i, p)| {
+                    let before = if i == 0 { None } else { points[i - 1] };
+                    [before.zip(*p).map(|(q, p)| (p.0, q.1)).or(*p), *p]
+                })
+                .collect();
+            runs(&corners)
+        }
+        Mark::Stem(marker) => {
+            for (point, (u, _)) in points.iter().zip(pairs()) {
+                let foot = at(u, 0.0).map_or(r.bottom, |p| p.1);
+                if let Some(p) = point {
+                    canvas.clipped_path(&[(p.0, foot), *p], r, pen)?;
+                }
+            }
+            markers(marker)
+        }
+        Mark::Band => {
+            let clamp = |p: (f64, f64)| (p.0.clamp(r.left, r.right), p.1.clamp(r.top, r.bottom));
+            let upper = series.x.iter().zip(&series.spread).map(|(&u, &v)| at(u, v));
+            let both: Vec<_> = points.iter().copied().zip(upper).map(|(low, high)| low.zip(high)).collect();
+            for run in both.split(Option::is_none) {
+                let run: Vec<_> = run.iter().copied().flatten().collect();
+                let outline: Vec<(f64, f64)> =
+                    run.iter().map(|p| clamp(p.0)).chain(run.iter().rev().map(|p| clamp(p.1))).collect();
+                if run.len() > 1 {
+                    canvas.polygon(&outline, colour.rgb(), 0.22)?;
+                }
+            }
+            Ok(())
+        }
+        Mark::ErrorBars(marker) => {
+            for ((u, v), half) in pairs().zip(&series.spread) {
+                if let (Some(low), Some(high)) = (at(u, v - half), at(u, v + half)) {
+                    canvas.clipped_path(&[low, high], r, pen)?;
+                    for end in [low, high] {
+                        canvas.clipped_path(&[(end.0 - 2.5, end.1), (end.0 + 2.5, end.1)], r, pen)?;
+                    }
+                }
+            }
+            markers(marker)
+        }
+        Mark::VerticalRule => match pairs().next() {
+            Some((u, _)) if drawable(u, false) => {
+                // any drawable ordinate serves to find the abscissa
+                let x = at(u, 1.0).map_or(f64::NAN, |p| p.0);
+                if (r.left..=r.right).contains(&x) { canvas.path(&[(x, r.top), (x, r.bottom)], pen) } else { Ok(()) }
+            }
+            _ => Ok(()),
+        },
+        Mark::HorizontalRule => match pairs().next() {
+            Some((_, v)) if drawable(v, false) => {
+                let y = at(1.0, v).map_or(f64::NAN, |p| p.1);
+                if (r.top..=r.bottom).contains(&y) { canvas.path(&[(r.left, y), (r.right, y)], pen) } else { Ok(()) }
+            }
+            _ => Ok(()),
+        },
+    }
+}
+
+/// The sample of a series' look in a legend, 20 px wide from `(left, y)`.
+pub(super) fn draw_key(canvas: &Canvas, series: &Series, colour: Colour, (left, y): (f64, f64)) -> io::Result<()> {
+    let middle = (left + 10.0, y);
+    let line = || canvas.path(&[(left, y), (left + 20.0, y)], pen(series, colour));
+    match series.mark {
+        Mark::Points(marker) => canvas.marker(middle, marker, colour.rgb()),
+        Mark::LinePoints(marker) => {
+            line()?;
+            canvas.marker(middle, marker, colour.rgb())
+        }
+        Mark::Stem(marker) | Mark::ErrorBars(marker) => {
+            canvas.path(&[(middle.0, y - 5.0), (middle.0, y + 5.0)], pen(series, colour))?;
+            canvas.marker(middle, marker, colour.rgb())
+        }
+        Mark::Band => {
+            let area = [(left, y - 4.0), (left + 20.0, y - 4.0), (left + 20.0, y + 4.0), (left, y + 4.0)];
+            canvas.polygon(&area, colour.rgb(), 0.22)
+        }
+        Mark::Line | Mark::Step | Mark::VerticalRule | Mark::HorizontalRule => line(),
+    }
+}

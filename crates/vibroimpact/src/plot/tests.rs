@@ -1,0 +1,175 @@
+use super::axis::{Axis, Scale, full_label};
+use super::text::{fixed, superscript, width_px};
+use super::*;
+
+/// The coordinates of every polyline of a picture.
+fn polylines(svg: &str) -> Vec<Vec<(f64, f64)>> {
+    let points = svg.split("points=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    let pair = |p: &str| p.split_once(',').map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()));
+    points.map(|list| list.split_whitespace().filter_map(pair).collect()).collect()
+}
+
+/// Tags are balanced, no character is left raw, and no coordinate is missing.
+fn assert_well_formed(svg: &str) {
+    assert!(svg.starts_with("<svg xmlns") && svg.trim_end().ends_with("</svg>"));
+    for word in ["NaN", "inf", "nan"] {
+        assert!(!svg.contains(&format!("\"{word}")) && !svg.contains(&format!(" {word}")), "{word} in {svg}");
+    }
+    let mut open = Vec::new();
+    for piece in svg.split('<').skip(1) {
+        let (tag, text) = piece.split_once('>').expect("a tag ends");
+        assert!(!text.contains('>'), "raw > in {text}");
+        assert!(text.split('&').skip(1).all(|e| e.contains(';')), "raw & in {text}");
+        let name = tag.split_whitespace().next().expect("a tag has a name");
+        match name.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop(), Some(name)),
+            None if tag.ends_with('/') => {}
+            None => open.push(name),
+        }
+    }
+    assert!(open.is_empty());
+}
+
+fn line(x: &[f64], y: &[f64]) -> Figure {
+    Figure::new("").row([Panel::new(Axis::new("x"), Axis::new("y")).with(Series::line(x, y))])
+}
+
+#[test]
+fn every_kind_of_mark_is_drawn_the_same_each_time() {
+    let (x, y) = ([1.0, 2.0, 3.0], [3.0, 1.0, 2.0]);
+    let make = || {
+        let panel = Panel::new(Axis::new("x").unit("s").log(), Axis::new("y").unit("N"))
+            .with(Series::line(&x, &y).label("line").dashed())
+            .with(Series::points(&x, &y, Marker::Circle).label("circle"))
+            .with(Series::points(&x, &y, Marker::Cross))
+            .with(Series::points(&x, &y, Marker::Plus))
+            .with(Series::points(&x, &y, Marker::Square))
+            .with(Series::line_points(&x, &y, Marker::Triangle))
+            .with(Series::step(&x, &y))
+            .with(Series::stem(&x, &y, Marker::Dot))
+            .with(Series::band(&x, &y, &[4.0, 4.0, 4.0]))
+            .with(Series::error_bars(&x, &y, &[0.1, 0.2, 0.3], Marker::Dot))
+            .with(Series::vertical_rule(2.0))
+            .with(Series::horizontal_rule(2.0));
+        let map = HeatMap::new(&x, &y, vec![vec![1.0, 2.0, f64::NAN]; 2], Axis::new("e"));
+        let beside = Panel::new(Axis::new("x"), Axis::new("y")).map(map);
+        Figure::new("all marks").row([panel, beside]).svg().unwrap()
+    };
+    assert_well_formed(&make());
+    assert_eq!(make(), make());
+}
+
+#[test]
+fn text_is_escaped() {
+    let text = "a < b & \"c\" > 'd' \u{0}\u{7}";
+    let panel = Panel::new(Axis::new(text).unit(text), Axis::new(text)).title(text);
+    let panel = panel.with(Series::line(&[0.0, 1.0], &[0.0, 1.0]).label(text));
+    let svg = Figure::new(text).row([panel]).svg().unwrap();
+    assert_well_formed(&svg);
+    assert!(svg.contains("a &lt; b &amp; ") && !svg.contains('\u{7}'));
+}
+
+#[test]
+fn unusual_data_gives_a_sound_picture() {
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN_POSITIVE, 0.0, -0.0, 5e-324];
+    for a in bad {
+        for b in bad {
+            assert_well_formed(&line(&[0.0, 1.0, a, 3.0, b], &[1.0, a, 2.0, b, 3.0]).svg().unwrap());
+            let logarithmic = Panel::new(Axis::new("x").log().limits(a, b), Axis::new("y").log().limits(b, a))
+                .with(Series::points(&[a, 1.0, b], &[b, a, 2.0], Marker::Dot))
+                .with(Series::band(&[a, 1.0, b], &[b, a, 2.0], &[a, a, b]))
+                .with(Series::error_bars(&[a, 1.0], &[b, 2.0], &[a, b], Marker::Dot))
+                .with(Series::vertical_rule(a))
+                .with(Series::horizontal_rule(b))
+                .height(a);
+            assert_well_formed(&Figure::new("").row([logarithmic]).width(b).svg().unwrap());
+        }
+    }
+    let empty: [f64; 0] = [];
+    assert!(line(&empty, &empty).svg().unwrap().contains("no data"));
+    assert_well_formed(&Figure::new("").svg().unwrap());
+    assert_well_formed(&Figure::new("").row([]).svg().unwrap());
+    let map = HeatMap::new(&empty, &[1.0], vec![], Axis::new("e"));
+    assert_well_formed(&Figure::new("").row([Panel::new(Axis::new("x"), Axis::new("y")).map(map)]).svg().unwrap());
+}
+
+#[test]
+fn a_missing_value_interrupts_a_line_and_limits_cut_it() {
+    let whole = polylines(&line(&[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0, 0.0, 1.0]).svg().unwrap());
+    assert!(whole.iter().any(|p| p.len() == 4));
+    let broken = polylines(&line(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 1.0, f64::NAN, 1.0, 0.0]).svg().unwrap());
+    assert!(broken.iter().all(|p| p.len() != 4));
+
+    // the frame is the only closed line; everything of the series lies inside it
+    let mut figure = line(&[0.0, 10.0], &[-100.0, 100.0]);
+    figure.rows[0][0].x.limits = Some((4.0, 6.0));
+    figure.rows[0][0].y.limits = Some((-5.0, 5.0));
+    let lines = polylines(&figure.svg().unwrap());
+    let frame = lines.iter().find(|p| p.len() == 5).expect("a frame").clone();
+    let (left, right, top, bottom) = (frame[0].0, frame[1].0, frame[0].1, frame[2].1);
+    let slanted = lines.iter().find(|p| p.len() == 2 && p[0].0 != p[1].0 && p[0].1 != p[1].1).expect("the series");
+    for (x, y) in slanted {
+        assert!((left..=right).contains(x) && (top..=bottom).contains(y));
+    }
+    // y = 20 (x - 5) leaves the limits at x = 4.75 and 5.25
+    let expected = left + (4.75 - 4.0) / 2.0 * (right - left);
+    assert!((slanted[0].0 - expected).abs() <= 1.0 && (slanted[0].1 - bottom).abs() <= 1.0);
+}
+
+#[test]
+fn ticks_are_round_distinct_and_stand_apart() {
+    let cases = [(0.0, 1.0), (-3e-5, 7e-5), (0.6, 0.62), (1e6, 9e6), (0.9505, 0.9506), (-1e-12, 1e12), (0.0, 41.0)];
+    for (low, high) in cases {
+        let axis = Axis::new("x").unit("m").limits(low, high);
+        let scale = Scale::new(&axis, None, 0.0, true);
+        for (ticks, size) in [(scale.ticks_along(300.0, 11.0).0, 300.0), (scale.ticks_up(190.0, 11.0).0, 190.0)] {
+            assert!((2..=12).contains(&ticks.len()), "{ticks:?}");
+            for pair in ticks.windows(2) {
+                assert!(pair[0].0 < pair[1].0 && pair[0].1 != pair[1].1, "{ticks:?}");
+                assert!(pair[0].1.chars().count() <= 10, "{ticks:?}");
+                if size == 300.0 {
+                    let apart = size * (scale.fraction_of_measure(pair[1].0) - scale.fraction_of_measure(pair[0].0));
+                    assert!(apart > 0.5 * (width_px(&pair[0].1, 11.0) + width_px(&pair[1].1, 11.0)), "{ticks:?}");
+                }
+            }
+        }
+    }
+    let whole = Scale::new(&Axis::new("n").integers().limits(0.0, 2.0), None, 0.0, true).ticks_up(190.0, 11.0).0;
+    assert_eq!(whole.iter().map(|t| t.1.as_str()).collect::<Vec<_>>(), ["0", "1", "2"]);
+}
+
+#[test]
+fn powers_of_ten_move_into_the_label() {
+    let axis = Axis::new("compression").unit("m").limits(0.0, 3e-5);
+    let (ticks, exponent) = Scale::new(&axis, None, 0.0, true).ticks_up(190.0, 11.0);
+    assert_eq!(full_label(&axis, exponent), "compression (10⁻⁶ m)");
+    assert_eq!(ticks.last().unwrap().1, "30");
+    assert_eq!((superscript(-10).as_str(), fixed(-0.5, 1).as_str(), fixed(-0.01, 1).as_str()), ("⁻¹⁰", "−0.5", "0.0"));
+
+    let log = Scale::new(&Axis::new("e").log().limits(1e-12, 1.0), None, 0.0, true).ticks_up(190.0, 11.0).0;
+    let labels: Vec<&str> = log.iter().map(|t| t.1.as_str()).filter(|t| !t.is_empty()).collect();
+    assert!(labels.contains(&"10⁻⁶") && labels.contains(&"10⁰"), "{labels:?}");
+    let few = Scale::new(&Axis::new("v").log().limits(0.1, 10.0), None, 0.0, true).ticks_along(400.0, 11.0).0;
+    let labels: Vec<&str> = few.iter().map(|t| t.1.as_str()).filter(|t| !t.is_empty()).collect();
+    assert_eq!(labels, ["0.1", "1", "10"]);
+}
+
+#[test]
+fn panels_with_the_same_legend_share_it() {
+    let panel = |label: &str| {
+        Panel::new(Axis::new("x"), Axis::new("y")).with(Series::line(&[0.0, 1.0], &[0.0, 1.0]).label(label))
+    };
+    let count = |a: &str, b: &str| Figure::new("").row([panel(a), panel(b)]).svg().unwrap().matches("damped").count();
+    assert_eq!(count("damped", "damped"), 1);
+    assert_eq!(count("damped", "undamped"), 2);
+}
+
+#[test]
+fn the_file_holds_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("line.svg");
+    let figure = line(&[0.0, 1.0], &[0.0, 1.0]);
+    figure.write(&path).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), figure.svg().unwrap());
+    assert!(figure.write(&folder.path().join("missing/line.svg")).is_err());
+}

@@ -1,0 +1,49 @@
+//! How wide a text is, and numbers as text.
+
+/// Width of `text` (px) at a font size, estimated from the widths of a wide sans-serif font, so
+/// that a margin made from it is rather too large than too small.
+pub(super) fn width_px(text: &str, size_px: f64) -> f64 {
+    let em: f64 = text
+        .chars()
+        .map(|c| match c {
+            'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' | ' ' => 0.33,
+            'f' | 't' | 'r' | '(' | ')' | '[' | ']' | '/' | '-' => 0.42,
+            '⁰'..='⁹' | '²' | '³' | '¹' | '⁻' | '₀'..='₉' => 0.42,
+            'm' | 'w' | 'M' | 'W' => 0.97,
+            'A'..='Z' => 0.72,
+            '\u{2212}' | '+' | '=' | '×' | '<' | '>' => 0.84,
+            _ => 0.63,
+        })
+        .sum();
+    em * size_px
+}
+
+/// Text without the characters that XML does not allow.
+pub(super) fn printable(text: &str) -> String {
+    text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')).collect()
+}
+
+/// A whole number in superscript digits.
+pub(crate) fn superscript(number: i32) -> String {
+    number
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            digit => char::from_u32(0x2070 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+        })
+        .collect()
+}
+
+/// A number with a fixed count of decimals, a proper minus sign, and no negative zero.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.bytes().all(|b| b == b'0' || b == b'.') => digits.to_string(),
+        Some(digits) => format!("\u{2212}{digits}"),
+        None => text,
+    }
+}

@@ -1,0 +1,144 @@
+//! Reports: text, tables and figures as Markdown and as one HTML page that stands alone.
+//!
+//! A [`Report`] is written in Markdown piece by piece. Figures are kept as files beside the
+//! Markdown and drawn into the HTML. A [`Comparison`] sets a published number beside ours; its
+//! verdict follows from the two numbers and the tolerance alone.
+//!
+//! ```
+//! use vibroimpact::report::{Comparison, Report, Verdict};
+//! let stiffness = 2.0 * 2e11 * 0.015f64.sqrt() / (3.0 * (1.0 - 0.09));
+//! let row = Comparison::printed("Hertz stiffness (N/m^1.5)", "Eq. 3.20", "1.7945e10", stiffness);
+//! assert_eq!(row.verdict(), Verdict::Agrees);
+//! let mut report = Report::new("Numbers of the text");
+//! report.text("Set beside ours:");
+//! report.comparisons(&[row]);
+//! assert!(report.markdown().contains("1.7945"));
+//! assert!(report.html().starts_with("<!DOCTYPE html>"));
+//! ```
+
+mod comparison;
+mod html;
+
+pub use comparison::{Comparison, Expected, Verdict, significant};
+
+use crate::plot::Figure;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A document in the making.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    title: String,
+    body: String,
+    /// SVG documents by their path relative to the report.
+    figures: BTreeMap<String, String>,
+}
+
+impl Report {
+    /// A document with a title and nothing else.
+    pub fn new(title: impl Into<String>) -> Report {
+        Report { title: title.into(), body: String::new(), figures: BTreeMap::new() }
+    }
+
+    /// Begins a section.
+    pub fn heading(&mut self, text: &str) {
+        self.body += &format!("\n## {}\n", one_line(text));
+    }
+
+    /// Adds Markdown. Raw HTML in it shows up as text.
+    pub fn text(&mut self, markdown: &str) {
+        self.body += &format!("\n{}\n", markdown.trim_end());
+    }
+
+    /// Adds a figure under a file name without extension, with a caption in Markdown.
+    pub fn figure(&mut self, name: &str, figure: &Figure, caption: &str) -> io::Result<()> {
+        let path = format!("figures/{}.svg", file_name(name));
+        self.figures.insert(path.clone(), figure.svg()?);
+        let alternative = figure.title.replace(['[', ']', '\\'], " ");
+        self.body += &format!("\n![{}]({path})\n\n{}\n", one_line(&alternative), one_line(caption));
+        Ok(())
+    }
+
+    /// Adds a table; rows are cut or filled to the number of headers.
+    pub fn table(&mut self, headers: &[&str], rows: &[Vec<String>]) {
+        let line = |cells: &mut dyn Iterator<Item = String>| format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "));
+        self.body += "\n";
+        self.body += &line(&mut headers.iter().map(|h| cell(h)));
+        self.body += &line(&mut headers.iter().map(|_| "---".to_string()));
+        for row in rows {
+            let filled = row.iter().map(|text| cell(text)).chain(std::iter::repeat(String::new()));
+            self.body += &line(&mut filled.take(headers.len()));
+        }
+    }
+
+    /// Adds a table of published numbers beside ours, and how many agree.
+    pub fn comparisons(&mut self, comparisons: &[Comparison]) {
+        let agree = comparisons.iter().filter(|c| c.verdict() == Verdict::Agrees).count();
+        self.text(&format!("{agree} of {} statements agree within their tolerance.", comparisons.len()));
+        let rows: Vec<Vec<String>> = comparisons.iter().map(Comparison::cells).collect();
+        self.table(&Comparison::HEADERS, &rows);
+        for (number, note) in comparisons.iter().enumerate().filter(|(_, c)| !c.note.is_empty()) {
+            self.text(&format!("Row {}: {}", number + 1, note.note));
+        }
+    }
+
+    /// Adds the body of another report, without its title, at the end.
+    pub fn append(&mut self, other: Report) {
+        self.body += &other.body;
+        self.figures.extend(other.figures);
+    }
+
+    /// The document as Markdown; figures are linked as files.
+    pub fn markdown(&self) -> String {
+        format!("# {}\n{}", one_line(&self.title), self.body)
+    }
+
+    /// The document as one HTML page with the figures in it.
+    pub fn html(&self) -> String {
+        html::page(&self.title, &self.markdown(), &self.figures)
+    }
+
+    /// Writes `report.md`, `report.html` and the figures into a folder, and gives their paths.
+    /// Each file appears whole or not at all.
+    pub fn write(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+        let documents = [("report.md".to_string(), self.markdown()), ("report.html".to_string(), self.html())];
+        let figures = self.figures.iter().map(|(name, svg)| (name.clone(), svg.clone()));
+        let mut written = Vec::new();
+        for (name, text) in figures.chain(documents) {
+            let path = folder.join(name);
+            write_whole(&path, text.as_bytes())?;
+            written.push(path);
+        }
+        Ok(written)
+    }
+}
+
+/// Writes a file beside its place and moves it there, so that it is never seen half written.
+/// Folders on the way are created.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let mut name = path.file_name().ok_or_else(|| io::Error::other("a file needs a name"))?.to_os_string();
+    name.push(".part");
+    let part = path.with_file_name(name);
+    fs::write(&part, bytes)?;
+    fs::rename(&part, path)
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn cell(text: &str) -> String {
+    one_line(text).replace('|', "\\|")
+}
+
+fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
+}
+
+#[cfg(test)]
+mod tests;

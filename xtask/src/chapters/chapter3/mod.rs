@@ -1,0 +1,145 @@
+//! Chapter 3: one beam, one ball, and what decides whether the restitution settles as modes are
+//! added.
+
+mod convergence;
+mod dissipation;
+mod motion;
+mod numbers;
+mod residual;
+
+use super::Failure;
+use super::beam::{Beam, End, segment};
+use super::impact::{Ball, Material, Setup};
+use super::study::Study;
+use contact_models::{Hysteretic, Law, Viscous};
+use serde::Deserialize;
+
+const INTRODUCTION: &str = "A steel ball strikes a pinned-pinned steel beam; contact is Hertzian, or Hertzian with \
+a little dissipation; the beam is undamped, or every mode has 2 % of critical damping. Every sub-impact is resolved. \
+The chapter's question is how the net restitution depends on the number N of modes that are kept. Figures carry the \
+numbers of the thesis. The restitution of undamped impacts with many modes amplifies any disturbance by factors of \
+10⁵ and more; where the last column of a CSV file gives an uncertainty near the scatter itself, another solver will \
+find another number, and only the scatter can be compared.";
+
+/// The parameter file; see its own remarks.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parameters {
+    #[serde(rename = "about")]
+    _about: String,
+    beam: Pinned,
+    material: Material,
+    ball_diameter_m: f64,
+    speed_m_s: f64,
+    locations_m: [f64; 2],
+    damping_ratio: f64,
+    viscous_damping_s_m: f64,
+    hysteretic: Hysteresis,
+    #[serde(rename = "loop")]
+    prescribed_loop: Hysteresis,
+    wall_speeds_m_s: Vec<f64>,
+    other_speeds_m_s: Vec<f64>,
+    other_diameters_m: [f64; 2],
+    scan: Scan,
+    our_choice: Choice,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pinned {
+    length_m: f64,
+    side_m: f64,
+    ends: [End; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Hysteresis {
+    stiffness_n_m1_5: Option<f64>,
+    theta_m: f64,
+    beta: f64,
+    k_bar: f64,
+    epsilon_m: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Scan {
+    from_m: f64,
+    to_m: f64,
+    diameter_m: f64,
+    modes: usize,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Choice {
+    #[serde(rename = "about")]
+    _about: String,
+    most_modes: usize,
+    scan_places: usize,
+    energy_modes: Vec<usize>,
+    residual_modes: Vec<usize>,
+}
+
+/// The chapter's beam and ball with everything that its sections vary.
+struct Case {
+    parameters: Parameters,
+    beam: Beam,
+    ball: Ball,
+}
+
+impl Case {
+    fn load() -> Result<Case, Failure> {
+        let parameters: Parameters = serde_json::from_str(include_str!("../../../../datasets/chapter3.json"))?;
+        let pinned = &parameters.beam;
+        let segment = segment(&parameters.material, pinned.length_m, pinned.side_m, 1.0);
+        let most = parameters.our_choice.residual_modes.iter().copied().fold(parameters.our_choice.most_modes, usize::max);
+        let beam = Beam::new("pinned-pinned", "Uniform pinned-pinned beam", pinned.ends, vec![segment], most)?;
+        let ball = Ball::new(&parameters.material, parameters.ball_diameter_m)?;
+        Ok(Case { parameters, beam, ball })
+    }
+
+    /// The reference of the chapter: Hertzian contact, no damping, plain truncation.
+    fn setup(&self, location_m: f64, modes: usize) -> Setup<'_> {
+        Setup {
+            beam: &self.beam,
+            location_m,
+            ball: self.ball,
+            law: self.ball.hertz(),
+            speed_m_s: self.parameters.speed_m_s,
+            damping_ratio: 0.0,
+            residual: false,
+            modes,
+        }
+    }
+
+    /// Thesis Eq. 3.15.
+    fn viscous(&self) -> Result<Law, Failure> {
+        Ok(Viscous::new(self.ball.stiffness_n_m1_5, self.parameters.viscous_damping_s_m)?.into())
+    }
+
+    /// Thesis Eqs. 3.16 and 3.17; the stiffness is divided by `1 + theta_m + beta`, so that first
+    /// loading is Hertz's.
+    fn hysteretic(&self) -> Result<Law, Failure> {
+        let h = &self.parameters.hysteretic;
+        let stiffness = self.ball.stiffness_n_m1_5 / (1.0 + h.theta_m + h.beta);
+        Ok(Hysteretic::new(stiffness, h.theta_m, h.beta, h.k_bar, h.epsilon_m)?.into())
+    }
+
+    /// The location that is no simple fraction of the length.
+    fn golden_m(&self) -> f64 {
+        self.parameters.locations_m[1]
+    }
+}
+
+/// Runs the chapter and returns the text that introduces its report.
+pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
+    let case = Case::load()?;
+    numbers::run(study, &case)?;
+    dissipation::run(study, &case)?;
+    motion::run(study, &case)?;
+    convergence::run(study, &case)?;
+    residual::run(study, &case)?;
+    Ok(INTRODUCTION)
+}

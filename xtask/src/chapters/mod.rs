@@ -1,0 +1,32 @@
+//! The chapters of the thesis, computed anew: tables as CSV, figures as SVG, and a report that
+//! sets every number of the text beside ours.
+
+mod beam;
+mod chapter3;
+mod chapter4;
+mod figures;
+mod impact;
+mod study;
+
+use std::error::Error;
+use std::path::Path;
+
+use study::Study;
+
+/// Whatever can go wrong on the way: bad parameters, a full disk.
+pub type Failure = Box<dyn Error + Send + Sync>;
+
+/// Runs chapter 3 or 4 and writes its folder. `quick` takes fewer points through the same code.
+/// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
+pub fn run(chapter: u32, out: &Path, quick: bool) -> Result<String, Failure> {
+    let mut study = Study::new(out, quick);
+    let introduction = match chapter {
+        3 => chapter3::run(&mut study)?,
+        4 => chapter4::run(&mut study)?,
+        other => return Err(format!("chapter = {other} is not allowed: 3 or 4").into()),
+    };
+    study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,187 @@
+//! What every chapter needs: a folder, a progress bar, sweeps in parallel, one writer.
+
+use super::Failure;
+use super::figures::Course;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use vibroimpact::plot::Figure;
+use vibroimpact::report::{Comparison, Report, Verdict, write_whole};
+
+/// A chapter while it runs.
+pub(super) struct Study {
+    out: PathBuf,
+    /// Whether to take fewer points.
+    pub quick: bool,
+    body: Report,
+    statements: Vec<Comparison>,
+    files: Vec<String>,
+    timings: Vec<Timing>,
+    started: Instant,
+    bar: ProgressBar,
+}
+
+/// Cost of one section.
+#[derive(Serialize)]
+struct Timing {
+    section: String,
+    impacts: usize,
+    seconds: f64,
+}
+
+/// What a finished folder holds.
+#[derive(Serialize)]
+struct Manifest<'a> {
+    title: &'a str,
+    version: &'static str,
+    quick: bool,
+    files: &'a [String],
+}
+
+impl Study {
+    /// A study that will write into `out`.
+    pub fn new(out: &Path, quick: bool) -> Study {
+        let bar = ProgressBar::new(0);
+        let look = "{elapsed_precise} {wide_bar} {pos}/{len} impacts, {per_sec} {msg}";
+        if let Ok(style) = ProgressStyle::with_template(look) {
+            bar.set_style(style);
+        }
+        Study {
+            out: out.into(),
+            quick,
+            body: Report::new(""),
+            statements: Vec::new(),
+            files: Vec::new(),
+            timings: Vec::new(),
+            started: Instant::now(),
+            bar,
+        }
+    }
+
+    /// Begins a section of the report.
+    pub fn section(&mut self, title: &str) {
+        self.bar.set_message(title.to_string());
+        self.body.heading(title);
+        self.timings.push(Timing { section: title.into(), impacts: 0, seconds: self.started.elapsed().as_secs_f64() });
+    }
+
+    /// Does `job` for each case on all cores; results come in the order of the cases, whatever
+    /// the number of threads. `impacts` is what one case counts for in the progress.
+    pub fn sweep<C: Sync, R: Send>(
+        &mut self,
+        cases: &[C],
+        impacts: usize,
+        job: impl Fn(&C) -> Result<R, Failure> + Sync,
+    ) -> Result<Vec<R>, Failure> {
+        self.bar.inc_length((cases.len() * impacts) as u64);
+        if let Some(timing) = self.timings.last_mut() {
+            timing.impacts += cases.len() * impacts;
+        }
+        let each = |case| {
+            let result = job(case);
+            self.bar.inc(impacts as u64);
+            result
+        };
+        cases.par_iter().map(each).collect()
+    }
+
+    /// Of a list of points, all of them, or in a quick run the first, the last and few between.
+    pub fn thin<T: Clone>(&self, all: &[T], quick_count: usize) -> Vec<T> {
+        if !self.quick || all.len() <= quick_count {
+            return all.to_vec();
+        }
+        let last = quick_count.saturating_sub(1).max(1);
+        (0..quick_count).map(|i| all[i * (all.len() - 1) / last].clone()).collect()
+    }
+
+    /// Writes a table; the columns are the fields of the rows.
+    pub fn csv<R: Serialize>(&mut self, name: &str, rows: &[R]) -> Result<(), Failure> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        let bytes = writer.into_inner()?;
+        self.file(name, &bytes)
+    }
+
+    /// Adds a figure with its caption.
+    pub fn figure(&mut self, name: &str, figure: &Figure, caption: &str) -> Result<(), Failure> {
+        Ok(self.body.figure(name, figure, caption)?)
+    }
+
+    /// Adds a paragraph of Markdown.
+    pub fn text(&mut self, markdown: &str) {
+        self.body.text(markdown);
+    }
+
+    /// Adds a table to the report.
+    pub fn table(&mut self, headers: &[&str], rows: &[Vec<String>]) {
+        self.body.table(headers, rows);
+    }
+
+    /// Adds a statement of the thesis to the list at the head of the report.
+    pub fn state(&mut self, statement: Comparison) {
+        self.statements.push(statement);
+    }
+
+    /// Writes the course of an impact.
+    pub fn course(&mut self, name: &str, course: &Course) -> Result<(), Failure> {
+        self.csv(name, &course.rows())
+    }
+
+    fn file(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        write_whole(&self.out.join(name), bytes)?;
+        self.files.push(name.into());
+        Ok(())
+    }
+
+    /// Writes report, timings and manifest, and sums up. The manifest comes last: a folder with
+    /// one is complete.
+    pub fn finish(mut self, title: &str, introduction: &str) -> Result<String, Failure> {
+        let total = self.started.elapsed().as_secs_f64();
+        let ends: Vec<f64> = self.timings.iter().skip(1).map(|t| t.seconds).chain([total]).collect();
+        for (timing, end) in self.timings.iter_mut().zip(ends) {
+            timing.seconds = end - timing.seconds;
+        }
+        let timings = std::mem::take(&mut self.timings);
+        let impacts: usize = timings.iter().map(|t| t.impacts).sum();
+
+        let mut report = Report::new(title);
+        report.text(introduction);
+        if self.quick {
+            report.text("**This is the quick form, with fewer points.**");
+        }
+        report.heading("What the thesis states, beside ours");
+        report.comparisons(&self.statements);
+        report.append(self.body.clone());
+        for path in report.write(&self.out)? {
+            let name = path.strip_prefix(&self.out).unwrap_or(&path);
+            self.files.push(name.to_string_lossy().replace('\\', "/"));
+        }
+        let files = self.files.clone();
+        let manifest = Manifest { title, version: env!("CARGO_PKG_VERSION"), quick: self.quick, files: &files };
+        self.csv("timings.csv", &timings)?;
+        self.file("manifest.json", serde_json::to_string_pretty(&manifest)?.as_bytes())?;
+        self.bar.finish_and_clear();
+
+        let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();
+        Ok(format!(
+            "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n\
+             {agree} of {} statements of the text agree within their tolerance.\nReport: {}",
+            total,
+            self.started.elapsed().as_secs_f64(),
+            self.statements.len(),
+            self.out.join("report.html").display()
+        ))
+    }
+}
+
+/// A figure's number as part of a file name that sorts: `3.5` becomes `3-05`.
+pub(super) fn slug(figure: &str) -> String {
+    match figure.split_once('.') {
+        Some((chapter, number)) => format!("{}-{number:0>2}", chapter.to_lowercase()),
+        None => figure.to_lowercase(),
+    }
+}
