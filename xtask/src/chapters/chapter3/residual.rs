@@ -41,7 +41,12 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
             columns.push((format!("b = {location_m:.4} m, ζ = {damping_ratio}"), curves));
         }
         let axis = Axis::new("number of modes N").log();
-        let figure = restitution(&format!("Restitution with and without residual compliance, {name}"), &axis, |r| r.modes as f64, &columns);
+        let figure = restitution(
+            &format!("Restitution with and without residual compliance, {name}"),
+            &axis,
+            |r| r.modes as f64,
+            &columns,
+        );
         let file = format!("residual-compliance-{name}");
         let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
         study.csv(&format!("{file}.csv"), &rows)?;
