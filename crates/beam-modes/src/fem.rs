@@ -87,7 +87,8 @@ impl Model {
             }
             start_m += segment.length_m;
         }
-        let coordinate = |dof: usize| if dof % 2 == 0 { Coordinate::Displacement } else { Coordinate::Rotation };
+        let coordinate =
+            |dof: usize| if dof.is_multiple_of(2) { Coordinate::Displacement } else { Coordinate::Rotation };
         let dofs = kept.into_iter().map(|dof| (dof / 2, coordinate(dof))).collect();
         Ok(Self { nodes_m, dofs, stiffness, mass, rigid: beam.rigid_body_count() })
     }
@@ -114,8 +115,10 @@ impl Model {
         let mut omega_rad_s = Vec::with_capacity(n);
         let mut nodal = Vec::with_capacity(n);
         if n > 0 {
-            let stiffness = Mat::from_fn(n, n, |i, j| self.stiffness[i * n + j]);
-            let mass = Mat::from_fn(n, n, |i, j| self.mass[i * n + j]);
+            // displacements and rotations differ in size: without scaling the reduction would lose digits
+            let scale: Vec<f64> = (0..n).map(|i| 1.0 / self.mass[i * n + i].sqrt()).collect();
+            let stiffness = Mat::from_fn(n, n, |i, j| self.stiffness[i * n + j] * scale[i] * scale[j]);
+            let mass = Mat::from_fn(n, n, |i, j| self.mass[i * n + j] * scale[i] * scale[j]);
             let factor = Llt::new(mass.as_ref(), Side::Lower).map_err(|_| unsolved())?;
             // L^-1 K L^-T, whose eigenvectors y give v = L^-T y
             let mut reduced = stiffness;
@@ -128,7 +131,7 @@ impl Model {
             for k in 0..n {
                 let lambda = eigen.S()[k].max(0.0);
                 omega_rad_s.push(if k < self.rigid { 0.0 } else { lambda.sqrt() });
-                nodal.push(self.spread(|row| vectors[(row, k)]));
+                nodal.push(self.spread(|row| scale[row] * vectors[(row, k)]));
             }
         }
         if omega_rad_s.iter().all(|w| w.is_finite()) {

@@ -57,7 +57,7 @@ pub(crate) fn elastic_roots(
         low = trial(0.4871 * low.q);
     }
     // each root changes the sign once: from here on the sign must agree with the count's parity
-    let agrees = |t: &Trial| (t.value * low.value > 0.0) == ((t.below - rigid.min(t.below)) % 2 == 0);
+    let agrees = |t: &Trial| (t.value * low.value > 0.0) == t.below.abs_diff(rigid).is_multiple_of(2);
     let mut high = trial(problem.estimate(rigid + wanted));
     for _ in 0..200 {
         if high.below >= rigid + wanted && agrees(&high) {

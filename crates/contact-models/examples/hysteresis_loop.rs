@@ -2,7 +2,7 @@
 //!
 //!     cargo run -p contact-models --example hysteresis_loop > loop.csv
 
-use contact_models::{Hysteretic, InvalidInput, trace};
+use contact_models::{Hysteretic, InvalidInput, TracePoint, trace};
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
@@ -11,12 +11,12 @@ fn main() -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "time_s,compression_m,force_n")?;
     for point in path {
-        writeln!(out, "{},{},{}", point.time_s, point.compression_m, point.force_n)?;
+        writeln!(out, "{:.12},{:.12},{:.12}", point.time_s, point.compression_m, point.force_n)?;
     }
     Ok(())
 }
 
-fn loops() -> Result<Vec<contact_models::TracePoint>, InvalidInput> {
+fn loops() -> Result<Vec<TracePoint>, InvalidInput> {
     let law = Hysteretic::new(1.0, 1.6, 1.4, 4.0, 1e-4)?;
     let motion = |t: f64| {
         let (slow, fast) = (2.0 * PI * t, 8.0 * PI * t);

@@ -18,39 +18,42 @@
 use crate::error::bounded;
 use crate::{After, Boundary, Branch, Force, InvalidInput, Memory, Stage};
 
-/// Implements the contract for a law with this exponent `n`, and this damping factor `D` (s/m)
-/// chosen at first touch. The branch's `internal` is `D`.
+/// What tells one of these laws from another.
+pub(crate) trait Damped {
+    /// Stiffness `k` (N/m^n).
+    fn stiffness(&self) -> f64;
+
+    /// Exponent `n`.
+    fn exponent(&self) -> f64 {
+        1.5
+    }
+
+    /// Damping factor `D` (s/m) of a contact that begins at this speed.
+    fn damping_s_m(&self, approach_speed_m_s: f64) -> f64;
+}
+
+/// The contract for a [`Damped`] law. The branch's `internal` is `D`.
 macro_rules! damped_law {
-    ($law:ty, stiffness: $stiffness:ident, exponent: |$a:ident| $n:expr, damping_s_m: |$b:ident, $speed:ident| $damping:expr) => {
+    ($law:ty) => {
         impl $law {
-            fn exponent(&self) -> f64 {
-                let $a = self;
-                $n
-            }
-
-            fn damping_at_touch_s_m(&self, $speed: f64) -> f64 {
-                let $b = self;
-                $damping
-            }
-
             /// Rebound speed over approach speed of a rigid striker at a wall.
             pub(crate) fn wall_restitution(&self, _mass_kg: f64, speed_m_s: f64) -> f64 {
-                $crate::damped::restitution(self.damping_at_touch_s_m(speed_m_s) * speed_m_s)
+                $crate::damped::restitution(self.damping_s_m(speed_m_s) * speed_m_s)
             }
         }
 
         impl $crate::ContactLaw for $law {
             fn touch(&self, _memory: &$crate::Memory, approach_speed_m_s: f64) -> $crate::Branch {
-                let internal = self.damping_at_touch_s_m(approach_speed_m_s);
+                let internal = self.damping_s_m(approach_speed_m_s);
                 $crate::Branch { stage: $crate::Stage::Single, anchor_m: 0.0, internal }
             }
 
             fn force(&self, branch: &$crate::Branch, compression_m: f64, rate_m_s: f64) -> $crate::Force {
-                $crate::damped::force(self.$stiffness, self.exponent(), branch, compression_m, rate_m_s)
+                $crate::damped::force(self, branch, compression_m, rate_m_s)
             }
 
             fn stored_energy_j(&self, _branch: &$crate::Branch, compression_m: f64) -> f64 {
-                $crate::damped::stored_energy_j(self.$stiffness, self.exponent(), compression_m)
+                $crate::damped::stored_energy_j(self, compression_m)
             }
 
             fn boundaries(&self, branch: &$crate::Branch) -> [$crate::Boundary; 2] {
@@ -80,7 +83,8 @@ pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> 
 }
 
 /// `k <xi>^n` and its derivative.
-pub(crate) fn elastic(k: f64, n: f64, compression_m: f64) -> (f64, f64) {
+fn elastic(law: &impl Damped, compression_m: f64) -> (f64, f64) {
+    let (k, n) = (law.stiffness(), law.exponent());
     let xi = bounded(compression_m).max(0.0);
     // the square root is several times faster than a general power
     let lower = if n == 1.5 { xi.sqrt() } else { xi.powf(n - 1.0) };
@@ -88,18 +92,18 @@ pub(crate) fn elastic(k: f64, n: f64, compression_m: f64) -> (f64, f64) {
 }
 
 /// Force on the branch; `branch.internal` is `D`.
-pub(crate) fn force(k: f64, n: f64, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+pub(crate) fn force(law: &impl Damped, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
     if branch.stage == Stage::Slack {
         return Force::ZERO;
     }
-    let (f, slope) = elastic(k, n, compression_m);
+    let (f, slope) = elastic(law, compression_m);
     let factor = 1.0 + branch.internal * bounded(rate_m_s);
     Force { force_n: f * factor, per_compression_n_m: slope * factor, per_rate_n_s_m: f * branch.internal }
 }
 
 /// Energy in the spring.
-pub(crate) fn stored_energy_j(k: f64, n: f64, compression_m: f64) -> f64 {
-    elastic(k, n, compression_m).0 * bounded(compression_m).max(0.0) / (n + 1.0)
+pub(crate) fn stored_energy_j(law: &impl Damped, compression_m: f64) -> f64 {
+    elastic(law, compression_m).0 * bounded(compression_m).max(0.0) / (law.exponent() + 1.0)
 }
 
 /// The contact ends at `xi = 0`; between pressing and slack lies `1 + D xi_dot = 0`.

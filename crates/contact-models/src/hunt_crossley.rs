@@ -1,7 +1,7 @@
 //! Hunt and Crossley's damped power law.
 
 use crate::InvalidInput;
-use crate::damped::{self, damped_law};
+use crate::damped::{self, Damped, damped_law};
 
 /// `F = k <xi>^n (1 + D xi_dot)` with any exponent; `D` is the same for every contact.
 ///
@@ -15,7 +15,7 @@ use crate::damped::{self, damped_law};
 ///
 /// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
-/// | obtained | HC_ROW |
+/// | obtained | 0.952 | 0.909 | 0.833 | 0.768 | 0.663 | 0.581 | 0.516 |
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HuntCrossley {
     /// Stiffness `k` (N/m^n).
@@ -77,9 +77,18 @@ impl HuntCrossley {
     }
 }
 
-damped_law!(
-    HuntCrossley,
-    stiffness: stiffness_n_m_n,
-    exponent: |law| law.exponent,
-    damping_s_m: |law, _speed_m_s| law.damping_s_m
-);
+impl Damped for HuntCrossley {
+    fn stiffness(&self) -> f64 {
+        self.stiffness_n_m_n
+    }
+
+    fn exponent(&self) -> f64 {
+        self.exponent
+    }
+
+    fn damping_s_m(&self, _approach_speed_m_s: f64) -> f64 {
+        self.damping_s_m
+    }
+}
+
+damped_law!(HuntCrossley);

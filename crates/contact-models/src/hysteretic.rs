@@ -10,7 +10,7 @@ use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, St
 /// Source: thesis Eqs. 3.16 and 3.17, after S. Biswas, P. Jana and A. Chatterjee, *Int. J. Mech.
 /// Sci.* 108-109 (2016) 61. As printed, Eq. 3.17 carries a factor `<xi>`, with which `K` would
 /// have the unit 1/m, nothing would be singular at `xi = 0`, and the stated parameters would give
-/// no dissipation instead of a restitution of 0.95. This crate reads it without that factor, for
+/// almost no dissipation instead of a restitution of 0.95. This crate reads it without that factor, for
 /// `xi > 0`:
 ///
 /// ```text
@@ -34,8 +34,8 @@ use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, St
 /// wall does not depend on the speed; with `eps` it falls slightly as the speed grows.
 ///
 /// Complete contacts dissipate; single minor loops need not: while `theta < theta_m`, a small
-/// loop of loading and unloading raises `theta`, and the stored energy with it, by slightly more
-/// than the work done on it.
+/// loop of loading and unloading raises `theta`, and gives back slightly more work than it took.
+/// The stored energy is a quadrature of some microseconds, the force a single power.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hysteretic {
     /// Stiffness `k_H` (N/m^1.5).

@@ -1,7 +1,7 @@
 //! Lankarani and Nikravesh's law.
 
 use crate::InvalidInput;
-use crate::damped::{LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::damped::{Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 3 (1 - e^2) / (4 v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -12,7 +12,7 @@ use crate::damped::{LOWEST_APPROACH_SPEED_M_S, damped_law};
 ///
 /// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
-/// | obtained | LN_ROW |
+/// | obtained | 0.954 | 0.913 | 0.847 | 0.796 | 0.725 | 0.684 | 0.665 |
 ///
 /// Tensile tail: as for [`Viscous`](crate::Viscous). The rule stiffens without bound as `v0`
 /// falls, and a contact that is pressed on after a slow touch would be frozen; below
@@ -50,12 +50,15 @@ impl LankaraniNikravesh {
     }
 }
 
-damped_law!(
-    LankaraniNikravesh,
-    stiffness: stiffness_n_m1_5,
-    exponent: |_law| 1.5,
-    damping_s_m: |law, speed_m_s| {
-        let e = law.restitution;
-        0.75 * (1.0 - e * e) / speed_m_s.max(law.lowest_approach_speed_m_s)
+impl Damped for LankaraniNikravesh {
+    fn stiffness(&self) -> f64 {
+        self.stiffness_n_m1_5
     }
-);
+
+    fn damping_s_m(&self, approach_speed_m_s: f64) -> f64 {
+        let e = self.restitution;
+        0.75 * (1.0 - e * e) / approach_speed_m_s.max(self.lowest_approach_speed_m_s)
+    }
+}
+
+damped_law!(LankaraniNikravesh);

@@ -76,6 +76,10 @@ mod thornton;
 mod trace;
 mod viscous;
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
+
 pub use error::InvalidInput;
 pub use flores::Flores;
 pub use hertz::Hertz;

@@ -1,6 +1,6 @@
 //! A law driven by a prescribed motion.
 
-use crate::quadrature::smooth;
+use crate::quadrature::between_events;
 use crate::{After, Boundary, Branch, ContactLaw, InvalidInput, Memory};
 
 /// The contact at one moment of a prescribed motion.
@@ -58,7 +58,8 @@ impl State {
 /// each change of branch in between, located to rounding.
 ///
 /// Between two neighbouring times the motion should meet a branch's end at most once, as it does
-/// when the times resolve its swings. Work is integrated by a 12-point Gauss rule on each piece.
+/// when the times resolve its swings. Work is integrated by a 12-point Gauss rule on each piece, which
+/// allows for forces that begin and end as a power 3/2.
 ///
 /// # Errors
 /// Times that are not finite or do not increase; a motion that is not finite.
@@ -96,7 +97,7 @@ pub fn trace(
         for _ in 0..32 {
             let met = first_met(&state.boundaries(law), start, end, &motion);
             let stop = met.map_or(end, |(time, _)| time);
-            work_j += smooth(start, stop, |t| {
+            work_j += between_events(start, stop, |t| {
                 let (xi, rate) = motion(t);
                 state.force(law, (xi, rate)) * rate
             });
@@ -139,11 +140,9 @@ fn first_met(
             continue;
         }
         let (mut low, mut high) = (start, if beyond(boundary, start) { start } else { end });
-        loop {
+        // to the rounding of the interval
+        for _ in 0..54 {
             let middle = low + 0.5 * (high - low);
-            if middle <= low || middle >= high {
-                break;
-            }
             *(if beyond(boundary, middle) { &mut high } else { &mut low }) = middle;
         }
         if met.is_none_or(|(earlier, _)| high < earlier) {

@@ -1,7 +1,7 @@
 //! The thesis's viscous contact dissipation.
 
 use crate::InvalidInput;
-use crate::damped::{self, damped_law};
+use crate::damped::{self, Damped, damped_law};
 
 /// `F = k_H <xi>^(3/2) (1 + c xi_dot)` (thesis Eq. 3.15), `c` the same for every contact.
 ///
@@ -47,9 +47,14 @@ impl Viscous {
     }
 }
 
-damped_law!(
-    Viscous,
-    stiffness: stiffness_n_m1_5,
-    exponent: |_law| 1.5,
-    damping_s_m: |law, _speed_m_s| law.damping_s_m
-);
+impl Damped for Viscous {
+    fn stiffness(&self) -> f64 {
+        self.stiffness_n_m1_5
+    }
+
+    fn damping_s_m(&self, _approach_speed_m_s: f64) -> f64 {
+        self.damping_s_m
+    }
+}
+
+damped_law!(Viscous);

@@ -59,7 +59,8 @@ pub(crate) struct Contact<'a, L> {
     rate: f64,
     /// Where the branch is expected to end: which boundary, and when.
     horizon: Option<(usize, f64)>,
-    found: SubImpact,
+    peak_force: Peak,
+    peak_compression: Peak,
 }
 
 impl<'a, L: ContactLaw> Contact<'a, L> {
@@ -90,14 +91,20 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             compression: memory.touch_m,
             rate,
             horizon: None,
-            found: SubImpact { start_s, end_s: start_s, impulse_n_s: 0.0, peak_force_n: 0.0, peak_compression_m: 0.0 },
+            peak_force: Peak::NONE,
+            peak_compression: Peak::NONE,
         };
         contact.enter(contact.branch);
         contact.level = contact.first_level();
         let end = contact.follow();
-        contact.found.end_s = contact.motion.time;
-        contact.found.impulse_n_s = contact.motion.impulse - impulse_before;
-        (contact.found, end)
+        let found = SubImpact {
+            start_s,
+            end_s: contact.motion.time,
+            impulse_n_s: contact.motion.impulse - impulse_before,
+            peak_force_n: contact.peak_force.value(),
+            peak_compression_m: contact.peak_compression.value(),
+        };
+        (found, end)
     }
 
     fn enter(&mut self, branch: Branch) {
@@ -304,9 +311,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     /// Books a step that has been made: peaks, counts, record.
     fn note(&mut self, h: f64, step: &Collocated, force: &Nodal) {
         self.counts.contact_steps += 1;
-        self.found.peak_force_n = peak(self.found.peak_force_n, &step.force, force);
-        let compression = BASIS.coefficients(&step.compression);
-        self.found.peak_compression_m = peak(self.found.peak_compression_m, &step.compression, &compression);
+        self.peak_force.note(&step.force);
+        self.peak_compression.note(&step.compression);
         if let Some(pieces) = self.record.as_mut() {
             let contact = ContactPiece { length: h, force: *force, branch: self.branch };
             pieces.push(Piece { start: self.before.clone(), contact: Some(contact) });
@@ -319,23 +325,37 @@ fn truncation(force: &Nodal) -> f64 {
     force[Q - 1].abs().max(force[Q - 2].abs())
 }
 
-/// The larger of `so_far` and the largest value on a step, given at the nodes and as coefficients.
-fn peak(so_far: f64, nodal: &Nodal, coefficients: &Nodal) -> f64 {
-    let largest = nodal.iter().fold(f64::MIN, |a, b| a.max(*b));
-    // the polynomial rises above its nodal values by little: look closer only where it can matter
-    if largest < 0.9 * so_far {
-        return so_far;
+/// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
+/// polynomial searched once the contact is over.
+#[derive(Clone, Copy)]
+struct Peak {
+    largest: f64,
+    nodal: Nodal,
+}
+
+impl Peak {
+    const NONE: Peak = Peak { largest: 0.0, nodal: [0.0; Q] };
+
+    fn note(&mut self, nodal: &Nodal) {
+        let largest = nodal.iter().fold(0.0, |a: f64, b| a.max(*b));
+        if largest > self.largest {
+            *self = Peak { largest, nodal: *nodal };
+        }
     }
-    // golden section around the best of a fine grid
-    let grid = 4 * Q;
-    let at = |i: usize| i as f64 / grid as f64;
-    let best = (0..=grid).max_by(|&a, &b| evaluate(coefficients, at(a)).total_cmp(&evaluate(coefficients, at(b))));
-    let best = best.unwrap_or(0);
-    let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(grid)));
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    for _ in 0..24 {
-        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-        if evaluate(coefficients, left) > evaluate(coefficients, right) { high = right } else { low = left }
+
+    fn value(&self) -> f64 {
+        let coefficients = BASIS.coefficients(&self.nodal);
+        let grid = 4 * Q;
+        let at = |i: usize| i as f64 / grid as f64;
+        let value = |i: &usize| evaluate(&coefficients, at(*i));
+        let best = (0..=grid).max_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(0);
+        // golden section around the best of the grid
+        let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(grid)));
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        for _ in 0..24 {
+            let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+            if evaluate(&coefficients, left) > evaluate(&coefficients, right) { high = right } else { low = left }
+        }
+        self.largest.max(evaluate(&coefficients, 0.5 * (low + high)))
     }
-    so_far.max(evaluate(coefficients, 0.5 * (low + high)))
 }

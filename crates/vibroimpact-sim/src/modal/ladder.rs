@@ -127,15 +127,10 @@ impl Ladder {
 
 /// `state[k] += sum_n table[n][k] force[n]`.
 fn accumulate(state: &mut [f64], table: &[Vec<f64>; Q], force: &Nodal) {
-    let [t0, t1, t2, t3, t4, t5, t6] = table.each_ref().map(|row| &row[..state.len()]);
-    for k in 0..state.len() {
-        state[k] += t0[k] * force[0]
-            + t1[k] * force[1]
-            + t2[k] * force[2]
-            + t3[k] * force[3]
-            + t4[k] * force[4]
-            + t5[k] * force[5]
-            + t6[k] * force[6];
+    for (row, f) in table.iter().zip(force) {
+        for (value, t) in state.iter_mut().zip(row) {
+            *value += t * f;
+        }
     }
 }
 

@@ -47,9 +47,11 @@ impl<L: ContactLaw> Approach<'_, L> {
         let mut response = [[0.0; Q]; Q];
         let (mut end_response, mut end_rate_response) = ([0.0; Q], [0.0; Q]);
         let mut power = length;
+        // the series of the kernel begins with p = 1; its terms fall, and the small ones are left out
+        let least = 1e-18 * (self.kernel[1] * length * length).abs();
         for p in 0..TAYLOR {
             let kernel = self.kernel[p] * power;
-            if kernel != 0.0 {
+            if kernel.abs() > least {
                 for i in 0..Q {
                     for j in 0..Q {
                         response[i][j] -= kernel * basis.power[p][i][j];
@@ -107,9 +109,10 @@ impl<L: ContactLaw> Approach<'_, L> {
         let start = self.free(0.0);
         let initial = self.law.boundaries(self.branch)[self.which].margin(self.start_compression, start.1).max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
-        let mut high = (1.2 * expected).min(longest);
+        let mut high = (1.2 * expected).max(1e-3 * longest).min(longest);
         let mut guess = [0.0; Q];
-        let (mut best, mut high_margin) = loop {
+        let mut side = 0;
+        let (mut best, mut best_margin) = loop {
             let (landed, margin) = self.attempt(high, guess, counts)?;
             guess = landed.step.force;
             if margin <= 0.0 {
@@ -121,33 +124,30 @@ impl<L: ContactLaw> Approach<'_, L> {
             (low, low_margin) = (high, margin);
             high = (2.0 * high).min(longest);
         };
-        // Illinois: regula falsi whose stagnant end is halved
-        let mut side = 0;
-        for _ in 0..100 {
-            if high - low <= 4.0 * f64::EPSILON * high || high_margin == 0.0 {
+        let mut high_margin = best_margin;
+        // Newton's method on the length where the margin's slope is at hand, regula falsi where it is not, both
+        // kept within the bracket
+        let per = self.law.boundaries(self.branch)[self.which];
+        for _ in 0..60 {
+            let slope = if per.per_rate == 0.0 { per.per_compression * best.rate } else { 0.0 };
+            let newton = best.length - best_margin / slope;
+            let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
+            let next = [newton, secant, 0.5 * (low + high)].into_iter().find(|x| *x > low && *x < high);
+            let Some(next) = next else { break };
+            let moved = (best.length - next).abs();
+            (best, best_margin) = self.attempt(next, best.step.force, counts)?;
+            // what follows does not depend on where within these last digits the branch is left
+            if moved <= 1e-13 * high || best_margin.abs() <= 1e-13 * initial {
                 break;
             }
-            let guess_length = (low * high_margin - high * low_margin) / (high_margin - low_margin);
-            let middle = if guess_length > low && guess_length < high { guess_length } else { 0.5 * (low + high) };
-            if middle <= low || middle >= high {
-                break;
-            }
-            let (landed, margin) = self.attempt(middle, best.step.force, counts)?;
-            let moved = (best.length - middle).abs();
-            best = landed;
-            if margin <= 0.0 {
-                if side == -1 {
-                    low_margin *= 0.5;
-                }
-                (high, high_margin, side) = (middle, margin, -1);
+            if best_margin <= 0.0 {
+                (high, high_margin, low_margin) =
+                    (next, best_margin, if side < 0 { 0.5 * low_margin } else { low_margin });
+                side = -1;
             } else {
-                if side == 1 {
-                    high_margin *= 0.5;
-                }
-                (low, low_margin, side) = (middle, margin, 1);
-            }
-            if moved <= 1e-14 * high {
-                break;
+                (low, low_margin, high_margin) =
+                    (next, best_margin, if side > 0 { 0.5 * high_margin } else { high_margin });
+                side = 1;
             }
         }
         Some(best)

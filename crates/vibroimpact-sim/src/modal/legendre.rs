@@ -44,9 +44,18 @@ pub(crate) fn legendre(s: f64) -> Nodal {
     let x = 2.0 * s - 1.0;
     let mut p = [1.0; Q];
     p[1] = x;
+    // (n+1) P_{n+1} = (2n+1) x P_n - n P_{n-1}
+    const FACTORS: [(f64, f64); Q] = {
+        let mut factors = [(0.0, 0.0); Q];
+        let mut n = 1;
+        while n < Q {
+            factors[n] = ((2 * n + 1) as f64 / (n + 1) as f64, n as f64 / (n + 1) as f64);
+            n += 1;
+        }
+        factors
+    };
     for n in 1..Q - 1 {
-        let m = n as f64;
-        p[n + 1] = ((2.0 * m + 1.0) * x * p[n] - m * p[n - 1]) / (m + 1.0);
+        p[n + 1] = FACTORS[n].0 * x * p[n] - FACTORS[n].1 * p[n - 1];
     }
     p
 }

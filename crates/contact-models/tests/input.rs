@@ -1,0 +1,142 @@
+//! Parameters out of range are reported with field, value and what is allowed.
+
+use contact_models::{Body, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt};
+use contact_models::{LankaraniNikravesh, Law, LinearSpring, Memory, Thornton, Viscous};
+use contact_models::{effective_modulus_pa, effective_radius_m, trace};
+
+const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e31, 1e-320];
+
+fn field<T: std::fmt::Debug>(result: Result<T, InvalidInput>) -> String {
+    result.unwrap_err().field
+}
+
+#[test]
+fn parameters_of_every_law() {
+    for bad in BAD {
+        assert_eq!(field(Hertz::new(bad)), "stiffness_n_m1_5");
+        assert_eq!(field(LinearSpring::new(bad)), "stiffness_n_m");
+        assert_eq!(field(Viscous::new(bad, 0.1)), "stiffness_n_m1_5");
+        assert_eq!(field(Hysteretic::new(bad, 1.6, 1.4, 0.4, 0.0)), "stiffness_n_m1_5");
+        assert_eq!(field(Hysteretic::new(1.0, bad, 1.4, 0.4, 0.0)), "theta_m");
+        assert_eq!(field(Hysteretic::new(1.0, 1.6, 1.4, bad, 0.0)), "k_bar");
+        assert_eq!(field(KelvinVoigt::new(bad, 1.0)), "stiffness_n_m");
+        assert_eq!(field(KelvinVoigt::new(1.0, bad)), "damping_n_s_m");
+        assert_eq!(field(HuntCrossley::new(bad, 1.5, 0.1)), "stiffness_n_m_n");
+        assert_eq!(field(HuntCrossley::new(1.0, bad, 0.1)), "exponent");
+        assert_eq!(field(LankaraniNikravesh::new(bad, 0.9)), "stiffness_n_m1_5");
+        assert_eq!(field(LankaraniNikravesh::new(1.0, bad)), "restitution");
+        assert_eq!(field(Flores::new(bad, 0.9)), "stiffness_n_m1_5");
+        assert_eq!(field(Flores::new(1.0, bad)), "restitution");
+        assert_eq!(field(Thornton::new(bad, 1.0, 1.0)), "effective_modulus_pa");
+        assert_eq!(field(Thornton::new(1.0, bad, 1.0)), "effective_radius_m");
+        assert_eq!(field(Thornton::new(1.0, 1.0, bad)), "yield_pressure_pa");
+        assert_eq!(field(Viscous::with_restitution(1.0, bad, 1.0)), "restitution");
+        assert_eq!(field(Viscous::with_restitution(1.0, 0.9, bad)), "speed_m_s");
+        assert_eq!(field(HuntCrossley::with_restitution(1.0, 1.5, 0.9, bad)), "speed_m_s");
+        assert_eq!(field(HuntCrossley::with_restitution_first_order(1.0, 1.5, bad, 1.0)), "restitution");
+        assert_eq!(field(KelvinVoigt::with_restitution(1.0, bad, 1.0)), "restitution");
+        assert_eq!(field(KelvinVoigt::with_restitution(1.0, 0.9, bad)), "mass_kg");
+    }
+    for bad in [f64::NAN, f64::INFINITY, -0.1] {
+        assert_eq!(field(Viscous::new(1.0, bad)), "damping_s_m");
+        assert_eq!(field(HuntCrossley::new(1.0, 1.5, bad)), "damping_s_m");
+        assert_eq!(field(Hysteretic::new(1.0, 1.6, bad, 0.4, 0.0)), "beta");
+        assert_eq!(field(Hysteretic::new(1.0, 1.6, 1.4, 0.4, bad)), "epsilon_m");
+    }
+    assert_eq!(field(Hysteretic::new(1.0, 1.6, 2.7, 0.4, 0.0)), "beta");
+    let message = Viscous::new(1.0, -0.1).unwrap_err().to_string();
+    assert_eq!(message, "damping_s_m = -0.1 is not allowed: a number from 0 to 1e30");
+}
+
+#[test]
+fn a_changed_field_can_be_checked_again() {
+    let mut law = Hertz::new(1.0).unwrap();
+    law.stiffness_n_m1_5 = f64::NAN;
+    assert_eq!(field(Law::from(law).validated()), "stiffness_n_m1_5");
+}
+
+#[test]
+fn wall_restitution_needs_a_striker() {
+    let law = Law::from(Hertz::new(1.0).unwrap());
+    for bad in BAD {
+        assert_eq!(field(law.wall_restitution(bad, 1.0)), "mass_kg");
+        assert_eq!(field(law.wall_restitution(1.0, bad)), "speed_m_s");
+    }
+}
+
+/// The corners of the range of parameters, and of mass and speed.
+#[test]
+fn extremes_stay_finite() {
+    use contact_models::ContactLaw;
+    let ends = [1e-30, 1.0, 1e30];
+    for a in ends {
+        for b in ends {
+            for c in ends {
+                let laws: [Law; 9] = [
+                    Hertz::new(a).unwrap().into(),
+                    LinearSpring::new(a).unwrap().into(),
+                    Viscous::new(a, b).unwrap().into(),
+                    Hysteretic::new(a, b, b.min(1.0), c.min(1000.0), c).unwrap().into(),
+                    KelvinVoigt::new(a, b).unwrap().into(),
+                    HuntCrossley::new(a, 4.0, b).unwrap().into(),
+                    LankaraniNikravesh::new(a, 0.5).unwrap().into(),
+                    Flores { lowest_approach_speed_m_s: b, ..Flores::new(a, 0.001).unwrap() }.into(),
+                    Thornton::new(a, b, c).unwrap().into(),
+                ];
+                for law in laws {
+                    let law = law.validated().unwrap();
+                    for mass in ends {
+                        for speed in ends {
+                            let e = law.wall_restitution(mass, speed).unwrap();
+                            assert!((0.0..=1.0 + 1e-12).contains(&e), "{law:?} {mass} {speed}: {e}");
+                        }
+                    }
+                    let branch = law.touch(&Memory::default(), 0.0);
+                    for x in [-f64::MAX, 0.0, f64::MIN_POSITIVE, 1e-30, 1.0, f64::MAX] {
+                        for v in [-f64::MAX, 0.0, f64::MAX] {
+                            let force = law.force(&branch, x, v);
+                            let numbers = [force.force_n, force.per_compression_n_m, force.per_rate_n_s_m];
+                            assert!(numbers.iter().all(|n| n.is_finite()), "{law:?} {x} {v} {force:?}");
+                            assert!(law.stored_energy_j(&branch, x).is_finite(), "{law:?} {x}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn pairs_of_bodies() {
+    let steel = |radius_m: f64| Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m };
+    // two equal balls: half the radius; against rigid: twice the modulus of a like pair
+    assert!((effective_radius_m(&steel(0.02), &steel(0.02)).unwrap() - 0.01).abs() < 1e-16);
+    let like = effective_modulus_pa(&steel(0.02), &steel(0.02)).unwrap();
+    let rigid = effective_modulus_pa(&steel(0.02), &Body::rigid(f64::INFINITY)).unwrap();
+    assert!((rigid / like - 2.0).abs() < 1e-15);
+    // a ball in a wider seat
+    assert!((effective_radius_m(&steel(0.02), &steel(-0.04)).unwrap() - 0.04).abs() < 1e-16);
+    for (first, second) in [(0.02, -0.02), (0.04, -0.02), (f64::INFINITY, f64::INFINITY), (0.0, 1.0), (f64::NAN, 1.0)] {
+        assert_eq!(field(effective_radius_m(&steel(first), &steel(second))), "radius_m");
+    }
+    assert_eq!(field(effective_modulus_pa(&Body::rigid(1.0), &Body::rigid(1.0))), "youngs_modulus_pa");
+    let wrong = |nu: f64| effective_modulus_pa(&Body::flat(2e11, nu), &steel(1.0));
+    for nu in [-1.0, 0.51, f64::NAN] {
+        assert_eq!(field(wrong(nu)), "poissons_ratio");
+    }
+    assert_eq!(field(Hertz::from_bodies(&Body::flat(-1.0, 0.3), &steel(1.0))), "youngs_modulus_pa");
+}
+
+#[test]
+fn motions_that_cannot_be_followed() {
+    let law = Hertz::new(1.0).unwrap();
+    assert_eq!(field(trace(&law, &[0.0, 0.0], |_| (0.0, 0.0))), "times_s");
+    assert_eq!(field(trace(&law, &[0.0, f64::NAN], |_| (0.0, 0.0))), "times_s");
+    assert_eq!(field(trace(&law, &[0.0, 1.0], |t| (t / 0.0, 0.0))), "compression_m");
+    assert_eq!(field(trace(&law, &[0.0, 1.0], |_| (0.0, f64::INFINITY))), "rate_m_s");
+    assert!(trace(&law, &[], |_| (0.0, 0.0)).unwrap().is_empty());
+    // a rate that is not the compression's makes nonsense, but an end
+    let thornton = Thornton::new(1.0, 1.0, 0.1).unwrap();
+    let path = trace(&thornton, &[0.0, 1.0, 2.0, 3.0], |t| (t - 1.5, -1.0)).unwrap();
+    assert!(path.len() >= 4 && path.iter().all(|point| point.force_n.is_finite()));
+}

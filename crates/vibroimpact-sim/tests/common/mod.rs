@@ -1,0 +1,115 @@
+//! What the tests of the modal impact share: the thesis's beam, and a plain Runge-Kutta integration.
+#![allow(dead_code)]
+
+use contact_models::{ContactLaw, Hertz, Law, Memory};
+use std::f64::consts::PI;
+use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
+
+/// (sqrt 5 - 1) / 2, the thesis's second location on the unit beam (m).
+pub const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// The pinned-pinned beam of thesis chapter 3 in its first `n` modes, struck at `b` (m).
+pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
+    let side: f64 = 0.011323;
+    let (mass, rigidity) = (7800.0 * side * side, 2e11 * side.powi(4) / 12.0);
+    let mode = |k: usize| {
+        let q = k as f64 * PI;
+        Mode {
+            omega_rad_s: q * q * (rigidity / mass).sqrt(),
+            damping_ratio,
+            shape: (2.0 / mass).sqrt() * (q * b).sin(),
+        }
+    };
+    Structure { modes: (1..=n).map(mode).collect(), residual_compliance_m_n: 0.0 }
+}
+
+/// The same with the static compliance of all higher modes.
+pub fn pinned_with_residual(n: usize, damping_ratio: f64, b: f64) -> Structure {
+    let mut structure = pinned(n, damping_ratio, b);
+    let rigidity = 2e11 * 0.011323f64.powi(4) / 12.0;
+    let whole = (b * (1.0 - b)).powi(2) / (3.0 * rigidity);
+    structure.residual_compliance_m_n =
+        whole - structure.modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum::<f64>();
+    structure
+}
+
+/// Hertz contact of the thesis's 3 cm ball.
+pub fn hertz() -> Law {
+    Law::Hertz(Hertz::new(1.7945e10).unwrap())
+}
+
+/// The thesis's 3 cm steel ball at 1 m/s.
+pub fn ball() -> Striker {
+    Striker { mass_kg: 0.11027, speed_m_s: 1.0 }
+}
+
+pub fn settings(tolerance: f64) -> Settings {
+    Settings { tolerance, ..Settings::default() }
+}
+
+pub fn solve(structure: &Structure, tolerance: f64) -> Solution {
+    Solver::new(structure).unwrap().solve(&ball(), &hertz(), None, &settings(tolerance)).unwrap()
+}
+
+/// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker
+/// and of every mode, for a law with a single branch and a structure at rest. Returns the striker's velocity at `end_s`,
+/// away from the structure.
+pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f64, tolerance: f64) -> f64 {
+    let n = structure.modes.len();
+    let branch = law.touch(&Memory::default(), striker.speed_m_s);
+    let slope = |y: &[f64], dy: &mut [f64]| {
+        let (mut xi, mut rate) = (-y[0], -y[1]);
+        for (k, mode) in structure.modes.iter().enumerate() {
+            xi += mode.shape * y[2 + 2 * k];
+            rate += mode.shape * y[3 + 2 * k];
+        }
+        let force = if xi > 0.0 { law.force(&branch, xi, rate).force_n.max(0.0) } else { 0.0 };
+        (dy[0], dy[1]) = (y[1], force / striker.mass_kg);
+        for (k, mode) in structure.modes.iter().enumerate() {
+            let (a, v) = (y[2 + 2 * k], y[3 + 2 * k]);
+            dy[2 + 2 * k] = v;
+            dy[3 + 2 * k] =
+                -2.0 * mode.damping_ratio * mode.omega_rad_s * v - mode.omega_rad_s.powi(2) * a - mode.shape * force;
+        }
+    };
+    const A: [[f64; 6]; 6] = [
+        [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
+        [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
+        [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
+        [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
+        [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
+    ];
+    const E: [f64; 7] =
+        [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+    let size = 2 * n + 2;
+    // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
+    let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
+    let scale = |i: usize| striker.speed_m_s * if i % 2 == 0 { 1.0 / fastest } else { 1.0 };
+    let mut y = vec![0.0; size];
+    y[1] = -striker.speed_m_s;
+    let mut k = vec![vec![0.0; size]; 7];
+    slope(&y, &mut k[0]);
+    let (mut t, mut h) = (0.0, 1e-3 / fastest);
+    while t < end_s {
+        h = h.min(end_s - t);
+        let mut trial = y.clone();
+        for stage in 0..6 {
+            for i in 0..size {
+                trial[i] = y[i] + h * (0..=stage).map(|s| A[stage][s] * k[s][i]).sum::<f64>();
+            }
+            let mut next = std::mem::take(&mut k[stage + 1]);
+            slope(&trial, &mut next);
+            k[stage + 1] = next;
+        }
+        let error =
+            (0..size).map(|i| (h * (0..7).map(|s| E[s] * k[s][i]).sum::<f64>()).abs() / scale(i)).fold(0.0, f64::max);
+        if error <= tolerance {
+            t += h;
+            y = trial;
+            k.swap(0, 6);
+        }
+        h *= (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0);
+    }
+    y[1]
+}
