@@ -1,2 +1,70 @@
-//! xtask
-fn main() {}
+//! The workspace's own tasks: `cargo xtask ci` and `cargo xtask reproduce-chapter`.
+
+mod chapters;
+mod ci;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use chapters::Failure;
+use clap::{Parser, Subcommand};
+
+/// The chapters that can be reproduced.
+const CHAPTERS: [u32; 2] = [3, 4];
+
+/// Keeps the house, and reproduces the chapters of the thesis.
+#[derive(Parser)]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Check everything: format, clippy, docs, tests, and the chapters in their quick form
+    Ci,
+    /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
+    ReproduceChapter {
+        /// The chapter: 3 or 4
+        chapter: u32,
+        /// Fewer points through the same code
+        #[arg(long)]
+        quick: bool,
+        /// The folder to write to; out/chapter-N when left out
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: Task) -> Result<(), Failure> {
+    match task {
+        Task::Ci => {
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
+            ci::run(root, || {
+                CHAPTERS.into_iter().try_for_each(|chapter| {
+                    let out = root.join(format!("out/ci/chapter-{chapter}"));
+                    reproduce(chapter, &out, true)
+                })
+            })
+        }
+        Task::ReproduceChapter { chapter, quick, out } => {
+            let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
+            reproduce(chapter, &out, quick)
+        }
+    }
+}
+
+fn reproduce(chapter: u32, out: &Path, quick: bool) -> Result<(), Failure> {
+    println!("{}", chapters::run(chapter, out, quick)?);
+    Ok(())
+}

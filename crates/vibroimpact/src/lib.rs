@@ -1,4 +1,48 @@
-//! vibroimpact
+//! From a scene file to the rebound: a compact body strikes a slender vibrating one.
+//!
+//! A [`Scene`] poses an impact as a user does: a beam of segments (or a structure known by its modes), a striker, a
+//! law of contact, a place. [`Scene::impact`] turns it into the terms of the solver, and [`Impact::solve`] resolves
+//! every contact until it is certain that the bodies never meet again.
+//!
+//! ```
+//! use vibroimpact::Scene;
+//! use vibroimpact::vibroimpact_sim::modal::Outcome;
+//!
+//! let scene = Scene::from_json(r#"{
+//!     "structure": { "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
+//!                    "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+//!     "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+//!     "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 },
+//!     "location_m": 0.9, "modes": 100, "residual_compliance": true
+//! }"#)?;
+//! let solution = scene.impact()?.solve()?;
+//! assert_eq!(solution.outcome, Outcome::Rebound);
+//! for contact in &solution.sub_impacts {
+//!     println!("{} s to {} s: {} N s", contact.start_s, contact.end_s, contact.impulse_n_s);
+//! }
+//! # Ok::<(), vibroimpact::SceneError>(())
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`scene`] | the scene file, field by field, and what can be wrong with it |
+//! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`export`] | histories as CSV, the picture as SVG |
+//! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
+//!
+//! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`].
 
+mod impact;
+
+pub mod export;
 pub mod plot;
 pub mod report;
+pub mod scene;
+pub mod summary;
+pub mod text;
+
+pub use beam_modes;
+pub use contact_models;
+pub use impact::Impact;
+pub use scene::{InvalidInput, Scene, SceneError};
+pub use vibroimpact_sim;

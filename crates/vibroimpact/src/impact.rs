@@ -1,0 +1,132 @@
+//! From the fields of a scene to the terms of the solver, and back again in its errors.
+
+use contact_models::Law;
+use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Striker, Structure};
+
+use crate::scene::{InvalidInput, Scene};
+
+/// An impact in the terms of [`vibroimpact_sim::modal`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Impact {
+    /// The modes of the structure at the point of impact.
+    pub structure: Structure,
+    /// Mass and speed.
+    pub striker: Striker,
+    /// The law of the contact, with its parameters.
+    pub law: Law,
+    /// Accuracy and limits.
+    pub settings: Settings,
+}
+
+impl Impact {
+    /// Solves the impact.
+    ///
+    /// # Errors
+    /// A value out of range, by its name in a scene.
+    pub fn solve(&self) -> Result<Solution, InvalidInput> {
+        let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
+        solver.solve(&self.striker, &self.law, None, &self.settings).map_err(in_scene)
+    }
+
+    /// Solves the impact and keeps its whole motion.
+    ///
+    /// # Errors
+    /// As [`Impact::solve`].
+    pub fn record(&self) -> Result<(Solution, History<Law>), InvalidInput> {
+        let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
+        solver.record(&self.striker, &self.law, None, &self.settings).map_err(in_scene)
+    }
+}
+
+/// The solver's fault under the names that scenes use.
+fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
+    let fault = InvalidInput::from(fault);
+    match fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("].")) {
+        Some((k, quantity)) => {
+            let list = match quantity {
+                "shape" => "shape_at_location",
+                "damping_ratio" => "damping_ratios",
+                other => other,
+            };
+            InvalidInput { field: format!("structure.{list}[{k}]"), ..fault }
+        }
+        None if ["mass_kg", "speed_m_s"].contains(&fault.field.as_str()) => fault.within("striker"),
+        None => fault,
+    }
+}
+
+impl Scene {
+    /// The structure as the solver sees it: its modes at the point of impact and, if the scene asks for it, the
+    /// static compliance of the modes left out.
+    ///
+    /// # Errors
+    /// A value out of range, or fields of which too few or too many are given.
+    pub fn structure(&self) -> Result<Structure, InvalidInput> {
+        let modes = self.structure.modes(self.location_m, self.modes)?;
+        let residual_compliance_m_n = if self.residual_compliance {
+            let whole = self.structure.static_compliance_m_n(self.location_m)?;
+            let kept: f64 = modes
+                .iter()
+                .filter(|mode| mode.omega_rad_s > 0.0)
+                .map(|mode| (mode.shape / mode.omega_rad_s).powi(2))
+                .sum();
+            residual(whole, kept)?
+        } else {
+            0.0
+        };
+        Ok(Structure { modes, residual_compliance_m_n })
+    }
+
+    /// The modes of the structure as seen from the point of impact: the first `count`, however many the scene keeps.
+    ///
+    /// # Errors
+    /// As [`Scene::structure`].
+    pub fn mode_shapes(&self, count: usize) -> Result<Vec<vibroimpact_sim::modal::Mode>, InvalidInput> {
+        self.structure.modes(self.location_m, Some(count))
+    }
+
+    /// The whole scene in the terms of the solver.
+    ///
+    /// # Errors
+    /// As [`Scene::structure`].
+    ///
+    /// ```
+    /// use vibroimpact::Scene;
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+    ///         "segments": [{ "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+    ///                        "width_m": 0.011323, "thickness_m": 0.011323 }] },
+    ///     "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
+    ///     "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+    ///     "location_m": 0.4, "modes": 40
+    /// }"#)?;
+    /// let solution = scene.impact()?.solve()?;
+    /// assert!(solution.sub_impacts.len() > 1);
+    /// assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < 1.0));
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn impact(&self) -> Result<Impact, InvalidInput> {
+        let settings = Settings::default();
+        Ok(Impact {
+            structure: self.structure()?,
+            striker: Striker {
+                mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
+                speed_m_s: self.striker.speed_m_s,
+            },
+            law: self.contact.law(&self.striker)?,
+            settings: Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings },
+        })
+    }
+}
+
+/// Compliance of the whole less that of the modes kept. Rounding may put a complete set of modes below zero.
+fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
+    const ROUNDING: f64 = 1e-9;
+    if whole >= kept * (1.0 - ROUNDING) {
+        Ok((whole - kept).max(0.0))
+    } else {
+        let allowed = format!("not less than that of the modes kept, {kept:e}");
+        Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole:e}"), allowed))
+    }
+}

@@ -1,0 +1,132 @@
+//! The command line: scene files in, results out.
+//!
+//! Exit codes: 0 for a result (sustained contact and a limit reached among them), 2 for input that cannot be used,
+//! 1 for results that cannot be written.
+
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use serde_json::json;
+use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::summary::Summary;
+use vibroimpact::{InvalidInput, Scene, SceneError, text};
+
+const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, and its name says which:
+
+  { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+                   "segments": [ { "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+                                   "width_m": 0.011323, "thickness_m": 0.011323 } ] },
+    "striker":   { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
+    "contact":   { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+    "location_m": 0.4, "modes": 40 }
+
+Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
+instead. Laws of contact: hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley,
+lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
+
+const SIMULATE_EXAMPLES: &str = "Examples:
+  vibroimpact simulate ball.json                 a summary to read
+  vibroimpact simulate ball.json --json          one JSON object for programs
+  vibroimpact simulate ball.json --out ball/     CSV histories, the picture impact.svg, result.json
+
+The exit code is 0 for every result, sustained contact and a limit reached among them, 2 for a scene that cannot be
+used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
+
+const MODES_EXAMPLES: &str = "Examples:
+  vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
+  vibroimpact modes ball.json --count 40 --json  the same as one JSON object of lists
+
+Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";
+
+/// What happens when a compact body strikes a slender vibrating one.
+#[derive(Parser)]
+#[command(version, after_help = EXAMPLE, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Resolve one impact: every contact, the rebound, where the energy went
+    #[command(after_help = SIMULATE_EXAMPLES)]
+    Simulate {
+        /// The scene file
+        scene: PathBuf,
+        /// Print one JSON object in place of the summary
+        #[arg(long)]
+        json: bool,
+        /// Write histories, picture and result into this folder
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// List natural frequencies, and mode shapes at the point of impact
+    #[command(after_help = MODES_EXAMPLES)]
+    Modes {
+        /// The scene file
+        scene: PathBuf,
+        /// How many modes, from the lowest
+        #[arg(long, value_name = "N")]
+        count: usize,
+        /// Print one JSON object in place of the table
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        // a reader that has seen enough is no failure
+        Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            let of_input = failure.is::<SceneError>() || failure.is::<InvalidInput>();
+            ExitCode::from(if of_input { 2 } else { 1 })
+        }
+    }
+}
+
+fn is_broken_pipe(failure: &Failure) -> bool {
+    failure.downcast_ref::<std::io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    let printed = match command {
+        Command::Simulate { scene, json, out } => {
+            let scene = Scene::read(&scene)?;
+            let impact = scene.impact()?;
+            let (solution, history) = impact.record()?;
+            let summary = Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
+            let headline = text::headline(&scene, &impact);
+            let mut printed =
+                if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
+            if let Some(folder) = out {
+                let files = Files::new(&headline, &summary, &history)?;
+                files.write(&folder)?;
+                if !json {
+                    let names: Vec<&str> = files.names().collect();
+                    printed += &format!("\n  wrote {} to {}\n", names.join(", "), folder.display());
+                }
+            }
+            printed
+        }
+        Command::Modes { scene, count, json } => {
+            let modes = Scene::read(&scene)?.mode_shapes(count)?;
+            if json {
+                let omega: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s).collect();
+                let frequency: Vec<f64> = omega.iter().map(|omega| omega / std::f64::consts::TAU).collect();
+                let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
+                export::json(&json!({ "omega_rad_s": omega, "frequency_hz": frequency, "shape_at_location": shape }))?
+            } else {
+                text::modes(&modes)
+            }
+        }
+    };
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(printed.as_bytes())?;
+    stdout.flush()?;
+    Ok(())
+}

@@ -1,0 +1,227 @@
+//! The contact between striker and structure.
+
+use contact_models::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::error::InvalidInput;
+use super::json::{quote, read};
+use super::materials::{HertzStiffness, Materials, in_contact};
+use super::sets::one_of_sets;
+use super::{Striker, fields};
+
+/// The law of the contact; `"law"` in JSON tells which, beside its parameters. A `restitution` is that at an immovable
+/// wall, at the striker's speed, from which the law's damping follows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "law", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Contact {
+    /// `"hertz"`: elastic contact of curved bodies, [`contact_models::Hertz`].
+    Hertz(HertzStiffness),
+    /// `"viscous"`: the thesis's viscous dissipation, [`contact_models::Viscous`].
+    Viscous {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Damping `c` of thesis Eq. 3.15 (s/m), or `restitution` in its place.
+        damping_s_m: Option<f64>,
+        /// Restitution at a wall.
+        restitution: Option<f64>,
+    },
+    /// `"hysteretic"`: the thesis's rate-independent dissipation, [`contact_models::Hysteretic`]. A stiffness from
+    /// materials is divided by `1 + theta_m + beta`, so that first loading follows Hertz (thesis 3.3.4);
+    /// `stiffness_n_m1_5` is taken as it stands.
+    Hysteretic {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Centre of the internal variable.
+        theta_m: f64,
+        /// Half width of the internal variable's range.
+        beta: f64,
+        /// How fast the internal variable follows the compression.
+        k_bar: f64,
+        /// Regularisation at zero compression (m); 0, which stands for its limit, when left out.
+        #[serde(default)]
+        epsilon_m: f64,
+    },
+    /// `"linear-spring"`: [`contact_models::LinearSpring`].
+    #[serde(alias = "linear")]
+    LinearSpring {
+        /// Stiffness (N/m).
+        stiffness_n_m: f64,
+    },
+    /// `"kelvin-voigt"`: spring and dashpot side by side, [`contact_models::KelvinVoigt`].
+    KelvinVoigt {
+        /// Stiffness (N/m).
+        stiffness_n_m: f64,
+        /// Damping (N s/m), or `restitution` in its place.
+        damping_n_s_m: Option<f64>,
+        /// Restitution at a wall.
+        restitution: Option<f64>,
+    },
+    /// `"hunt-crossley"`: [`contact_models::HuntCrossley`].
+    HuntCrossley {
+        /// The elastic part with Hertz's exponent, or `stiffness_n_m_n` and `exponent` in its place.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Stiffness (N/m^n) that goes with `exponent`.
+        stiffness_n_m_n: Option<f64>,
+        /// Exponent `n` of the compression.
+        exponent: Option<f64>,
+        /// Damping factor (s/m), or `restitution` in its place.
+        damping_s_m: Option<f64>,
+        /// Restitution at a wall.
+        restitution: Option<f64>,
+    },
+    /// `"lankarani-nikravesh"`: [`contact_models::LankaraniNikravesh`].
+    LankaraniNikravesh {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Restitution that the damping is meant to give.
+        restitution: f64,
+        /// Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
+        lowest_approach_speed_m_s: Option<f64>,
+    },
+    /// `"flores"`: [`contact_models::Flores`].
+    Flores {
+        /// The elastic part.
+        #[serde(flatten)]
+        stiffness: HertzStiffness,
+        /// Restitution that the damping is meant to give.
+        restitution: f64,
+        /// Approach speed below which the damping grows no further (m/s); 1e-6 when left out.
+        lowest_approach_speed_m_s: Option<f64>,
+    },
+    /// `"elastoplastic"`: Thornton's law, [`contact_models::Thornton`].
+    #[serde(alias = "thornton")]
+    Elastoplastic {
+        /// What the bodies are made of.
+        #[serde(flatten)]
+        materials: Materials,
+        /// Contact pressure at first yield (Pa), about 1.6 times the yield strength.
+        yield_pressure_pa: f64,
+    },
+}
+
+impl Contact {
+    pub(crate) fn from_value(value: &Value) -> Result<Contact, InvalidInput> {
+        let fault = |field: &str, value: Option<&Value>| {
+            let name = if field.is_empty() { "contact" } else { field };
+            let allowed = fields::allowed(name).unwrap_or("a number").to_owned();
+            InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
+        };
+        let Value::Object(entries) = value else { return Err(fault("", Some(value))) };
+        let law = entries.get("law");
+        if !law.is_some_and(Value::is_string) {
+            return Err(fault("law", law));
+        }
+        // serde loses the path of a mistyped field behind a tag, but all of them are numbers
+        if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
+            return Err(fault(field, Some(value)));
+        }
+        let contact: Contact =
+            read(value).map_err(|found| if found.field.is_empty() { fault("law", law) } else { found })?;
+        // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
+        let written = serde_json::to_value(contact).unwrap_or_default();
+        match entries.iter().find(|(field, _)| written.get(field).is_none()) {
+            None => Ok(contact),
+            Some((field, value)) => {
+                let known: Vec<&str> =
+                    written.as_object().into_iter().flatten().map(|(field, _)| field.as_str()).collect();
+                Err(InvalidInput::new(field, quote(value), format!("no such field; here stand {}", known.join(", "))))
+            }
+        }
+    }
+
+    /// The name of the law in scene files.
+    pub fn law_name(&self) -> &'static str {
+        match self {
+            Contact::Hertz(_) => "hertz",
+            Contact::Viscous { .. } => "viscous",
+            Contact::Hysteretic { .. } => "hysteretic",
+            Contact::LinearSpring { .. } => "linear-spring",
+            Contact::KelvinVoigt { .. } => "kelvin-voigt",
+            Contact::HuntCrossley { .. } => "hunt-crossley",
+            Contact::LankaraniNikravesh { .. } => "lankarani-nikravesh",
+            Contact::Flores { .. } => "flores",
+            Contact::Elastoplastic { .. } => "elastoplastic",
+        }
+    }
+
+    /// The law with its parameters, for this striker.
+    pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
+        let speed = striker.speed_m_s;
+        let law: Result<Law, contact_models::InvalidInput> = match *self {
+            Contact::Hertz(stiffness) => Hertz::new(stiffness.of(striker)?).map(Law::from),
+            Contact::Viscous { stiffness, damping_s_m, restitution } => {
+                let k = stiffness.of(striker)?;
+                match damping(("damping_s_m", damping_s_m), restitution)? {
+                    Damping::Given(c) => Viscous::new(k, c),
+                    Damping::FromRestitution(e) => Viscous::with_restitution(k, e, speed),
+                }
+                .map(Law::from)
+            }
+            Contact::Hysteretic { stiffness, theta_m, beta, k_bar, epsilon_m } => {
+                let share = if stiffness.is_given() { 1.0 } else { 1.0 + theta_m + beta };
+                Hysteretic::new(stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m).map(Law::from)
+            }
+            Contact::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m).map(Law::from),
+            Contact::KelvinVoigt { stiffness_n_m: k, damping_n_s_m, restitution } => {
+                match damping(("damping_n_s_m", damping_n_s_m), restitution)? {
+                    Damping::Given(c) => KelvinVoigt::new(k, c),
+                    Damping::FromRestitution(e) => KelvinVoigt::with_restitution(k, e, striker.mass_kg()?),
+                }
+                .map(Law::from)
+            }
+            Contact::HuntCrossley { stiffness, stiffness_n_m_n, exponent, damping_s_m, restitution } => {
+                let (k, n) = match (stiffness_n_m_n, exponent) {
+                    (None, None) => (stiffness.of(striker)?, 1.5),
+                    general => stiffness.or_general(general)?,
+                };
+                match damping(("damping_s_m", damping_s_m), restitution)? {
+                    Damping::Given(c) => HuntCrossley::new(k, n, c),
+                    Damping::FromRestitution(e) => HuntCrossley::with_restitution(k, n, e, speed),
+                }
+                .map(Law::from)
+            }
+            Contact::LankaraniNikravesh { stiffness, restitution, lowest_approach_speed_m_s } => {
+                LankaraniNikravesh::new(stiffness.of(striker)?, restitution).and_then(|law| {
+                    let lowest_approach_speed_m_s = lowest_approach_speed_m_s.unwrap_or(law.lowest_approach_speed_m_s);
+                    LankaraniNikravesh { lowest_approach_speed_m_s, ..law }.validated().map(Law::from)
+                })
+            }
+            Contact::Flores { stiffness, restitution, lowest_approach_speed_m_s } => {
+                Flores::new(stiffness.of(striker)?, restitution).and_then(|law| {
+                    let lowest_approach_speed_m_s = lowest_approach_speed_m_s.unwrap_or(law.lowest_approach_speed_m_s);
+                    Flores { lowest_approach_speed_m_s, ..law }.validated().map(Law::from)
+                })
+            }
+            Contact::Elastoplastic { materials, yield_pressure_pa } => {
+                let (ball, structure) = materials.bodies(striker)?;
+                Thornton::from_bodies(&ball, &structure, yield_pressure_pa).map(Law::from)
+            }
+        };
+        law.map_err(|fault| match fault.field.as_str() {
+            "speed_m_s" | "mass_kg" | "radius_m" => InvalidInput::from(fault).within("striker"),
+            _ => in_contact(fault),
+        })
+    }
+}
+
+enum Damping {
+    Given(f64),
+    FromRestitution(f64),
+}
+
+/// Damping comes either as itself or from a restitution.
+fn damping(given: (&str, Option<f64>), restitution: Option<f64>) -> Result<Damping, InvalidInput> {
+    one_of_sets(&[given, ("restitution", restitution)], &[&[given.0], &["restitution"]]).map_err(in_contact)?;
+    Ok(match (given.1, restitution) {
+        (Some(damping), _) => Damping::Given(damping),
+        (None, restitution) => Damping::FromRestitution(restitution.unwrap_or(f64::NAN)),
+    })
+}

@@ -1,0 +1,101 @@
+//! What can be wrong with a scene, and how it is told.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use super::json::number;
+
+/// A field of a scene that cannot be used: where it stands, what it holds, and what would be allowed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InvalidInput {
+    /// Path of the field, as in `structure.segments[0].length_m`.
+    pub field: String,
+    /// The value found there, as JSON text; `None` where the field is missing.
+    pub value: Option<String>,
+    /// What would be allowed.
+    pub allowed: String,
+}
+
+impl InvalidInput {
+    pub(crate) fn new(field: impl Into<String>, value: impl Into<String>, allowed: impl Into<String>) -> InvalidInput {
+        InvalidInput { field: field.into(), value: Some(value.into()), allowed: allowed.into() }
+    }
+
+    pub(crate) fn missing(field: impl Into<String>, allowed: impl Into<String>) -> InvalidInput {
+        InvalidInput { field: field.into(), value: None, allowed: allowed.into() }
+    }
+
+    /// Passes a finite number greater than zero.
+    pub(crate) fn require_positive(field: &str, value: f64) -> Result<(), InvalidInput> {
+        if value > 0.0 && value.is_finite() {
+            Ok(())
+        } else {
+            Err(InvalidInput::new(field, number(value), "a finite number greater than 0"))
+        }
+    }
+
+    /// The same fault, seen from an object that holds the field's object under the name `parent`.
+    pub(crate) fn within(mut self, parent: &str) -> InvalidInput {
+        let joint = if self.field.is_empty() || self.field.starts_with('[') { "" } else { "." };
+        self.field = format!("{parent}{joint}{}", self.field);
+        self
+    }
+}
+
+/// The errors of the crates that check the numbers name fields as scenes do, from their own object on.
+macro_rules! from_crate {
+    ($($krate:ident),*) => {
+        $(impl From<$krate::InvalidInput> for InvalidInput {
+            fn from(fault: $krate::InvalidInput) -> InvalidInput {
+                // a huge or tiny number is told by its power of ten, not by all its zeros
+                let value = match fault.value.parse::<f64>() {
+                    Ok(value) if fault.value.len() > 20 => number(value),
+                    _ => fault.value,
+                };
+                InvalidInput::new(fault.field, value, fault.allowed)
+            }
+        })*
+    };
+}
+
+from_crate!(beam_modes, contact_models, vibroimpact_sim);
+
+impl fmt::Display for InvalidInput {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let field = if self.field.is_empty() { "the scene" } else { &self.field };
+        match &self.value {
+            Some(value) => write!(f, "{field} = {value} is not allowed: {}", self.allowed),
+            None => write!(f, "{field} is missing: {}", self.allowed),
+        }
+    }
+}
+
+impl std::error::Error for InvalidInput {}
+
+/// Why a text or a file is not a scene.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The file could not be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The text is not JSON, or ends too early.
+    #[error("line {line}, column {column}{}: {reason}", if field.is_empty() { String::new() } else { format!(", in {field}") })]
+    Syntax {
+        /// Line of the fault, from 1.
+        line: usize,
+        /// Column of the fault.
+        column: usize,
+        /// Path of the field in which the fault stands; empty at the top.
+        field: String,
+        /// What was expected.
+        reason: String,
+    },
+    /// A field cannot be used.
+    #[error(transparent)]
+    Invalid(#[from] InvalidInput),
+}

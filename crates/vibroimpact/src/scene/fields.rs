@@ -1,0 +1,74 @@
+//! What each field of a scene may hold, said once for the messages about missing and mistyped fields. (Numbers out
+//! of range are found, and described, by the crates that work with them.)
+
+const POSITIVE: &str = "a finite number greater than 0";
+const NOT_NEGATIVE: &str = "a finite number not less than 0";
+
+/// Field and what it may hold.
+const FIELDS: &[(&str, &str)] = &[
+    ("", "a scene is a JSON object with structure, striker and contact"),
+    ("description", "a text"),
+    ("structure", "an object with the field kind, one of beam, modal"),
+    ("kind", "one of beam, modal"),
+    ("striker", "an object with mass_kg (or density_kg_m3 and radius_m) and speed_m_s"),
+    ("contact", "an object with the field law and the parameters of that law"),
+    (
+        "law",
+        "one of hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley, lankarani-nikravesh, flores, elastoplastic",
+    ),
+    ("location_m", "a finite number from 0 to the length of the beam"),
+    ("modes", "a whole number from 0 to 10000"),
+    ("residual_compliance", "true or false"),
+    ("tolerance", "a number from 1e-13 to 0.1"),
+    ("ends", "a list of two, the left and the right end, each one of clamped, pinned, free, guided"),
+    ("ends[]", "one of clamped, pinned, free, guided"),
+    ("segments", "a list of segments, each an object with length_m and a section"),
+    ("segments[]", "an object with length_m and a section"),
+    ("damping_ratio", NOT_NEGATIVE),
+    ("length_m", POSITIVE),
+    ("flexural_rigidity_n_m2", POSITIVE),
+    ("mass_per_length_kg_m", POSITIVE),
+    ("youngs_modulus_pa", POSITIVE),
+    ("density_kg_m3", POSITIVE),
+    ("width_m", POSITIVE),
+    ("thickness_m", POSITIVE),
+    ("diameter_m", POSITIVE),
+    ("omega_rad_s", "a list of finite numbers not less than 0"),
+    ("omega_rad_s[]", NOT_NEGATIVE),
+    ("shape_at_location", "a list of finite numbers, one a mode"),
+    ("shape_at_location[]", "a finite number"),
+    ("damping_ratios", "a list of finite numbers not less than 0, one a mode"),
+    ("damping_ratios[]", NOT_NEGATIVE),
+    ("static_compliance_m_n", NOT_NEGATIVE),
+    ("mass_kg", POSITIVE),
+    ("radius_m", POSITIVE),
+    ("speed_m_s", "a finite number, positive towards the structure"),
+    ("stiffness_n_m1_5", POSITIVE),
+    ("stiffness_n_m", POSITIVE),
+    ("stiffness_n_m_n", POSITIVE),
+    ("exponent", "a number from 1 to 4"),
+    ("damping_s_m", NOT_NEGATIVE),
+    ("damping_n_s_m", POSITIVE),
+    ("restitution", "a coefficient of restitution from 0.001 to 1"),
+    ("lowest_approach_speed_m_s", POSITIVE),
+    ("theta_m", POSITIVE),
+    ("beta", "a number from 0 to 1 + theta_m"),
+    ("k_bar", "a number greater than 0 and not greater than 1000"),
+    ("epsilon_m", NOT_NEGATIVE),
+    ("yield_pressure_pa", POSITIVE),
+    ("effective_modulus_pa", POSITIVE),
+    ("effective_radius_m", POSITIVE),
+    ("striker_youngs_modulus_pa", POSITIVE),
+    ("striker_poissons_ratio", "a number greater than -1 and not greater than 0.5"),
+    ("poissons_ratio", "a number greater than -1 and not greater than 0.5"),
+];
+
+/// What the field at the end of this path may hold.
+pub(crate) fn allowed(path: &str) -> Option<&'static str> {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    let name = match last.split_once('[') {
+        Some((list, _)) => format!("{list}[]"),
+        None => last.to_owned(),
+    };
+    FIELDS.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
+}

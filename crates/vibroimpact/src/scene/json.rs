@@ -1,0 +1,242 @@
+//! From text to typed values, with every fault located: syntax errors, repeated keys, missing, unknown and
+//! mistyped fields all carry the path of the field they stand in.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+use serde_path_to_error::{Path, Segment};
+
+use super::error::{InvalidInput, SceneError};
+use super::fields;
+
+/// Longest piece of a value that a message repeats.
+const LONGEST_QUOTE: usize = 60;
+
+/// A JSON tree in which no key occurs twice (a plain `Value` keeps the last silently).
+struct Tree(Value);
+
+struct TreeVisitor;
+
+impl<'de> Deserialize<'de> for Tree {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Tree, D::Error> {
+        deserializer.deserialize_any(TreeVisitor).map(Tree)
+    }
+}
+
+impl<'de> Visitor<'de> for TreeVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        Number::from_f64(value).map(Value::Number).ok_or_else(|| E::custom("number out of range"))
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(Tree(item)) = items.next_element()? {
+            list.push(item);
+        }
+        Ok(Value::Array(list))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
+        let mut map = Map::new();
+        while let Some(key) = entries.next_key::<String>()? {
+            let Tree(value) = entries.next_value()?;
+            if map.insert(key.clone(), value).is_some() {
+                return Err(A::Error::custom(format!("the key {key:?} occurs twice")));
+            }
+        }
+        Ok(Value::Object(map))
+    }
+}
+
+/// Parses JSON text. Numbers that are not finite (`NaN`, `1e999`) are reported as values of their field.
+pub(crate) fn parse(text: &str) -> Result<Value, SceneError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut source = serde_json::Deserializer::from_str(text);
+    match serde_path_to_error::deserialize::<_, Tree>(&mut source) {
+        Ok(Tree(value)) => source.end().map(|()| value).map_err(|fault| syntax_error(text, String::new(), &fault)),
+        Err(fault) => Err(syntax_error(text, render(fault.path()), fault.inner())),
+    }
+}
+
+fn syntax_error(text: &str, field: String, fault: &serde_json::Error) -> SceneError {
+    let word = word_at(text, fault.line(), fault.column());
+    if !field.is_empty() && word.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
+        let allowed = fields::allowed(&field).unwrap_or("a finite number").to_owned();
+        return InvalidInput { field, value: Some(word.to_owned()), allowed }.into();
+    }
+    let told = fault.to_string();
+    let what = told.split(" at line ").next().unwrap_or(&told);
+    let reason = if fault.is_eof() {
+        format!("the text ends too early ({what}); a scene is one complete JSON object")
+    } else {
+        what.to_owned()
+    };
+    SceneError::Syntax { line: fault.line(), column: fault.column(), field: shorten(field), reason }
+}
+
+/// The word of letters, digits and signs around a place in the text.
+fn word_at(text: &str, line: usize, column: usize) -> &str {
+    let Some(line) = text.lines().nth(line.saturating_sub(1)) else { return "" };
+    let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '+' | '-');
+    let place = (0..=column.saturating_sub(1).min(line.len())).rev().find(|&i| line.is_char_boundary(i)).unwrap_or(0);
+    let before = line[..place].rsplit(|c| !is_word(c)).next().map_or(0, str::len);
+    let after = line[place..].split(|c| !is_word(c)).next().map_or(0, str::len);
+    &line[place - before..place + after]
+}
+
+/// A `T` written as a JSON object. (Derived readers take a bare list of a struct's values as well, which a scene
+/// should not.)
+struct Object<T>(T);
+
+struct ObjectVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Object<T>, D::Error> {
+        deserializer.deserialize_map(ObjectVisitor(PhantomData)).map(Object)
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(entries))
+    }
+}
+
+/// For `deserialize_with`: a struct that must be written as an object.
+pub(crate) fn object<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    Object::deserialize(deserializer).map(|Object(inner)| inner)
+}
+
+/// For `deserialize_with`: a list of structs that must be written as objects.
+pub(crate) fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    Vec::deserialize(deserializer).map(|items| items.into_iter().map(|Object(inner)| inner).collect())
+}
+
+/// Reads a `T` from a tree that must be an object; faults carry the path within `value`.
+pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
+    serde_path_to_error::deserialize(value).map(|Object(inner)| inner).map_err(|fault| {
+        let told = fault.inner().to_string();
+        let path = fault.path();
+        if let Some(key) = between(&told, "missing field `", "`") {
+            let field = join(render(path), key);
+            let allowed = fields::allowed(&field).unwrap_or("a value is required").to_owned();
+            return InvalidInput { field, value: None, allowed };
+        }
+        if let Some(key) = between(&told, "unknown field `", "`") {
+            // the path may or may not end in the unknown key
+            let holder = render(path);
+            let holder = holder.strip_suffix(key).map_or(holder.as_str(), |rest| rest.trim_end_matches('.')).to_owned();
+            let known = told.split_once("expected ").map_or("nothing", |(_, known)| known).replace('`', "");
+            let known = known.strip_prefix("one of ").unwrap_or(&known).to_owned();
+            let found = at(value, path).map(|inner| inner.get(key).unwrap_or(inner));
+            return InvalidInput {
+                field: join(holder, key),
+                value: found.map(quote),
+                allowed: format!("no such field; here stand {known}"),
+            };
+        }
+        let field = render(path);
+        let expected = told.split_once("expected ").map_or(told.as_str(), |(_, expected)| expected);
+        let allowed = fields::allowed(&field).unwrap_or(expected).to_owned();
+        InvalidInput { value: Some(at(value, path).map_or_else(String::new, quote)), field, allowed }
+    })
+}
+
+/// Takes the entry `tag`, which names the kind of an object, out of the object; the rest is what the kind holds.
+pub(crate) fn split_tag<'k>(
+    value: &Value,
+    tag: &str,
+    kinds: &[&'k str],
+) -> Result<(&'k str, Map<String, Value>), InvalidInput> {
+    let fault = |field: &str, value: Option<&Value>| {
+        let allowed = fields::allowed(tag).unwrap_or_default().to_owned();
+        InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
+    };
+    let Value::Object(map) = value else { return Err(fault("", Some(value))) };
+    let mut rest = map.clone();
+    let named = rest.remove(tag);
+    let kind = kinds.iter().find(|kind| named.as_ref().is_some_and(|named| named == *kind));
+    kind.map(|kind| (*kind, rest)).ok_or_else(|| fault(tag, named.as_ref()))
+}
+
+/// A value as the text of a message.
+pub(crate) fn quote(value: &Value) -> String {
+    shorten(value.to_string())
+}
+
+fn shorten(text: String) -> String {
+    match text.char_indices().nth(LONGEST_QUOTE) {
+        Some((cut, _)) => format!("{}...", &text[..cut]),
+        None => text,
+    }
+}
+
+/// A number as the text of a message.
+pub(crate) fn number(value: f64) -> String {
+    Number::from_f64(value).map_or_else(|| value.to_string(), |number| number.to_string())
+}
+
+fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
+    text.split_once(before)?.1.split_once(after).map(|(inner, _)| inner)
+}
+
+fn join(holder: String, key: &str) -> String {
+    if holder.is_empty() { key.to_owned() } else { format!("{holder}.{key}") }
+}
+
+/// The path as text, without the part that serde could not name.
+fn render(path: &Path) -> String {
+    let mut text = String::new();
+    for segment in path.iter() {
+        match segment {
+            Segment::Seq { index } => text.push_str(&format!("[{index}]")),
+            Segment::Map { key } => text = join(text, key),
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    text
+}
+
+fn at<'a>(value: &'a Value, path: &Path) -> Option<&'a Value> {
+    path.iter().try_fold(value, |inner, segment| match segment {
+        Segment::Seq { index } => inner.get(index),
+        Segment::Map { key } => inner.get(key),
+        Segment::Enum { .. } | Segment::Unknown => Some(inner),
+    })
+}

@@ -1,0 +1,112 @@
+//! Stiffness of a contact, and the materials it may come from.
+
+use contact_models::{Body, Hertz, effective_modulus_pa};
+use serde::{Deserialize, Serialize};
+
+use super::Striker;
+use super::error::InvalidInput;
+use super::sets::one_of_sets;
+
+/// What striker and structure are made of where they touch.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Materials {
+    /// Young's modulus of both bodies; of the structure alone where the striker's own is given (Pa).
+    pub youngs_modulus_pa: Option<f64>,
+    /// Poisson's ratio of both bodies; of the structure alone where the striker's own is given.
+    pub poissons_ratio: Option<f64>,
+    /// Young's modulus of a striker of another material (Pa).
+    pub striker_youngs_modulus_pa: Option<f64>,
+    /// Poisson's ratio of a striker of another material.
+    pub striker_poissons_ratio: Option<f64>,
+}
+
+/// Stiffness of a Hertzian contact: given, or from the materials and the striker's radius.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct HertzStiffness {
+    /// The stiffness itself (N/m^1.5).
+    pub stiffness_n_m1_5: Option<f64>,
+    /// The materials from which it follows.
+    #[serde(flatten)]
+    pub materials: Materials,
+}
+
+const BOTH: &[&str] = &["youngs_modulus_pa", "poissons_ratio"];
+const EACH: &[&str] = &["youngs_modulus_pa", "poissons_ratio", "striker_youngs_modulus_pa", "striker_poissons_ratio"];
+
+pub(crate) fn in_contact(fault: impl Into<InvalidInput>) -> InvalidInput {
+    fault.into().within("contact")
+}
+
+impl Materials {
+    fn fields(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            (EACH[0], self.youngs_modulus_pa),
+            (EACH[1], self.poissons_ratio),
+            (EACH[2], self.striker_youngs_modulus_pa),
+            (EACH[3], self.striker_poissons_ratio),
+        ]
+    }
+
+    /// Striker and structure; the structure's surface is flat.
+    pub(crate) fn bodies(&self, striker: &Striker) -> Result<(Body, Body), InvalidInput> {
+        one_of_sets(&self.fields(), &[BOTH, EACH]).map_err(in_contact)?;
+        let radius_m = striker.radius_m.ok_or_else(|| {
+            InvalidInput::missing(
+                "striker.radius_m",
+                "needed for a contact given by materials: a finite number greater than 0",
+            )
+        })?;
+        InvalidInput::require_positive("striker.radius_m", radius_m)?;
+        // a whole set was given, so that both are there
+        let [modulus, ratio] = [self.youngs_modulus_pa, self.poissons_ratio].map(|value| value.unwrap_or(f64::NAN));
+        let structure = Body::flat(modulus, ratio);
+        let ball = Body {
+            youngs_modulus_pa: self.striker_youngs_modulus_pa.unwrap_or(modulus),
+            poissons_ratio: self.striker_poissons_ratio.unwrap_or(ratio),
+            radius_m,
+        };
+        // each material against a rigid partner, so that a fault is laid at the right door
+        let partner = Body::rigid(1.0);
+        effective_modulus_pa(&structure, &partner).map_err(in_contact)?;
+        effective_modulus_pa(&ball, &partner).map_err(|mut fault| {
+            fault.field.insert_str(0, "striker_");
+            in_contact(fault)
+        })?;
+        Ok((ball, structure))
+    }
+}
+
+impl HertzStiffness {
+    /// Whether the stiffness itself is given, not the materials.
+    pub(crate) fn is_given(&self) -> bool {
+        self.stiffness_n_m1_5.is_some()
+    }
+
+    /// The stiffness (N/m^1.5) of this striker against a flat structure.
+    pub(crate) fn of(&self, striker: &Striker) -> Result<f64, InvalidInput> {
+        self.one_of(&[], &[&["stiffness_n_m1_5"], BOTH, EACH])?;
+        if let Some(stiffness) = self.stiffness_n_m1_5 {
+            return Ok(stiffness);
+        }
+        let (ball, structure) = self.materials.bodies(striker)?;
+        Hertz::from_bodies(&ball, &structure)
+            .map(|hertz| hertz.stiffness_n_m1_5)
+            .map_err(|fault| InvalidInput::from(fault).within("striker"))
+    }
+
+    /// The stiffness and exponent of a general power law, which must then stand alone.
+    pub(crate) fn or_general(
+        &self,
+        (stiffness, exponent): (Option<f64>, Option<f64>),
+    ) -> Result<(f64, f64), InvalidInput> {
+        let general = [("stiffness_n_m_n", stiffness), ("exponent", exponent)];
+        self.one_of(&general, &[&["stiffness_n_m_n", "exponent"], &["stiffness_n_m1_5"], BOTH, EACH])?;
+        Ok((stiffness.unwrap_or(f64::NAN), exponent.unwrap_or(f64::NAN)))
+    }
+
+    fn one_of(&self, others: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Result<usize, InvalidInput> {
+        let own = std::iter::once(("stiffness_n_m1_5", self.stiffness_n_m1_5)).chain(self.materials.fields());
+        let given: Vec<(&str, Option<f64>)> = own.chain(others.iter().copied()).collect();
+        one_of_sets(&given, sets).map_err(in_contact)
+    }
+}

@@ -1,0 +1,52 @@
+//! Quantities that can be given in more than one way, each way a set of fields.
+
+use super::error::InvalidInput;
+use super::json::number;
+
+/// Finds which of `sets` the given fields make up. Exactly one set must be given whole, and nothing beside it;
+/// otherwise the error names the field that is missing or too much for the set that comes nearest.
+pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Result<usize, InvalidInput> {
+    let here: Vec<(&str, f64)> = given.iter().filter_map(|&(field, value)| value.map(|value| (field, value))).collect();
+    let in_common = |set: &[&str]| here.iter().filter(|(name, _)| set.contains(name)).count();
+    // of the sets that share most with what is given, the one that asks for least beside it
+    let nearest = (0..sets.len()).min_by_key(|&i| (usize::MAX - in_common(sets[i]), sets[i].len())).unwrap_or(0);
+    let set = sets.get(nearest).copied().unwrap_or(&[]);
+    let ways = || sets.iter().map(|set| set.join(" and ")).collect::<Vec<_>>().join(", or ");
+    if let Some(field) = set.iter().find(|field| here.iter().all(|(name, _)| name != *field)) {
+        return Err(InvalidInput::missing(*field, format!("give {}", ways())));
+    }
+    if let Some(&(field, value)) = here.iter().find(|(name, _)| !set.contains(name)) {
+        let allowed = format!("left out beside {}; give {}", set.join(" and "), ways());
+        return Err(InvalidInput::new(field, number(value), allowed));
+    }
+    Ok(nearest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETS: &[&[&str]] = &[&["a"], &["b", "c"], &["b", "c", "d"]];
+
+    fn of(a: Option<f64>, b: Option<f64>, c: Option<f64>, d: Option<f64>) -> Result<usize, (String, bool)> {
+        one_of_sets(&[("a", a), ("b", b), ("c", c), ("d", d)], SETS).map_err(|e| (e.field, e.value.is_some()))
+    }
+
+    #[test]
+    fn a_whole_set_and_nothing_else_is_taken() {
+        let x = Some(1.0);
+        assert_eq!(of(x, None, None, None), Ok(0));
+        assert_eq!(of(None, x, x, None), Ok(1));
+        assert_eq!(of(None, x, x, x), Ok(2));
+    }
+
+    #[test]
+    fn the_missing_or_superfluous_field_is_named() {
+        let x = Some(1.0);
+        assert_eq!(of(None, None, None, None), Err(("a".into(), false)));
+        assert_eq!(of(None, x, None, None), Err(("c".into(), false)));
+        assert_eq!(of(None, x, None, x), Err(("c".into(), false)));
+        assert_eq!(of(x, x, x, None), Err(("a".into(), true)));
+        assert_eq!(of(x, x, None, None), Err(("b".into(), true)));
+    }
+}

@@ -1,0 +1,112 @@
+//! The result of a scene as files and people read it.
+
+use serde::Serialize;
+use vibroimpact_sim::modal::{Counts, EnergyLedger, Solution, SubImpact};
+
+/// What `simulate --json` prints: one object, every name with its unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// `rebound`, `no contact`, `sustained` or `limit reached`.
+    pub outcome: &'static str,
+    /// Net restitution; null where the impact did not end in a rebound from an approach.
+    pub restitution: Option<f64>,
+    /// Estimated error of the restitution.
+    pub restitution_uncertainty: Option<f64>,
+    /// Number of separate contacts.
+    pub sub_impact_count: usize,
+    /// The contacts in order of time.
+    pub sub_impacts: Vec<Contact>,
+    /// Velocity of the striker at the end, positive away from the structure (m/s).
+    pub striker_velocity_m_s: f64,
+    /// Time of the last separation, or at which the computation stopped (s).
+    pub end_s: f64,
+    /// Number of modes kept.
+    pub modes: usize,
+    /// Static compliance of the modes left out, as far as it was asked for (m/N).
+    pub residual_compliance_m_n: f64,
+    /// Where the energy went.
+    pub energy: Energy,
+    /// What the computation cost.
+    pub counts: Cost,
+}
+
+/// One contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Contact {
+    /// First touch (s).
+    pub start_s: f64,
+    /// Separation (s).
+    pub end_s: f64,
+    /// Impulse of the contact force (N s).
+    pub impulse_n_s: f64,
+    /// Largest force (N).
+    pub peak_force_n: f64,
+    /// Largest compression (m).
+    pub peak_compression_m: f64,
+}
+
+/// Where the energy went (J). The residual is what the others leave of the initial energy, a measure of accuracy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Energy {
+    /// Before the impact.
+    pub initial_j: f64,
+    /// Left to the striker.
+    pub striker_j: f64,
+    /// Left in the structure's modes together.
+    pub structure_j: f64,
+    /// Lost to modal damping until the last separation.
+    pub modal_damping_j: f64,
+    /// Lost in the contact.
+    pub contact_j: f64,
+    /// Not accounted for.
+    pub residual_j: f64,
+    /// Left in each mode.
+    pub modes_j: Vec<f64>,
+}
+
+/// Deterministic counts of the solver's work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Cost {
+    /// Steps accepted in contact.
+    pub contact_steps: u64,
+    /// Steps tried in contact and taken back.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of the contact law.
+    pub law_evaluations: u64,
+    /// Steps of the search for the next contact.
+    pub flight_steps: u64,
+}
+
+impl Summary {
+    /// Gathers a result for printing.
+    pub fn new(solution: &Solution, energy: EnergyLedger, residual_compliance_m_n: f64) -> Summary {
+        let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
+            Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
+        };
+        let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps } =
+            solution.counts;
+        Summary {
+            outcome: solution.outcome.as_str(),
+            restitution: solution.restitution,
+            restitution_uncertainty: solution.restitution_uncertainty,
+            sub_impact_count: solution.sub_impacts.len(),
+            sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
+            striker_velocity_m_s: solution.striker_velocity_m_s,
+            end_s: solution.end_s,
+            modes: energy.modes_j.len(),
+            residual_compliance_m_n,
+            energy: Energy {
+                initial_j: energy.initial_j,
+                striker_j: energy.striker_j,
+                structure_j: energy.modes_j.iter().sum(),
+                modal_damping_j: energy.modal_damping_j,
+                contact_j: energy.contact_j,
+                residual_j: energy.residual_j,
+                modes_j: energy.modes_j,
+            },
+            counts: Cost { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps },
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Results as a person reads them in a terminal.
+
+use std::fmt::Write;
+
+use vibroimpact_sim::modal::Mode;
+
+use crate::impact::Impact;
+use crate::scene::{Scene, Structure};
+use crate::summary::Summary;
+
+/// Shares of the energy below this are rounding, and shown as zero.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Contacts listed one by one; the rest are counted.
+const LISTED: usize = 20;
+
+/// A number with four significant digits and its unit, with an SI prefix: `1.235 ms`.
+pub fn quantity(value: f64, unit: &str) -> String {
+    const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
+    if value == 0.0 {
+        return format!("0 {unit}");
+    }
+    // through the decimal form, so that 999.96 becomes 1.000 k
+    let scientific = format!("{value:.3e}");
+    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
+    let group = exponent.div_euclid(3);
+    match usize::try_from(group + 5).ok().and_then(|i| PREFIXES.get(i)) {
+        Some(prefix) if value.is_finite() => {
+            let decimals = usize::try_from(3 - exponent.rem_euclid(3)).unwrap_or(0);
+            format!("{:.decimals$} {prefix}{unit}", value / 1000f64.powi(group))
+        }
+        _ => format!("{scientific} {unit}"),
+    }
+}
+
+/// The restitution with as many digits as can be trusted, and its uncertainty.
+fn restitution(value: f64, uncertainty: Option<f64>) -> String {
+    match uncertainty {
+        Some(error) if error > 0.0 => {
+            let decimals = (-error.log10()).ceil().clamp(1.0, 12.0) as usize;
+            format!("{value:.decimals$} ± {error:.0e}")
+        }
+        _ => format!("{value:.6}"),
+    }
+}
+
+/// One line on what strikes what.
+pub fn headline(scene: &Scene, impact: &Impact) -> String {
+    let structure = match &scene.structure {
+        Structure::Beam(beam) => {
+            let [left, right] = beam.ends.map(|end| format!("{end:?}").to_lowercase());
+            let length: f64 = beam.segments.iter().map(|segment| segment.length_m).sum();
+            let steps =
+                if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
+            format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
+        }
+        Structure::Modal(_) => "structure given by its modes".to_owned(),
+    };
+    let place = scene.location_m.map_or_else(String::new, |x| format!(", at {}", quantity(x, "m")));
+    let striker = impact.striker;
+    format!(
+        "{} striker at {} on a {structure}{place}; {} contact",
+        quantity(striker.mass_kg * 1e3, "g"),
+        quantity(striker.speed_m_s, "m/s"),
+        scene.contact.law_name()
+    )
+}
+
+/// The result of an impact.
+pub fn result(summary: &Summary) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22}{value}");
+    };
+    let outcome = match summary.outcome {
+        "sustained" => "sustained contact: the motion died down with the bodies touching; there is no rebound",
+        "limit reached" => "limit reached: the computation stopped before the impact ended",
+        "no contact" => "no contact: the bodies never meet",
+        other => other,
+    };
+    line("outcome", outcome.to_owned());
+    if let Some(value) = summary.restitution {
+        line("restitution", restitution(value, summary.restitution_uncertainty));
+    }
+    line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"));
+    line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
+    let residual = if summary.residual_compliance_m_n > 0.0 {
+        format!(", and {} of residual compliance", quantity(summary.residual_compliance_m_n, "m/N"))
+    } else {
+        String::new()
+    };
+    line("modes", format!("{}{residual}", summary.modes));
+
+    let energy = &summary.energy;
+    let share = |part: f64| {
+        let share = if energy.initial_j > 0.0 { part / energy.initial_j } else { 0.0 };
+        if share.abs() < NEGLIGIBLE {
+            return format!("{:>12}", "0 J");
+        }
+        format!("{:>12}  {:6.2} %", quantity(part, "J"), 100.0 * share)
+    };
+    let _ = writeln!(text, "\n  energy, of {} before", quantity(energy.initial_j, "J"));
+    for (name, part) in [
+        ("striker", energy.striker_j),
+        ("structure", energy.structure_j),
+        ("modal damping", energy.modal_damping_j),
+        ("contact", energy.contact_j),
+    ] {
+        let _ = writeln!(text, "    {name:<20}{}", share(part));
+    }
+    let _ = writeln!(text, "    {:<20}{:>12}", "unaccounted", format!("{:.0e} J", energy.residual_j));
+
+    if summary.sub_impact_count > 0 {
+        let _ = writeln!(
+            text,
+            "\n  {:>3}{:>14}{:>14}{:>16}{:>14}{:>14}",
+            "#", "from", "to", "impulse", "peak force", "compression"
+        );
+    }
+    for (i, contact) in summary.sub_impacts.iter().take(LISTED).enumerate() {
+        let _ = writeln!(
+            text,
+            "  {:>3}{:>14}{:>14}{:>16}{:>14}{:>14}",
+            i + 1,
+            quantity(contact.start_s, "s"),
+            quantity(contact.end_s, "s"),
+            quantity(contact.impulse_n_s, "N s"),
+            quantity(contact.peak_force_n, "N"),
+            quantity(contact.peak_compression_m, "m")
+        );
+    }
+    if summary.sub_impact_count > LISTED {
+        let _ =
+            writeln!(text, "  ... and {} more (all of them with --json or --out)", summary.sub_impact_count - LISTED);
+    }
+    text
+}
+
+/// A table of modes.
+pub fn modes(modes: &[Mode]) -> String {
+    let mut text =
+        format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
+    for (k, mode) in modes.iter().enumerate() {
+        let frequency = mode.omega_rad_s / std::f64::consts::TAU;
+        let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantities_carry_si_prefixes() {
+        for (value, text) in [
+            (0.0, "0 s"),
+            (1.0, "1.000 s"),
+            (-0.0123456, "-12.35 ms"),
+            (999.96, "1.000 ks"),
+            (2.5e-16, "2.500e-16 s"),
+            (3e18, "3.000e18 s"),
+            (f64::NAN, "NaN s"),
+        ] {
+            assert_eq!(quantity(value, "s"), text);
+        }
+    }
+
+    #[test]
+    fn a_restitution_shows_the_digits_it_has() {
+        assert_eq!(restitution(0.17738912345, Some(3e-6)), "0.177389 ± 3e-6");
+        assert_eq!(restitution(0.2, Some(0.3)), "0.2 ± 3e-1");
+        assert_eq!(restitution(0.2, None), "0.200000");
+    }
+}

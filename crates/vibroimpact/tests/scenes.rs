@@ -1,0 +1,246 @@
+//! Scene files: the gallery runs, what is written is read back the same, and nothing that is read makes it panic.
+
+use std::fs;
+use std::path::PathBuf;
+
+use proptest::prelude::*;
+use serde_json::Value;
+use vibroimpact::scene::{Contact, Structure};
+use vibroimpact::{Scene, SceneError};
+
+fn gallery() -> Vec<(String, Scene)> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../datasets/scenes");
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let name = |path: &PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+    paths
+        .iter()
+        .map(|path| (name(path), Scene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}"))))
+        .collect()
+}
+
+fn named(name: &str) -> Scene {
+    gallery().into_iter().find(|(other, _)| other == name).map(|(_, scene)| scene).unwrap()
+}
+
+fn restitution(scene: &Scene) -> f64 {
+    scene.impact().unwrap().solve().unwrap().restitution.unwrap()
+}
+
+#[test]
+fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
+    let gallery = gallery();
+    assert!(gallery.len() >= 10);
+    for (name, scene) in gallery {
+        let (solution, history) = scene.impact().unwrap().record().unwrap();
+        let energy = history.energy_ledger();
+        assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < 1.0), "{name}: {solution:?}");
+        assert!(energy.residual_j.abs() < 1e-9 * energy.initial_j, "{name}: {energy:?}");
+        assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back_the_same() {
+    for (name, scene) in gallery() {
+        let text = scene.to_json();
+        assert_eq!(Scene::from_json(&text).unwrap(), scene, "{name}");
+        assert_eq!(serde_json::from_str::<Scene>(&text).unwrap(), scene, "{name}");
+        assert!(!text.contains("null"), "{name}");
+    }
+}
+
+#[test]
+fn the_readme_shows_a_scene_of_the_gallery_and_its_restitution() {
+    let readme = include_str!("../../../README.md");
+    let block = readme.split("```json").nth(1).unwrap().split("```").next().unwrap();
+    let gallery = Scene { description: None, ..named("pinned-beam-converged") };
+    assert_eq!(Scene::from_json(block).unwrap(), gallery);
+    let printed: f64 =
+        readme.split("  restitution ").nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap();
+    assert!((printed - restitution(&gallery)).abs() < 1e-7);
+}
+
+#[test]
+fn every_law_of_contact_models_can_be_named() {
+    for (parameters, name) in [
+        (r#""law": "hertz", "stiffness_n_m1_5": 1e9"#, "hertz"),
+        (r#""law": "viscous", "stiffness_n_m1_5": 1e9, "restitution": 0.9"#, "viscous"),
+        (r#""law": "hysteretic", "stiffness_n_m1_5": 1e9, "theta_m": 1.6, "beta": 1.4, "k_bar": 0.4"#, "hysteretic"),
+        (r#""law": "linear-spring", "stiffness_n_m": 1e6"#, "linear"),
+        (r#""law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.5"#, "kelvin-voigt"),
+        (r#""law": "hunt-crossley", "stiffness_n_m_n": 1e8, "exponent": 1.3, "damping_s_m": 0.1"#, "hunt-crossley"),
+        (r#""law": "lankarani-nikravesh", "stiffness_n_m1_5": 1e9, "restitution": 0.9"#, "lankarani-nikravesh"),
+        (r#""law": "flores", "stiffness_n_m1_5": 1e9, "restitution": 0.6"#, "flores"),
+        (
+            r#""law": "elastoplastic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "yield_pressure_pa": 1e9"#,
+            "thornton",
+        ),
+    ] {
+        let value: Value = serde_json::from_str(&format!("{{{parameters}}}")).unwrap();
+        let mut scene = named("pinned-beam-small-ball");
+        scene.contact = serde_json::from_value(value.clone()).unwrap();
+        assert_eq!(scene.contact.law_name(), value["law"]);
+        assert_eq!(scene.impact().unwrap().law.name(), name);
+        assert!(restitution(&scene) < 1.0, "{name}");
+
+        // the library's own name will do as well, and a slip is answered with all of them
+        scene.contact = serde_json::from_value({
+            let mut value = value;
+            value["law"] = name.into();
+            value
+        })
+        .unwrap();
+        let slip = scene.to_json().replace(scene.contact.law_name(), "slip");
+        let message = Scene::from_json(&slip).unwrap_err().to_string();
+        assert!(message.contains(scene.contact.law_name()), "{message}");
+    }
+}
+
+#[test]
+fn the_numbers_of_chapter_3() {
+    // the shared values at N = 40, plain and with residual compliance at N = 100
+    assert!((restitution(&named("pinned-beam")) - 0.17739).abs() < 1e-5);
+    assert!((restitution(&named("pinned-beam-converged")) - 0.14252).abs() < 1e-5);
+    let small = named("pinned-beam-small-ball").impact().unwrap().solve().unwrap();
+    assert_eq!(small.sub_impacts.len(), 1);
+    // thesis Eq. 3.20
+    let contact_models::Law::Hertz(hertz) = named("pinned-beam").impact().unwrap().law else { panic!() };
+    assert!((hertz.stiffness_n_m1_5 - 1.7945e10).abs() < 5e5 * 1.0e1);
+    // materials of a hysteretic contact keep Hertz's loading curve: a quarter of the stiffness (thesis 3.3.4)
+    let contact_models::Law::Hysteretic(law) = named("hysteretic").impact().unwrap().law else { panic!() };
+    assert!((law.stiffness_n_m1_5 / hertz.stiffness_n_m1_5 - 0.25).abs() < 1e-15);
+}
+
+#[test]
+fn a_striker_of_another_material_softens_the_contact() {
+    let mut scene = named("pinned-beam");
+    let stiffness = |scene: &Scene| match scene.impact().unwrap().law {
+        contact_models::Law::Hertz(law) => law.stiffness_n_m1_5,
+        other => panic!("{other:?}"),
+    };
+    let steel = stiffness(&scene);
+    let Contact::Hertz(ref mut hertz) = scene.contact else { panic!() };
+    hertz.materials.striker_youngs_modulus_pa = Some(2e11 / 3.0);
+    hertz.materials.striker_poissons_ratio = Some(0.3);
+    // 1/E* grows from 2 to 4 of the structure's shares
+    assert!((stiffness(&scene) / steel - 0.5).abs() < 1e-14);
+}
+
+#[test]
+fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
+    let beam = named("pinned-beam-converged");
+    let mut scene = beam.clone();
+    let modes = beam.structure().unwrap().modes;
+    let Structure::Beam(ref described) = beam.structure else { panic!() };
+    let whole = described.to_beam().unwrap().static_compliance(beam.location_m.unwrap()).unwrap();
+    scene.structure = Structure::Modal(vibroimpact::scene::Modal {
+        omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
+        shape_at_location: modes.iter().map(|mode| mode.shape).collect(),
+        damping_ratios: vec![0.02; modes.len()],
+        static_compliance_m_n: Some(whole),
+    });
+    (scene.location_m, scene.modes) = (None, None);
+    assert_eq!(scene.structure().unwrap(), beam.structure().unwrap());
+
+    let Structure::Modal(ref mut modal) = scene.structure else { panic!() };
+    modal.static_compliance_m_n = Some(0.5 * whole);
+    assert!(scene.structure().unwrap_err().to_string().contains("structure.static_compliance_m_n"));
+    let Structure::Modal(ref mut modal) = scene.structure else { panic!() };
+    modal.static_compliance_m_n = None;
+    assert!(scene.structure().unwrap_err().to_string().contains("structure.static_compliance_m_n is missing"));
+    let Structure::Modal(ref mut modal) = scene.structure else { panic!() };
+    modal.shape_at_location.pop();
+    assert!(scene.structure().unwrap_err().to_string().contains("structure.shape_at_location = 99 values"));
+}
+
+#[test]
+fn values_that_json_cannot_hold_are_refused_too() {
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let mut scene = named("pinned-beam");
+        scene.striker.speed_m_s = value;
+        let refused = |scene: &Scene| scene.impact().and_then(|impact| impact.solve()).unwrap_err();
+        assert_eq!(refused(&scene).field, "striker.speed_m_s");
+        let mut scene = named("pinned-beam");
+        scene.location_m = Some(value);
+        assert_eq!(refused(&scene).field, "location_m");
+        let mut scene = named("pinned-beam");
+        scene.tolerance = Some(value);
+        assert_eq!(refused(&scene).field, "tolerance");
+        let mut scene = named("pinned-beam");
+        let Structure::Beam(ref mut beam) = scene.structure else { panic!() };
+        beam.segments[0].width_m = Some(value);
+        assert_eq!(refused(&scene).field, "structure.segments[0].width_m");
+    }
+}
+
+fn any_json() -> impl Strategy<Value = Value> {
+    let leaf = prop_oneof![
+        Just(Value::Null),
+        any::<bool>().prop_map(Value::from),
+        any::<f64>().prop_map(Value::from),
+        any::<i64>().prop_map(Value::from),
+        "[a-z_é\"]{0,6}".prop_map(Value::from),
+    ];
+    leaf.prop_recursive(3, 24, 5, |inner| {
+        prop_oneof![
+            prop::collection::vec(inner.clone(), 0..5).prop_map(Value::from),
+            prop::collection::btree_map("[a-z_é]{0,6}", inner, 0..5)
+                .prop_map(|map| Value::Object(map.into_iter().collect())),
+        ]
+    })
+}
+
+/// Every place in a tree, by JSON pointer.
+fn places(tree: &Value, here: String, all: &mut Vec<String>) {
+    all.push(here.clone());
+    match tree {
+        Value::Object(map) => map.iter().for_each(|(key, value)| places(value, format!("{here}/{key}"), all)),
+        Value::Array(list) => list.iter().enumerate().for_each(|(i, value)| places(value, format!("{here}/{i}"), all)),
+        _ => {}
+    }
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_text_never_panics(text in "\\PC{0,80}") {
+        prop_assert!(Scene::from_json(&text).is_err());
+    }
+
+    #[test]
+    fn arbitrary_json_never_panics(value in any_json()) {
+        prop_assert!(Scene::from_json(&value.to_string()).is_err());
+    }
+
+    #[test]
+    fn a_truncated_scene_is_a_syntax_error(cut in 0usize..400) {
+        let text = named("stepped-cantilever").to_json();
+        let whole = Scene::from_json(&text[..cut.min(text.len() - 1)]);
+        prop_assert!(matches!(whole, Err(SceneError::Syntax { .. })), "{whole:?}");
+    }
+
+    /// A good scene with one place overwritten is turned into the solver's terms, or refused with a field.
+    #[test]
+    fn a_spoilt_scene_is_understood_or_refused(
+        which in any::<prop::sample::Index>(),
+        at in any::<prop::sample::Index>(),
+        spoil in prop_oneof![
+            any_json(),
+            prop::sample::select(vec![0.0, -1.0, 1e-300, 1e300, 1e30, 1e-30, 1e9, 0.5, 3.0]).prop_map(Value::from),
+            (0u64..60).prop_map(Value::from),
+        ],
+    ) {
+        let gallery = gallery();
+        let mut tree: Value = serde_json::from_str(&which.get(&gallery).1.to_json()).unwrap();
+        let mut all = Vec::new();
+        places(&tree, String::new(), &mut all);
+        *tree.pointer_mut(at.get(&all).as_str()).unwrap() = spoil;
+        match Scene::from_value(&tree) {
+            Err(fault) => prop_assert!(fault.value.is_some() || !fault.field.is_empty()),
+            Ok(scene) => match scene.impact() {
+                Err(fault) => prop_assert!(!fault.field.is_empty(), "{fault}"),
+                Ok(impact) => prop_assert!(impact.structure.modes.iter().all(|mode| mode.shape.is_finite())),
+            },
+        }
+    }
+}
