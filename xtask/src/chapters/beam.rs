@@ -65,8 +65,15 @@ impl Beam {
 
     /// The first `count` modes as a ball at `location_m` meets them; with `residual`, the static
     /// compliance of all others comes in series with the contact.
-    pub fn structure(&self, location_m: f64, count: usize, damping_ratio: f64, residual: bool) -> Result<Structure, Failure> {
-        let omega = self.omega_rad_s().get(..count).ok_or_else(|| format!("{count} modes asked for, fewer computed"))?;
+    pub fn structure(
+        &self,
+        location_m: f64,
+        count: usize,
+        damping_ratio: f64,
+        residual: bool,
+    ) -> Result<Structure, Failure> {
+        let omega =
+            self.omega_rad_s().get(..count).ok_or_else(|| format!("{count} modes asked for, fewer computed"))?;
         let mut modes = Vec::with_capacity(count);
         let mut compliance_m_n = 0.0;
         for (k, &omega_rad_s) in omega.iter().enumerate() {

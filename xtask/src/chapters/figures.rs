@@ -122,7 +122,9 @@ impl Course {
     /// Beam and ball, displacement against time.
     pub fn displacements(&self) -> Panel {
         Panel::new(time_axis(), Axis::new("displacement").unit("mm"))
-            .with(Series::line(&self.time_ms, &self.structure_mm).colour(Colour::Vermilion).label("beam at the contact"))
+            .with(
+                Series::line(&self.time_ms, &self.structure_mm).colour(Colour::Vermilion).label("beam at the contact"),
+            )
             .with(Series::line(&self.time_ms, &self.striker_mm).colour(Colour::Blue).label("ball"))
     }
 

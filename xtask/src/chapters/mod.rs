@@ -19,7 +19,7 @@ pub type Failure = Box<dyn Error + Send + Sync>;
 /// Runs chapter 3 or 4 and writes its folder. `quick` takes fewer points through the same code.
 /// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
 pub fn run(chapter: u32, out: &Path, quick: bool) -> Result<String, Failure> {
-    let mut study = Study::new(out, quick);
+    let mut study = Study::new(out, quick)?;
     let introduction = match chapter {
         3 => chapter3::run(&mut study)?,
         4 => chapter4::run(&mut study)?,

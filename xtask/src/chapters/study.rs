@@ -10,6 +10,9 @@ use std::time::Instant;
 use vibroimpact::plot::Figure;
 use vibroimpact::report::{Comparison, Report, Verdict, write_whole};
 
+/// The list of files, written last.
+const MANIFEST: &str = "manifest.json";
+
 /// A chapter while it runs.
 pub(super) struct Study {
     out: PathBuf,
@@ -42,13 +45,18 @@ struct Manifest<'a> {
 
 impl Study {
     /// A study that will write into `out`.
-    pub fn new(out: &Path, quick: bool) -> Study {
+    /// A manifest of an earlier run is removed, so that a folder with one is complete.
+    pub fn new(out: &Path, quick: bool) -> Result<Study, Failure> {
+        match std::fs::remove_file(out.join(MANIFEST)) {
+            Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => return Err(failure.into()),
+            _ => {}
+        }
         let bar = ProgressBar::new(0);
         let look = "{elapsed_precise} {wide_bar} {pos}/{len} impacts, {per_sec} {msg}";
         if let Ok(style) = ProgressStyle::with_template(look) {
             bar.set_style(style);
         }
-        Study {
+        Ok(Study {
             out: out.into(),
             quick,
             body: Report::new(""),
@@ -57,7 +65,7 @@ impl Study {
             timings: Vec::new(),
             started: Instant::now(),
             bar,
-        }
+        })
     }
 
     /// Begins a section of the report.
@@ -163,7 +171,7 @@ impl Study {
         let files = self.files.clone();
         let manifest = Manifest { title, version: env!("CARGO_PKG_VERSION"), quick: self.quick, files: &files };
         self.csv("timings.csv", &timings)?;
-        self.file("manifest.json", serde_json::to_string_pretty(&manifest)?.as_bytes())?;
+        self.file(MANIFEST, serde_json::to_string_pretty(&manifest)?.as_bytes())?;
         self.bar.finish_and_clear();
 
         let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();

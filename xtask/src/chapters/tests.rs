@@ -1,1 +1,113 @@
+use super::study::{Study, slug};
 use super::*;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+/// Every file under a folder but the timings, with its bytes.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(contents(&path));
+        } else if !path.ends_with("timings.csv") {
+            found.insert(path.clone(), fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+    pool.install(|| run(chapter, out, true)).unwrap()
+}
+
+fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let summary = on_threads(1, chapter, folder.path());
+    assert!(summary.contains("statements of the text agree"), "{summary}");
+    let first = contents(folder.path());
+    let manifest = String::from_utf8(first[&folder.path().join("manifest.json")].clone()).unwrap();
+    for name in figures {
+        let svg = String::from_utf8(first[&folder.path().join(format!("figures/{name}.svg"))].clone()).unwrap();
+        assert!(svg.contains("</svg>") && !svg.contains("no data"), "{name}");
+        assert!(manifest.contains(&format!("figures/{name}.svg")));
+    }
+    for name in tables {
+        let csv = String::from_utf8(first[&folder.path().join(name)].clone()).unwrap();
+        assert!(csv.lines().count() > 2 && manifest.contains(name), "{name}");
+    }
+    let html = String::from_utf8(first[&folder.path().join("report.html")].clone()).unwrap();
+    assert_eq!(html.matches("<svg").count(), fs::read_dir(folder.path().join("figures")).unwrap().count());
+    assert!(html.contains("✓ agrees"));
+
+    // a second run, on three threads, over what the first left: the same bytes
+    on_threads(3, chapter, folder.path());
+    assert_eq!(first, contents(folder.path()));
+}
+
+#[test]
+fn chapter_3_is_complete_and_the_same_on_any_number_of_threads() {
+    let figures = [
+        "fig-3-02",
+        "fig-3-03",
+        "fig-3-04",
+        "fig-3-05",
+        "fig-3-06",
+        "fig-3-07",
+        "fig-3-08",
+        "fig-3-09",
+        "fig-3-10",
+        "fig-3-11",
+        "fig-3-12",
+        "fig-3-13",
+        "fig-3-14",
+        "fig-3-15",
+        "fig-a-02",
+        "residual-compliance-damped",
+        "residual-compliance-undamped",
+    ];
+    check_chapter(3, &figures, &["fig-3-04.csv", "fig-3-15.csv", "residual-compliance-damped.csv"]);
+}
+
+#[test]
+fn chapter_4_is_complete_and_the_same_on_any_number_of_threads() {
+    let figures = [
+        "fig-4-03", "fig-4-04", "fig-4-05", "fig-4-06", "fig-4-07", "fig-4-08", "fig-4-09", "fig-4-10", "fig-4-11",
+        "fig-a-03", "settled",
+    ];
+    let tables = [
+        "restitution-pinned-pinned.csv",
+        "restitution-cantilever.csv",
+        "restitution-stepped-cantilever.csv",
+        "restitution-stepped-clamped-pinned.csv",
+        "settled-cantilever.csv",
+    ];
+    check_chapter(4, &figures, &tables);
+}
+
+#[test]
+fn other_chapters_and_unwritable_folders_are_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(run(5, folder.path(), true).unwrap_err().to_string().contains("3 or 4"));
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    assert!(run(3, &file.join("below"), true).is_err());
+}
+
+#[test]
+fn a_quick_study_keeps_both_ends_of_a_list() {
+    let folder = tempfile::tempdir().unwrap();
+    let all: Vec<usize> = (1..=65).collect();
+    let quick = Study::new(folder.path(), true).unwrap().thin(&all, 13);
+    assert_eq!((quick.len(), quick[0], quick[12]), (13, 1, 65));
+    assert!(quick.windows(2).all(|pair| pair[0] < pair[1]));
+    assert_eq!(Study::new(folder.path(), false).unwrap().thin(&all, 13), all);
+    assert_eq!(Study::new(folder.path(), true).unwrap().thin(&all[..4], 13), all[..4]);
+}
+
+#[test]
+fn file_names_sort_like_figures() {
+    assert_eq!((slug("3.5"), slug("3.15"), slug("A.2")), ("3-05".into(), "3-15".into(), "a-02".into()));
+}

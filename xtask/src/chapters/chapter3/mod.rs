@@ -18,8 +18,8 @@ const INTRODUCTION: &str = "A steel ball strikes a pinned-pinned steel beam; con
 a little dissipation; the beam is undamped, or every mode has 2 % of critical damping. Every sub-impact is resolved. \
 The chapter's question is how the net restitution depends on the number N of modes that are kept. Figures carry the \
 numbers of the thesis. The restitution of undamped impacts with many modes amplifies any disturbance by factors of \
-10⁵ and more; where the last column of a CSV file gives an uncertainty near the scatter itself, another solver will \
-find another number, and only the scatter can be compared.";
+10⁵ and more; the column `restitution_uncertainty` of the tables tells how many digits of each result can be \
+trusted. *Scatter* below is the standard deviation of the restitution over the numbers of modes.";
 
 /// The parameter file; see its own remarks.
 #[derive(Deserialize)]
@@ -94,7 +94,8 @@ impl Case {
         let parameters: Parameters = serde_json::from_str(include_str!("../../../../datasets/chapter3.json"))?;
         let pinned = &parameters.beam;
         let segment = segment(&parameters.material, pinned.length_m, pinned.side_m, 1.0);
-        let most = parameters.our_choice.residual_modes.iter().copied().fold(parameters.our_choice.most_modes, usize::max);
+        let most =
+            parameters.our_choice.residual_modes.iter().copied().fold(parameters.our_choice.most_modes, usize::max);
         let beam = Beam::new("pinned-pinned", "Uniform pinned-pinned beam", pinned.ends, vec![segment], most)?;
         let ball = Ball::new(&parameters.material, parameters.ball_diameter_m)?;
         Ok(Case { parameters, beam, ball })

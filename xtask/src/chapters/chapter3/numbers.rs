@@ -15,7 +15,14 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.state(Comparison::about("mass of the beam (kg)", "3.5", "about 1", 1.0, 0.05, beam_mass));
     study.state(Comparison::printed("first natural frequency (Hz)", "3.3.1", "26", frequency(1)));
     study.state(Comparison::printed("period of the first mode (s)", "3.3.1", "0.0385", 1.0 / frequency(1)));
-    study.state(Comparison::about("60th natural frequency (Hz)", "3.3.1", "60² × 26 ≈ 93600", 93600.0, 50.0, frequency(60)));
+    study.state(Comparison::about(
+        "60th natural frequency (Hz)",
+        "3.3.1",
+        "60² × 26 ≈ 93600",
+        93600.0,
+        50.0,
+        frequency(60),
+    ));
     study.state(Comparison::printed("period of the 60th mode (s)", "3.3.1", "1.0684e-5", 1.0 / frequency(60)));
     let weight = 9.81 * case.ball.mass_kg;
     study.state(Comparison::about("weight of the ball (N)", "3.3.2", "on the order of 1", 1.0, 0.5, weight));

@@ -14,7 +14,7 @@ Leaving them out makes the beam too stiff where the ball presses on it, by the r
 c = G(b,b) − Σ φ_k²/ω_k². That error falls only as N⁻³ in the compliance, but the contact spring that it is in series \
 with is itself stiff, and through the chain of sub-impacts a small change of the first contact changes all that \
 follow. Putting c in series with the contact removes this error without a further mode. With it the damped restitution \
-settles to a number; without it the same number is approached slowly and from the side. Part of the scatter that the \
+settles to a number, which plain truncation approaches only slowly. Part of the scatter that the \
 chapter ascribes to missing damping is therefore the stiffness that truncation adds. Damping still matters: without \
 it, fast motion persists between sub-impacts, and the restitution keeps a scatter of its own.";
 
@@ -41,7 +41,12 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
             columns.push((format!("b = {location_m:.4} m, ζ = {damping_ratio}"), curves));
         }
         let axis = Axis::new("number of modes N").log();
-        let figure = restitution(&format!("Restitution with and without residual compliance, {name}"), &axis, |r| r.modes as f64, &columns);
+        let figure = restitution(
+            &format!("Restitution with and without residual compliance, {name}"),
+            &axis,
+            |r| r.modes as f64,
+            &columns,
+        );
         let file = format!("residual-compliance-{name}");
         let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
         study.csv(&format!("{file}.csv"), &rows)?;

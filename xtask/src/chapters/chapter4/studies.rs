@@ -1,0 +1,110 @@
+//! Restitution against the speed (Fig. 4.3) and against the number of modes (Fig. 4.4).
+
+use super::Case;
+use crate::chapters::Failure;
+use crate::chapters::figures::{Column, Curve, restitution_and_sub_impacts};
+use crate::chapters::impact::{Row, Setup};
+use crate::chapters::study::Study;
+use vibroimpact::plot::{Axis, Colour, Marker};
+use vibroimpact::report::Comparison;
+
+pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
+    speeds(study, case)?;
+    modes(study, case)
+}
+
+const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Cross, Marker::Square, Marker::Triangle];
+
+fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
+    study.section("Restitution against the speed (Fig. 4.3)");
+    let p = &case.parameters.our_choice.speed_study;
+    let (beam, ball) = (case.beam(&p.beam)?, case.ball(p.diameter_m)?);
+    let steps = p.speeds.max(3) - 1;
+    let exponents: Vec<f64> = (0..=steps).map(|i| 2.0 * i as f64 / steps as f64 - 1.0).collect();
+    let speeds: Vec<f64> =
+        study.thin(&exponents, 7).iter().map(|x| case.parameters.speed_m_s * p.factor.powf(*x)).collect();
+    let found = study.sweep(&p.locations_m, speeds.len(), |&location_m| {
+        let setup = case.setup(beam, ball, location_m);
+        let mut solver = setup.solver()?;
+        speeds
+            .iter()
+            .map(|&speed_m_s| Setup { speed_m_s, ..setup }.solve_with(&mut solver))
+            .collect::<Result<Vec<Row>, Failure>>()
+    })?;
+    let curve = |(k, rows): (usize, &Vec<Row>)| {
+        let label = format!("b = {} m", p.locations_m[k]);
+        Curve::new(label, MARKERS[k % MARKERS.len()], Colour::of_series(k), rows.clone())
+    };
+    let columns = [(String::new(), found.iter().enumerate().map(curve).collect())];
+    let axis = Axis::new("speed of the ball").unit("m/s").log();
+    let title = format!("Fig. 4.3  {}, m = {:.3} kg, N = 40", beam.title, ball.mass_kg);
+    let figure = restitution_and_sub_impacts(&title, &axis, |r| r.speed_m_s, &columns);
+    study.figure(
+        "fig-4-03",
+        &figure.width(620.0),
+        "Above: restitution; below: sub-impacts; against the speed of the ball.",
+    )?;
+    study.csv("fig-4-03.csv", &found.concat())?;
+    for (rows, location) in found.iter().zip(&p.locations_m) {
+        let (low, high) =
+            rows.iter().map(Row::e).fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
+        study.state(Comparison::range(
+            format!("change of e over speeds from 1/15 to 15 m/s, b = {location}"),
+            "footnote, 4.1",
+            "only a small effect",
+            (0.0, 0.1),
+            high - low,
+        ));
+    }
+    Ok(())
+}
+
+fn modes(study: &mut Study, case: &Case) -> Result<(), Failure> {
+    study.section("Restitution against the number of modes (Fig. 4.4)");
+    let p = &case.parameters.our_choice.convergence_study;
+    let (beam, ball) = (case.beam(&p.beam)?, case.ball(p.diameter_m)?);
+    let all: Vec<usize> = (1..=p.most_modes).collect();
+    let counts = study.thin(&all, 9);
+    let mut columns: Vec<Column> = Vec::new();
+    for &location_m in &p.locations_m {
+        let damped = case.setup(beam, ball, location_m);
+        let mut curves = Vec::new();
+        for setup in [Setup { damping_ratio: 0.0, ..damped }, damped] {
+            let setups: Vec<Setup> = counts.iter().map(|&modes| Setup { modes, ..setup }).collect();
+            let rows = study.sweep(&setups, 1, Setup::solve)?;
+            curves.push(match setup.damping_ratio {
+                0.0 => Curve::reference("ζ = 0", rows),
+                zeta => Curve::new(format!("ζ = {zeta}"), Marker::Plus, Colour::Vermilion, rows),
+            });
+        }
+        let late = curves[1].rows.iter().filter(|r| r.modes >= 40).map(Row::e);
+        let (low, high) = late.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
+        study.state(Comparison::range(
+            format!("change of e from 40 modes on, damped, b = {location_m}"),
+            "Fig. 4.4",
+            "reasonable convergence",
+            (0.0, 0.05),
+            high - low,
+        ));
+        columns.push((format!("b = {location_m} m"), curves));
+    }
+    let axis = Axis::new("number of modes N").integers();
+    let title = format!("Fig. 4.4  {}, m = {:.3} kg", beam.title, ball.mass_kg);
+    let figure = restitution_and_sub_impacts(&title, &axis, |r| r.modes as f64, &columns);
+    study.figure(
+        "fig-4-04",
+        &figure.width(960.0),
+        "Above: restitution; below: sub-impacts; against the number of modes, without and with damping.",
+    )?;
+    let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
+    let at_tip =
+        rows.iter().filter(|r| r.location_m == beam.model.length_m()).map(|r| r.sub_impacts).max().unwrap_or(0);
+    study.state(Comparison::range(
+        "most sub-impacts at the free end, any N",
+        "4.2",
+        "can be quite large",
+        (10.0, f64::INFINITY),
+        at_tip as f64,
+    ));
+    study.csv("fig-4-04.csv", &rows)
+}
