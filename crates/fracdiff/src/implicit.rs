@@ -30,32 +30,34 @@ pub(crate) fn solve(system: &mut System<'_, '_>, block: &Block<'_>, stage: &mut 
     densities(system, block.times, &stage.y, &mut stage.f)?;
     let mut residual = residual_of(system, block, stage);
     let mut factors: Option<LU<f64, Dyn, Dyn>> = None;
-    let mut previous = f64::INFINITY;
+    let mut previous: Option<f64> = None;
     for _ in 0..MOST_ITERATIONS {
         system.newton_iterations += 1;
         if factors.is_none() {
             factors = Some(newton_matrix(system, block, stage)?.lu());
         }
         let step = factors.as_ref().and_then(|lu| lu.solve(&residual)).ok_or(Fault::NoConvergence { t: at })?;
-        let scale = stage.y.iter().chain(block.rhs).fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
-        let size = step.amax() / scale;
-        if !size.is_finite() {
+        if !step.iter().all(|v| v.is_finite()) {
             return Err(Fault::NoConvergence { t: at });
         }
         residual = damped_step(system, block, stage, &step, residual.amax())?;
-        let rate = size / previous;
-        let remaining = if rate < 0.5 { size * rate } else { size };
+        let scale = stage.y.iter().chain(block.rhs).fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
+        let size = step.amax() / scale;
+        // The first step tells nothing about the contraction.
+        let rate = previous.map_or(1.0, |before| size / before);
+        // Differences leave the Jacobian with errors of 1e-8, and no contraction faster than that is believed.
+        let remaining = if rate < 0.5 { size * rate.max(1e-8) } else { size };
         if remaining <= 4.0 * f64::EPSILON {
             return Ok(());
         }
         // Rounding in the residual may keep the last step above the bound: it no longer shrinks.
-        if size <= 1e-12 && rate >= 0.5 {
+        if previous.is_some() && size <= 1e-12 && rate >= 0.5 {
             return Ok(());
         }
-        if rate > 0.1 {
+        if previous.is_some() && rate > 0.1 {
             factors = None;
         }
-        previous = size;
+        previous = Some(size);
     }
     Err(Fault::NoConvergence { t: at })
 }

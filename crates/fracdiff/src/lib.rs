@@ -8,6 +8,7 @@ mod exponential;
 mod implicit;
 mod ivp;
 mod method;
+pub mod operators;
 mod power;
 mod problem;
 mod quadrature;

@@ -21,7 +21,6 @@ use past::Past;
 use weights::Weights;
 
 pub(crate) use fft::product;
-pub(crate) use weights::grunwald_letnikov;
 
 /// Settings of the methods on equal steps.
 #[derive(Debug, Clone, PartialEq)]

@@ -174,7 +174,9 @@ mod tests {
                 let line = t.powf(order) / order + t.powf(order + 1.0) / (order * (order + 1.0));
                 assert!((apply(&w, n, 3, |s| 1.0 + s) / line - 1.0).abs() < 1e-12, "{order} {n}");
                 let root = t.powf(order + 0.5) * tgamma(order) * tgamma(1.5) / tgamma(order + 1.5);
-                assert!((apply(&w, n, 3, f64::sqrt) / root - 1.0).abs() < 1e-11, "{order} {n}");
+                // The transform rounds relative to the largest sum, that of the last step.
+                let rounding = 1e-14 * 400f64.powf(order + 0.5);
+                assert!((apply(&w, n, 3, f64::sqrt) - root).abs() < 1e-13 * root + rounding, "{order} {n}");
             }
         }
     }

@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn more_states_and_a_wider_band_do_better() {
-        let error = |states, beta| {
+        let error = |states: usize, beta: f64| {
             let sum = DasChatterjee::new(0.5, states, -beta, beta).unwrap().kernel().unwrap();
             (0..=30)
                 .map(|i| 10f64.powf(-1.5 + 0.1 * f64::from(i)))
