@@ -63,19 +63,21 @@ impl Dense {
         self.values.extend_from_slice(y);
     }
 
-    /// Appends a panel from `t[0]` to `t[1]`; `first` marks the first panel of a segment.
-    pub fn push_panel(&mut self, t: [f64; 2], first: bool, panel: PanelValues) {
+    /// Appends a panel from `t[0]` to `t[1]`; the first of a segment comes with the value at the start.
+    pub fn push_panel(&mut self, t: [f64; 2], start: Option<&[f64]>, panel: PanelValues) {
         let Kind::Panels { interpolation, panels, panel_of_time } = &mut self.kind else { return };
-        let mut basis = vec![0.0; interpolation.nodes.len()];
-        let ends: &[f64] = if first { &[0.0, 1.0] } else { &[1.0] };
-        for &u in ends {
-            interpolation.basis(u, &mut basis);
+        if let Some(start) = start {
             panel_of_time.push(panels.len());
-            self.times.push(if u == 0.0 { t[0] } else { t[1] });
-            let end = self.values.len();
-            self.values.resize(end + self.unknowns, 0.0);
-            combine(&basis, &panel.y, &mut self.values[end..]);
+            self.times.push(t[0]);
+            self.values.extend_from_slice(start);
         }
+        let mut basis = vec![0.0; interpolation.nodes.len()];
+        interpolation.basis(1.0, &mut basis);
+        panel_of_time.push(panels.len());
+        self.times.push(t[1]);
+        let end = self.values.len();
+        self.values.resize(end + self.unknowns, 0.0);
+        combine(&basis, &panel.y, &mut self.values[end..]);
         panels.push(panel);
     }
 

@@ -97,7 +97,8 @@ fn locate(event: &Event<'_>, dense: &Dense, (mut a, mut fa): (f64, f64), (mut b,
         if f.is_nan() {
             break;
         }
-        if f.abs() < smallest {
+        // Also of equal size: at a jump of the solution the last time tried is the closest.
+        if f.abs() <= smallest {
             (best, smallest) = (t, f.abs());
         }
         if f == 0.0 {

@@ -37,6 +37,11 @@ impl Segment {
         self.end - self.start
     }
 
+    /// A time just before the segment.
+    pub fn before(&self) -> f64 {
+        self.start * (1.0 - 4.0 * f64::EPSILON)
+    }
+
     /// `t` moved off a break point into the segment, by a few units in the last place.
     pub fn inside(&self, t: f64) -> f64 {
         if self.start_is_break && t <= self.start {

@@ -136,6 +136,7 @@ fn collocation_agrees_with_the_mittag_leffler_function() {
         );
         let solution = problem.solve(&Method::Collocation(Collocation::default()), 4.0).unwrap();
         assert_eq!(solution.stop, Stop::EndReached);
+        println!("{order}: {:?}", solution.counts);
         for i in 0..=40 {
             let t = 0.1 * f64::from(i);
             let exact = (-t.powf(order)).mittag_leffler(order, 1.0).unwrap().re;

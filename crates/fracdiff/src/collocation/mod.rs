@@ -28,7 +28,7 @@ pub struct Collocation {
     /// Nodes a panel, 4 to 64; default 16.
     pub nodes: usize,
     /// Exponent `q` of the mapping `t - t0 = x^q`, 1 to 12; by default the smallest that makes every order
-    /// of the problem times `q` an integer, and 4 if there is none up to 6.
+    /// of the problem times `q` an integer, and 4 if there is none up to 10.
     pub mapping: Option<u32>,
     /// Length of the first panel tried after each break; by default a thousandth of the segment.
     pub first_panel: Option<f64>,
@@ -72,7 +72,7 @@ impl Collocation {
     /// The `q` of the settings, or the smallest that makes every order times `q` an integer.
     fn mapping_for(&self, orders: &[f64]) -> u32 {
         let is_integer = |v: f64| (v - v.round()).abs() < 1e-9;
-        let smallest = || (1..=6).find(|&q| orders.iter().all(|&order| is_integer(order * f64::from(q))));
+        let smallest = || (1..=10).find(|&q| orders.iter().all(|&order| is_integer(order * f64::from(q))));
         self.mapping.or_else(smallest).unwrap_or(4)
     }
 
@@ -131,8 +131,8 @@ impl March<'_, '_, '_> {
         let mut length = self.settings.first_panel.unwrap_or(1e-3 * segment.length()).min(longest);
         // Distance of the current panel's start from the start of the segment.
         let mut reached = 0.0;
-        let mut guess = vec![0.0; self.system.unknowns];
-        self.system.forcing(segment.inside(segment.start), &mut guess)?;
+        let start = self.start_value(&segment)?;
+        let mut guess = start.clone();
         while reached < segment.length() {
             if self.counts.steps >= self.settings.most_panels as u64 {
                 return Err(Stop::PanelLimit { t: segment.start + reached });
@@ -142,10 +142,10 @@ impl March<'_, '_, '_> {
             let step = if length >= left { left } else { length.min(0.5 * left) };
             let end = if step == left { segment.length() } else { reached + step };
             let panel = Panel::new(segment, self.mapping, [reached, end], &self.interpolation.nodes);
-            match self.try_panel(&panel, &guess) {
+            match self.try_panel(&panel, &guess, segment.length()) {
                 Ok((stage, growth)) => {
                     guess.copy_from_slice(&stage.y[stage.y.len() - self.system.unknowns..]);
-                    self.accept(&panel, stage, reached == 0.0)?;
+                    self.accept(&panel, stage, (reached == 0.0).then_some(&start))?;
                     reached = end;
                     length = (step * growth).min(longest);
                 }
@@ -166,8 +166,25 @@ impl March<'_, '_, '_> {
         Ok(())
     }
 
+    /// The solution just after the start of a segment: the forcing at first, later the last value and the jump of
+    /// the forcing, since the integrals are continuous.
+    fn start_value(&mut self, segment: &Segment) -> Result<Vec<f64>, Stop> {
+        let mut value = vec![0.0; self.system.unknowns];
+        self.system.forcing(segment.inside(segment.start), &mut value)?;
+        if segment.start > 0.0 {
+            let mut before = vec![0.0; self.system.unknowns];
+            self.system.forcing(segment.before(), &mut before)?;
+            let values = self.recorder.dense.values();
+            let last = &values[values.len() - before.len()..];
+            for ((v, b), y) in value.iter_mut().zip(&before).zip(last) {
+                *v = y + (*v - b);
+            }
+        }
+        Ok(value)
+    }
+
     /// Solves a panel; on success with the factor by which the next may be longer.
-    fn try_panel(&mut self, panel: &Panel, guess: &[f64]) -> Result<(Stage, f64), Rejection> {
+    fn try_panel(&mut self, panel: &Panel, guess: &[f64], length: f64) -> Result<(Stage, f64), Rejection> {
         let (d, m, n) = (self.system.unknowns, self.system.densities, panel.times.len());
         let mut rhs = vec![0.0; n * d];
         for (i, &t) in panel.times.iter().enumerate() {
@@ -185,7 +202,8 @@ impl March<'_, '_, '_> {
         let mut worst: f64 = 0.0;
         for c in 0..d {
             let here = (0..n).map(|i| stage.y[i * d + c].abs()).fold(0.0, f64::max);
-            let scale = self.largest[c].max(here).max(f64::MIN_POSITIVE);
+            let expected = self.expected_variation(panel, length, (0..n).map(|i| stage.y[i * d + c]));
+            let scale = self.largest[c].max(here).max(expected).max(f64::MIN_POSITIVE);
             let allowed = scale * self.settings.tolerance;
             worst = worst.max(self.interpolation.tail(|i| stage.y[i * d + c]) / allowed);
             for pair in self.system.pairs.iter().filter(|p| p.unknown == c) {
@@ -201,7 +219,21 @@ impl March<'_, '_, '_> {
         Ok((stage, growth.clamp(0.5, 3.0)))
     }
 
-    fn accept(&mut self, panel: &Panel, stage: Stage, first: bool) -> Result<(), Stop> {
+    /// How far a component may be expected to go on a segment of this length, seen from a very short first panel.
+    ///
+    /// A solution that starts from 0 like a power the mapping does not make smooth looks the same on every first
+    /// panel, however short. What such a panel misses is judged by where the least power of the problem would lead.
+    fn expected_variation(&self, panel: &Panel, length: f64, values: impl Iterator<Item = f64>) -> f64 {
+        let ratio = length / panel.length();
+        if panel.x[0] > 0.0 || ratio < 1e8 {
+            return 0.0;
+        }
+        let least = self.system.orders.iter().copied().fold(1.0, f64::min);
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+        (high - low) * ratio.powf(least)
+    }
+
+    fn accept(&mut self, panel: &Panel, stage: Stage, start: Option<&Vec<f64>>) -> Result<(), Stop> {
         let d = self.system.unknowns;
         for row in stage.y.chunks_exact(d) {
             for (largest, v) in self.largest.iter_mut().zip(row) {
@@ -211,10 +243,10 @@ impl March<'_, '_, '_> {
         self.history.push(panel, &stage.f);
         let values =
             PanelValues { origin: panel.origin, mapping: panel.mapping, x: panel.x, y: stage.y };
-        self.recorder.dense.push_panel(panel.t, first, values);
+        self.recorder.dense.push_panel(panel.t, start.map(Vec::as_slice), values);
         self.counts.steps += 1;
-        let start = first.then_some(panel.t[0]);
+        let first = start.map(|_| panel.t[0]);
         let inner = panel.times.iter().copied();
-        self.recorder.scan(start.into_iter().chain(inner).chain([panel.t[1]]))
+        self.recorder.scan(first.into_iter().chain(inner).chain([panel.t[1]]))
     }
 }

@@ -58,6 +58,13 @@ impl Scheme {
         }
     }
 
+    /// Corrections for the singular start of a segment in the past; the methods of first order need none.
+    fn start_corrections(self, orders: &[f64]) -> Vec<f64> {
+        let exponents = weights::start_exponents(orders);
+        let wanted = self == Scheme::Trapezoidal && exponents.len() > 2;
+        if wanted { weights::start_corrections(&exponents) } else { Vec::new() }
+    }
+
     /// Degree of the interpolation between grid points: one more than the order needs.
     fn degree(self) -> usize {
         if self == Scheme::Trapezoidal { 3 } else { 1 }
@@ -73,7 +80,7 @@ pub(crate) fn run(
     require_steps(settings.steps)?;
     let mut system = System::new(problem, t_end)?;
     let mut recorder = Recorder::new(problem, Dense::grid(system.unknowns, scheme.degree()));
-    let mut past = Past::new(&system.orders, system.densities);
+    let mut past = Past::new(&system.orders, system.densities, scheme.start_corrections(&system.orders));
     let mut counts = Counts::default();
     let mut stop = Stop::EndReached;
     for segment in system.segments.clone() {

@@ -9,17 +9,19 @@ const FAR: f64 = 6.0;
 
 /// Grid values of the density on the segments that are finished.
 pub(crate) struct Past {
-    /// Of each order the kernel and its first two integrals' powers.
+    /// Each order with its kernel.
     orders: Vec<(f64, Power)>,
     densities: usize,
     rule: Rule,
     segments: Vec<(Segment, Vec<f64>)>,
+    /// Weights on the first values of a segment for its singular start, in units of the step.
+    start: Vec<f64>,
 }
 
 impl Past {
-    pub fn new(orders: &[f64], densities: usize) -> Past {
+    pub fn new(orders: &[f64], densities: usize, start: Vec<f64>) -> Past {
         let orders = orders.iter().map(|&order| (order, Power::new(order - 1.0))).collect();
-        Past { orders, densities, rule: Rule::legendre(4), segments: Vec::new() }
+        Past { orders, densities, rule: Rule::legendre(4), segments: Vec::new(), start }
     }
 
     /// Adds a segment with the density at its equally spaced points, `points x densities`.
@@ -39,6 +41,14 @@ impl Past {
         for (segment, f) in &self.segments {
             let steps = f.len() / m - 1;
             let h = segment.length() / steps as f64;
+            for (o, (_, power)) in self.orders.iter().enumerate() {
+                let kernel = h * power.at(t - segment.start);
+                for (w, row) in self.start.iter().zip(f.chunks_exact(m)) {
+                    for k in 0..m {
+                        sums[o * m + k] += kernel * w * row[k];
+                    }
+                }
+            }
             for j in 0..steps {
                 let lag = (t - segment.end) + h * (steps - j) as f64;
                 for (o, order) in self.orders.iter().enumerate() {

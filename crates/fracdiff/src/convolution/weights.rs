@@ -127,6 +127,28 @@ pub(crate) fn add_corrections(weights: &mut Weights, order: f64, exponents: &[f6
     }
 }
 
+/// Weights on the first values, in units of the step, that correct the trapezoidal rule for `s^gamma` in a segment that
+/// lies wholly in the past: the rule misses `-zeta(-gamma) h^(1+gamma)` times the kernel at the start of the segment
+/// (Euler-Maclaurin formula of Navot), and nothing to this order for the exponents 0 and 1.
+pub(crate) fn start_corrections(exponents: &[f64]) -> Vec<f64> {
+    let points = exponents.len();
+    let system = DMatrix::from_fn(points, points, |g, l| (l as f64).powf(exponents[g]));
+    let defects = DVector::from_fn(points, |g, _| {
+        let gamma = exponents[g];
+        if gamma == 0.0 || gamma == 1.0 { 0.0 } else { -zeta_of_minus(gamma) }
+    });
+    system.lu().solve(&defects).map_or_else(Vec::new, |w| w.as_slice().to_vec())
+}
+
+/// Riemann's `zeta(-gamma)`, `0 < gamma < 1`, from a sum of `j^gamma` and its Euler-Maclaurin formula.
+fn zeta_of_minus(gamma: f64) -> f64 {
+    let n = 40.0_f64;
+    let sum: f64 = (1..40).map(|j| f64::from(j).powf(gamma)).sum::<f64>() + 0.5 * n.powf(gamma);
+    let slope = gamma * n.powf(gamma - 1.0);
+    let third = slope * (gamma - 1.0) * (gamma - 2.0) / (n * n);
+    sum - n.powf(gamma + 1.0) / (gamma + 1.0) - slope / 12.0 + third / 720.0
+}
+
 /// The exponents below 1 that the density of a smooth problem may have at the start of a segment: sums of the orders.
 /// With 0 and 1, ascending; at most eight, since the corrections grow ill-conditioned with their number.
 pub(crate) fn start_exponents(orders: &[f64]) -> Vec<f64> {
@@ -179,6 +201,11 @@ mod tests {
                 assert!((apply(&w, n, 3, f64::sqrt) - root).abs() < 1e-13 * root + rounding, "{order} {n}");
             }
         }
+    }
+
+    #[test]
+    fn zeta_of_negative_arguments() {
+        assert!((zeta_of_minus(0.5) + 0.207_886_224_977_354_57).abs() < 1e-12);
     }
 
     #[test]
