@@ -34,10 +34,7 @@ impl Rule {
         let mut pairs: Vec<(f64, f64)> = pairs.iter().map(|&(x, w)| (0.5 * (1.0 + x), w)).collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let sum: f64 = pairs.iter().map(|p| p.1).sum();
-        Rule {
-            nodes: pairs.iter().map(|p| p.0).collect(),
-            weights: pairs.iter().map(|p| p.1 * total / sum).collect(),
-        }
+        Rule { nodes: pairs.iter().map(|p| p.0).collect(), weights: pairs.iter().map(|p| p.1 * total / sum).collect() }
     }
 }
 

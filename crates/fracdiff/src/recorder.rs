@@ -61,8 +61,7 @@ impl<'p, 'a> Recorder<'p, 'a> {
     }
 
     pub fn finish(self, stop: Stop, system: &System<'_, '_>, counts: Counts) -> Solution {
-        let counts =
-            Counts { evaluations: system.evaluations, newton_iterations: system.newton_iterations, ..counts };
+        let counts = Counts { evaluations: system.evaluations, newton_iterations: system.newton_iterations, ..counts };
         Solution { dense: self.dense, stop, events: self.hits, counts }
     }
 }
@@ -79,7 +78,8 @@ fn counts(direction: Direction, rising: bool) -> bool {
 /// whenever three steps have not halved it.
 fn locate(event: &Event<'_>, dense: &Dense, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
     let mut y = vec![0.0; dense.unknowns()];
-    let (mut best, mut smallest) = if fa.abs() < fb.abs() { (a, fa.abs()) } else { (b, fb.abs()) };
+    // Magnitudes at the two ends, which the Illinois correction leaves alone.
+    let (mut size_a, mut size_b) = (fa.abs(), fb.abs());
     let mut width = b - a;
     let mut moved_right_end = None;
     for iteration in 1..200 {
@@ -94,26 +94,22 @@ fn locate(event: &Event<'_>, dense: &Dense, (mut a, mut fa): (f64, f64), (mut b,
         }
         dense.eval(t, &mut y);
         let f = (event.function)(t, &y);
-        if f.is_nan() {
-            break;
-        }
-        // Also of equal size: at a jump of the solution the last time tried is the closest.
-        if f.abs() <= smallest {
-            (best, smallest) = (t, f.abs());
-        }
         if f == 0.0 {
+            return t;
+        }
+        if f.is_nan() {
             break;
         }
         let right = (f < 0.0) == (fb < 0.0);
         let again = moved_right_end == Some(right);
         moved_right_end = Some(right);
         if right {
-            (b, fb) = (t, f);
+            (b, fb, size_b) = (t, f, f.abs());
             fa *= if again { 0.5 } else { 1.0 };
         } else {
-            (a, fa) = (t, f);
+            (a, fa, size_a) = (t, f, f.abs());
             fb *= if again { 0.5 } else { 1.0 };
         }
     }
-    best
+    if size_a < size_b { a } else { b }
 }

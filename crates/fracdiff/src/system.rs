@@ -61,6 +61,13 @@ pub(crate) enum Fault {
     NoConvergence { t: f64 },
 }
 
+impl Fault {
+    pub fn time(self) -> f64 {
+        let (Fault::NonFinite { t } | Fault::NoConvergence { t }) = self;
+        t
+    }
+}
+
 impl From<Fault> for Stop {
     fn from(fault: Fault) -> Stop {
         match fault {

@@ -72,10 +72,7 @@ pub fn oscillation() -> TestProblem {
 
 /// `y'' + D^(3/2) y + y = 8` until `t = 1` and 0 after (Bagley & Torvik 1984), at rest at first.
 pub fn bagley_torvik() -> TestProblem {
-    let terms = vec![
-        Term::riemann_liouville(0, 0, 2.0, 1.0),
-        Term::riemann_liouville(0, 1, 0.5, -1.0),
-    ];
+    let terms = vec![Term::riemann_liouville(0, 0, 2.0, 1.0), Term::riemann_liouville(0, 1, 0.5, -1.0)];
     TestProblem {
         name: "bagley-torvik",
         about: "y'' + D^(3/2) y + y = 8 [t <= 1], y(0) = y'(0) = 0",
@@ -111,7 +108,8 @@ pub fn abel() -> TestProblem {
 pub fn diethelm(b: f64) -> TestProblem {
     let exact = move |t: f64| t.powi(8) - 3.0 * t.powf(4.0 + 0.5 * b) + 2.25 * t.powf(b);
     let right = move |t: f64, y: f64| {
-        40320.0 / tgamma(9.0 - b) * t.powf(8.0 - b) - 3.0 * tgamma(5.0 + 0.5 * b) / tgamma(5.0 - 0.5 * b) * t.powf(4.0 - 0.5 * b)
+        40320.0 / tgamma(9.0 - b) * t.powf(8.0 - b)
+            - 3.0 * tgamma(5.0 + 0.5 * b) / tgamma(5.0 - 0.5 * b) * t.powf(4.0 - 0.5 * b)
             + 2.25 * tgamma(b + 1.0)
             + (1.5 * t.powf(0.5 * b) - t.powi(4)).powi(3)
             - y.abs().powf(1.5)

@@ -13,7 +13,7 @@ fn every_method(steps: usize) -> Vec<Method> {
         Method::Trapezoidal(Convolution { steps }),
         Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
         Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
-        Method::Collocation(Collocation { most_panels: 300, ..Default::default() }),
+        Method::Collocation(Collocation { most_panels: 100, ..Default::default() }),
     ]
 }
 
@@ -159,7 +159,7 @@ fn times_outside_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_problems_end_in_finite_solutions(

@@ -1,8 +1,8 @@
 //! Systems, several terms and mixed orders; discontinuous forcing; agreement of the methods.
 
 use fracdiff::{
-    Collocation, Convolution, Equation, GalerkinStates, InitialValueProblem, Method, Solution, Stop,
-    SumOfExponentials, Term, Volterra, test_problems,
+    Collocation, Convolution, Equation, GalerkinStates, InitialValueProblem, Method, Solution, Stop, SumOfExponentials,
+    Term, Volterra, test_problems,
 };
 use libm::tgamma;
 
@@ -38,9 +38,8 @@ fn mixed_orders() -> InitialValueProblem<'static> {
     let y = |t: f64| t * t + t.powf(1.5) + 1.0;
     let z = |t: f64| t + 2.0;
     let derivative = |a: f64, p: f64, t: f64| tgamma(p + 1.0) / tgamma(p + 1.0 - a) * t.powf(p - a);
-    let left = move |t: f64| {
-        derivative(1.5, 2.0, t) + tgamma(2.5) + 0.5 * (derivative(0.5, 2.0, t) + derivative(0.5, 1.5, t))
-    };
+    let left =
+        move |t: f64| derivative(1.5, 2.0, t) + tgamma(2.5) + 0.5 * (derivative(0.5, 2.0, t) + derivative(0.5, 1.5, t));
     let equations = vec![Equation::new(1.5, &[1.0, 0.0]).plus(0.5, 0.5), Equation::new(0.5, &[2.0])];
     InitialValueProblem::new(equations, move |t, v, f| {
         f[0] = left(t) + v[0] * v[1] - y(t) * z(t);
@@ -113,10 +112,7 @@ fn fast_history_equals_direct_sums() {
     // 63 steps are summed directly, 64 and more by transforms; the same grid twice through a break at the middle
     // would hide nothing: compare with the recursion written out.
     let (steps, order) = (777usize, 0.5);
-    let solution = test_problems::abel()
-        .volterra
-        .solve(&Method::GrunwaldLetnikov(Convolution { steps }), 2.0)
-        .unwrap();
+    let solution = test_problems::abel().volterra.solve(&Method::GrunwaldLetnikov(Convolution { steps }), 2.0).unwrap();
     let h: f64 = 2.0 / steps as f64;
     let mut weight = vec![tgamma(order) * h.powf(order)];
     let mut y = vec![1.0];

@@ -133,6 +133,8 @@ impl March<'_, '_, '_> {
         let mut reached = 0.0;
         let start = self.start_value(&segment)?;
         let mut guess = start.clone();
+        // The last fault met. If it lies ahead, it says more than what stops the shortest panel tried.
+        let mut fault: Option<Fault> = None;
         while reached < segment.length() {
             if self.counts.steps >= self.settings.most_panels as u64 {
                 return Err(Stop::PanelLimit { t: segment.start + reached });
@@ -151,14 +153,16 @@ impl March<'_, '_, '_> {
                 }
                 Err(rejection) => {
                     self.counts.rejected += 1;
+                    if let Rejection::Fault(found) = rejection {
+                        fault = Some(found);
+                    }
                     length = 0.25 * step;
                     // Next to the start of a segment only underflow is too short, elsewhere rounding of t.
-                    let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-14 * reached };
+                    let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-13 * reached };
                     if length < smallest {
-                        return Err(match rejection {
-                            Rejection::Fault(fault) => fault.into(),
-                            Rejection::Unresolved => Stop::NoConvergence { t: segment.start + reached },
-                        });
+                        let unresolved = Stop::NoConvergence { t: segment.start + reached };
+                        let ahead = fault.filter(|f| f.time() >= segment.start + reached);
+                        return Err(ahead.map_or(unresolved, Stop::from));
                     }
                 }
             }
@@ -241,8 +245,7 @@ impl March<'_, '_, '_> {
             }
         }
         self.history.push(panel, &stage.f);
-        let values =
-            PanelValues { origin: panel.origin, mapping: panel.mapping, x: panel.x, y: stage.y };
+        let values = PanelValues { origin: panel.origin, mapping: panel.mapping, x: panel.x, y: stage.y };
         self.recorder.dense.push_panel(panel.t, start.map(Vec::as_slice), values);
         self.counts.steps += 1;
         let first = start.map(|_| panel.t[0]);

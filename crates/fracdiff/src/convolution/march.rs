@@ -201,8 +201,7 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
         let densities: Vec<Vec<Complex<f64>>> = (0..m)
             .map(|k| {
                 // The weight of point 0 is not a function of the distance and stands in `start`.
-                let block: Vec<f64> =
-                    (low..low + half).map(|j| if j == 0 { 0.0 } else { self.f[j * m + k] }).collect();
+                let block: Vec<f64> = (low..low + half).map(|j| if j == 0 { 0.0 } else { self.f[j * m + k] }).collect();
                 transform.spectrum(&block)
             })
             .collect();

@@ -67,9 +67,7 @@ fn power_difference(k: f64, p: f64) -> f64 {
 pub(crate) fn trapezoidal(order: f64, steps: usize) -> Weights {
     let p = order + 1.0;
     let scale = 1.0 / (order * p);
-    let lag = (0..=steps)
-        .map(|k| if k == 0 { scale } else { scale * second_difference(k as f64, p) })
-        .collect();
+    let lag = (0..=steps).map(|k| if k == 0 { scale } else { scale * second_difference(k as f64, p) }).collect();
     let start = (0..=steps).map(|n| if n == 0 { 0.0 } else { scale * first_weight(n as f64, p) }).collect();
     Weights { start, lag, corrections: Vec::new() }
 }
@@ -142,8 +140,8 @@ pub(crate) fn start_corrections(exponents: &[f64]) -> Vec<f64> {
 
 /// Riemann's `zeta(-gamma)`, `0 < gamma < 1`, from a sum of `j^gamma` and its Euler-Maclaurin formula.
 fn zeta_of_minus(gamma: f64) -> f64 {
-    let n = 40.0_f64;
-    let sum: f64 = (1..40).map(|j| f64::from(j).powf(gamma)).sum::<f64>() + 0.5 * n.powf(gamma);
+    let n = 200.0_f64;
+    let sum: f64 = (1..200).map(|j| f64::from(j).powf(gamma)).sum::<f64>() + 0.5 * n.powf(gamma);
     let slope = gamma * n.powf(gamma - 1.0);
     let third = slope * (gamma - 1.0) * (gamma - 2.0) / (n * n);
     sum - n.powf(gamma + 1.0) / (gamma + 1.0) - slope / 12.0 + third / 720.0

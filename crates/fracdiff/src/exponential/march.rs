@@ -181,8 +181,7 @@ fn march(
         let mut rhs = vec![0.0; d];
         system.forcing(t, &mut rhs)?;
         for (pair, weight) in system.pairs.iter().zip(&mut weights) {
-            rhs[pair.unknown] +=
-                pair.combine(|o| memories[o].past(pair.density, m) + local[o].0 * f[pair.density]);
+            rhs[pair.unknown] += pair.combine(|o| memories[o].past(pair.density, m) + local[o].0 * f[pair.density]);
             weight[0] = pair.combine(|o| local[o].1);
         }
         let mut stage = Stage { y: y.clone(), f: vec![0.0; m] };

@@ -102,7 +102,6 @@ impl GalerkinStates {
     }
 }
 
-
 /// `order = whole + fraction` with `0 < fraction <= 1`.
 fn split(order: f64) -> (usize, f64) {
     let whole = order.ceil() - 1.0;

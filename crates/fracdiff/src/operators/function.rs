@@ -53,12 +53,7 @@ pub struct Estimate {
 ///
 /// [`InvalidInput`] for an order outside `0 < order <= 16`, a negative `t`, settings outside their ranges, or a value
 /// of `f` that is not finite.
-pub fn integral(
-    order: f64,
-    f: impl Fn(f64) -> f64,
-    t: f64,
-    settings: &Quadrature,
-) -> Result<Estimate, InvalidInput> {
+pub fn integral(order: f64, f: impl Fn(f64) -> f64, t: f64, settings: &Quadrature) -> Result<Estimate, InvalidInput> {
     require_order(order)?;
     let estimate = weighted(order, |s, _| f(s), t, settings)?;
     Ok(estimate.scaled(1.0 / tgamma(order)))
@@ -134,20 +129,11 @@ fn require_time(t: f64) -> Result<f64, InvalidInput> {
 }
 
 fn finite(value: f64, t: f64) -> Result<f64, InvalidInput> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(InvalidInput::new(format!("f({t})"), value, "a finite value"))
-    }
+    if value.is_finite() { Ok(value) } else { Err(InvalidInput::new(format!("f({t})"), value, "a finite value")) }
 }
 
 /// `int_0^t (t-s)^(order-1) f(s, t-s) ds` with rules of 8, 16, ... 256 nodes until two agree.
-fn weighted(
-    order: f64,
-    f: impl Fn(f64, f64) -> f64,
-    t: f64,
-    settings: &Quadrature,
-) -> Result<Estimate, InvalidInput> {
+fn weighted(order: f64, f: impl Fn(f64, f64) -> f64, t: f64, settings: &Quadrature) -> Result<Estimate, InvalidInput> {
     settings.check()?;
     require_time(t)?;
     if t == 0.0 {
@@ -209,7 +195,10 @@ mod tests {
                 // Differences of values near 1 leave rounding, the more the closer the fraction is to 1.
                 let rounding = 1e-13 * t.powf(order.floor() - order);
                 let exact = series(-order, t, n);
-                assert!((caputo_value - exact).abs() < 1e-13 * exact + rounding, "C {order} {t}: {caputo_value} {exact}");
+                assert!(
+                    (caputo_value - exact).abs() < 1e-13 * exact + rounding,
+                    "C {order} {t}: {caputo_value} {exact}"
+                );
                 let rl = riemann_liouville(order, f64::exp, &[1.0; 4], t, &set).unwrap().value;
                 let exact = series(-order, t, 0);
                 assert!((rl - exact).abs() < 1e-13 * exact.abs() + rounding, "R {order} {t}: {rl} {exact}");

@@ -229,10 +229,8 @@ mod tests {
             assert!((integral - 2.0).abs() < 0.1, "integral {a}: {integral}");
             let caputo = order_of(|t| caputo_sampled(a, t, &cube(t)).unwrap()[t.len() - 1], of_power(a, 3.0, 2.0));
             assert!((caputo - (2.0 - a)).abs() < 0.1, "caputo {a}: {caputo}");
-            let above = order_of(
-                |t| caputo_sampled(1.0 + a, t, &cube(t)).unwrap()[t.len() - 1],
-                of_power(1.0 + a, 3.0, 2.0),
-            );
+            let above =
+                order_of(|t| caputo_sampled(1.0 + a, t, &cube(t)).unwrap()[t.len() - 1], of_power(1.0 + a, 3.0, 2.0));
             assert!((above - (2.0 - a)).abs() < 0.1, "caputo {}: {above}", 1.0 + a);
         }
     }
