@@ -104,7 +104,7 @@ pub use error::InvalidInput;
 pub use exponential::{DasChatterjee, ExponentialSum, GalerkinStates, SumOfExponentials};
 pub use ivp::{Equation, InitialValueProblem};
 pub use method::Method;
-pub use problem::{Density, Direction, Event, Forcing, Term, Volterra};
+pub use problem::{Density, Direction, Event, EventFunction, Forcing, Term, Volterra};
 pub use solution::{Counts, EventHit, Solution, Stop};
 
 /// The examples of the README, run as documentation tests.

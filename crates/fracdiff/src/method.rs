@@ -6,6 +6,7 @@ use crate::error::InvalidInput;
 use crate::exponential::{GalerkinStates, SumOfExponentials};
 use crate::problem::Volterra;
 use crate::solution::Solution;
+use crate::system::System;
 
 /// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,9 @@ impl Method {
     }
 }
 
-/// Checks a number of steps.
-pub(crate) fn require_steps(steps: usize) -> Result<usize, InvalidInput> {
-    InvalidInput::require((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")
+/// Checks a number of steps, and that the samples of the solution and the density fit into a sensible memory.
+pub(crate) fn require_steps(steps: usize, system: &System<'_, '_>) -> Result<usize, InvalidInput> {
+    InvalidInput::require((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
+    let samples = steps * (system.unknowns + system.densities);
+    InvalidInput::require(samples <= 1 << 28, "steps", steps, "few enough for 2^28 values of solution and density")
 }

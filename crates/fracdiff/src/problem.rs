@@ -37,9 +37,12 @@ pub enum Direction {
 }
 
 /// A function of time and solution whose sign changes are located.
+///
+/// Signs are compared at the ends of steps, or at the ends and nodes of panels; two sign changes between neighbours of
+/// these are not seen. A change that is seen is located on the solution to rounding.
 pub struct Event<'a> {
     /// The function `e(t, y)`. A value of exactly 0 belongs to neither sign, so a start at 0 is no event.
-    pub function: Box<dyn Fn(f64, &[f64]) -> f64 + 'a>,
+    pub function: EventFunction<'a>,
     /// Which sign changes count.
     pub direction: Direction,
     /// Whether the solution ends at the first sign change that counts.
@@ -65,6 +68,8 @@ impl<'a> Event<'a> {
     }
 }
 
+/// A function of time and solution.
+pub type EventFunction<'a> = Box<dyn Fn(f64, &[f64]) -> f64 + 'a>;
 /// A function of time that fills a vector.
 pub type Forcing<'a> = Box<dyn Fn(f64, &mut [f64]) + 'a>;
 /// A function of time and solution that fills a vector.

@@ -5,7 +5,7 @@ use crate::problem::Volterra;
 use crate::solution::Stop;
 
 /// Largest number of unknowns or densities: a bound on memory, far above what the dense Newton systems can serve.
-const MOST_COMPONENTS: usize = 10_000;
+const MOST_COMPONENTS: usize = 2000;
 
 /// All terms of one (unknown, density) pair: the kernel `sum of coefficient * t^(orders[index] - 1)`.
 #[derive(Debug, Clone)]
@@ -91,7 +91,7 @@ pub(crate) struct System<'p, 'a> {
 
 impl<'p, 'a> System<'p, 'a> {
     pub fn new(problem: &'p Volterra<'a>, t_end: f64) -> Result<Self, InvalidInput> {
-        let components = "a number from 1 to 10000";
+        let components = "a number from 1 to 2000";
         let within = |n: usize| (1..=MOST_COMPONENTS).contains(&n);
         InvalidInput::require(within(problem.unknowns), "unknowns", problem.unknowns, components)?;
         InvalidInput::require(within(problem.densities), "densities", problem.densities, components)?;

@@ -103,6 +103,23 @@ fn collocation_reaches_twelve_digits() {
 }
 
 #[test]
+fn collocation_converges_spectrally() {
+    // One panel in x = sqrt(t), with 6 to 14 nodes: at least two digits for every four nodes.
+    let problem = test_problems::linear_beam();
+    let errors: Vec<f64> = (6..=14)
+        .step_by(2)
+        .map(|nodes| {
+            let settings = Collocation { tolerance: 0.1, nodes, first_panel: Some(1.0), ..Default::default() };
+            let solution = problem.volterra.solve(&Method::Collocation(settings), 1.0).unwrap();
+            assert_eq!(solution.counts.steps, 1);
+            (solution.at(1.0).unwrap()[0] - problem.reference[0].1).abs()
+        })
+        .collect();
+    println!("{errors:?}");
+    assert!(errors.windows(3).all(|e| e[2] < 0.01 * e[0]), "{errors:?}");
+}
+
+#[test]
 fn collocation_error_follows_its_tolerance() {
     for problem in [test_problems::bagley_torvik(), test_problems::diethelm(0.3), test_problems::rigid_contact()] {
         let t_end = problem.end_before(20.0);

@@ -19,6 +19,9 @@ use crate::system::{Fault, Segment, System};
 use history::History;
 use panel::{LocalRules, Panel};
 
+/// Largest dense Newton system of a panel.
+const MOST_EQUATIONS: usize = 8000;
+
 /// Settings of the collocation method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collocation {
@@ -79,6 +82,8 @@ impl Collocation {
     pub(crate) fn run(&self, problem: &Volterra<'_>, t_end: f64) -> Result<Solution, InvalidInput> {
         self.check()?;
         let system = System::new(problem, t_end)?;
+        let size = self.nodes * system.unknowns;
+        InvalidInput::require(size <= MOST_EQUATIONS, "unknowns * nodes", size, "at most 8000 equations a panel")?;
         let rule = Rule::legendre(self.nodes);
         let interpolation = Interpolation::new(&rule);
         let dense = Dense::panels(system.unknowns, interpolation.clone());
@@ -216,7 +221,7 @@ impl March<'_, '_, '_> {
                 worst = worst.max(effect * self.interpolation.tail(|i| stage.f[i * m + pair.density]) / allowed);
             }
         }
-        if !(worst <= 1.0) {
+        if worst > 1.0 || worst.is_nan() {
             return Err(Rejection::Unresolved);
         }
         let growth = (0.5 / worst.max(1e-300)).powf(1.0 / n as f64);

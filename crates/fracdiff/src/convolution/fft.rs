@@ -4,6 +4,9 @@ use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
+/// The transform of a sequence.
+pub(crate) type Spectrum = Vec<Complex<f64>>;
+
 /// Transforms of one length, forwards and back.
 #[derive(Clone)]
 pub(crate) struct Transform {
@@ -20,15 +23,15 @@ impl Transform {
     }
 
     /// The spectrum of real values, padded with zeros.
-    pub fn spectrum(&self, values: &[f64]) -> Vec<Complex<f64>> {
-        let mut buffer: Vec<Complex<f64>> = values.iter().map(|&v| Complex::new(v, 0.0)).collect();
+    pub fn spectrum(&self, values: &[f64]) -> Spectrum {
+        let mut buffer: Spectrum = values.iter().map(|&v| Complex::new(v, 0.0)).collect();
         buffer.resize(self.length, Complex::new(0.0, 0.0));
         self.forward.process(&mut buffer);
         buffer
     }
 
     /// The real values of a spectrum.
-    pub fn values(&self, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
+    pub fn values(&self, mut spectrum: Spectrum) -> Vec<f64> {
         self.backward.process(&mut spectrum);
         let scale = 1.0 / self.length as f64;
         spectrum.iter().map(|c| c.re * scale).collect()

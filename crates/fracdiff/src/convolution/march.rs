@@ -1,7 +1,7 @@
 //! Marching through one segment with fast history.
 
 use super::Scheme;
-use super::fft::Transform;
+use super::fft::{Spectrum, Transform};
 use super::past::Past;
 use super::weights::{Weights, start_exponents};
 use crate::implicit::{self, Block, Stage};
@@ -30,7 +30,8 @@ pub(crate) struct March<'m, 'p, 'a> {
     known: Vec<f64>,
     /// Last solution value, the guess for the next.
     guess: Vec<f64>,
-    spectra: HashMap<usize, (Transform, Vec<Vec<Complex<f64>>>)>,
+    /// By length of a block: its transform, and the spectrum of each pair's weights.
+    spectra: HashMap<usize, (Transform, Vec<Spectrum>)>,
 }
 
 impl<'m, 'p, 'a> March<'m, 'p, 'a> {
@@ -198,7 +199,7 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
             let spectra = weights.iter().map(|w| transform.spectrum(&w.lag[..w.lag.len().min(length)])).collect();
             (transform, spectra)
         });
-        let densities: Vec<Vec<Complex<f64>>> = (0..m)
+        let densities: Vec<Spectrum> = (0..m)
             .map(|k| {
                 // The weight of point 0 is not a function of the distance and stands in `start`.
                 let block: Vec<f64> = (low..low + half).map(|j| if j == 0 { 0.0 } else { self.f[j * m + k] }).collect();

@@ -77,8 +77,8 @@ pub(crate) fn run(
     settings: &Convolution,
     t_end: f64,
 ) -> Result<Solution, InvalidInput> {
-    require_steps(settings.steps)?;
     let mut system = System::new(problem, t_end)?;
+    require_steps(settings.steps, &system)?;
     let mut recorder = Recorder::new(problem, Dense::grid(system.unknowns, scheme.degree()));
     let mut past = Past::new(&system.orders, system.densities, scheme.start_corrections(&system.orders));
     let mut counts = Counts::default();

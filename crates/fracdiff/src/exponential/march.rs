@@ -79,8 +79,7 @@ impl<'k> Memory<'k> {
         for ((decay, moment), r) in
             self.decay.iter_mut().zip(self.moments.chunks_exact_mut(count)).zip(&self.kernel.sum.rates)
         {
-            *decay = (-r * h).exp();
-            moments(r * h, moment);
+            *decay = moments(r * h, moment);
         }
     }
 

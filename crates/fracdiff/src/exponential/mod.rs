@@ -35,7 +35,7 @@ impl Default for SumOfExponentials {
 impl SumOfExponentials {
     pub(crate) fn run(&self, problem: &Volterra<'_>, t_end: f64) -> Result<Solution, InvalidInput> {
         let mut system = System::new(problem, t_end)?;
-        let mesh = Mesh::new(&system.segments, require_steps(self.steps)?, self.grading)?;
+        let mesh = Mesh::new(&system.segments, require_steps(self.steps, &system)?, self.grading)?;
         let shortest = mesh.shortest_step();
         let kernels = system
             .orders
@@ -56,7 +56,8 @@ impl SumOfExponentials {
 
 /// Settings of the Galerkin internal states, see [`DasChatterjee`].
 ///
-/// A kernel `t^(order-1)`, `order = m + 1 - alpha`, is `t^m` times the sum of exponentials that the states stand for.
+/// A kernel `t^(order-1)`, `order = m + 1 - alpha`, is `t^m` times the sum of exponentials that the states stand for;
+/// `alpha` must lie between 0.05 and 0.95 (or be 0, which needs no states).
 #[derive(Debug, Clone, PartialEq)]
 pub struct GalerkinStates {
     /// Internal states for each order; default 50 (thesis A.1).
@@ -80,7 +81,7 @@ impl Default for GalerkinStates {
 impl GalerkinStates {
     pub(crate) fn run(&self, problem: &Volterra<'_>, t_end: f64) -> Result<Solution, InvalidInput> {
         let mut system = System::new(problem, t_end)?;
-        let mesh = Mesh::new(&system.segments, require_steps(self.steps)?, self.grading)?;
+        let mesh = Mesh::new(&system.segments, require_steps(self.steps, &system)?, self.grading)?;
         let kernels = system
             .orders
             .iter()

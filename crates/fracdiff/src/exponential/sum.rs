@@ -61,12 +61,12 @@ impl ExponentialSum {
     }
 }
 
-/// `integral_0^1 u^i exp(-z u) du` for `i = 0, 1, ..., out.len()-1`.
-pub(crate) fn moments(z: f64, out: &mut [f64]) {
+/// `integral_0^1 u^i exp(-z u) du` for `i = 0, 1, ..., out.len()-1`; returns `exp(-z)`.
+pub(crate) fn moments(z: f64, out: &mut [f64]) -> f64 {
     let decay = (-z).exp();
     let count = out.len();
     if count == 0 {
-        return;
+        return decay;
     }
     if z > count as f64 {
         out[0] = (1.0 - decay) / z;
@@ -87,6 +87,7 @@ pub(crate) fn moments(z: f64, out: &mut [f64]) {
             out[i] = (z * out[i + 1] + decay) / (i as f64 + 1.0);
         }
     }
+    decay
 }
 
 #[cfg(test)]
