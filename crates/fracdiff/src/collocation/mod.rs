@@ -22,11 +22,14 @@ use panel::{LocalRules, Panel};
 /// Largest dense Newton system of a panel.
 const MOST_EQUATIONS: usize = 8000;
 
+/// Roundings of the forcing that the unresolved part of a panel cannot be told from.
+const ROUNDINGS: f64 = 50.0;
+
 /// Settings of the collocation method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collocation {
-    /// Error allowed for a panel, relative to the largest magnitude each component of the solution has had so far.
-    /// From 1e-14 to 0.1; default 1e-12.
+    /// Error allowed for a panel, relative to the largest magnitude each component of the solution has had so far,
+    /// but not below some roundings of the forcing, which the memory may cancel. From 1e-14 to 0.1; default 1e-12.
     pub tolerance: f64,
     /// Nodes a panel, 4 to 64; default 16.
     pub nodes: usize,
@@ -199,6 +202,7 @@ impl March<'_, '_, '_> {
         for (i, &t) in panel.times.iter().enumerate() {
             self.system.forcing(t, &mut rhs[i * d..(i + 1) * d]).map_err(Rejection::Fault)?;
         }
+        let forcing = rhs.clone();
         self.history.add_to(&self.system.pairs, panel, d, &mut rhs);
         let by_order = self.local.weights(panel, &self.interpolation);
         let weights: Vec<Vec<f64>> =
@@ -207,20 +211,7 @@ impl March<'_, '_, '_> {
         let block = Block { times: &panel.times, rhs: &rhs, weights: &weights };
         implicit::solve(&mut self.system, &block, &mut stage).map_err(Rejection::Fault)?;
 
-        // Unresolved part of the solution, relative to what is allowed.
-        let mut worst: f64 = 0.0;
-        for c in 0..d {
-            let here = (0..n).map(|i| stage.y[i * d + c].abs()).fold(0.0, f64::max);
-            let expected = self.expected_variation(panel, length, (0..n).map(|i| stage.y[i * d + c]));
-            let scale = self.largest[c].max(here).max(expected).max(f64::MIN_POSITIVE);
-            let allowed = scale * self.settings.tolerance;
-            worst = worst.max(self.interpolation.tail(|i| stage.y[i * d + c]) / allowed);
-            for pair in self.system.pairs.iter().filter(|p| p.unknown == c) {
-                let length = panel.length();
-                let effect = pair.combine(|o| length.powf(self.system.orders[o]) / self.system.orders[o]).abs();
-                worst = worst.max(effect * self.interpolation.tail(|i| stage.f[i * m + pair.density]) / allowed);
-            }
-        }
+        let worst = self.unresolved(panel, &stage, &forcing, length);
         if worst > 1.0 || worst.is_nan() {
             return Err(Rejection::Unresolved);
         }
@@ -228,18 +219,45 @@ impl March<'_, '_, '_> {
         Ok((stage, growth.clamp(0.5, 3.0)))
     }
 
+    /// The unresolved part of solution and density, by its effect on the solution relative to what is allowed.
+    fn unresolved(&self, panel: &Panel, stage: &Stage, forcing: &[f64], length: f64) -> f64 {
+        let (d, m, n) = (self.system.unknowns, self.system.densities, panel.times.len());
+        let y = |c: usize| (0..n).map(move |i| stage.y[i * d + c]);
+        let f = |k: usize| (0..n).map(move |i| stage.f[i * m + k]);
+        // The memory may cancel against the forcing, whose rounding is then all there is to resolve, and the density
+        // passes that noise on by its slope.
+        let noise = ROUNDINGS * f64::EPSILON * forcing.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        let moved = (0..d).map(|c| range(y(c))).fold(noise, f64::max).max(f64::MIN_POSITIVE);
+        let mut worst: f64 = 0.0;
+        for c in 0..d {
+            let here = y(c).fold(0.0, |a: f64, v| a.max(v.abs()));
+            let expected = self.expected_variation(panel, length, range(y(c)));
+            let scale = self.largest[c].max(here).max(expected).max(f64::MIN_POSITIVE);
+            let allowed = (scale * self.settings.tolerance).max(noise);
+            worst = worst.max(self.interpolation.tail(|i| stage.y[i * d + c]) / allowed);
+            for pair in self.system.pairs.iter().filter(|p| p.unknown == c) {
+                let k = pair.density;
+                let span = panel.length();
+                let effect = pair.combine(|o| span.powf(self.system.orders[o]) / self.system.orders[o]).abs();
+                let passed_on = effect * range(f(k)) / moved * noise;
+                let tail = effect * self.interpolation.tail(|i| stage.f[i * m + k]);
+                worst = worst.max(tail / allowed.max(passed_on));
+            }
+        }
+        worst
+    }
+
     /// How far a component may be expected to go on a segment of this length, seen from a very short first panel.
     ///
     /// A solution that starts from 0 like a power the mapping does not make smooth looks the same on every first
     /// panel, however short. What such a panel misses is judged by where the least power of the problem would lead.
-    fn expected_variation(&self, panel: &Panel, length: f64, values: impl Iterator<Item = f64>) -> f64 {
+    fn expected_variation(&self, panel: &Panel, length: f64, variation: f64) -> f64 {
         let ratio = length / panel.length();
         if panel.x[0] > 0.0 || ratio < 1e8 {
             return 0.0;
         }
         let least = self.system.orders.iter().copied().fold(1.0, f64::min);
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-        (high - low) * ratio.powf(least)
+        variation * ratio.powf(least)
     }
 
     fn accept(&mut self, panel: &Panel, stage: Stage, start: Option<&Vec<f64>>) -> Result<(), Stop> {
@@ -257,4 +275,10 @@ impl March<'_, '_, '_> {
         let inner = panel.times.iter().copied();
         self.recorder.scan(first.into_iter().chain(inner).chain([panel.t[1]]))
     }
+}
+
+/// Largest less smallest value.
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+    high - low
 }
