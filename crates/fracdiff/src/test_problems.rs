@@ -162,6 +162,13 @@ pub fn manufactured_contact() -> TestProblem {
     }
 }
 
+/// A Hertzian ball on an infinite beam, `x = t - int [(t-s) + sqrt(t-s)] sqrt(S) max(x, 0)^(3/2) ds` (thesis Eqs. 2.7 in
+/// units that leave `S` alone). It has no closed solution and is not among [`all`]; with `S = 15` the ball separates
+/// four times and stays in contact after (thesis Fig. 2.3).
+pub fn ball_on_beam(s: f64) -> Volterra<'static> {
+    Volterra::scalar(|t| t, move |_, x| s.sqrt() * x.max(0.0).powf(1.5), &[(2.0, -1.0), (1.5, -1.0)])
+}
+
 /// The solution of [`abel`] for `t >= 0`.
 pub fn abel_exact(t: f64) -> f64 {
     // exp(z^2) erfc(z)

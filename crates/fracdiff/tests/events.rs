@@ -91,3 +91,28 @@ fn a_jump_over_zero_is_found_at_its_break() {
         assert!((solution.at(0.3000001).unwrap()[0] + 1.0).abs() < 1e-12);
     }
 }
+
+#[test]
+fn four_separations_of_a_ball_on_an_infinite_beam() {
+    let events = |tolerance: f64| {
+        let problem = test_problems::ball_on_beam(15.0).with_event(Event::new(|_, y| y[0]));
+        let method = Method::Collocation(Collocation { tolerance, ..Default::default() });
+        let solution = problem.solve(&method, 200.0).unwrap();
+        assert_eq!(solution.stop, Stop::EndReached);
+        solution.events
+    };
+    // separation and contact in turn, and sustained contact after the fourth (thesis Fig. 2.3)
+    let (fine, coarse) = (events(1e-12), events(1e-9));
+    assert_eq!((fine.len(), coarse.len()), (8, 8));
+    assert!(fine.iter().enumerate().all(|(i, hit)| hit.rising == (i % 2 == 1)));
+    for (a, b) in fine.iter().zip(&coarse) {
+        assert!((a.t / b.t - 1.0).abs() < 1e-6, "{} {}", a.t, b.t);
+    }
+    // the first separation by an independent method, extrapolated from its second order
+    let first = |steps| {
+        let problem = test_problems::ball_on_beam(15.0).with_event(Event::new(|_, y| y[0]).terminal());
+        problem.solve(&Method::Trapezoidal(Convolution { steps }), 2.0).unwrap().events[0].t
+    };
+    let extrapolated = (4.0 * first(4000) - first(2000)) / 3.0;
+    assert!((extrapolated - fine[0].t).abs() < 1e-8, "{extrapolated} {}", fine[0].t);
+}

@@ -143,6 +143,7 @@ impl March<'_, '_, '_> {
         let mut guess = start.clone();
         // The last fault met. If it lies ahead, it says more than what stops the shortest panel tried.
         let mut fault: Option<Fault> = None;
+        let mut rejected_before = false;
         while reached < segment.length() {
             if self.counts.steps >= self.settings.most_panels as u64 {
                 return Err(Stop::PanelLimit { t: segment.start + reached });
@@ -157,6 +158,7 @@ impl March<'_, '_, '_> {
                     guess.copy_from_slice(&stage.y[stage.y.len() - self.system.unknowns..]);
                     self.accept(&panel, stage, (reached == 0.0).then_some(&start))?;
                     reached = end;
+                    rejected_before = false;
                     length = (step * growth).min(longest);
                 }
                 Err(rejection) => {
@@ -164,7 +166,8 @@ impl March<'_, '_, '_> {
                     if let Rejection::Fault(found) = rejection {
                         fault = Some(found);
                     }
-                    length = 0.25 * step;
+                    length = if rejected_before { 0.25 } else { 0.5 } * step;
+                    rejected_before = true;
                     // Next to the start of a segment only underflow is too short, elsewhere rounding of t.
                     let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-13 * reached };
                     if length < smallest {
@@ -215,8 +218,9 @@ impl March<'_, '_, '_> {
         if worst > 1.0 || worst.is_nan() {
             return Err(Rejection::Unresolved);
         }
+        // Noise near the bound does not shrink with the panel: some growth is always tried.
         let growth = (0.5 / worst.max(1e-300)).powf(1.0 / n as f64);
-        Ok((stage, growth.clamp(0.5, 3.0)))
+        Ok((stage, growth.clamp(1.2, 3.0)))
     }
 
     /// The unresolved part of solution and density, by its effect on the solution relative to what is allowed.
