@@ -11,7 +11,7 @@ pub struct Term {
     pub unknown: usize,
     /// The component of the density that the term integrates.
     pub density: usize,
-    /// Order of the integral, greater than 0 (below 1 the kernel is singular) and at most 16.
+    /// Order of the integral, 0.01 to 16; below 1 the kernel is singular.
     pub order: f64,
     /// Factor of the kernel, without a Gamma function in it.
     pub coefficient: f64,
@@ -91,9 +91,9 @@ pub type Density<'a> = Box<dyn Fn(f64, &[f64], &mut [f64]) + 'a>;
 /// # Ok::<(), fracdiff::InvalidInput>(())
 /// ```
 pub struct Volterra<'a> {
-    /// Number of components of `y`, at least 1.
+    /// Number of components of `y`, 1 to 2000.
     pub unknowns: usize,
-    /// Number of components of the density `f`, at least 1.
+    /// Number of components of the density `f`, 1 to 2000.
     pub densities: usize,
     /// The memory terms.
     pub terms: Vec<Term>,

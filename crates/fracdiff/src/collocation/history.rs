@@ -6,9 +6,9 @@ use crate::quadrature::{Interpolation, Rule};
 use crate::system::Pair;
 
 /// Most dyadic levels towards the end of a panel; each halves the distance, so that rounding of `t` ends them first.
-const MOST_LEVELS: usize = 60;
+const MOST_LEVELS: usize = 300;
 
-/// Sources: weighted values of the density at points of the past.
+/// A finished panel.
 struct Past {
     panel: Panel,
     /// Density at the nodes, `nodes x densities`.
@@ -27,9 +27,10 @@ pub(crate) struct History {
     interpolation: Interpolation,
 }
 
-/// A rule of sources on a piece of a panel: positions in `x`, and `weight * dt/dx * density`.
+/// A quadrature rule on a piece of a past panel: distances in `x` from the end of the panel, which keep the digits of
+/// the times to later nodes, and `weight * dt/dx * density` there.
 struct Sources {
-    x: Vec<f64>,
+    back: Vec<f64>,
     strength: Vec<f64>,
 }
 
@@ -64,17 +65,17 @@ impl History {
         for p in 0..self.past.len() {
             let level = self.levels_needed(p, panel, gap);
             if level == 0 {
-                let sources = self.sources(p, 0.0, 1.0, None);
+                let sources = self.sources(p, [1.0, 0.0], None);
                 self.add_sources(p, &sources, panel, &mut sums);
                 continue;
             }
             self.build_levels(level);
             for k in 0..level {
-                let (a, b) = (1.0 - 0.5f64.powi(k as i32), 1.0 - 0.5f64.powi(k as i32 + 1));
-                let sources = self.sources(p, a, b, Some(&self.levels[k]));
+                let ends = [0.5f64.powi(k as i32), 0.5f64.powi(k as i32 + 1)];
+                let sources = self.sources(p, ends, Some(&self.levels[k]));
                 self.add_sources(p, &sources, panel, &mut sums);
             }
-            let sources = self.sources(p, 1.0 - 0.5f64.powi(level as i32), 1.0, Some(&self.rests[level]));
+            let sources = self.sources(p, [0.5f64.powi(level as i32), 0.0], Some(&self.rests[level]));
             self.add_sources(p, &sources, panel, &mut sums);
         }
         for pair in pairs {
@@ -87,12 +88,11 @@ impl History {
     /// Dyadic levels after which the rest of the past panel is no longer than its distance from the first node.
     fn levels_needed(&self, p: usize, panel: &Panel, gap: f64) -> usize {
         let past = &self.past[p].panel;
+        // The gap is counted apart: the panels may be neighbours, and the first node close to the panel's start.
         let distance = if past.origin == panel.origin {
-            let x = past.x[1];
-            let node = panel.x[0] + gap;
-            (panel.x[0] - x + gap) * divided_power(node, x, panel.mapping)
+            (panel.x[0] - past.x[1] + gap) * divided_power(panel.nodes[0], past.x[1], panel.mapping)
         } else {
-            panel.times[0] - past.t[1]
+            past.lag(0.0, panel, panel.nodes[0])
         };
         let mut level = 0;
         let mut rest = past.length();
@@ -120,19 +120,16 @@ impl History {
         }
     }
 
-    /// Sources on the part `[a, b]` of a past panel, in units of its width; `to` interpolates the density to them.
-    fn sources(&self, p: usize, a: f64, b: f64, to: Option<&Vec<f64>>) -> Sources {
+    /// Sources on the part of a past panel between two distances from its end, in units of its width; `to`
+    /// interpolates the density to them.
+    fn sources(&self, p: usize, [far, near]: [f64; 2], to: Option<&Vec<f64>>) -> Sources {
         let Past { panel, f } = &self.past[p];
         let (n, m) = (self.rule.nodes.len(), self.densities);
         let width = panel.x[1] - panel.x[0];
-        // Measured from the end of the panel, so that the distance to later times keeps its digits.
-        let x: Vec<f64> = match to {
-            None => panel.nodes.clone(),
-            Some(_) => self.rule.nodes.iter().map(|u| panel.x[1] - width * ((1.0 - b) + (b - a) * (1.0 - u))).collect(),
-        };
+        let back: Vec<f64> = self.rule.nodes.iter().map(|u| width * (near + (far - near) * (1.0 - u))).collect();
         let mut strength = vec![0.0; n * m];
         for (j, row) in strength.chunks_exact_mut(m).enumerate() {
-            let weight = self.rule.weights[j] * width * (b - a) * panel.speed(x[j]);
+            let weight = self.rule.weights[j] * width * (far - near) * panel.speed(panel.x[1] - back[j]);
             for (k, s) in row.iter_mut().enumerate() {
                 *s = weight
                     * match to {
@@ -141,20 +138,15 @@ impl History {
                     };
             }
         }
-        Sources { x, strength }
+        Sources { back, strength }
     }
 
     fn add_sources(&self, p: usize, sources: &Sources, panel: &Panel, sums: &mut [f64]) {
         let past = &self.past[p].panel;
         let (n, m) = (panel.nodes.len(), self.densities);
-        let same = past.origin == panel.origin;
         for (i, &xi) in panel.nodes.iter().enumerate() {
-            for (&x, strength) in sources.x.iter().zip(sources.strength.chunks_exact(m)) {
-                let lag = if same {
-                    (xi - x) * divided_power(xi, x, panel.mapping)
-                } else {
-                    (panel.origin - past.origin) + xi.powi(panel.mapping as i32) - x.powi(past.mapping as i32)
-                };
+            for (&back, strength) in sources.back.iter().zip(sources.strength.chunks_exact(m)) {
+                let lag = past.lag(back, panel, xi);
                 for (o, power) in self.powers.iter().enumerate() {
                     let kernel = power.at(lag);
                     let row = &mut sums[(o * n + i) * m..(o * n + i + 1) * m];

@@ -9,6 +9,8 @@ use crate::system::Segment;
 pub(crate) struct Panel {
     /// Start of the segment.
     pub origin: f64,
+    /// End of the segment, in `t` and in `x`.
+    pub segment_end: [f64; 2],
     pub mapping: u32,
     /// Ends in `x`.
     pub x: [f64; 2],
@@ -25,11 +27,13 @@ pub(crate) struct Panel {
 impl Panel {
     /// The panel between two distances from the start of the segment.
     pub fn new(segment: Segment, mapping: u32, tau: [f64; 2], unit_nodes: &[f64]) -> Panel {
-        let x = tau.map(|s| if mapping == 2 { s.sqrt() } else { s.powf(1.0 / f64::from(mapping)) });
+        let to_x = |s: f64| if mapping == 2 { s.sqrt() } else { s.powf(1.0 / f64::from(mapping)) };
+        let x = tau.map(to_x);
+        let segment_end = [segment.end, to_x(segment.length())];
         let t = tau.map(|s| if s == segment.length() { segment.end } else { segment.start + s });
         let nodes: Vec<f64> = unit_nodes.iter().map(|u| x[0] + (x[1] - x[0]) * u).collect();
         let times = nodes.iter().map(|x| segment.inside(segment.start + x.powi(mapping as i32))).collect();
-        Panel { origin: segment.start, mapping, x, t, tau, nodes, times }
+        Panel { origin: segment.start, segment_end, mapping, x, t, tau, nodes, times }
     }
 
     /// Length in `t`.
@@ -40,6 +44,23 @@ impl Panel {
     /// `dt/dx` at `x`.
     pub fn speed(&self, x: f64) -> f64 {
         f64::from(self.mapping) * x.powi(self.mapping as i32 - 1)
+    }
+}
+
+impl Panel {
+    /// Time from the point `back` before the end of this panel (in `x`) to the later `xi` on panel `to`.
+    ///
+    /// Without cancellation: between segments it is counted over the end of this one.
+    #[inline]
+    pub fn lag(&self, back: f64, to: &Panel, xi: f64) -> f64 {
+        let x = self.x[1] - back;
+        if self.origin == to.origin {
+            (xi - self.x[1] + back) * divided_power(xi, x, self.mapping)
+        } else {
+            let [t_end, x_end] = self.segment_end;
+            let rest = (x_end - self.x[1] + back) * divided_power(x_end, x, self.mapping);
+            (to.origin - t_end) + xi.powi(to.mapping as i32) + rest
+        }
     }
 }
 

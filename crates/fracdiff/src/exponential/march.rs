@@ -174,6 +174,10 @@ fn march(
     for n in 1..=steps {
         let end = mesh.reached(&segment, n, steps);
         let time = if n == steps { segment.end } else { segment.start + end };
+        // Steps that the rounding of t would swallow are left to the next one.
+        if n < steps && time - (segment.start + reached) <= 16.0 * f64::EPSILON * time {
+            continue;
+        }
         let t = segment.inside(time);
         memories.iter_mut().for_each(|memory| memory.prepare(end - reached));
         let local: Vec<(f64, f64)> = memories.iter().map(Memory::local).collect();
