@@ -1,1 +1,6 @@
 //! vibroimpact-sim
+
+mod error;
+pub mod infinite;
+
+pub use error::InvalidInput;
