@@ -13,6 +13,8 @@
 //! where the sum over earlier impulses (ages `d_j`) is `x` of free motion with its line removed,
 //! every term positive: no digits are lost however late the contact comes.
 
+use super::flight::Departure;
+use super::free::Free;
 use super::history::{History, Impulse};
 use super::panel::{Panel, collocate, hertz, turns};
 use super::rule::{Kind, Tables, dot, series, series_slope};
@@ -115,8 +117,7 @@ pub(super) struct March<'a> {
     pub units: Units,
     /// Impulses before the time origin, by age at the origin (units of `T`).
     pub history: History,
-    /// `(d, sqrt d, c)` of the impulses, scaled.
-    past: Vec<(f64, f64, f64)>,
+    free: Free,
     /// Scaled time from touch to the time origin.
     origin: f64,
     x_origin: f64,
@@ -148,6 +149,8 @@ struct Trial {
     x_end: f64,
     /// Unresolved part of the force relative to the yardstick.
     tail: f64,
+    /// The tolerance asked for, or the rounding error of the force where that is larger.
+    attainable: f64,
 }
 
 impl<'a> March<'a> {
@@ -159,7 +162,7 @@ impl<'a> March<'a> {
             units: Units::new(structure, touch.s, touch.closing),
             touch,
             history,
-            past: Vec::new(),
+            free: Free::default(),
             origin: 0.0,
             x_origin: 0.0,
             slope: 1.0,
@@ -177,7 +180,7 @@ impl<'a> March<'a> {
             turns: Vec::new(),
             trials: 0,
         };
-        march.take_history();
+        march.free = march.free_motion();
         march
     }
 
@@ -201,7 +204,7 @@ impl<'a> March<'a> {
             let (found, falling) = turns(self.tables, kind, &trial.x_series, self.falling);
             let first_low = found.iter().find(|turn| turn.2 && turn.1 < 0.0).map(|turn| turn.0);
             let low = first_low.or((trial.x_end < 0.0).then_some(1.0));
-            let ratio = trial.tail / self.settings.tolerance;
+            let ratio = trial.tail / trial.attainable;
             if h > floor && (low.is_some() || ratio > 1.0) {
                 // not to be taken: a separation may lie ahead, or the panel is too long
                 let shorter = h * (0.9 * ratio.powf(-1.0 / self.tables.p as f64)).clamp(0.25, 0.8);
@@ -217,6 +220,7 @@ impl<'a> March<'a> {
                 }
                 continue;
             }
+            let (trial_tail, attainable) = (trial.tail, trial.attainable);
             let minima = self.accept(trial, &found, falling);
             if to_minimum && let Some(minimum) = minima {
                 return Ending::Minimum(minimum);
@@ -230,7 +234,11 @@ impl<'a> March<'a> {
                 return Ending::Sustained(elapsed);
             }
             kind = Kind::Middle;
-            h *= (0.9 * ratio.max(1e-30).powf(-1.0 / self.tables.p as f64)).clamp(0.5, 2.0);
+            // below 4e-15 the coefficients are rounding and say nothing about the length
+            let unresolved = (trial_tail - 4e-15).max(1e-30) / attainable;
+            let growth = 0.95 * unresolved.powf(-1.0 / self.tables.p as f64);
+            // a panel at the floor was taken as it is: leave the spot
+            h *= if h <= floor { 4.0 } else { growth.clamp(1.0, 2.0) };
             if self.near.len() >= 12 {
                 self.move_origin(p, false);
                 p = 0.0;
@@ -242,14 +250,7 @@ impl<'a> March<'a> {
     /// Free part of `xi` plus what earlier panels of this contact add, at `theta` from the origin;
     /// `p` is the present, up to which `impulse` and `moment` count.
     fn known(&self, theta: f64, p: f64) -> f64 {
-        let bend: f64 = self
-            .past
-            .iter()
-            .map(|&(age, root, c)| {
-                let sum = (age + theta).sqrt() + root;
-                c / (sum * sum)
-            })
-            .sum();
+        let bend = self.free.bend(theta);
         let memory: f64 = self
             .near
             .iter()
@@ -263,6 +264,7 @@ impl<'a> March<'a> {
     /// Solves one panel from the present `p`; `None` if Newton's method failed.
     fn attempt(&mut self, kind: Kind, p: f64, h: f64) -> Option<Trial> {
         self.trials += 1;
+        if std::env::var("DBG").is_ok() { eprintln!("try {kind:?} p={p:e} h={h:e} x={:e} rate={:e} org {:e}", self.x, self.rate, self.origin); }
         let n = self.tables.p;
         let rule = self.tables.rule(kind);
         let linear = self.units.linear * h * h;
@@ -287,7 +289,11 @@ impl<'a> March<'a> {
         let largest = f.iter().fold(0.0_f64, |a, &b| a.max(b));
         let scale = largest.max(self.f_scale * (-0.5 * h).exp());
         let tail = f_series[n - 2..].iter().fold(0.0_f64, |a, b| a.max(b.abs())) / scale.max(f64::MIN_POSITIVE);
-        Some(Trial { panel: Panel { kind, start: p, h, x, f, f_series }, x_series, x_end, tail })
+        let terms = self.x_origin + (self.slope.abs() + self.units.linear * self.impulse) * (p + h);
+        let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale.max(f64::MIN_POSITIVE);
+        let attainable = self.settings.tolerance.max(noise);
+        if std::env::var("DBG").is_ok() { eprintln!("   x_end={x_end:e} tail {tail:e} att {attainable:e}"); }
+        Some(Trial { attainable, panel: Panel { kind, start: p, h, x, f, f_series }, x_series, x_end, tail })
     }
 
     /// Tries a mapped end panel over the last stretch; `None` if it is not resolved, or if there
@@ -302,7 +308,7 @@ impl<'a> March<'a> {
             if !(slope < 0.0) || !step.is_finite() {
                 return None;
             }
-            if step.abs() < 1e-3 * length && trial.tail > self.settings.tolerance && length > 1e-9 {
+            if step.abs() < 1e-3 * length && trial.tail > trial.attainable && length > 1e-9 {
                 return None;
             }
             if step.abs() <= 4e-16 * (p + length) {
@@ -354,12 +360,18 @@ impl<'a> March<'a> {
             done || behind >= if panel.kind == Kind::Start { 1.5 } else { 0.5 }
         };
         let count = self.near.iter().take_while(|panel| ready(panel)).count();
+        self.slope += self.free.rate_gain(p) - self.units.linear * self.impulse;
         self.history.advance(self.units.time * p);
         let moved: Vec<Panel> = self.near.drain(..count).collect();
-        if let (Some(first), Some(last)) = (moved.first(), moved.last()) {
+        if self.structure == Structure::Beam
+            && let (Some(first), Some(last)) = (moved.first(), moved.last())
+        {
             let youngest = self.units.time * (p - last.start - last.h).max(0.0);
             let oldest = self.units.time * (p - first.start);
-            let impulses = moved.iter().flat_map(|panel| self.as_impulses(panel, p)).collect();
+            let impulses: Vec<Impulse> = moved.iter().flat_map(|panel| self.as_impulses(panel, p)).collect();
+            // from now on their share of the rate is part of the slope
+            let share: f64 = impulses.iter().map(|i| i.weight / (2.0 * i.age.sqrt())).sum();
+            self.slope -= share / self.units.speed;
             self.history.push(impulses, youngest, oldest);
         }
         if !done {
@@ -374,25 +386,20 @@ impl<'a> March<'a> {
             .iter()
             .map(|panel| panel.memory(self.structure, self.tables, (-panel.start - panel.h).max(0.0)))
             .sum();
-        self.take_history();
-        self.slope = self.body_speed() / self.units.speed - self.past.iter().map(|past| past.2).sum::<f64>();
+        self.free = self.free_motion();
     }
 
-    /// Scaled copies of the impulses.
-    fn take_history(&mut self) {
-        let units = self.units;
-        if self.structure == Structure::Plate {
-            return;
+    fn free_motion(&self) -> Free {
+        Free::new(&self.history, self.units.time, self.units.speed * self.units.time.sqrt())
+    }
+
+    /// The flight that follows separation.
+    pub fn departure(&self) -> Departure {
+        Departure {
+            body: self.body_speed(),
+            rate: self.units.speed * self.slope,
+            free: Free::new(&self.history, 1.0, 1.0),
         }
-        self.past = self
-            .history
-            .impulses()
-            .map(|impulse| {
-                let age = impulse.age / units.time;
-                let root = age.sqrt();
-                (age, root, impulse.weight / (units.speed * units.time.sqrt()) / (2.0 * root))
-            })
-            .collect();
     }
 
     /// A panel of this contact as impulses, seen from the present `p`.

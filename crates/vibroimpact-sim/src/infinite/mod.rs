@@ -49,6 +49,7 @@
 mod asymptotic;
 mod contact;
 mod flight;
+mod free;
 mod history;
 mod panel;
 mod rule;

@@ -2,8 +2,7 @@
 
 use super::Structure;
 use super::contact::{Piece, Units};
-use super::flight;
-use super::history::Impulse;
+use super::flight::Departure;
 use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
 use super::rule::{Kind, Tables, gauss, series};
@@ -76,10 +75,8 @@ pub struct State {
 #[derive(Debug, Clone)]
 pub(super) struct Flight {
     pub start: f64,
-    pub body_speed: f64,
     pub body_travel: f64,
-    pub past: Vec<Impulse>,
-    pub duration: Option<f64>,
+    pub departure: Departure,
 }
 
 /// The record of a contact from which its motion is rebuilt.
@@ -149,14 +146,14 @@ impl Solution {
     /// Speed away from the structure after the last separation over the speed of impact; `None`
     /// unless the body rebounds.
     pub fn rebound_ratio(&self) -> Option<f64> {
-        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.body_speed)).flatten()
+        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.departure.body)).flatten()
     }
 
     /// Speed away from the structure after the first separation over the speed of impact (thesis
     /// Fig. 2.6b, `v_f / v`), below zero if the body still moves towards the structure; `None` if
     /// there is no separation.
     pub fn first_rebound_ratio(&self) -> Option<f64> {
-        self.flights.first().map(|flight| -flight.body_speed)
+        self.flights.first().map(|flight| -flight.departure.body)
     }
 
     /// Decimal digits that two resolutions agree on (see [`error`](Self::error)), at most 15.
@@ -234,9 +231,12 @@ impl Solution {
         }
         let error = self.contacts.iter().zip(&finer.contacts).fold(0.0_f64, |error, (a, b)| {
             let duration = a.duration.zip(b.duration).map_or(0.0, |(a, b)| relative(a, b));
-            // the body's speed may pass through zero: measured against the change in the contact
+            // the body's speed may pass through zero: measured against its change if that is larger
             let change = 2.0 * a.closing_speed;
-            let speed = a.body_speed_at_end.zip(b.body_speed_at_end).map_or(0.0, |(a, b)| (a - b).abs() / change);
+            let speed = a
+                .body_speed_at_end
+                .zip(b.body_speed_at_end)
+                .map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
             error.max(relative(a.start, b.start)).max(duration).max(speed)
         });
         self.error = Some(error);
@@ -245,16 +245,17 @@ impl Solution {
 
 impl Flight {
     fn state(&self, tau: f64) -> State {
-        let (compression, compression_rate) = flight::state(self.body_speed, &self.past, tau);
-        let body_displacement = self.body_travel + self.body_speed * tau;
+        let (compression, compression_rate) = self.departure.state(tau);
+        let body_speed = self.departure.body;
+        let body_displacement = self.body_travel + body_speed * tau;
         State {
             compression,
             compression_rate,
             force: 0.0,
             body_displacement,
-            body_speed: self.body_speed,
+            body_speed,
             structure_displacement: body_displacement - compression,
-            structure_speed: self.body_speed - compression_rate,
+            structure_speed: body_speed - compression_rate,
         }
     }
 }

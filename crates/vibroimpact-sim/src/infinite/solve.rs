@@ -1,8 +1,7 @@
 //! Contacts and flights, one after the other.
 
 use super::contact::{Ending, March, Touch};
-use super::flight;
-use super::history::{History, Impulse};
+use super::history::History;
 use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
 use super::{S_RANGE, Settings, Structure};
 use crate::InvalidInput;
@@ -56,6 +55,8 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             body_speed_at_start: touch.body,
             body_speed_at_end: ended.then_some(body),
         };
+        let departure = march.departure();
+        history = march.history;
         solution.push_contact(contact, march.units, march.pieces, body_travel);
         solution.known_until = end;
         solution.outcome = outcome;
@@ -63,16 +64,13 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             return solution;
         }
         body_travel = solution.body_travel_at_end();
-        let past: Vec<Impulse> = march.history.impulses().collect();
-        let next = flight::next_contact(body, &past);
-        let time = next.map(|(time, _)| time);
-        solution.flights.push(Flight { start: end, body_speed: body, body_travel, past, duration: time });
+        let next = departure.next_contact();
+        solution.flights.push(Flight { start: end, body_travel, departure });
         let Some((time, closing)) = next else {
             solution.known_until = f64::INFINITY;
             return solution;
         };
         body_travel += body * time;
-        history = march.history;
         history.advance(time);
         history.condense();
         touch = Touch { s, time: end + time, closing, body };
@@ -94,11 +92,11 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
             Ending::Minimum(minimum) if k == n => return Some(minimum / largest(&march)),
             _ => return None,
         };
-        let past: Vec<Impulse> = march.history.impulses().collect();
+        let departure = march.departure();
         if k == n {
-            return Some(flight::least_compression(body, &past) / largest(&march));
+            return Some(departure.least_compression() / largest(&march));
         }
-        let (time, closing) = flight::next_contact(body, &past)?;
+        let (time, closing) = departure.next_contact()?;
         history = march.history;
         history.advance(time);
         history.condense();
