@@ -264,7 +264,6 @@ impl<'a> March<'a> {
     /// Solves one panel from the present `p`; `None` if Newton's method failed.
     fn attempt(&mut self, kind: Kind, p: f64, h: f64) -> Option<Trial> {
         self.trials += 1;
-        if std::env::var("DBG").is_ok() { eprintln!("try {kind:?} p={p:e} h={h:e} x={:e} rate={:e} org {:e}", self.x, self.rate, self.origin); }
         let n = self.tables.p;
         let rule = self.tables.rule(kind);
         let linear = self.units.linear * h * h;
@@ -292,14 +291,13 @@ impl<'a> March<'a> {
         let terms = self.x_origin + (self.slope.abs() + self.units.linear * self.impulse) * (p + h);
         let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale.max(f64::MIN_POSITIVE);
         let attainable = self.settings.tolerance.max(noise);
-        if std::env::var("DBG").is_ok() { eprintln!("   x_end={x_end:e} tail {tail:e} att {attainable:e}"); }
         Some(Trial { attainable, panel: Panel { kind, start: p, h, x, f, f_series }, x_series, x_end, tail })
     }
 
     /// Tries a mapped end panel over the last stretch; `None` if it is not resolved, or if there
     /// is no separation after all.
     fn finish(&mut self, p: f64, guess: f64) -> Option<Ending> {
-        let mut length = guess;
+        let (mut length, mut last) = (guess, f64::INFINITY);
         for _ in 0..40 {
             let trial = self.attempt(Kind::End, p, length)?;
             // x = x_end + (te - t) |x'|, and te - t = length sigma^2
@@ -311,7 +309,10 @@ impl<'a> March<'a> {
             if step.abs() < 1e-3 * length && trial.tail > trial.attainable && length > 1e-9 {
                 return None;
             }
-            if step.abs() <= 4e-16 * (p + length) {
+            // converged, or as far as rounding lets the steps shrink
+            let settled = step.abs() <= 4e-16 * (p + length) || (step.abs() < 1e-6 * length && step.abs() > 0.1 * last);
+            last = step.abs();
+            if settled {
                 let (found, falling) = turns(self.tables, Kind::End, &trial.x_series, self.falling);
                 if found.iter().any(|turn| turn.2 && turn.1 <= 0.0) {
                     return None;

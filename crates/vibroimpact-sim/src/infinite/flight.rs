@@ -36,21 +36,24 @@ impl Departure {
         // convex and decreasing: Newton from y = u / total (a time not before the root) neither.
         // The two sequences enclose the root.
         let (mut early, mut late) = (-self.rate / self.free.bend(0.0), (total / self.body).powi(2));
-        let mut tau = late;
         for _ in 0..200 {
             let (value, slope) = q(early);
             let advanced = early - value / slope;
             let (value, slope) = q(late);
             let pulled = (late.sqrt().recip() + value / (2.0 * late * late.sqrt() * slope)).powi(-2);
-            if !(advanced > early && advanced < late) {
-                tau = early;
+            let moved = (advanced > early && advanced < late, pulled < late && pulled > early);
+            early = if moved.0 { advanced } else { early };
+            late = if moved.1 { pulled } else { late };
+            if !(moved.0 && moved.1) || late < early * (1.0 + 1e-3) {
                 break;
             }
-            tau = late;
-            if !(pulled < late && pulled > early) {
-                break;
-            }
-            (early, late) = (advanced, pulled);
+        }
+        // one end may have come to rest on the root first: the end with the smaller value is next
+        // to it, and Newton's method finishes from there
+        let mut tau = if q(early).0.abs() < q(late).0.abs() { early } else { late };
+        for _ in 0..4 {
+            let (value, slope) = q(tau);
+            tau -= value / slope;
         }
         let closing = self.rate + self.free.rate_gain(tau);
         (tau > 0.0 && closing > 0.0).then_some((tau, closing))

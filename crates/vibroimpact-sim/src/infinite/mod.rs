@@ -78,10 +78,10 @@ pub enum Structure {
 /// How accurately, and how far, to solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Collocation nodes per panel, 8 to 32. Default 16.
+    /// Collocation nodes per panel, 8 to 32. Default 20.
     pub nodes: usize,
     /// Largest relative size of the last Legendre coefficients of the force in a panel, 1e-15 to
-    /// 1e-3. Default 1e-12.
+    /// 1e-3. Default 1e-10.
     pub tolerance: f64,
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
     /// it takes to know that it lasts.
@@ -94,7 +94,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { nodes: 16, tolerance: 1e-12, horizon: 0.0, estimate_error: true, max_panels: 1_000_000 }
+        Settings { nodes: 20, tolerance: 1e-10, horizon: 0.0, estimate_error: true, max_panels: 1_000_000 }
     }
 }
 
