@@ -56,10 +56,12 @@ mod rule;
 mod solution;
 mod solve;
 mod sustained;
+mod turning;
 
 pub use asymptotic::{Attached, attached, displacement_eq_2_47};
 pub use solution::{Contact, Extremum, Outcome, Solution, State};
 pub use solve::solve;
+pub use turning::{CriticalS, MOST_TURNING_POINTS, TurningPoint, critical_s, turning_point, turning_points};
 
 use crate::InvalidInput;
 

@@ -213,14 +213,32 @@ fn legendre_slopes(s: f64, p: usize) -> Vec<f64> {
     slopes
 }
 
-/// Value of a Legendre series on `(0, 1)`.
+/// Value of a Legendre series on `(0, 1)` (Clenshaw).
 pub(super) fn series(coefficients: &[f64], s: f64) -> f64 {
-    dot(coefficients, &legendre(2.0 * s - 1.0, coefficients.len()))
+    let u = 2.0 * s - 1.0;
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for (k, c) in coefficients.iter().enumerate().rev() {
+        let n = k as f64;
+        let b0 = c + (2.0 * n + 1.0) / (n + 1.0) * u * b1 - (n + 1.0) / (n + 2.0) * b2;
+        (b2, b1) = (b1, b0);
+    }
+    b1
 }
 
 /// Slope of a Legendre series on `(0, 1)`.
 pub(super) fn series_slope(coefficients: &[f64], s: f64) -> f64 {
-    dot(coefficients, &legendre_slopes(s, coefficients.len()))
+    // P'_k = P'_(k-2) + (2k - 1) P_(k-1), in u = 2 s - 1
+    let u = 2.0 * s - 1.0;
+    let (mut p0, mut p1) = (1.0, u);
+    let (mut d0, mut d1) = (0.0, 1.0);
+    let mut sum = 0.0;
+    for (k, c) in coefficients.iter().enumerate().skip(1) {
+        sum += c * d1;
+        let n = k as f64;
+        (d0, d1) = (d1, d0 + (2.0 * n + 1.0) * p1);
+        (p0, p1) = (p1, ((2.0 * n + 1.0) * u * p1 - n * p0) / (n + 1.0));
+    }
+    2.0 * sum
 }
 
 /// Scalar product.

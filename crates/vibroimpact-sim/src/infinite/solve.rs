@@ -105,6 +105,16 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
     None
 }
 
+/// Speed of the body towards the beam after the first contact; `None` if it does not end.
+pub(super) fn speed_after_first(s: f64, settings: &Settings) -> Option<f64> {
+    let touch = Touch { s, time: 0.0, closing: 1.0, body: 1.0 };
+    let mut march = March::new(Structure::Beam, settings, touch, History::default());
+    match march.run(false, settings.max_panels) {
+        Ending::Separated(_) => Some(march.body_speed()),
+        _ => None,
+    }
+}
+
 fn largest(march: &March<'_>) -> f64 {
     march.turns.iter().map(|turn| turn.compression).fold(f64::MIN_POSITIVE, f64::max)
 }
