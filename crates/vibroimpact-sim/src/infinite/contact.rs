@@ -14,9 +14,9 @@
 //! every term positive: no digits are lost however late the contact comes.
 
 use super::flight::Departure;
-use super::free::Free;
+use super::free::{Forcing, Free};
 use super::history::{History, Impulse};
-use super::panel::{Panel, collocate, hertz, turns};
+use super::panel::{Panel, collocate, turns};
 use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;
 use super::{Settings, Structure};
@@ -117,7 +117,7 @@ pub(super) struct March<'a> {
     pub units: Units,
     /// Impulses before the time origin, by age at the origin (units of `T`).
     pub history: History,
-    free: Free,
+    free: Forcing,
     /// Scaled time from touch to the time origin.
     origin: f64,
     x_origin: f64,
@@ -162,7 +162,7 @@ impl<'a> March<'a> {
             units: Units::new(structure, touch.s, touch.closing),
             touch,
             history,
-            free: Free::default(),
+            free: Forcing::default(),
             origin: 0.0,
             x_origin: 0.0,
             slope: 1.0,
@@ -281,17 +281,16 @@ impl<'a> March<'a> {
         if !collocate(&matrix[..n * n], &known[..n], &mut x) {
             return None;
         }
-        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
-        let x_end = known[n] - dot(&matrix[n * n..], &f);
-        let f_series = self.tables.coefficients(&f);
-        let x_series = self.tables.coefficients(&x);
-        let largest = f.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let panel = Panel::new(self.tables, kind, p, h, x);
+        let x_end = known[n] - dot(&matrix[n * n..], &panel.f);
+        let x_series = self.tables.coefficients(&panel.x);
+        let largest = panel.f.iter().fold(0.0_f64, |a, &b| a.max(b));
         let scale = largest.max(self.f_scale * (-0.5 * h).exp());
-        let tail = f_series[n - 2..].iter().fold(0.0_f64, |a, b| a.max(b.abs())) / scale.max(f64::MIN_POSITIVE);
+        let tail = panel.f_series[n - 2..].iter().fold(0.0_f64, |a, b| a.max(b.abs())) / scale.max(f64::MIN_POSITIVE);
         let terms = self.x_origin + (self.slope.abs() + self.units.linear * self.impulse) * (p + h);
         let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale.max(f64::MIN_POSITIVE);
         let attainable = self.settings.tolerance.max(noise);
-        Some(Trial { attainable, panel: Panel { kind, start: p, h, x, f, f_series }, x_series, x_end, tail })
+        Some(Trial { attainable, panel, x_series, x_end, tail })
     }
 
     /// Tries a mapped end panel over the last stretch; `None` if it is not resolved, or if there
@@ -390,8 +389,8 @@ impl<'a> March<'a> {
         self.free = self.free_motion();
     }
 
-    fn free_motion(&self) -> Free {
-        Free::new(&self.history, self.units.time, self.units.speed * self.units.time.sqrt())
+    fn free_motion(&self) -> Forcing {
+        Forcing::new(&self.history, self.units.time, self.units.speed * self.units.time.sqrt(), self.tables)
     }
 
     /// The flight that follows separation.
@@ -407,20 +406,23 @@ impl<'a> March<'a> {
     fn as_impulses(&self, panel: &Panel, p: f64) -> Vec<Impulse> {
         let behind = p - panel.start - panel.h;
         let rule = self.tables.rule(panel.kind);
-        let sampled = |low: f64, width: f64| {
-            self.tables.fine.iter().map(move |&(s, w)| (low + width * s, width * w))
-        };
         // pairs (remaining fraction, weight); nodes close to the panel's end where the next panel
         // is much shorter, so that the impulses stand for the panel right from the present on
         let points: Vec<(f64, f64)> = match panel.kind {
             Kind::Start => (0..self.tables.p).map(|j| (rule.remaining[j], rule.mass[j] * panel.f[j])).collect(),
-            Kind::End => sampled(0.0, 1.0).map(|(s, w)| (s * s, w * 2.0 * s * series(&panel.f_series, s))).collect(),
+            Kind::End => {
+                let weight = |s: f64, w: f64| w * 2.0 * s * series(&panel.f_series, s);
+                self.tables.fine.iter().map(|&(s, w)| (s * s, weight(s, w))).collect()
+            }
             Kind::Middle => {
                 let (mut points, mut high) = (Vec::new(), 1.0);
                 while high > 0.0 {
                     // the piece of remaining fractions (low, high) is seen from its own length or more
                     let low = if high * panel.h <= 2.0 * behind || high < 1e-12 { 0.0 } else { 0.5 * high };
-                    points.extend(sampled(low, high - low).map(|(r, w)| (r, w * series(&panel.f_series, 1.0 - r))));
+                    points.extend((0..self.tables.p).map(|j| {
+                        let remaining = low + (high - low) * self.tables.sigma[j];
+                        (remaining, (high - low) * self.tables.weight[j] * series(&panel.f_series, 1.0 - remaining))
+                    }));
                     high = low;
                 }
                 points

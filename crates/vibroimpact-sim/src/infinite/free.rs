@@ -11,6 +11,7 @@
 //! the body and the structure move at nearly the same speed.
 
 use super::history::History;
+use super::rule::{Tables, series};
 
 /// The impulses as free motion needs them.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +21,42 @@ pub(super) struct Free {
     c: Vec<f64>,
 }
 
+/// Free motion during a contact: impulses much older than a contact lasts act on it as a smooth
+/// function, sampled once.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Forcing {
+    all: Free,
+    near: Free,
+    /// Legendre series on `(0, REACH)` of the bend due to the impulses that are not near.
+    far: Vec<f64>,
+}
+
+/// Time (natural units of the contact) over which far impulses are represented by a series; far
+/// are those of twice this age, so that a series of `n` terms errs by `9.9^(-n)`.
+const REACH: f64 = 6.0;
+
+impl Forcing {
+    pub fn new(history: &History, time: f64, impulse: f64, tables: &Tables) -> Forcing {
+        let all = Free::new(history, time, impulse);
+        let (mut near, mut far) = (Free::default(), Free::default());
+        for ((&age, &root), &c) in all.age.iter().zip(&all.root).zip(&all.c) {
+            if age < 2.0 * REACH { &mut near } else { &mut far }.push(age, root, c);
+        }
+        let samples: Vec<f64> = tables.sigma.iter().map(|s| far.bend(REACH * s)).collect();
+        Forcing { near, far: tables.coefficients(&samples), all }
+    }
+
+    /// See [`Free::bend`].
+    pub fn bend(&self, tau: f64) -> f64 {
+        if tau <= REACH { self.near.bend(tau) + series(&self.far, tau / REACH) } else { self.all.bend(tau) }
+    }
+
+    /// See [`Free::rate_gain`].
+    pub fn rate_gain(&self, tau: f64) -> f64 {
+        self.all.rate_gain(tau)
+    }
+}
+
 impl Free {
     /// With ages in units of `time` and impulses in units of `impulse`.
     pub fn new(history: &History, time: f64, impulse: f64) -> Free {
@@ -27,11 +64,15 @@ impl Free {
         for past in history.impulses() {
             let age = past.age / time;
             let root = age.sqrt();
-            free.age.push(age);
-            free.root.push(root);
-            free.c.push(past.weight / impulse / (2.0 * root));
+            free.push(age, root, past.weight / impulse / (2.0 * root));
         }
         free
+    }
+
+    fn push(&mut self, age: f64, root: f64, c: f64) {
+        self.age.push(age);
+        self.root.push(root);
+        self.c.push(c);
     }
 
     /// `[x(tau) - x_0 - r tau] / tau^2`.

@@ -139,12 +139,12 @@ fn tridiagonal_eigen(diagonal: &mut [f64], off: &mut [f64]) -> Vec<f64> {
                 break;
             }
             let mut g = (diagonal[l + 1] - diagonal[l]) / (2.0 * off[l]);
-            let r = g.hypot(1.0);
+            let r = (g * g + 1.0).sqrt();
             g = diagonal[m] - diagonal[l] + off[l] / (g + r.copysign(g));
             let (mut s, mut c, mut shift) = (1.0, 1.0, 0.0);
             for i in (l..m).rev() {
                 let (f, b) = (s * off[i], c * off[i]);
-                let r = f.hypot(g);
+                let r = (f * f + g * g).sqrt();
                 off[i + 1] = r;
                 if r == 0.0 {
                     diagonal[i + 1] -= shift;

@@ -17,9 +17,19 @@ pub(super) struct Panel {
     pub f: Vec<f64>,
     /// Legendre coefficients of `f` in the panel variable.
     pub f_series: Vec<f64>,
+    /// Its integral against the square root (middle panels).
+    root: RootSum,
 }
 
 impl Panel {
+    /// From the compression at the nodes.
+    pub fn new(tables: &Tables, kind: Kind, start: f64, h: f64, x: Vec<f64>) -> Panel {
+        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
+        let f_series = tables.coefficients(&f);
+        let root = if kind == Kind::Middle { RootSum::new(&f_series) } else { RootSum::default() };
+        Panel { kind, start, h, x, f, f_series, root }
+    }
+
     /// `int f dt` over the panel.
     pub fn impulse(&self, tables: &Tables) -> f64 {
         self.h * dot(&tables.rule(self.kind).mass, &self.f)
@@ -40,14 +50,14 @@ impl Panel {
         let p = tables.p;
         let later = after / self.h;
         match self.kind {
-            Kind::Middle => (0.5 * self.h).powf(1.5) * root_series(&self.f_series, 2.0 * later),
-            Kind::Start if later < 4.0 => {
+            Kind::Middle => (0.5 * self.h).powf(1.5) * self.root.at(2.0 * later),
+            Kind::Start if later < 1.0 => {
                 // sqrt(Z^2 - s^2) = sqrt(Z - s) sqrt(Z + s); the second factor is smooth
                 let z = (1.0 + later).sqrt();
                 let smooth: Vec<f64> =
                     (0..p).map(|j| 2.0 * tables.sigma[j] * self.f[j] * (z + tables.sigma[j]).sqrt()).collect();
                 let beyond = later / (z + 1.0);
-                (self.h * self.h * self.h * 0.125).sqrt() * root_series(&tables.coefficients(&smooth), 2.0 * beyond)
+                (self.h * self.h * self.h * 0.125).sqrt() * RootSum::new(&tables.coefficients(&smooth)).at(2.0 * beyond)
             }
             _ => {
                 let rule = tables.rule(self.kind);
@@ -95,25 +105,37 @@ pub(super) fn elapsed(kind: Kind, s: f64) -> f64 {
     }
 }
 
-/// `int_-1^1 sqrt(z - u) sum_k c_k P_k(u) du` for `z = 1 + beyond >= 1`.
+/// `int_-1^1 sqrt(z - u) sum_k c_k P_k(u) du` as a function of `z >= 1`.
 ///
 /// From the generating function of the Legendre polynomials, with `z = (r + 1/r)/2`, `r <= 1`:
 /// `int P_k(u) / sqrt(z - u) du = 2 sqrt(2 r) r^k / (2 k + 1)`; integration by parts then gives
 /// `int P_k sqrt(z - u) du = sqrt(2 r)/(2k+1) [r^(k+1)/(2k+3) - r^(k-1)/(2k-1)]` for `k > 0`.
-fn root_series(coefficients: &[f64], beyond: f64) -> f64 {
-    let r = 1.0 / (1.0 + beyond + (beyond * (beyond + 2.0)).sqrt());
-    let far = (beyond + 2.0).sqrt();
-    let near = beyond.sqrt();
-    // (far^3 - near^3) = 2 (far^2 + far near + near^2) / (far + near), as far^2 - near^2 = 2
-    let first = 4.0 / 3.0 * (far * far + far * near + near * near) / (far + near);
-    let mut power = 1.0; // r^(k-1)
-    let mut sum = 0.0;
-    for (k, c) in coefficients.iter().enumerate().skip(1) {
-        let n = (2 * k) as f64;
-        sum += c * power / (n + 1.0) * (r * r / (n + 3.0) - 1.0 / (n - 1.0));
-        power *= r;
+#[derive(Debug, Clone, Default)]
+struct RootSum {
+    mean: f64,
+    /// Coefficients of the powers of `r`.
+    powers: Vec<f64>,
+}
+
+impl RootSum {
+    fn new(coefficients: &[f64]) -> RootSum {
+        let mut powers = vec![0.0; coefficients.len() + 1];
+        for (k, c) in coefficients.iter().enumerate().skip(1) {
+            let n = (2 * k) as f64;
+            powers[k + 1] += c / ((n + 1.0) * (n + 3.0));
+            powers[k - 1] -= c / ((n + 1.0) * (n - 1.0));
+        }
+        RootSum { mean: coefficients[0], powers }
     }
-    coefficients[0] * first + (2.0 * r).sqrt() * sum
+
+    /// At `z = 1 + beyond`.
+    fn at(&self, beyond: f64) -> f64 {
+        let r = 1.0 / (1.0 + beyond + (beyond * (beyond + 2.0)).sqrt());
+        let (far, near) = ((beyond + 2.0).sqrt(), beyond.sqrt());
+        // (2/3) (far^3 - near^3), as far^2 - near^2 = 2
+        let first = 4.0 / 3.0 * (far * far + far * near + near * near) / (far + near);
+        self.mean * first + (2.0 * r).sqrt() * self.powers.iter().rev().fold(0.0, |sum, c| sum * r + c)
+    }
 }
 
 /// Solves `x_i + sum_j m_ij f(x_j) = rhs_i`, `f = x_+^(3/2)`, at the nodes of a panel by Newton's
@@ -245,8 +267,9 @@ mod tests {
         for after in [0.0, 1e-9, 1e-3, 0.3, 1.0, 10.0, 1e4] {
             // Middle, f = s on (0, 2)
             let x: Vec<f64> = tables.sigma.iter().map(|s| (2.0 * s).powf(2.0 / 3.0)).collect();
-            let f: Vec<f64> = tables.sigma.iter().map(|s| 2.0 * s).collect();
-            let panel = Panel { kind: Kind::Middle, start: 0.0, h: 2.0, x, f_series: tables.coefficients(&f), f };
+            let mut panel = Panel::new(tables, Kind::Middle, 0.0, 2.0, x);
+            panel.f = tables.sigma.iter().map(|s| 2.0 * s).collect();
+            panel.root = RootSum::new(&tables.coefficients(&panel.f));
             let t: f64 = 2.0 + after;
             // int_0^2 sqrt(t-s) s ds by the substitution w = sqrt(t-s), polynomial quadrature
             let (low, high) = (after.sqrt(), t.sqrt());
@@ -261,14 +284,8 @@ mod tests {
             assert!((got / want - 1.0).abs() < 1e-11 * (1.0 + after), "{after}: {got} {want}");
             // Start, f = t^(3/2) (1 - t) on (0, 1): against many-node quadrature in sqrt(t)
             let f: Vec<f64> = tables.sigma.iter().map(|s| s.powi(3) * (1.0 - s * s)).collect();
-            let panel = Panel {
-                kind: Kind::Start,
-                start: 0.0,
-                h: 1.0,
-                x: f.iter().map(|f| f.powf(2.0 / 3.0)).collect(),
-                f_series: tables.coefficients(&f),
-                f,
-            };
+            let x = f.iter().map(|f| f.powf(2.0 / 3.0)).collect();
+            let panel = Panel::new(tables, Kind::Start, 0.0, 1.0, x);
             let z = (1.0 + after).sqrt();
             let range = (1.0 / z).asin();
             let want: f64 = crate::infinite::rule::gauss(60)

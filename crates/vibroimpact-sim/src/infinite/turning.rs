@@ -34,8 +34,8 @@ pub struct TurningPoint {
 
 /// The three resolutions.
 fn resolutions() -> [Settings; 3] {
-    let base = Settings { estimate_error: false, tolerance: 1e-11, ..Settings::default() };
-    [base, Settings { nodes: 24, tolerance: 1e-12, ..base }, Settings { nodes: 18, tolerance: 1e-12, ..base }]
+    let base = Settings { estimate_error: false, ..Settings::default() };
+    [base, Settings { nodes: 24, tolerance: 1e-11, ..base }, Settings { nodes: 18, tolerance: 1e-11, ..base }]
 }
 
 /// The `S` of a beam at which the speed of the body after the first contact vanishes (thesis
