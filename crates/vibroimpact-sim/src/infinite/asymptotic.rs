@@ -74,9 +74,7 @@ fn attached_series(t: f64) -> Attached {
         // u = sum (-y)^n / Gamma(n/2 + 1), y = sqrt(t)/c
         let y = t.sqrt() / c;
         let gamma = [1.0, c, 1.0, 1.5 * c, 2.0, 3.75 * c, 6.0];
-        let terms = |shift: i32| -> f64 {
-            (0..5).map(|n| (-y).powi(n) / gamma[(n + shift) as usize]).sum()
-        };
+        let terms = |shift: i32| -> f64 { (0..5).map(|n| (-y).powi(n) / gamma[(n + shift) as usize]).sum() };
         let force = if t > 0.0 { (1.0 / (PI * t).sqrt() - terms(0) / c) / c } else { f64::INFINITY };
         return Attached { displacement: t * terms(2), speed: terms(0), force };
     }
@@ -98,7 +96,8 @@ mod tests {
     #[test]
     fn branches_join_and_derivatives_agree() {
         for edge in [1e-6_f64, 1e4] {
-            let (a, b) = (attached(Structure::Beam, edge * (1.0 - 1e-12)), attached(Structure::Beam, edge * (1.0 + 1e-12)));
+            let (a, b) =
+                (attached(Structure::Beam, edge * (1.0 - 1e-12)), attached(Structure::Beam, edge * (1.0 + 1e-12)));
             assert!((a.displacement / b.displacement - 1.0).abs() < 3e-10, "{a:?} {b:?}");
             assert!((a.speed / b.speed - 1.0).abs() < 1e-10, "{a:?} {b:?}");
             assert!((a.force / b.force - 1.0).abs() < 1e-9, "{a:?} {b:?}");

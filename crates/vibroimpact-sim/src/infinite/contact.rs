@@ -272,8 +272,7 @@ impl<'a> March<'a> {
                 Structure::Beam => h * h.sqrt(),
                 Structure::Plate => h,
             };
-        let matrix: Vec<f64> =
-            rule.linear.iter().zip(&rule.memory).map(|(l, m)| linear * l + memory * m).collect();
+        let matrix: Vec<f64> = rule.linear.iter().zip(&rule.memory).map(|(l, m)| linear * l + memory * m).collect();
         let known: Vec<f64> = rule.elapsed.iter().map(|e| self.known(p + h * e, p)).collect();
         let mut x: Vec<f64> = rule.elapsed[..n].iter().map(|e| self.x + self.rate * h * e).collect();
         let bound = self.x + h * self.rate.abs();

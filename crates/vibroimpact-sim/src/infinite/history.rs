@@ -89,8 +89,7 @@ fn far(youngest: f64, oldest: f64) -> bool {
 fn gauss_rule(measure: &[Impulse]) -> Vec<Impulse> {
     let n = CONDENSED.min(measure.len());
     let total: f64 = measure.iter().map(|m| m.weight).sum();
-    let (low, high) =
-        measure.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), m| (low.min(m.age), high.max(m.age)));
+    let (low, high) = measure.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), m| (low.min(m.age), high.max(m.age)));
     if !(total > 0.0 && high > low) {
         return measure.to_vec();
     }
@@ -103,8 +102,7 @@ fn gauss_rule(measure: &[Impulse]) -> Vec<Impulse> {
     for k in 0..n {
         alpha[k] = nodes.iter().zip(&current).map(|(x, q)| x * q * q).sum();
         let off = if k > 0 { beta[k - 1] } else { 0.0 };
-        let next: Vec<f64> =
-            (0..nodes.len()).map(|j| (nodes[j] - alpha[k]) * current[j] - off * before[j]).collect();
+        let next: Vec<f64> = (0..nodes.len()).map(|j| (nodes[j] - alpha[k]) * current[j] - off * before[j]).collect();
         let norm = next.iter().map(|q| q * q).sum::<f64>().sqrt();
         beta[k] = norm;
         if norm < 1e-14 && k + 1 < n {
@@ -177,10 +175,8 @@ mod tests {
     /// A condensed contact acts like the whole one, at any later time.
     #[test]
     fn condensed_measure_acts_like_the_whole() {
-        let whole: Vec<Impulse> = gauss(400)
-            .iter()
-            .map(|&(s, w)| Impulse { age: 0.5 + s, weight: w * (s * (1.0 - s)).powf(1.5) })
-            .collect();
+        let whole: Vec<Impulse> =
+            gauss(400).iter().map(|&(s, w)| Impulse { age: 0.5 + s, weight: w * (s * (1.0 - s)).powf(1.5) }).collect();
         let mut history = History::default();
         history.push(whole.clone(), 0.5, 1.5);
         history.condense();

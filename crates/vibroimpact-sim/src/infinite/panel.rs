@@ -61,8 +61,7 @@ impl Panel {
             }
             _ => {
                 let rule = tables.rule(self.kind);
-                let sum: f64 =
-                    (0..p).map(|j| rule.mass[j] * self.f[j] * (rule.remaining[j] + later).sqrt()).sum();
+                let sum: f64 = (0..p).map(|j| rule.mass[j] * self.f[j] * (rule.remaining[j] + later).sqrt()).sum();
                 self.h.powf(1.5) * sum
             }
         }

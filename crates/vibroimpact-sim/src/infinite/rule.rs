@@ -99,9 +99,8 @@ impl Tables {
             }
         }
         let count = 2 * p + 1;
-        let sample: Vec<f64> = (0..count)
-            .map(|i| (std::f64::consts::FRAC_PI_2 * i as f64 / (count - 1) as f64).sin().powi(2))
-            .collect();
+        let sample: Vec<f64> =
+            (0..count).map(|i| (std::f64::consts::FRAC_PI_2 * i as f64 / (count - 1) as f64).sin().powi(2)).collect();
         let slope = sample.iter().flat_map(|&s| legendre_slopes(s, p)).collect();
         let build = |kind| Rule::new(structure, kind, &sigma, &weight, &to_legendre);
         let (start, middle, end) = (build(Kind::Start), build(Kind::Middle), build(Kind::End));
@@ -160,10 +159,9 @@ fn elapsed_points(kind: Kind, target: f64) -> Vec<(f64, f64, f64)> {
                 (s, w * std::f64::consts::FRAC_PI_2 * 2.0 * s * target * cos, (target * cos).powi(2))
             })
             .collect(),
-        Kind::Middle => rule
-            .iter()
-            .map(|&(y, w)| (target * (1.0 - y * y), w * 2.0 * target * y, target * y * y))
-            .collect(),
+        Kind::Middle => {
+            rule.iter().map(|&(y, w)| (target * (1.0 - y * y), w * 2.0 * target * y, target * y * y)).collect()
+        }
         Kind::End if target == 0.0 => rule.iter().map(|&(y, w)| (y, w * 2.0 * y, y * y)).collect(),
         Kind::End => {
             // s = target cosh(y): the interval of y is cut into pieces of length below 1

@@ -233,10 +233,8 @@ impl Solution {
             let duration = a.duration.zip(b.duration).map_or(0.0, |(a, b)| relative(a, b));
             // the body's speed may pass through zero: measured against its change if that is larger
             let change = 2.0 * a.closing_speed;
-            let speed = a
-                .body_speed_at_end
-                .zip(b.body_speed_at_end)
-                .map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
+            let speed =
+                a.body_speed_at_end.zip(b.body_speed_at_end).map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
             error.max(relative(a.start, b.start)).max(duration).max(speed)
         });
         self.error = Some(error);
