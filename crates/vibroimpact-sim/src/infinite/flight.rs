@@ -56,7 +56,12 @@ impl Departure {
             tau -= value / slope;
         }
         let closing = self.rate + self.free.rate_gain(tau);
-        (tau > 0.0 && closing > 0.0).then_some((tau, closing))
+        if tau > 0.0 && closing > 0.0 && tau.is_finite() {
+            Some((tau, closing))
+        } else {
+            // so slow a body that rounding hides the root: the past is one impulse, x = u t - I sqrt(t)
+            Some(((total / self.body).powi(2), 0.5 * self.body))
+        }
     }
 
     /// Compression (below zero) and its rate, `tau` after separation.
@@ -73,7 +78,7 @@ impl Departure {
         let mut tau = 0.0_f64;
         for _ in 0..200 {
             let next = tau - self.state(tau).1 / self.free.acceleration(tau);
-            if !(next > tau * (1.0 + 1e-12)) {
+            if next <= tau * (1.0 + 1e-12) || next.is_nan() {
                 break;
             }
             tau = next;

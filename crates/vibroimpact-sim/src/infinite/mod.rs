@@ -59,6 +59,7 @@ mod solution;
 mod solve;
 mod sustained;
 mod turning;
+mod units;
 
 pub use asymptotic::{Attached, attached, displacement_eq_2_47};
 pub use groups::{Groups, Impact, Material};
@@ -86,7 +87,7 @@ pub enum Structure {
 pub struct Settings {
     /// Collocation nodes per panel, 8 to 32. Default 20.
     pub nodes: usize,
-    /// Largest relative size of the last Legendre coefficients of the force in a panel, 1e-15 to
+    /// Largest relative size of the last Legendre coefficients of the force in a panel, 1e-14 to
     /// 1e-3. Default 1e-10.
     pub tolerance: f64,
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
@@ -107,8 +108,8 @@ impl Default for Settings {
 impl Settings {
     fn check(&self) -> Result<(), InvalidInput> {
         InvalidInput::unless(rule::NODES.contains(&self.nodes), "nodes", self.nodes, "8 to 32")?;
-        let tolerance = (1e-15..=1e-3).contains(&self.tolerance);
-        InvalidInput::unless(tolerance, "tolerance", self.tolerance, "1e-15 to 1e-3")?;
+        let tolerance = (1e-14..=1e-3).contains(&self.tolerance);
+        InvalidInput::unless(tolerance, "tolerance", self.tolerance, "1e-14 to 1e-3")?;
         let horizon = (0.0..=1e12).contains(&self.horizon);
         InvalidInput::unless(horizon, "horizon", self.horizon, "0 to 1e12 (units of T)")?;
         InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")

@@ -75,15 +75,20 @@ impl Panel {
     /// Rate of compression at fraction `elapsed` of the panel.
     pub fn rate(&self, tables: &Tables, elapsed: f64) -> f64 {
         let s = variable(self.kind, elapsed);
-        let slope = series_slope(&tables.coefficients(&self.x), s);
-        let speed = match self.kind {
-            Kind::Middle => 1.0,
-            Kind::Start => 2.0 * s,
-            Kind::End => -2.0 * s,
-        };
-        slope / (self.h * if speed == 0.0 { f64::MIN_POSITIVE } else { speed })
+        let x_series = tables.coefficients(&self.x);
+        // dx/dt = x_s / (dt/ds), where dt/ds vanishes at a mapped end: the limit there is x_ss / 2
+        match self.kind {
+            Kind::Middle => series_slope(&x_series, s) / self.h,
+            Kind::Start if s < MAPPED_END => 0.5 * curvature(&x_series) / self.h,
+            Kind::Start => series_slope(&x_series, s) / (2.0 * s * self.h),
+            Kind::End if s < MAPPED_END => -0.5 * curvature(&x_series) / self.h,
+            Kind::End => -series_slope(&x_series, s) / (2.0 * s * self.h),
+        }
     }
 }
+
+/// Below this panel variable the rate of compression is taken as that at the mapped end.
+const MAPPED_END: f64 = 1e-4;
 
 /// Panel variable at an elapsed fraction.
 pub(super) fn variable(kind: Kind, elapsed: f64) -> f64 {
@@ -178,7 +183,22 @@ pub(super) fn collocate(matrix: &[f64], rhs: &[f64], x: &mut [f64]) -> bool {
         fresh = size < 1e-3 * scale && size < 0.1 * last;
         last = size;
     }
-    last.is_finite() && last < 1e-10
+    false
+}
+
+/// `x_ss` at `s = 0` of a Legendre series on `(0, 1)`.
+pub(super) fn curvature(x_series: &[f64]) -> f64 {
+    // P_k''(-1) = (-1)^k (k-1) k (k+1) (k+2) / 8, times 4 for the interval (0, 1)
+    x_series
+        .iter()
+        .enumerate()
+        .skip(2)
+        .map(|(k, c)| {
+            let n = k as f64;
+            let value = (n - 1.0) * n * (n + 1.0) * (n + 2.0) / 2.0;
+            if k % 2 == 0 { c * value } else { -c * value }
+        })
+        .sum()
 }
 
 /// `x_+^(3/2)`.
@@ -191,7 +211,7 @@ pub(super) fn hertz(x: f64) -> f64 {
 fn factor(a: &mut [f64], p: usize) -> bool {
     for k in 0..p {
         let pivot = a[k * p + k];
-        if !(pivot.abs() > 1e-8) {
+        if pivot.abs() < 1e-8 || pivot.is_nan() {
             return false;
         }
         let (head, tail) = a.split_at_mut((k + 1) * p);

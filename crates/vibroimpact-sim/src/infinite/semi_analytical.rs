@@ -33,6 +33,8 @@ enum Given {
 
 /// Logarithm of a speed gentle enough for the limit of a beam at rest to be a good guess.
 const GENTLE: f64 = 0.0;
+/// Largest pull, relative to the largest force, that still counts as none.
+const UNDERSHOOT: f64 = 0.03;
 /// Duration of Hertz contact with a rigid support in its natural unit (Hertz 1882).
 const RIGID_DURATION: f64 = 3.218_065_459_719_043;
 
@@ -220,9 +222,13 @@ fn follow(given: Given, target: f64, n: usize, field: &str, value: f64) -> Resul
     Ok(FirstContact { speed, mass, s: mass.powi(8) * speed, coefficients: unknowns })
 }
 
-/// Whether the force pushes all the time.
+/// Whether the force pushes all the time, to plotting accuracy: a polynomial that follows
+/// `t^(3/2)` at the ends may undershoot there by a few percent (at the largest S), while the unphysical
+/// solutions pull with forces like those with which they push.
 fn physical(grid: &Grid, unknowns: &[f64]) -> bool {
-    grid.phi.iter().all(|phi| phi.iter().zip(unknowns).map(|(phi, a)| a * phi).sum::<f64>() >= 0.0)
+    let force = |phi: &Vec<f64>| phi.iter().zip(unknowns).map(|(phi, a)| a * phi).sum::<f64>();
+    let (low, high) = grid.phi.iter().map(force).fold((0.0_f64, 0.0_f64), |(low, high), f| (low.min(f), high.max(f)));
+    low >= -UNDERSHOOT * high
 }
 
 /// Newton's method for `(a_1 .. a_n, ln m, ln v)`; `None` if it does not settle.
@@ -291,7 +297,7 @@ fn eliminate(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         let best = (k..n).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;
         rows.swap(k, best);
         let pivot = rows[k].clone();
-        if !(pivot[k].abs() > 0.0) {
+        if pivot[k] == 0.0 || pivot[k].is_nan() {
             return None;
         }
         for row in &mut rows[k + 1..] {

@@ -1,11 +1,12 @@
 //! What a run found, and the questions it answers.
 
 use super::Structure;
-use super::contact::{Piece, Units};
+use super::contact::Piece;
 use super::flight::Departure;
 use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
 use super::rule::{Kind, Tables, gauss, series};
+use super::units::Units;
 
 /// How an impact ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! Contacts and flights, one after the other.
 
-use super::contact::{Ending, March, Touch};
+use super::contact::{Ending, March};
 use super::history::History;
 use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
+use super::units::Touch;
 use super::{S_RANGE, Settings, Structure};
 use crate::InvalidInput;
 
@@ -15,7 +16,11 @@ pub fn solve(structure: Structure, s: f64, settings: &Settings) -> Result<Soluti
     settings.check()?;
     let mut solution = run(structure, s, settings);
     if settings.estimate_error {
-        let finer = Settings { nodes: (settings.nodes + 4).min(32), tolerance: 0.1 * settings.tolerance, ..*settings };
+        let finer = Settings {
+            nodes: (settings.nodes + 4).min(32),
+            tolerance: (0.1 * settings.tolerance).max(1e-14),
+            ..*settings
+        };
         solution.compare(&run(structure, s, &finer));
     }
     Ok(solution)

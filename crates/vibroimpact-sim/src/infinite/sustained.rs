@@ -21,8 +21,9 @@
 //! On a plate `k` falls with the compression while the damping does too, faster: the body always
 //! leaves, whatever `S`, and no contact lasts.
 
-use super::contact::{Piece, Units};
+use super::contact::Piece;
 use super::rule::{Kind, Tables};
+use super::units::Units;
 use super::{Structure, attached};
 
 /// Follows the force ratio of one contact.
