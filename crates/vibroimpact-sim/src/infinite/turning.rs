@@ -47,7 +47,9 @@ fn resolutions() -> [Settings; 3] {
 /// ```
 pub fn critical_s() -> CriticalS {
     let speed = |s: f64, settings: &Settings| speed_after_first(s, settings).unwrap_or(1.0);
-    locate(1.5, 1.62, &speed)
+    let [coarse, ..] = resolutions();
+    let at = |s: f64| (s, speed(s, &coarse));
+    locate(at(1.5), at(1.62), &speed)
 }
 
 /// The `n`-th turning point of a beam. Independent of the others, so a caller may compute
@@ -91,60 +93,59 @@ fn near(n: usize, critical: f64, guess: f64, step: f64) -> (TurningPoint, f64) {
     // fewer than n contacts: S is too large
     let minimum = |s: f64, settings: &Settings| nth_minimum(s, n, settings).unwrap_or(1.0);
     let [coarse, ..] = resolutions();
-    let separates = |y: f64| minimum(critical + f64::exp(y), &coarse) < 0.0;
+    let at = |y: f64| {
+        let s = critical + y.exp();
+        (s, minimum(s, &coarse))
+    };
     // S from 1e-9 above the critical value to 1e8
     let (least, most) = (-20.7, 18.4);
-    let (mut low, mut high, mut step) = (guess, guess, step);
-    if separates(guess) {
-        high = (low + step).min(most);
-        while high < most && separates(high) {
-            (low, step) = (high, 1.5 * step);
-            high = (low + step).min(most);
+    let (mut y, mut step) = (guess, step);
+    let mut here = at(y);
+    let separates = here.1 < 0.0;
+    let other = loop {
+        y = if separates { (y + step).min(most) } else { (y - step).max(least) };
+        let next = at(y);
+        if (next.1 < 0.0) != separates || y == least || y == most {
+            break next;
         }
-    } else {
-        low = (high - step).max(least);
-        while low > least && !separates(low) {
-            (high, step) = (low, 1.5 * step);
-            low = (high - step).max(least);
-        }
-    }
-    let root = locate(critical + low.exp(), critical + high.exp(), &minimum);
+        (here, step) = (next, 1.5 * step);
+    };
+    let root = if separates { locate(here, other, &minimum) } else { locate(other, here, &minimum) };
     (TurningPoint { n, s: root.s, uncertainty: root.uncertainty }, (root.s - critical).ln())
 }
 
-/// Root of `f` between `low` (where it is negative) and `high`, by secant steps kept within the
-/// bracket, and its uncertainty from the differences of the three resolutions.
-fn locate(low: f64, high: f64, f: &dyn Fn(f64, &Settings) -> f64) -> CriticalS {
+/// Root of `f` between `low` (where it is negative) and `high`, each with its value, by secant steps
+/// kept within the bracket; and its uncertainty from the differences of the three resolutions.
+fn locate(low: (f64, f64), high: (f64, f64), f: &dyn Fn(f64, &Settings) -> f64) -> CriticalS {
     let [coarse, fine, other] = resolutions();
-    let (mut a, mut b) = (low, high);
-    let (mut last, mut here) = ((low, f(low, &coarse)), (high, f(high, &coarse)));
-    let mut slope = (here.1 - last.1) / (high - low);
+    let (mut a, mut b) = (low.0, high.0);
+    let mut here = if low.1.abs() < high.1.abs() { low } else { high };
+    let mut slope = (high.1 - low.1) / (high.0 - low.0);
     for round in 0..100 {
         let secant = here.0 - here.1 / slope;
-        let inside = secant > a && secant < b && round % 4 != 3;
-        let next = if inside || (secant - here.0).abs() <= 4.0 * f64::EPSILON * b { secant } else { 0.5 * (a + b) };
-        if !(next > a && next < b) {
+        // rounding errors of the function are worth 1e-14 of S and less
+        if here.1 == 0.0 || (secant - here.0).abs() <= 1e-14 * b {
             break;
         }
-        let value = f(next, &coarse);
-        last = std::mem::replace(&mut here, (next, value));
-        if value < 0.0 {
+        let next = if secant > a && secant < b && round % 4 != 3 { secant } else { 0.5 * (a + b) };
+        if next <= a || next >= b {
+            break;
+        }
+        let last = std::mem::replace(&mut here, (next, f(next, &coarse)));
+        if here.1 < 0.0 {
             a = next;
         } else {
             b = next;
         }
-        let secant_slope = (here.1 - last.1) / (here.0 - last.0);
         // differences of rounding errors are no slope
+        let secant_slope = (here.1 - last.1) / (here.0 - last.0);
         if (here.0 - last.0).abs() > 1e-9 * b && secant_slope > 0.0 {
             slope = secant_slope;
         }
-        if value == 0.0 || (here.0 - last.0).abs() <= 4.0 * f64::EPSILON * b {
-            break;
-        }
     }
-    let s = here.0;
-    let spread = [&coarse, &fine, &other].map(|settings| f(s, settings).abs()).into_iter().fold(0.0, f64::max);
-    let uncertainty = (2.0 * spread / slope + 4.0 * f64::EPSILON * s).min(high - low);
+    let values = [here.1, f(here.0, &fine), f(here.0, &other)];
+    let spread = values.iter().fold(0.0_f64, |spread, value| spread.max(value.abs()));
+    let uncertainty = (2.0 * spread / slope + 4.0 * f64::EPSILON * here.0).min(high.0 - low.0);
     // one correction with the finest solution
-    CriticalS { s: s - f(s, &fine) / slope, uncertainty }
+    CriticalS { s: here.0 - values[1] / slope, uncertainty }
 }
