@@ -53,9 +53,31 @@ fn critical_value() {
     // just above, the second contact comes at a time that grows as the inverse square of the speed
     let above = solve(Structure::Beam, critical.s * (1.0 + 1e-9), &Settings { max_panels: 200, ..once() }).unwrap();
     let speed = above.contacts[0].body_speed_at_end.unwrap();
-    assert!((speed / ratio - 1.0).abs() < 1e-5, "{speed} {ratio}");
+    assert!((speed / ratio - 1.0).abs() < 1e-4, "{speed} {ratio}");
     assert!((above.contacts[1].start * speed * speed - 1.0).abs() < 1e-4);
     assert!(above.contacts.len() > 5);
+}
+
+/// Very close to the critical S the speed of the body falls, contact by contact, far below the
+/// rounding error of its initial speed; no rebound is invented and no digit lost to that.
+#[test]
+fn close_to_the_critical_value() {
+    let s = critical_s().s * (1.0 + 1e-7);
+    let run = |nodes: usize| solve(Structure::Beam, s, &Settings { nodes, max_panels: 600, ..once() }).unwrap();
+    let (solution, other) = (run(20), run(24));
+    assert_eq!(solution.outcome, Outcome::LimitReached);
+    assert!(solution.contacts.len() > 60);
+    for (a, b) in solution.contacts.iter().zip(&other.contacts) {
+        assert!((a.closing_speed / b.closing_speed - 1.0).abs() < 1e-5, "{a:?} {b:?}");
+        assert!(a.body_speed_at_end.is_none_or(|speed| speed > 0.0));
+    }
+    for pair in solution.contacts.windows(2) {
+        assert!(pair[1].closing_speed < pair[0].closing_speed && pair[1].start > pair[0].start);
+    }
+    // a thousandth above it all of them are found
+    let all = solve(Structure::Beam, critical_s().s * 1.001, &Settings::default()).unwrap();
+    assert_eq!((all.outcome, all.separations()), (Outcome::Sustained, 120));
+    assert!(all.error.unwrap() < 1e-9, "{:?}", all.error);
 }
 
 /// The first 12 turning points to 10 digits and more, the thesis's to 0.1 %; just below each there

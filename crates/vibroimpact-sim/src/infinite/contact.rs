@@ -342,11 +342,11 @@ impl<'a> March<'a> {
 
     /// The flight that follows separation.
     pub fn departure(&self) -> Departure {
-        Departure {
-            body: self.body_speed(),
-            rate: self.units.speed * self.slope,
-            free: Free::new(&self.history, 1.0, 1.0),
-        }
+        let rate = self.units.speed * self.slope;
+        let free = Free::new(&self.history, 1.0, 1.0);
+        // The body's speed as the sum of both, not as 1 minus all impulses: close to the critical S
+        // it falls below the rounding error of the latter.
+        Departure { body: rate + free.structure_speed(), rate, free }
     }
 
     /// A panel of this contact as impulses, seen from the present `p`.

@@ -96,6 +96,11 @@ impl Free {
         self.sum(|age, root, c| 0.5 * c * root / ((age + tau) * (age + tau).sqrt()))
     }
 
+    /// Speed of the structure's point at the time origin.
+    pub fn structure_speed(&self) -> f64 {
+        self.sum(|_, _, c| c)
+    }
+
     /// Total impulse.
     pub fn impulse(&self) -> f64 {
         self.sum(|_, root, c| 2.0 * c * root)

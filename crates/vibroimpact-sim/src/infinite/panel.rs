@@ -319,4 +319,30 @@ mod tests {
             assert!((got / want - 1.0).abs() < 2e-14, "{after}: {got} {want}");
         }
     }
+
+    /// A contact with the force `(t (1 - t))^(3/2)`: its effect on the beam during and after it
+    /// (hypergeometric closed forms, values in 50-digit arithmetic).
+    #[test]
+    fn manufactured_contact() {
+        for p in [16, 20, 28] {
+            let tables = Tables::get(Structure::Beam, p);
+            let panel = |kind, start: f64| {
+                let rule = tables.rule(kind);
+                let x = (0..p).map(|j| (start + 0.5 * rule.elapsed[j]) * (0.5 - start + 0.5 * rule.remaining[j]));
+                Panel::new(tables, kind, start, 0.5, x.collect())
+            };
+            let (first, second) = (panel(Kind::Start, 0.0), panel(Kind::End, 0.5));
+            let own = |panel: &Panel| 0.5_f64.powf(1.5) * dot(&tables.rule(panel.kind).memory[p * p..], &panel.f);
+            let after = |t: f64| {
+                first.memory(Structure::Beam, tables, t - 0.5) + second.memory(Structure::Beam, tables, t - 1.0)
+            };
+            let found =
+                [own(&first), first.memory(Structure::Beam, tables, 0.5) + own(&second), after(10.0), after(1e6)];
+            let exact = [0.014120218079899651, 16.0 / 315.0, 0.22693312224317404, 73.63105941073864];
+            for (found, exact) in found.iter().zip(exact) {
+                assert!((found / exact - 1.0).abs() < 1e-12, "{p}: {found} {exact}");
+            }
+            assert!((first.moment(tables) / 0.00625 - 1.0).abs() < 1e-12);
+        }
+    }
 }

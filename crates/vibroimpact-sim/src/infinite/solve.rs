@@ -37,7 +37,6 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         let ending = march.run(false, settings.max_panels.saturating_sub(solution.panels_tried));
         solution.panels_tried += march.trials;
         solution.panels += march.pieces.len();
-        let body = march.body_speed();
         let (duration, outcome) = match ending {
             Ending::Separated(duration) => (duration, Outcome::Rebound),
             Ending::Sustained(duration) => (duration, Outcome::Sustained),
@@ -45,6 +44,8 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             Ending::Limit(duration) => (duration, Outcome::LimitReached),
         };
         let ended = matches!(ending, Ending::Separated(_));
+        let departure = march.departure();
+        let body = departure.body;
         let end = touch.time + duration;
         solution.extrema.extend(march.turns.iter().map(|turn| Extremum {
             contact: solution.contacts.len(),
@@ -60,7 +61,6 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             body_speed_at_start: touch.body,
             body_speed_at_end: ended.then_some(body),
         };
-        let departure = march.departure();
         history = march.history;
         solution.push_contact(contact, march.units, march.pieces, body_travel);
         solution.known_until = end;
@@ -91,7 +91,6 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
     for k in 1..=n {
         let mut march = March::new(Structure::Beam, settings, touch, std::mem::take(&mut history));
         let ending = march.run(k == n, settings.max_panels);
-        let body = march.body_speed();
         let duration = match ending {
             Ending::Separated(duration) => duration,
             Ending::Minimum(minimum) if k == n => return Some(minimum / largest(&march)),
@@ -105,7 +104,7 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
         history = march.history;
         history.advance(time);
         history.condense();
-        touch = Touch { s, time: touch.time + duration + time, closing, body };
+        touch = Touch { s, time: touch.time + duration + time, closing, body: departure.body };
     }
     None
 }
