@@ -268,8 +268,6 @@ fn semi_analytical_first_contact() {
         let contact = FirstContact::at_speed(v, 6).unwrap();
         assert!((contact.mass - m).abs() < 6e-4, "{contact:?}");
         let solution = beam(contact.s);
-        let peak = solution.contacts.len();
-        assert!(peak > 0);
         for n in 1..20 {
             let t = contact.duration() * f64::from(n) / 20.0;
             let full = solution.at(t).unwrap().force;
@@ -286,9 +284,11 @@ fn semi_analytical_first_contact() {
         };
         assert!(error(6) < 2e-3 && error(12) < 0.5 * error(6), "{s}: {} {}", error(6), error(12));
     }
-    let far = FirstContact::at_s(1.2e4, 6).unwrap().rebound_ratio();
-    assert!((far - beam(1.2e4).first_rebound_ratio().unwrap()).abs() < 5e-3);
-    // beyond its range there is no solution that pushes throughout
+    // the thesis's range for six functions, 1.2e4: there is no solution that pushes throughout beyond
+    let full = beam(1.2e4).first_rebound_ratio().unwrap();
+    let errors = [6, 8, 10, 12, 14].map(|n| (FirstContact::at_s(1.2e4, n).unwrap().rebound_ratio() - full).abs());
+    assert!(errors[0] < 3e-3 && errors.windows(2).all(|pair| pair[1] < 0.7 * pair[0]), "{errors:?}");
+    assert!(FirstContact::at_s(1.5e4, 6).is_err() && FirstContact::at_s(1.5e4, 14).is_ok());
     assert_eq!(FirstContact::at_s(1e6, 6).unwrap_err().field, "s");
     assert_eq!(FirstContact::at_speed(f64::NAN, 6).unwrap_err().field, "speed");
     assert_eq!(FirstContact::at_speed(1.0, 40).unwrap_err().field, "n");

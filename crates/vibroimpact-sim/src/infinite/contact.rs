@@ -35,14 +35,26 @@ pub(super) enum Ending {
     Limit(f64),
 }
 
-/// A panel as the solution keeps it, on the time origin of the contact's touch.
+/// A panel as the solution keeps it.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
-    pub panel: Panel,
+    pub kind: Kind,
+    /// Time from touch to the panel's start, in natural units.
+    pub start: f64,
+    pub h: f64,
+    /// Compression at the nodes.
+    pub x: Vec<f64>,
     /// `int xi_+^(3/2)` from touch to the panel's start, in natural units.
     pub impulse: f64,
     /// `int (start - theta) xi_+^(3/2)` from touch to the panel's start.
     pub moment: f64,
+}
+
+impl Piece {
+    /// The panel again, on the time origin of touch.
+    pub fn panel(&self, tables: &Tables) -> Panel {
+        Panel::new(tables, self.kind, self.start, self.h, self.x.clone())
+    }
 }
 
 /// A local extremum of the compression within a contact.
@@ -280,9 +292,14 @@ impl<'a> March<'a> {
             let after = self.units.time * (self.origin + panel.start + elapsed * panel.h);
             self.turns.push(Turn { after, compression: self.units.length * x, minimum });
         }
-        let mut kept = panel.clone();
-        kept.start += self.origin;
-        self.pieces.push(Piece { panel: kept, impulse: self.impulse_since_touch, moment: self.moment_since_touch });
+        self.pieces.push(Piece {
+            kind: panel.kind,
+            start: self.origin + panel.start,
+            h: panel.h,
+            x: panel.x.clone(),
+            impulse: self.impulse_since_touch,
+            moment: self.moment_since_touch,
+        });
         self.moment += self.impulse * panel.h + moment;
         self.moment_since_touch += self.impulse_since_touch * panel.h + moment;
         self.impulse += impulse;

@@ -187,7 +187,7 @@ fn follow(given: Given, target: f64, n: usize, field: &str, value: f64) -> Resul
         value: value.to_string(),
         allowed: "a value up to which the branch with f >= 0 can be followed with n functions",
     };
-    let (mut at, mut step) = (gentle, 0.5_f64);
+    let (mut at, mut step) = (gentle, 0.1_f64);
     unknowns = newton(&grid, given, at, unknowns).ok_or_else(nothing)?;
     let mut before: Option<(f64, Vec<f64>)> = None;
     while at < target {
@@ -204,7 +204,7 @@ fn follow(given: Given, target: f64, n: usize, field: &str, value: f64) -> Resul
             Some(found) => {
                 before = Some((at, std::mem::replace(&mut unknowns, found)));
                 at = next;
-                step = (1.5 * step).min(0.5);
+                step = (1.5 * step).min(0.1);
             }
             None => {
                 step *= 0.5;

@@ -183,14 +183,14 @@ impl Solution {
         let contact = self.contacts.get(index)?;
         let theta = after_touch / record.units.time;
         let last = record.pieces.last()?;
-        let end = last.panel.start + last.panel.h;
+        let end = last.start + last.h;
         if !(theta >= 0.0 && theta <= end * (1.0 + 1e-12)) {
             return None;
         }
-        let at = record.pieces.partition_point(|piece| piece.panel.start <= theta).saturating_sub(1);
+        let at = record.pieces.partition_point(|piece| piece.start <= theta).saturating_sub(1);
         let piece = &record.pieces[at];
         let tables = Tables::get(self.structure, self.nodes);
-        let panel = &piece.panel;
+        let panel = piece.panel(tables);
         let elapsed = ((theta - panel.start) / panel.h).min(1.0);
         let units = record.units;
         let compression = units.length * panel.compression(tables, elapsed).max(0.0);
@@ -217,7 +217,7 @@ impl Solution {
         let (Some(record), Some(contact)) = (self.records.last(), self.contacts.last()) else { return 0.0 };
         let Some(piece) = record.pieces.last() else { return record.body_travel };
         let tables = Tables::get(self.structure, self.nodes);
-        let panel = &piece.panel;
+        let panel = piece.panel(tables);
         let moment = piece.moment + piece.impulse * panel.h + panel.moment(tables);
         let time = record.units.time * (panel.start + panel.h);
         record.body_travel + contact.body_speed_at_start * time - record.units.impulse * record.units.time * moment

@@ -22,6 +22,7 @@
 //! leaves, whatever `S`, and no contact lasts.
 
 use super::contact::Piece;
+use super::panel::hertz;
 use super::rule::{Kind, Tables};
 use super::units::Units;
 use super::{Structure, attached};
@@ -42,13 +43,13 @@ impl Watch {
 
     /// Takes note of the forces in a panel.
     pub fn see(&mut self, units: &Units, tables: &Tables, piece: &Piece) {
-        if self.structure == Structure::Plate || piece.panel.kind != Kind::Middle {
+        if self.structure == Structure::Plate || piece.kind != Kind::Middle {
             return;
         }
-        let rule = tables.rule(piece.panel.kind);
-        for (elapsed, f) in rule.elapsed.iter().zip(&piece.panel.f) {
-            let t = self.touch_time + units.time * (piece.panel.start + piece.panel.h * elapsed);
-            let force = units.impulse / units.time * f;
+        let rule = tables.rule(piece.kind);
+        for (elapsed, &x) in rule.elapsed.iter().zip(&piece.x) {
+            let t = self.touch_time + units.time * (piece.start + piece.h * elapsed);
+            let force = units.impulse / units.time * hertz(x);
             self.deviations.push((t, (force / attached(self.structure, t).force - 1.0).abs()));
         }
     }
