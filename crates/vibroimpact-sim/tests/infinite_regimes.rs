@@ -172,6 +172,37 @@ fn plate_always_rebounds_once() {
     }
 }
 
+/// Contact declared to last does last when followed twenty times further, also next to turning
+/// points, where the compression all but vanished once.
+#[test]
+fn sustained_contact_lasts() {
+    let points = turning_points(6).unwrap();
+    let near = points.iter().flat_map(|point| [point.s * (1.0 - 1e-6), point.s * (1.0 + 1e-6)]);
+    for s in near.chain([2.0, 15.0, 100.0, 1e3, 1e5, 1e8]) {
+        let first = solve(Structure::Beam, s, &once()).unwrap();
+        let further = Settings { horizon: 20.0 * first.known_until, ..once() };
+        let second = solve(Structure::Beam, s, &further).unwrap();
+        assert_eq!(second.outcome, Outcome::Sustained);
+        assert!(second.known_until >= further.horizon);
+        assert_eq!(first.separations(), second.separations(), "S = {s}");
+    }
+}
+
+/// Any settings allowed give the same contacts, without panic.
+#[test]
+fn settings_do_not_change_the_outcome() {
+    for structure in [Structure::Beam, Structure::Plate] {
+        for s in [1e-12, 1.5, 2.5, 300.0, 3e4, 1e8] {
+            let default = solve(structure, s, &once()).unwrap();
+            for (nodes, tolerance) in [(8, 1e-3), (8, 1e-9), (13, 1e-8), (20, 1e-14), (32, 1e-3), (32, 1e-14)] {
+                let other = solve(structure, s, &Settings { nodes, tolerance, ..once() }).unwrap();
+                assert_eq!(other.outcome, default.outcome, "{structure:?} {s} {nodes} {tolerance}");
+                assert_eq!(other.separations(), default.separations(), "{structure:?} {s} {nodes} {tolerance}");
+            }
+        }
+    }
+}
+
 /// Input out of range is named, not computed.
 #[test]
 fn bad_input_is_refused() {
