@@ -180,20 +180,19 @@ fn motion_is_consistent() {
     }
 }
 
-/// Thesis Table 2.1 (steel sphere, square steel beam). Its fourth row agrees with b, R, v to 1 %
-/// only; all others to rounding of the printed digits.
+/// Thesis Table 2.1 (steel sphere, square steel beam), to 0.5 %.
 #[test]
 fn table_2_1() {
-    for (b, r, v, s, digits) in [
-        (0.03, 0.02, 0.2, 4.05e-6, 5e-3),
-        (0.03, 0.03, 0.1, 0.0512, 5e-3),
-        (0.028, 0.033, 0.5, 15.556, 5e-3),
-        (0.02, 0.027, 0.4, 371.05, 5e-3),
-        (0.015, 0.04, 1.55e-6, 3.54e4, 5e-3),
-        (0.05, 0.03, 10000.0, 0.0146, 5e-3),
+    for (b, r, v, s) in [
+        (0.03, 0.02, 0.2, 4.05e-6),
+        (0.03, 0.03, 0.1, 0.0512),
+        (0.028, 0.033, 0.5, 15.556),
+        (0.02, 0.027, 0.4, 371.05),
+        (0.015, 0.04, 1.55e-6, 3.54e4),
+        (0.05, 0.03, 10000.0, 0.0146),
     ] {
         let groups = Impact::sphere_on_beam(Material::STEEL, b, b, r, v).unwrap().groups().unwrap();
-        assert!((groups.s / s - 1.0).abs() < digits, "{b} {r} {v}: {} {s}", groups.s);
+        assert!((groups.s / s - 1.0).abs() < 5e-3, "{b} {r} {v}: {} {s}", groups.s);
     }
 }
 
