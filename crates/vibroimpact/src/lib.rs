@@ -28,6 +28,7 @@
 //! | [`scene`] | the scene file, field by field, and what can be wrong with it |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`export`] | histories as CSV, the picture as SVG |
+//! | [`infinite`] | the same for impacts on infinite beams and plates |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`].
@@ -35,6 +36,7 @@
 mod impact;
 
 pub mod export;
+pub mod infinite;
 pub mod plot;
 pub mod report;
 pub mod scene;
