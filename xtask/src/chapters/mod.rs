@@ -2,6 +2,7 @@
 //! sets every number of the text beside ours.
 
 mod beam;
+mod chapter2;
 mod chapter3;
 mod chapter4;
 mod figures;
@@ -16,14 +17,15 @@ use study::Study;
 /// Whatever can go wrong on the way: bad parameters, a full disk.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
-/// Runs chapter 3 or 4 and writes its folder. `quick` takes fewer points through the same code.
+/// Runs chapter 2, 3 or 4 and writes its folder. `quick` takes fewer points through the same code.
 /// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
 pub fn run(chapter: u32, out: &Path, quick: bool) -> Result<String, Failure> {
     let mut study = Study::new(out, quick)?;
     let introduction = match chapter {
+        2 => chapter2::run(&mut study)?,
         3 => chapter3::run(&mut study)?,
         4 => chapter4::run(&mut study)?,
-        other => return Err(format!("chapter = {other} is not allowed: 3 or 4").into()),
+        other => return Err(format!("chapter = {other} is not allowed: 2, 3 or 4").into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
 }
