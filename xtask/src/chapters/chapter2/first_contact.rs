@@ -13,6 +13,9 @@ const THESIS: usize = 6;
 /// What the thesis's "essentially complete" agreement is taken to mean for `v_f / v`: a line's width.
 const VISIBLE: f64 = 0.01;
 
+/// Just below the first turning point, above which there is no separation.
+const LARGEST: f64 = 3.4e4;
+
 /// `v_f / v` for one `S`; the semi-analytical one is missing where the branch with a pushing force ends.
 #[derive(Serialize)]
 struct Row {
@@ -132,7 +135,7 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
 /// Fig. 2.6(b), and the errors against `S`.
 fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), Failure> {
     let choice = &parameters.our_choice;
-    let values = study.thin(&in_ratio(choice.map_from, 3.4e4, 49), 9);
+    let values = study.thin(&in_ratio(choice.map_from, LARGEST, 49), 9);
     let cases: Vec<(usize, f64)> =
         choice.functions.iter().flat_map(|&n| values.iter().map(move |&s| (n, s))).collect();
     let rows = study.sweep(&cases, 1, |&(functions, s)| {
@@ -174,13 +177,15 @@ fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), 
         (0.0, VISIBLE),
         good.fold(0.0, f64::max),
     ));
-    let beyond = of(THESIS).filter(|row| row.s > parameters.semi_analytical_until);
+    let fine = in_ratio(1e3, LARGEST, 100);
+    let reached = study.sweep(&fine, 1, |&s| Ok(FirstContact::at_s(s, THESIS).is_ok()))?;
+    let reach = fine.iter().zip(reached).filter(|(_, reached)| *reached).map(|(s, _)| *s).fold(0.0, f64::max);
     study.state(Comparison::range(
-        "largest error of v_f / v beyond, N = 6 (1 where there is no solution)",
+        "largest S to which the solution with N = 6 can be followed while its force pushes",
         "2.3",
-        "eventually deteriorates",
-        (VISIBLE, 1.0),
-        beyond.map(|row| row.error.unwrap_or(1.0)).fold(0.0, f64::max),
+        "good for S ≲ 1.2×10⁴, for even larger S eventually deteriorates",
+        (parameters.semi_analytical_until, LARGEST),
+        reach,
     ));
     Ok((ratio, errors))
 }

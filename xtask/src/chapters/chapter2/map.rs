@@ -83,7 +83,8 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         0.5,
         0.05,
         first.fold(f64::INFINITY, f64::min),
-    ));
+    )
+    .note("The shortest first contact ends a little below the first turning point. The thesis reads its number from a logarithmic axis."));
 
     // the curves close at their turning points
     let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
@@ -193,32 +194,32 @@ fn contact_map(
 ) -> Result<(), Failure> {
     let s: Vec<f64> = points.iter().map(|point| point.s).collect();
     let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0);
-    let lower_s = turnings.get(4).map_or(10.0, |t| t.s);
-    let x = Axis::new("S");
-    let mut upper = Panel::new(x.clone().log().limits(1e-2, 2e5), Axis::new("time").unit("T").log().limits(0.3, LATEST))
+    let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
+    let time = Axis::new("time").unit("T").log();
+    let mut upper = Panel::new(Axis::new("S").log().limits(1e-2, 2e5), time.clone().limits(0.3, LATEST))
         .title("(a)")
         .height(320.0);
-    let mut lower = Panel::new(x.log().limits(critical.s, lower_s), Axis::new("time").unit("T").limits(0.0, 5000.0))
-        .title("(b) the later contacts")
-        .height(260.0);
+    let mut lower = Panel::new(Axis::new("S above its critical value").log().limits(0.02, 1e2), time.limits(10.0, LATEST))
+        .title("(b) the later contacts, against the distance from the critical S")
+        .height(360.0);
     for k in 0..most {
         // start and end of a contact in one colour
         let colour = if k == 0 { Colour::Purple } else { Colour::of_series(k - 1) };
         let value = |of: fn(&Contact) -> Option<f64>| -> Vec<f64> {
             points.iter().map(|point| point.contacts.get(k).and_then(of).unwrap_or(f64::NAN)).collect()
         };
-        let start = Series::line(&s, &value(|contact| Some(contact.start))).colour(colour).dashed();
-        let end = Series::line(&s, &value(|contact| contact.end)).colour(colour);
+        let (starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
         let width = if k == 0 { 2.4 } else { 1.0 };
-        upper = upper.with(start.clone().line_width(1.0)).with(end.clone().line_width(width));
-        lower = lower.with(start.line_width(1.0)).with(end.line_width(width));
+        let start = |x: &[f64]| Series::line(x, &starts).colour(colour).line_width(1.0).dashed();
+        let end = |x: &[f64]| Series::line(x, &ends).colour(colour).line_width(width);
+        upper = upper.with(start(&s)).with(end(&s));
+        lower = lower.with(start(&distance)).with(end(&distance));
     }
-    let rule = Series::vertical_rule(critical.s);
     study.figure(
         "fig-2-08",
         &Figure::new("Fig. 2.8  Starts (dashed) and ends (solid) of contacts against S")
-            .row([upper.with(rule.clone())])
-            .row([lower.with(rule)]),
+            .row([upper.with(Series::vertical_rule(critical.s))])
+            .row([lower]),
         "A curve of separation and the next curve of touch meet at a turning point. Colours repeat. All curves approach \
          the critical S, where the second contact comes after infinite time.",
     )

@@ -18,7 +18,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let several = solution.contacts.len() > 1;
         let force = if several { Axis::new("force").unit("F").log().limits(1e-5, 3.0) } else { Axis::new("force").unit("F") };
         let motion = Panel::new(time.clone(), Axis::new("displacement").unit("D"))
-            .title(format!("S = {}: {} separations", significant(*s, 3), solution.separations()))
+            .title(format!("S = {}, separations: {}", significant(*s, 3), solution.separations()))
             .height(150.0)
             .with(Series::line(&course.time, &course.beam).colour(Colour::Vermilion).label("y, beam"))
             .with(Series::line(&course.time, &course.body).colour(Colour::Blue).label("z, body"));

@@ -129,7 +129,7 @@ fn panels(s: f64, separations: usize, until: f64, course: &Course) -> Vec<Panel>
     let dashed = |values: &[f64]| Series::line(&course.time, values).colour(Colour::Black).dashed().label("asymptotic");
     vec![
         Panel::new(time.clone(), Axis::new("displacement").unit("D"))
-            .title(format!("S = {}, {separations} separations", significant(s, 3)))
+            .title(format!("S = {}, separations: {separations}", significant(s, 3)))
             .height(150.0)
             .with(Series::line(&course.time, &course.beam).colour(Colour::Vermilion).label("y"))
             .with(Series::line(&course.time, &course.body).colour(Colour::Blue).label("z"))
@@ -137,7 +137,7 @@ fn panels(s: f64, separations: usize, until: f64, course: &Course) -> Vec<Panel>
         Panel::new(time.clone(), Axis::new("force").unit("F").log().limits(0.2 * force, 10.0))
             .height(150.0)
             .with(Series::line(&course.time, &course.force).colour(Colour::Blue)),
-        Panel::new(time, Axis::new("y - z").unit("D").limits(-6.0 * low, 10.0 * low))
+        Panel::new(time, Axis::new("y - z").unit("D").limits(if separations > 0 { -6.0 * low } else { 0.0 }, 10.0 * low))
             .height(150.0)
             .with(Series::line(&course.time, &course.compression).colour(Colour::Blue))
             .with(dashed(&squeezed)),
