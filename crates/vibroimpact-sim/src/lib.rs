@@ -1,7 +1,9 @@
 //! One impact of a compact body on a vibrating structure, fully resolved.
 //!
-//! [`modal`] solves impacts on structures described by their modes.
+//! [`modal`] solves impacts on structures described by their modes; [`dropped_rod`] poses the drop of a tilted rod on
+//! an immovable surface as one of them.
 
+pub mod dropped_rod;
 mod error;
 pub mod modal;
 

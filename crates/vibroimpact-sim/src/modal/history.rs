@@ -134,6 +134,11 @@ impl<L: ContactLaw> History<L> {
         self.energies(&amplitude, &rate)
     }
 
+    /// Amplitude of each mode at `time_s` (m kg^1/2), in the order of `Structure::modes`.
+    pub fn amplitudes(&self, time_s: f64) -> Vec<f64> {
+        super::solve::modal_state(&self.modes, &self.place, &self.moment(time_s).motion, &self.start).0
+    }
+
     /// Where the energy went until the last event. The dissipation is integrated from the motion, independently of
     /// the balance: `residual_j` can fail to vanish.
     pub fn energy_ledger(&self) -> EnergyLedger {

@@ -132,7 +132,8 @@ impl Solver {
             let tolerance = (COARSER * settings.tolerance).min(0.1);
             let second = self.run(striker, law, start, settings, tolerance, &mut counts, &mut None);
             // a second solution that ends otherwise says that nothing is certain
-            self.restitution(&second, striker, start).map_or(1.0, |other| (other - value).abs()).max(4.0 * f64::EPSILON)
+            self.restitution(&second, striker, start)
+                .map_or(1.0, |other| 2.0 * (other - value).abs() + settings.tolerance)
         });
         let (amplitude, rate) = modal_state(&self.modes, &self.place, &run.motion, start);
         Ok(Solution {
