@@ -11,24 +11,15 @@ use super::problem::Mode;
 pub(crate) const J_MIN: i32 = -120;
 pub(crate) const J_MAX: i32 = 200;
 
-/// Step length of a level (s).
+/// Step length of a level (s): the number with just this exponent.
 pub(crate) fn step_s(j: i32) -> f64 {
-    2f64.powi(-j)
+    f64::from_bits(((1023 - j) as u64) << 52)
 }
 
-/// The coarsest level whose step is not longer than `t` (s).
+/// The coarsest level whose step is not longer than `t` (s), a positive number.
 pub(crate) fn level_within(t: f64) -> i32 {
-    if t >= step_s(J_MIN) {
-        return J_MIN;
-    }
-    if t <= step_s(J_MAX) {
-        return J_MAX;
-    }
-    let mut j = (-t.log2()).ceil() as i32;
-    if step_s(j) > t {
-        j += 1;
-    }
-    j
+    let exponent = ((t.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    (-exponent).clamp(J_MIN, J_MAX)
 }
 
 /// Excited elastic modes: displacement and velocity at the contact, one entry a mode.
@@ -125,12 +116,13 @@ impl Ladder {
     }
 }
 
-/// `state[k] += sum_n table[n][k] force[n]`.
+/// `state[k] += sum_n table[n][k] force[n]`, in one pass.
 fn accumulate(state: &mut [f64], table: &[Vec<f64>; Q], force: &Nodal) {
-    for (row, f) in table.iter().zip(force) {
-        for (value, t) in state.iter_mut().zip(row) {
-            *value += t * f;
-        }
+    let [t0, t1, t2, t3, t4, t5, t6, t7] = table.each_ref().map(|row| &row[..state.len()]);
+    let [f0, f1, f2, f3, f4, f5, f6, f7] = *force;
+    for k in 0..state.len() {
+        state[k] += (t0[k] * f0 + t1[k] * f1 + t2[k] * f2 + t3[k] * f3)
+            + (t4[k] * f4 + t5[k] * f5 + t6[k] * f6 + t7[k] * f7);
     }
 }
 

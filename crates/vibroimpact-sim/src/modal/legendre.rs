@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 /// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
-pub(crate) const Q: usize = 7;
+pub(crate) const Q: usize = 8;
 /// Powers of time kept in a Taylor series over a landing step.
 pub(crate) const TAYLOR: usize = 14;
 /// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
