@@ -10,3 +10,7 @@ pub mod infinite;
 pub mod modal;
 
 pub use error::InvalidInput;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
