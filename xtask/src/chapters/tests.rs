@@ -61,7 +61,8 @@ fn chapter_2_is_complete_and_the_same_on_any_number_of_threads() {
         "methods",
         "semi-analytical-errors",
     ];
-    let tables = ["fig-2-03-s-1.5e1.csv", "fig-2-06b.csv", "fig-2-08.csv", "fig-a-01.csv", "turning-points.csv", "methods.csv"];
+    let tables =
+        ["fig-2-03-s-1.5e1.csv", "fig-2-06b.csv", "fig-2-08.csv", "fig-a-01.csv", "turning-points.csv", "methods.csv"];
     check_chapter(2, &figures, &tables);
 }
 

@@ -90,7 +90,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
     points.extend(study.sweep(&ends, 1, point)?);
     points.sort_by(|a, b| a.s.total_cmp(&b.s));
-    contact_map(study, &points, critical, &turnings)
+    contact_map(study, &points, critical)
 }
 
 fn turning_table(
@@ -141,12 +141,7 @@ fn turning_table(
 }
 
 /// Fig. 2.4: what happens, against `S`.
-fn regimes(
-    study: &mut Study,
-    points: &[Point],
-    critical: CriticalS,
-    turnings: &[TurningPoint],
-) -> Result<(), Failure> {
+fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &[TurningPoint]) -> Result<(), Failure> {
     let wrong = points.iter().filter(|point| {
         let beyond = turnings.iter().filter(|t| t.s > point.s).count();
         let expected = if point.s < critical.s { Outcome::Rebound } else { Outcome::Sustained };
@@ -171,7 +166,9 @@ fn regimes(
         panel = panel.with(Series::vertical_rule(last.s));
     }
     let panel = panel
-        .with(Series::line_points(&rebound.0, &rebound.1, Marker::Dot).colour(Colour::Blue).label("one contact, rebound"))
+        .with(
+            Series::line_points(&rebound.0, &rebound.1, Marker::Dot).colour(Colour::Blue).label("one contact, rebound"),
+        )
         .with(
             Series::step(&sustained.0, &sustained.1)
                 .colour(Colour::Vermilion)
@@ -186,21 +183,16 @@ fn regimes(
 }
 
 /// Fig. 2.8.
-fn contact_map(
-    study: &mut Study,
-    points: &[Point],
-    critical: CriticalS,
-    turnings: &[TurningPoint],
-) -> Result<(), Failure> {
+fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Result<(), Failure> {
     let s: Vec<f64> = points.iter().map(|point| point.s).collect();
     let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0);
     let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
-    let time = Axis::new("time").unit("T").log();
-    let mut upper = Panel::new(Axis::new("S").log().limits(1e-2, 2e5), time.clone().limits(0.3, LATEST))
-        .title("(a)")
-        .height(320.0);
-    let mut lower = Panel::new(Axis::new("S above its critical value").log().limits(0.02, 1e2), time.limits(10.0, LATEST))
-        .title("(b) the later contacts, against the distance from the critical S")
+    let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
+    let time = Axis::new("time").unit("T").log().limits(0.3, LATEST);
+    let mut upper = Panel::new(Axis::new("S").log().limits(1e-2, 2e5), time).title("(a)").height(320.0);
+    let x = Axis::new("S above its critical value").log().limits(0.02, 1e3);
+    let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
+        .title("(b) the later contacts, magnified")
         .height(360.0);
     for k in 0..most {
         // start and end of a contact in one colour
@@ -210,10 +202,11 @@ fn contact_map(
         };
         let (starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
         let width = if k == 0 { 2.4 } else { 1.0 };
-        let start = |x: &[f64]| Series::line(x, &starts).colour(colour).line_width(1.0).dashed();
-        let end = |x: &[f64]| Series::line(x, &ends).colour(colour).line_width(width);
-        upper = upper.with(start(&s)).with(end(&s));
-        lower = lower.with(start(&distance)).with(end(&distance));
+        let start = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(1.0).dashed();
+        let end = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(width);
+        upper = upper.with(start(&s, &starts)).with(end(&s, &ends));
+        let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
+        lower = lower.with(start(&distance, &relative(&starts))).with(end(&distance, &relative(&ends)));
     }
     study.figure(
         "fig-2-08",

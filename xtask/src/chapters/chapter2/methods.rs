@@ -39,7 +39,7 @@ struct TimingRow {
 
 /// A method, and the number that says how finely it works.
 fn methods(quick: bool) -> Vec<(f64, Method)> {
-    let steps: &[usize] = if quick { &[250, 1000] } else { &[125, 250, 500, 1000, 2000, 4000, 8000, 16000] };
+    let steps: &[usize] = if quick { &[250, 1000] } else { &[125, 250, 500, 1000, 2000, 4000, 8000] };
     let digits: &[i32] = if quick { &[5, 9] } else { &[3, 5, 7, 9, 11, 13] };
     let mut methods = Vec::new();
     for &steps in steps {
@@ -74,8 +74,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let (mut rows, mut timings) = (Vec::new(), Vec::new());
     for (s, end) in PROBLEMS {
         let with = |nodes: usize, tolerance: f64| -> Result<Solution, Failure> {
-            let settings =
-                Settings { nodes, tolerance, horizon: end, estimate_error: false, ..Settings::default() };
+            let settings = Settings { nodes, tolerance, horizon: end, estimate_error: false, ..Settings::default() };
             Ok(solve(Structure::Beam, s, &settings)?)
         };
         let reference = with(28, 1e-13)?;
@@ -118,9 +117,10 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     ] {
         let by_time = axis.unit == "s";
         let panels = PROBLEMS.map(|(s, end)| {
-            let mut panel = Panel::new(axis.clone(), Axis::new("largest error / largest |x|").log().limits(1e-15, 10.0))
-                .title(format!("S = {s}, to t = {end} T"))
-                .height(300.0);
+            let mut panel =
+                Panel::new(axis.clone(), Axis::new("largest error / largest |x|").log().limits(1e-15, 10.0))
+                    .title(format!("S = {s}, to t = {end} T"))
+                    .height(300.0);
             for (k, &name) in names.iter().chain(&[SPECIALISED]).enumerate() {
                 let points = |row: &TimingRow| row.s == s && row.method == name;
                 let chosen = timings.iter().zip(&rows).filter(|(timing, _)| points(timing));

@@ -16,15 +16,15 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         study.csv(&format!("fig-2-03-s-{s:e}.csv"), &course.rows())?;
         let time = Axis::new("time").unit("T").limits(0.0, *until);
         let several = solution.contacts.len() > 1;
-        let force = if several { Axis::new("force").unit("F").log().limits(1e-5, 3.0) } else { Axis::new("force").unit("F") };
+        let force =
+            if several { Axis::new("force").unit("F").log().limits(1e-5, 3.0) } else { Axis::new("force").unit("F") };
         let motion = Panel::new(time.clone(), Axis::new("displacement").unit("D"))
             .title(format!("S = {}, separations: {}", significant(*s, 3), solution.separations()))
             .height(150.0)
             .with(Series::line(&course.time, &course.beam).colour(Colour::Vermilion).label("y, beam"))
             .with(Series::line(&course.time, &course.body).colour(Colour::Blue).label("z, body"));
-        let force = Panel::new(time, force)
-            .height(150.0)
-            .with(Series::line(&course.time, &course.force).colour(Colour::Black));
+        let force =
+            Panel::new(time, force).height(150.0).with(Series::line(&course.time, &course.force).colour(Colour::Black));
         figure = figure.row([motion, force]);
         study.state(Comparison::range(
             format!("separations at S = {}", significant(*s, 3)),

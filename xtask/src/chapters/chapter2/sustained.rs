@@ -67,9 +67,10 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let column = |of: fn(&ErrorRow) -> f64| own.iter().map(of).collect::<Vec<f64>>();
         let time = column(|row| row.time);
         let name = significant(*s, 3);
-        errors = errors
-            .with(Series::line(&time, &column(|row| row.error_eq_2_47)).label(format!("z, S = {name}")))
-            .with(Series::line(&time, &column(|row| row.error_compression)).dashed().label(format!("y - z, S = {name}")));
+        errors =
+            errors.with(Series::line(&time, &column(|row| row.error_eq_2_47)).label(format!("z, S = {name}"))).with(
+                Series::line(&time, &column(|row| row.error_compression)).dashed().label(format!("y - z, S = {name}")),
+            );
         for (from, to) in [(1.0, 10.0), (10.0, 100.0), (100.0, 1e3), (1e3, 1e4)] {
             let within = || own.iter().filter(|row| row.time >= from && row.time <= to * (1.0 + 1e-9));
             if within().next().is_none() {
@@ -137,9 +138,12 @@ fn panels(s: f64, separations: usize, until: f64, course: &Course) -> Vec<Panel>
         Panel::new(time.clone(), Axis::new("force").unit("F").log().limits(0.2 * force, 10.0))
             .height(150.0)
             .with(Series::line(&course.time, &course.force).colour(Colour::Blue)),
-        Panel::new(time, Axis::new("y - z").unit("D").limits(if separations > 0 { -6.0 * low } else { 0.0 }, 10.0 * low))
-            .height(150.0)
-            .with(Series::line(&course.time, &course.compression).colour(Colour::Blue))
-            .with(dashed(&squeezed)),
+        Panel::new(
+            time,
+            Axis::new("y - z").unit("D").limits(if separations > 0 { -6.0 * low } else { 0.0 }, 10.0 * low),
+        )
+        .height(150.0)
+        .with(Series::line(&course.time, &course.compression).colour(Colour::Blue))
+        .with(dashed(&squeezed)),
     ]
 }
