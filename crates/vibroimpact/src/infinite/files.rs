@@ -63,7 +63,8 @@ impl Units {
     }
 }
 
-/// Displacements and speeds are positive towards the structure.
+/// As elsewhere in this crate, displacements and velocities are positive away from the structure. (Subtracted from zero,
+/// so that zero keeps its sign.)
 fn history_csv(samples: &[Sample], units: &Units) -> Result<Vec<u8>, Failure> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let [time, force, displacement, speed] = units.suffixes;
@@ -71,18 +72,18 @@ fn history_csv(samples: &[Sample], units: &Units) -> Result<Vec<u8>, Failure> {
         format!("time{time}"),
         format!("structure_displacement{displacement}"),
         format!("striker_displacement{displacement}"),
-        format!("structure_speed{speed}"),
-        format!("striker_speed{speed}"),
+        format!("structure_velocity{speed}"),
+        format!("striker_velocity{speed}"),
         format!("compression{displacement}"),
         format!("force{force}"),
     ])?;
     for Sample { time, state } in samples {
         table.serialize((
             units.time * time,
-            units.displacement * state.structure_displacement,
-            units.displacement * state.body_displacement,
-            units.speed * state.structure_speed,
-            units.speed * state.body_speed,
+            0.0 - units.displacement * state.structure_displacement,
+            0.0 - units.displacement * state.body_displacement,
+            0.0 - units.speed * state.structure_speed,
+            0.0 - units.speed * state.body_speed,
             units.displacement * state.compression,
             units.force * state.force,
         ))?;
@@ -114,7 +115,7 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
     Ok(table.into_inner()?)
 }
 
-/// Motion and force against time (both logarithmic where later contacts would not show otherwise), as in thesis Fig. 2.3 (displacements upwards there, towards the structure here).
+/// Motion and force against time, as in thesis Fig. 2.3; logarithmic axes where later contacts would not show otherwise.
 fn picture(title: &str, solution: &Solution, samples: &[Sample], units: &Units) -> Figure {
     let until = samples.last().map_or(0.0, |sample| sample.time);
     let first = solution.contacts.first().and_then(|contact| contact.end);
@@ -131,8 +132,8 @@ fn picture(title: &str, solution: &Solution, samples: &[Sample], units: &Units) 
     };
     let column = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).collect::<Vec<f64>>();
     let time = column(&|sample| units.time * sample.time);
-    let striker = column(&|sample| units.displacement * sample.state.body_displacement);
-    let structure = column(&|sample| units.displacement * sample.state.structure_displacement);
+    let striker = column(&|sample| -units.displacement * sample.state.body_displacement);
+    let structure = column(&|sample| -units.displacement * sample.state.structure_displacement);
     let force = column(&|sample| units.force * sample.state.force);
     Figure::new(title)
         .row([Panel::new(time_axis.clone(), axis("displacement", units.names[2]))
