@@ -123,14 +123,19 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         }
         // a polynomial through Q nodes follows t^1.5 to about this fraction of its size
         const SINGULAR: f64 = 1e-4;
-        (J_MIN..J_MAX)
-            .find(|&j| {
-                let h = step_s(j);
-                let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
-                let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
-                SINGULAR * force * h <= self.setting.impulse_tolerance
-            })
-            .unwrap_or(J_MAX)
+        let small = |j: i32| {
+            let h = step_s(j);
+            let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
+            let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
+            SINGULAR * force * h <= self.setting.impulse_tolerance
+        };
+        // the force at the end of a step grows with the step
+        let (mut coarse, mut fine) = (J_MIN, J_MAX);
+        while coarse < fine {
+            let middle = coarse + (fine - coarse) / 2;
+            if small(middle) { fine = middle } else { coarse = middle + 1 }
+        }
+        fine
     }
 
     fn follow(&mut self) -> ContactEnd {
@@ -188,7 +193,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.ladder.advance(self.level, &mut self.motion.vibration, &force);
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
-        if let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
+        let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
+        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
             std::mem::swap(self.motion, &mut self.before);
             return self.approach(which, place * h, h);
         }
