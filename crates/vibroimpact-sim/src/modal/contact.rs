@@ -326,9 +326,12 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     }
 }
 
-/// What the polynomial may be missing: the larger of its last two coefficients (one alone vanishes by accident).
+/// What the polynomial may be missing: its next two coefficients, if they fall as the last two do against the two
+/// before. Pairs, because a single coefficient vanishes by accident.
 fn truncation(force: &Nodal) -> f64 {
-    force[Q - 1].abs().max(force[Q - 2].abs())
+    let last = force[Q - 1].abs().max(force[Q - 2].abs());
+    let before = force[Q - 3].abs().max(force[Q - 4].abs());
+    if last < before { last * (last / before) } else { last }
 }
 
 /// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
