@@ -33,7 +33,7 @@ pub(crate) struct Setting<'a, L> {
 }
 
 /// Energy is looked at once in this many steps.
-const REST_CHECK: u64 = 64;
+const REST_CHECK: u64 = 8;
 /// A step is doubled when its error is this many times below the tolerance.
 const GROWTH: f64 = 10.0;
 /// Part of the tolerated error that the nodal forces may have.

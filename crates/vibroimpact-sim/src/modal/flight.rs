@@ -6,7 +6,7 @@
 //! can come before the root of the best of these parabolas. With `K = 0` it is a straight line: where that rises, the
 //! bodies never meet again.
 
-use super::ladder::{J_MAX, Ladder, level_within, step_s};
+use super::ladder::{Ladder, level_within, step_s};
 use super::landing::{REACH, advance, taylor_of_free_motion};
 use super::legendre::{Q, TAYLOR};
 use super::motion::Motion;
