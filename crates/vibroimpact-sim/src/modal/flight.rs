@@ -12,6 +12,10 @@ use super::legendre::{Q, TAYLOR};
 use super::motion::Motion;
 use super::solution::Counts;
 
+/// The gap is expanded in a power series once the next safe step is this many levels finer than the series reaches;
+/// until then a few more plain steps cost less.
+const WINDOW: i32 = 2;
+
 /// What free flight came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FlightEnd {
@@ -106,7 +110,7 @@ pub(crate) fn fly(
             return FlightEnd::Never;
         }
         let mut level = level_within(safe);
-        if level >= near {
+        if level >= near + WINDOW {
             let mut series = taylor_of_free_motion(ladder, &motion.vibration);
             series[0] += motion.drift - touch;
             series[1] += motion.drift_rate;

@@ -7,7 +7,7 @@ use super::ladder::{Ladder, Vibration};
 use super::legendre::{BASIS, Nodal, Q, TAYLOR, dot, evaluate};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
-use contact_models::{Branch, ContactLaw};
+use contact_models::{Boundary, Branch, ContactLaw};
 
 /// The series is used while the fastest motion turns by at most this many radians.
 pub(crate) const REACH: f64 = 0.7;
@@ -89,7 +89,7 @@ impl<L: ContactLaw> Approach<'_, L> {
                 + dot(&basis.end_slope_from_nodes, &step.compression);
             (gap - self.residual_compliance * evaluate(&force, 1.0), slope / length)
         };
-        let margin = self.law.boundaries(self.branch)[self.which].margin(compression, rate);
+        let margin = self.boundary().margin(compression, rate);
         Some((Landed { length, step, force, compression, rate }, margin))
     }
 
@@ -103,13 +103,33 @@ impl<L: ContactLaw> Approach<'_, L> {
         (value, slope)
     }
 
+    fn boundary(&self) -> Boundary {
+        self.law.boundaries(self.branch)[self.which]
+    }
+
+    /// Where free motion would meet the boundary. Near a separation the force is too small to matter much, and brings
+    /// it only a little forward.
+    fn without_force(&self, expected: f64, longest: f64) -> f64 {
+        let boundary = self.boundary();
+        let mut length = expected.clamp(1e-3 * longest, longest);
+        for _ in 0..if boundary.per_rate == 0.0 { 3 } else { 0 } {
+            let (gap, rate) = self.free(length);
+            let next = length - boundary.margin(gap, rate) / (boundary.per_compression * rate);
+            if !(next > 0.0 && next < longest) {
+                break;
+            }
+            length = next;
+        }
+        length
+    }
+
     /// Searches `(0, longest]` for the length at which the boundary is met, starting near `expected`; `None` if the
     /// branch does not end there.
     pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
         let start = self.free(0.0);
-        let initial = self.law.boundaries(self.branch)[self.which].margin(self.start_compression, start.1).max(0.0);
+        let initial = self.boundary().margin(self.start_compression, start.1).max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
-        let mut high = (1.2 * expected).max(1e-3 * longest).min(longest);
+        let mut high = self.without_force(expected, longest);
         let mut guess = [0.0; Q];
         let mut side = 0;
         let (mut best, mut best_margin) = loop {
@@ -127,7 +147,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         let mut high_margin = best_margin;
         // Newton's method on the length where the margin's slope is at hand, regula falsi where it is not, both
         // kept within the bracket
-        let per = self.law.boundaries(self.branch)[self.which];
+        let per = self.boundary();
         for _ in 0..60 {
             let slope = if per.per_rate == 0.0 { per.per_compression * best.rate } else { 0.0 };
             let newton = best.length - best_margin / slope;
