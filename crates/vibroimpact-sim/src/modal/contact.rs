@@ -345,17 +345,31 @@ impl Peak {
 
     fn value(&self) -> f64 {
         let coefficients = BASIS.coefficients(&self.nodal);
-        let grid = 4 * Q;
-        let at = |i: usize| i as f64 / grid as f64;
-        let value = |i: &usize| evaluate(&coefficients, at(*i));
-        let best = (0..=grid).max_by(|a, b| value(a).total_cmp(&value(b))).unwrap_or(0);
-        // golden section around the best of the grid
-        let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(grid)));
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        for _ in 0..24 {
-            let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
-            if evaluate(&coefficients, left) > evaluate(&coefficients, right) { high = right } else { low = left }
+        let value = |at: f64| evaluate(&coefficients, at);
+        // the best of a grid, then twice the vertex of the parabola through it and its neighbours
+        let grid = 2 * Q;
+        let (mut at, mut best) = (0.0, value(0.0));
+        for i in 1..=grid {
+            let place = i as f64 / grid as f64;
+            let here = value(place);
+            if here > best {
+                (at, best) = (place, here);
+            }
         }
-        self.largest.max(evaluate(&coefficients, 0.5 * (low + high)))
+        let mut spacing = 1.0 / grid as f64;
+        for _ in 0..2 {
+            let (before, after) = (value(at - spacing), value(at + spacing));
+            let bend = before - 2.0 * best + after;
+            let vertex = at + 0.5 * spacing * (before - after) / bend;
+            if !(bend < 0.0 && (0.0..=1.0).contains(&vertex)) {
+                break;
+            }
+            let here = value(vertex);
+            if here > best {
+                (at, best) = (vertex, here);
+            }
+            spacing *= 0.1;
+        }
+        self.largest.max(best)
     }
 }

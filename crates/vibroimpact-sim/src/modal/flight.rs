@@ -35,8 +35,9 @@ impl Bounds {
     fn new(ladder: &Ladder, motion: &Motion) -> Bounds {
         let n = ladder.modes.len();
         let state = &motion.vibration;
-        let amplitude: Vec<f64> =
-            (0..n).map(|k| state.alpha[k].hypot(state.beta[k] / ladder.modes[k].omega_rad_s)).collect();
+        let amplitude: Vec<f64> = (0..n)
+            .map(|k| (state.alpha[k].powi(2) + (state.beta[k] / ladder.modes[k].omega_rad_s).powi(2)).sqrt())
+            .collect();
         let total: f64 = amplitude.iter().sum();
         let (mut cuts, mut below, mut curvature) = (vec![], 0.0, 0.0);
         for k in 0..=n {

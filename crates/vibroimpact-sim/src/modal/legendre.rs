@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 /// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
-pub(crate) const Q: usize = 7;
+pub(crate) const Q: usize = 8;
 /// Powers of time kept in a Taylor series over a landing step.
 pub(crate) const TAYLOR: usize = 14;
 /// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
@@ -26,6 +26,10 @@ pub(crate) struct Basis {
     pub power: Vec<Matrix>,
     /// `power_end[p][j]`: the same over [0, 1].
     pub power_end: Vec<Nodal>,
+    /// `power_legendre[p][n]`: the same over [0, 1] with `P_n` for the nodal polynomial.
+    pub power_legendre: Vec<Nodal>,
+    /// `node_powers[p][i]`: `c_i^p / p!`.
+    pub node_powers: Vec<Nodal>,
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
@@ -140,6 +144,18 @@ impl Basis {
             }
         }
         let power_end = moments(1.0);
+        // P_n takes the value P_n(c_j) at the nodes
+        let at_nodes = nodes.map(legendre);
+        let power_legendre = power_end
+            .iter()
+            .map(|row| std::array::from_fn(|n| (0..Q).map(|j| row[j] * at_nodes[j][n]).sum()))
+            .collect();
+        let mut node_powers = vec![[1.0; Q]; TAYLOR];
+        for p in 1..TAYLOR {
+            for i in 0..Q {
+                node_powers[p][i] = node_powers[p - 1][i] * nodes[i] / p as f64;
+            }
+        }
 
         let slopes = |at: f64| derivative_weights(&nodes, at);
         let mut slope_from_start = [0.0; Q];
@@ -154,6 +170,8 @@ impl Basis {
             restricted,
             power,
             power_end,
+            power_legendre,
+            node_powers,
             slope_from_start,
             slope_from_nodes,
             end_slope_from_start,

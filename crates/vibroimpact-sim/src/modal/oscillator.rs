@@ -73,47 +73,53 @@ fn response_by_quadrature(mode: &Mode, h: f64) -> (Nodal, Nodal) {
 }
 
 /// `int_0^1 P_n(2s-1) e^{z(1-s)} ds` for `n < Q`: `(-1)^n e^w i_n(w)` with `w = z/2` and `i_n` the modified
-/// spherical Bessel function. Power series for small `w`, downward recurrence (Miller) up to `|w| = Q`, upward
-/// beyond, where it is stable. Needs `Re z <= 0`.
+/// spherical Bessel function. The recurrence `i_{n-1} = i_{n+1} + (2n+1)/w i_n` is run downwards from the power series
+/// of the last two up to `|w| = Q`, and upwards beyond, where that is stable. Needs `Re z <= 0`.
 fn exponential_moments(z: Complex64) -> [Complex64; Q] {
     let w = 0.5 * z;
     let size = w.norm();
     let mut moments = [Complex64::ZERO; Q];
-    if size < 0.7 {
-        let (scale, square) = (w.exp(), w * w * 0.5);
-        let mut power = scale;
-        for n in 0..Q {
-            let (mut term, mut sum) = (Complex64::ONE, Complex64::ONE);
-            for k in 1..9 {
-                term *= square / (k * (2 * n + 2 * k + 1)) as f64;
-                sum += term;
-            }
-            moments[n] = power * sum;
-            power *= w / (2 * n + 3) as f64;
-        }
-    } else {
+    if size > Q as f64 {
         let end = z.exp();
         let inverse = w.inv();
-        let first = 0.5 * (end - 1.0) * inverse;
-        let second = (0.5 * (end + 1.0) - first) * inverse;
-        if size > Q as f64 {
-            (moments[0], moments[1]) = (first, second);
-            for n in 1..Q - 1 {
-                moments[n + 1] = moments[n - 1] - (2 * n + 1) as f64 * inverse * moments[n];
+        moments[0] = 0.5 * (end - 1.0) * inverse;
+        moments[1] = (0.5 * (end + 1.0) - moments[0]) * inverse;
+        for n in 1..Q - 1 {
+            moments[n + 1] = moments[n - 1] - (2 * n + 1) as f64 * inverse * moments[n];
+        }
+    } else {
+        // i_n(w) = w^n/(2n+1)!! sum_k (w^2/2)^k / (k! (2n+3) (2n+5) .. (2n+2k+1))
+        let half_square = 0.5 * w * w;
+        let series = |n: usize| {
+            let (mut term, mut sum) = (Complex64::ONE, Complex64::ONE);
+            let mut k = 1;
+            while term.norm_sqr() > 1e-34 && k < 60 {
+                term *= half_square / (k * (2 * n + 2 * k + 1)) as f64;
+                sum += term;
+                k += 1;
+            }
+            sum
+        };
+        let scale = w.exp();
+        if size < 1e-2 {
+            // too small to be divided by
+            let mut power = scale;
+            for n in 0..Q {
+                moments[n] = power * series(n);
+                power *= w / (2 * n + 3) as f64;
             }
         } else {
-            let top = Q + 14 + size as usize;
-            let (mut above, mut here) = (Complex64::ZERO, Complex64::new(1e-100, 0.0));
-            for n in (1..=top).rev() {
-                let below = above + (2 * n + 1) as f64 * inverse * here;
-                (above, here) = (here, below);
-                if n <= Q {
-                    moments[n - 1] = here;
-                }
+            const LAST: usize = Q - 1;
+            let mut power = scale;
+            for n in 0..LAST - 1 {
+                power *= w / (2 * n + 3) as f64;
             }
-            // fix the scale by whichever of the two known functions is not near a zero
-            let scale = if first.norm() > second.norm() { first / moments[0] } else { second / moments[1] };
-            moments = moments.map(|e| e * scale);
+            moments[LAST - 1] = power * series(LAST - 1);
+            moments[LAST] = power * w / (2 * LAST + 1) as f64 * series(LAST);
+            let inverse = w.inv();
+            for n in (1..LAST).rev() {
+                moments[n - 1] = moments[n + 1] + (2 * n + 1) as f64 * inverse * moments[n];
+            }
         }
     }
     for n in (1..Q).step_by(2) {

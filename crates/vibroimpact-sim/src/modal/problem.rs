@@ -146,13 +146,14 @@ pub struct Settings {
     pub estimate_uncertainty: bool,
     /// Stop after this many contacts (outcome `LimitReached`). Default 10,000.
     pub max_sub_impacts: usize,
-    /// Stop after this many steps, in contact and in flight together. Default 10,000,000.
+    /// Stop after this many steps in contact, or in the search for contacts. Default 200,000; an ordinary impact needs
+    /// hundreds.
     pub max_steps: u64,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { tolerance: 1e-9, estimate_uncertainty: true, max_sub_impacts: 10_000, max_steps: 10_000_000 }
+        Settings { tolerance: 1e-9, estimate_uncertainty: true, max_sub_impacts: 10_000, max_steps: 200_000 }
     }
 }
 

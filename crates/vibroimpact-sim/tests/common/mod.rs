@@ -85,7 +85,7 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
     let size = 2 * n + 2;
     // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
     let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
-    let scale = |i: usize| striker.speed_m_s * if i % 2 == 0 { 1.0 / fastest } else { 1.0 };
+    let scale = |i: usize| striker.speed_m_s * if i.is_multiple_of(2) { 1.0 / fastest } else { 1.0 };
     let mut y = vec![0.0; size];
     y[1] = -striker.speed_m_s;
     let mut k = vec![vec![0.0; size]; 7];

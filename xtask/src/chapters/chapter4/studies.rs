@@ -39,11 +39,9 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let axis = Axis::new("speed of the ball").unit("m/s").log();
     let title = format!("Fig. 4.3  {}, m = {:.3} kg, N = 40", beam.title, ball.mass_kg);
     let figure = restitution_and_sub_impacts(&title, &axis, |r| r.speed_m_s, &columns);
-    study.figure(
-        "fig-4-03",
-        &figure.width(620.0),
-        "Above: restitution; below: sub-impacts; against the speed of the ball.",
-    )?;
+    let caption = "Above: restitution; below: sub-impacts; against the speed of the ball. The step and the places are \
+                   our choice, so the thesis's small effect can be looked for in kind only.";
+    study.figure("fig-4-03", &figure.width(620.0), caption)?;
     study.csv("fig-4-03.csv", &found.concat())?;
     for (rows, location) in found.iter().zip(&p.locations_m) {
         let (low, high) =

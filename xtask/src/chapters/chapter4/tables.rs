@@ -78,7 +78,9 @@ pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>
     for (table, number) in tables.iter().zip(6..) {
         let rows: Vec<Row> = table.all().cloned().collect();
         study.csv(&format!("restitution-{}.csv", table.beam.name), &rows)?;
-        study.figure(&format!("fig-4-{number:02}"), &figure(table, number), "Above: restitution and number of sub-impacts over place and ball. Below: restitution of every other ball along the beam.")?;
+        let caption = "Above: restitution and number of sub-impacts over place and ball. Below: restitution of every other \
+                       ball along the beam.";
+        study.figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
         statements(study, table, number);
     }
     Ok(tables)

@@ -1,0 +1,108 @@
+//! The solution: values at any time, events, what stopped the run and what it cost.
+
+use crate::dense::Dense;
+use crate::error::InvalidInput;
+
+/// What ended a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Stop {
+    /// The final time was reached.
+    EndReached,
+    /// The terminal event with this index occurred.
+    Event {
+        /// Index into the problem's events.
+        index: usize,
+    },
+    /// A function of the problem returned a value that is not finite at this time, and smaller steps did not help.
+    NonFinite {
+        /// Time of the evaluation.
+        t: f64,
+    },
+    /// Newton's method found no solution of a step's equations at this time.
+    NoConvergence {
+        /// Time of the step.
+        t: f64,
+    },
+    /// The largest number of panels was used up before the final time.
+    PanelLimit {
+        /// Time reached.
+        t: f64,
+    },
+}
+
+/// A located sign change of an event function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EventHit {
+    /// Index into the problem's events.
+    pub event: usize,
+    /// Time of the sign change.
+    pub t: f64,
+    /// The solution there.
+    pub y: Vec<f64>,
+    /// Whether the function went from negative to positive.
+    pub rising: bool,
+}
+
+/// What a run cost.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Evaluations of the density.
+    pub evaluations: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Steps or panels taken.
+    pub steps: u64,
+    /// Panels tried and found too long.
+    pub rejected: u64,
+    /// Numbers held to represent the past at the end of the run (not counting the solution's own samples).
+    pub history_values: u64,
+}
+
+/// A computed solution.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    pub(crate) dense: Dense,
+    /// What ended the run.
+    pub stop: Stop,
+    /// The sign changes found, in the order of time.
+    pub events: Vec<EventHit>,
+    /// What the run cost.
+    pub counts: Counts,
+}
+
+impl Solution {
+    /// The solution at a time in `[0, end_time]`. Where it jumps (at a break of the forcing) the value before the jump.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidInput`] for a time outside the range solved.
+    pub fn at(&self, t: f64) -> Result<Vec<f64>, InvalidInput> {
+        let mut y = vec![0.0; self.unknowns()];
+        if self.dense.eval(t, &mut y) {
+            Ok(y)
+        } else {
+            Err(InvalidInput::new("t", t, "a time between 0 and the end of the solution"))
+        }
+    }
+
+    /// Ends of the steps or panels, ascending from 0; a break point stands twice, with the values of its two sides.
+    pub fn times(&self) -> &[f64] {
+        self.dense.times()
+    }
+
+    /// The values at [`times`](Self::times), in the same order, `unknowns` numbers each.
+    pub fn values(&self) -> &[f64] {
+        self.dense.values()
+    }
+
+    /// Number of components of the solution.
+    pub fn unknowns(&self) -> usize {
+        self.dense.unknowns()
+    }
+
+    /// The time reached: the final time asked for, unless the run stopped before.
+    pub fn end_time(&self) -> f64 {
+        self.dense.times().last().copied().unwrap_or(0.0)
+    }
+}

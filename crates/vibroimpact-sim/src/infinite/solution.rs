@@ -1,0 +1,281 @@
+//! What a run found, and the questions it answers.
+
+use super::Structure;
+use super::contact::Piece;
+use super::flight::Departure;
+use super::panel::elapsed as elapsed_at;
+use super::panel::variable;
+use super::rule::{Kind, Tables, gauss, series};
+use super::units::Units;
+
+/// How an impact ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The body leaves for ever: after the last separation it does not move towards the structure.
+    Rebound,
+    /// Contact lasts for ever. Decided once relative oscillations of the force about that of an
+    /// attached body ([`attached`](super::attached)) have shrunk below one half over two natural
+    /// periods, at a time from which the beam's damping outweighs everything that makes them grow
+    /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
+    Sustained,
+    /// The number of panels allowed did not suffice; what was found up to
+    /// [`known_until`](Solution::known_until) stands.
+    LimitReached,
+}
+
+/// One contact. Times in units of `T`, speeds in units of `v`, positive towards the structure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Time of touch.
+    pub start: f64,
+    /// Time of separation; `None` in sustained contact.
+    pub end: Option<f64>,
+    /// `end - start`, with its own relative precision.
+    pub duration: Option<f64>,
+    /// Rate of compression at touch.
+    pub closing_speed: f64,
+    /// Speed of the body at touch.
+    pub body_speed_at_start: f64,
+    /// Speed of the body at separation; below zero: away from the structure.
+    pub body_speed_at_end: Option<f64>,
+}
+
+/// A local extremum of the compression during contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremum {
+    /// Index of the contact, from 0.
+    pub contact: usize,
+    /// Time (units of `T`).
+    pub time: f64,
+    /// Compression (units of `v T`).
+    pub compression: f64,
+    /// Minimum or maximum.
+    pub minimum: bool,
+}
+
+/// Motion at one time, in units of `T`, `v`, `v T` and `F`, positive towards the structure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Compression, or minus the gap.
+    pub compression: f64,
+    /// Its rate.
+    pub compression_rate: f64,
+    /// Contact force.
+    pub force: f64,
+    /// Displacement of the body since first touch.
+    pub body_displacement: f64,
+    /// Speed of the body.
+    pub body_speed: f64,
+    /// Displacement of the struck point.
+    pub structure_displacement: f64,
+    /// Speed of the struck point.
+    pub structure_speed: f64,
+}
+
+/// Free flight after a contact.
+#[derive(Debug, Clone)]
+pub(super) struct Flight {
+    pub start: f64,
+    pub body_travel: f64,
+    pub departure: Departure,
+}
+
+/// The record of a contact from which its motion is rebuilt.
+#[derive(Debug, Clone)]
+struct Record {
+    units: Units,
+    pieces: Vec<Piece>,
+    body_travel: f64,
+}
+
+/// Solution of one impact.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// The struck structure.
+    pub structure: Structure,
+    /// The nondimensional number `S`.
+    pub s: f64,
+    /// How the impact ends.
+    pub outcome: Outcome,
+    /// Every contact in order.
+    pub contacts: Vec<Contact>,
+    /// Local extrema of the compression during contact, in order.
+    pub extrema: Vec<Extremum>,
+    /// Largest relative difference between this solution and one with more nodes, over contact
+    /// starts, durations and speeds of the body at separation; infinite if the two differ in the
+    /// number of contacts or in the outcome. `None` if not asked for.
+    pub error: Option<f64>,
+    /// The motion can be asked for up to this time (units of `T`).
+    pub known_until: f64,
+    /// Panels in the solution.
+    pub panels: usize,
+    /// Panels solved in all, rejected ones and iterations for separation included.
+    pub panels_tried: usize,
+    pub(super) flights: Vec<Flight>,
+    records: Vec<Record>,
+    nodes: usize,
+}
+
+impl Solution {
+    pub(super) fn empty(structure: Structure, s: f64, nodes: usize) -> Solution {
+        Solution {
+            structure,
+            s,
+            outcome: Outcome::LimitReached,
+            contacts: Vec::new(),
+            extrema: Vec::new(),
+            error: None,
+            known_until: 0.0,
+            panels: 0,
+            panels_tried: 0,
+            flights: Vec::new(),
+            records: Vec::new(),
+            nodes,
+        }
+    }
+
+    pub(super) fn push_contact(&mut self, contact: Contact, units: Units, pieces: Vec<Piece>, body_travel: f64) {
+        self.contacts.push(contact);
+        self.records.push(Record { units, pieces, body_travel });
+    }
+
+    /// Number of separations.
+    pub fn separations(&self) -> usize {
+        self.flights.len()
+    }
+
+    /// Speed away from the structure after the last separation over the speed of impact; `None`
+    /// unless the body rebounds.
+    pub fn rebound_ratio(&self) -> Option<f64> {
+        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.departure.body)).flatten()
+    }
+
+    /// Speed away from the structure after the first separation over the speed of impact (thesis
+    /// Fig. 2.6b, `v_f / v`), below zero if the body still moves towards the structure; `None` if
+    /// there is no separation.
+    pub fn first_rebound_ratio(&self) -> Option<f64> {
+        self.flights.first().map(|flight| -flight.departure.body)
+    }
+
+    /// Decimal digits that two resolutions agree on (see [`error`](Self::error)), at most 15.
+    pub fn digits(&self) -> Option<f64> {
+        self.error.map(|error| (-error.max(1e-15).log10()).max(0.0))
+    }
+
+    /// Motion at a time (units of `T`); `None` for a time below zero or beyond
+    /// [`known_until`](Self::known_until).
+    pub fn at(&self, time: f64) -> Option<State> {
+        if !(time >= 0.0 && time <= self.known_until) {
+            return None;
+        }
+        let index = self.contacts.partition_point(|contact| contact.start <= time).checked_sub(1)?;
+        match self.flights.get(index).filter(|flight| time > flight.start) {
+            Some(flight) => Some(flight.state(time - flight.start)),
+            None => self.in_contact(index, time - self.contacts[index].start),
+        }
+    }
+
+    /// Motion a while after the touch of a contact (index from 0; time in units of `T`). Unlike
+    /// [`at`](Self::at) it keeps its precision in late contacts, where the time itself has few
+    /// digits left for what happens within a contact. `None` outside the contact.
+    pub fn in_contact(&self, index: usize, after_touch: f64) -> Option<State> {
+        let record = self.records.get(index)?;
+        let contact = self.contacts.get(index)?;
+        let theta = after_touch / record.units.time;
+        let last = record.pieces.last()?;
+        let end = last.start + last.h;
+        if !(theta >= 0.0 && theta <= end * (1.0 + 1e-12)) {
+            return None;
+        }
+        let at = record.pieces.partition_point(|piece| piece.start <= theta).saturating_sub(1);
+        let piece = &record.pieces[at];
+        let tables = Tables::get(self.structure, self.nodes);
+        let panel = piece.panel(tables);
+        let elapsed = ((theta - panel.start) / panel.h).min(1.0);
+        let units = record.units;
+        let compression = units.length * panel.compression(tables, elapsed).max(0.0);
+        let compression_rate = units.speed * panel.rate(tables, elapsed);
+        let (impulse, moment) = partial(panel.kind, panel.h, elapsed, &panel.f_series);
+        let since = panel.h * elapsed;
+        let impulse_total = units.impulse * (piece.impulse + impulse);
+        let moment_total = units.impulse * units.time * (piece.moment + piece.impulse * since + moment);
+        let body_speed = contact.body_speed_at_start - impulse_total;
+        let body_displacement = record.body_travel + contact.body_speed_at_start * after_touch - moment_total;
+        Some(State {
+            compression,
+            compression_rate,
+            force: self.s.sqrt() * compression * compression.sqrt(),
+            body_displacement,
+            body_speed,
+            structure_displacement: body_displacement - compression,
+            structure_speed: body_speed - compression_rate,
+        })
+    }
+
+    /// Displacement of the body at the end of the last contact recorded.
+    pub(super) fn body_travel_at_end(&self) -> f64 {
+        let (Some(record), Some(contact)) = (self.records.last(), self.contacts.last()) else { return 0.0 };
+        let Some(piece) = record.pieces.last() else { return record.body_travel };
+        let tables = Tables::get(self.structure, self.nodes);
+        let panel = piece.panel(tables);
+        let moment = piece.moment + piece.impulse * panel.h + panel.moment(tables);
+        let time = record.units.time * (panel.start + panel.h);
+        record.body_travel + contact.body_speed_at_start * time - record.units.impulse * record.units.time * moment
+    }
+
+    /// Sets the error estimate from a finer solution.
+    pub(super) fn compare(&mut self, finer: &Solution) {
+        let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a / b - 1.0).abs() };
+        if self.outcome != finer.outcome || self.contacts.len() != finer.contacts.len() {
+            self.error = Some(f64::INFINITY);
+            return;
+        }
+        let error = self.contacts.iter().zip(&finer.contacts).fold(0.0_f64, |error, (a, b)| {
+            let duration = a.duration.zip(b.duration).map_or(0.0, |(a, b)| relative(a, b));
+            // the body's speed may pass through zero: measured against its change if that is larger
+            let change = 2.0 * a.closing_speed;
+            let speed =
+                a.body_speed_at_end.zip(b.body_speed_at_end).map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
+            error.max(relative(a.start, b.start)).max(duration).max(speed)
+        });
+        self.error = Some(error);
+    }
+}
+
+impl Flight {
+    fn state(&self, tau: f64) -> State {
+        let (compression, compression_rate) = self.departure.state(tau);
+        let body_speed = self.departure.body;
+        let body_displacement = self.body_travel + body_speed * tau;
+        State {
+            compression,
+            compression_rate,
+            force: 0.0,
+            body_displacement,
+            body_speed,
+            structure_displacement: body_displacement - compression,
+            structure_speed: body_speed - compression_rate,
+        }
+    }
+}
+
+/// `int f` and `int (t - s) f ds` from the start of a panel to an elapsed fraction.
+fn partial(kind: Kind, h: f64, elapsed: f64, f_series: &[f64]) -> (f64, f64) {
+    let (from, to) = match kind {
+        Kind::End => (1.0, variable(kind, elapsed)),
+        _ => (0.0, variable(kind, elapsed)),
+    };
+    let (mut impulse, mut moment) = (0.0, 0.0);
+    for (y, w) in gauss(f_series.len() + 2) {
+        let s = from + (to - from) * y;
+        let rate = match kind {
+            Kind::Middle => 1.0,
+            Kind::Start => 2.0 * s,
+            Kind::End => -2.0 * s,
+        };
+        let part = w * (to - from) * rate * series(f_series, s);
+        impulse += h * part;
+        moment += h * h * part * (elapsed - elapsed_at(kind, s));
+    }
+    (impulse, moment)
+}
