@@ -20,7 +20,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-    pool.install(|| run(chapter, out, true)).unwrap()
+    pool.install(|| run(chapter, out, true, None)).unwrap()
 }
 
 fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
@@ -90,10 +90,10 @@ fn chapter_4_is_complete_and_the_same_on_any_number_of_threads() {
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(run(5, folder.path(), true).unwrap_err().to_string().contains("3 or 4"));
+    assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("3, 4, 6, 7 or 8"));
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    assert!(run(3, &file.join("below"), true).is_err());
+    assert!(run(3, &file.join("below"), true, None).is_err());
 }
 
 #[test]

@@ -75,7 +75,7 @@ impl Observations {
 }
 
 /// The law with these three parameters; the notional restitution is 1 (thesis 7.1).
-fn law(parameters: &[f64]) -> Parameters {
+pub fn law(parameters: &[f64]) -> Parameters {
     let at = |k: usize| parameters.get(k).copied().unwrap_or(f64::NAN);
     Parameters { mu0: at(0), alpha0: at(1), alpha1: at(2), notional_restitution: 1.0 }
 }

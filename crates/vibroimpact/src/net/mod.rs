@@ -9,7 +9,7 @@ mod data;
 mod fit;
 
 pub use data::{Datum, read};
-pub use fit::{FitSummary, Observations};
+pub use fit::{FitSummary, Observations, law};
 
 use emoc::{Impact, Parameters, Site};
 use serde::Serialize;
