@@ -159,7 +159,7 @@ fn trends(study: &mut Study, data: &Dataset, found: &BeamFit) {
 pub(super) fn against_modes(study: &mut Study, data: &[Dataset]) -> Result<(), Failure> {
     study.section("Error of the fit against the number of modes in the law (Fig. 7.7)");
     let all = [1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 20, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90, 100];
-    let counts = study.thin(&all, 5);
+    let counts = if study.quick { vec![1, 10, 40, 50, 100] } else { all.to_vec() };
     let mut panel = Panel::new(Axis::new("modes N in the law").integers(), Axis::new("rms error of the fit"));
     panel.height_px = 260.0;
     let markers = [Marker::Circle, Marker::Cross, Marker::Square, Marker::Triangle];
@@ -170,15 +170,26 @@ pub(super) fn against_modes(study: &mut Study, data: &[Dataset]) -> Result<(), F
         let n: Vec<f64> = fits.iter().map(|row| row.modes as f64).collect();
         let rms: Vec<f64> = fits.iter().map(|row| row.rms).collect();
         panel = panel.with(Series::line_points(&n, &rms, marker).label(data.beam.title.clone()));
+        let at = |modes: usize| fits.iter().find(|row| row.modes == modes).map_or(f64::NAN, |row| row.rms);
+        study.state(Comparison::range(
+            format!("change of the rms error from N = 40 to N = 50, {}", data.beam.name),
+            "7.2",
+            "results do not change much between N = 40 and 50",
+            (0.0, 0.01),
+            (at(50) - at(40)).abs(),
+        ));
         let late = fits.iter().filter(|row| row.modes >= 40).map(|row| row.rms);
         let (low, high) = late.fold((f64::INFINITY, 0.0f64), |(l, h), rms| (l.min(rms), h.max(rms)));
-        study.state(Comparison::range(
-            format!("change of the rms error from N = 40 on, {}", data.beam.name),
-            "Fig. 7.7",
-            "the difference beyond N = 40 is small",
-            (0.0, 0.01),
-            high - low,
-        ));
+        study.state(
+            Comparison::range(
+                format!("change of the rms error from N = 40 on, {}", data.beam.name),
+                "Fig. 7.7",
+                "the difference beyond N = 40 is small",
+                (0.0, 0.01),
+                high - low,
+            )
+            .note("Up to N = 100. The thesis's figure gives no scale in the text; 0.01 is our reading of small."),
+        );
         rows.extend(fits);
     }
     panel = panel.with(Series::vertical_rule(LAW_MODES as f64).colour(Colour::Grey));

@@ -45,7 +45,7 @@ impl Datum {
 
     /// `Z_w = m sum phi_k^2 exp(-(c omega_k tau)^2)`.
     fn weighted_z(&self, c: f64) -> f64 {
-        const VANISHED: f64 = 40.0;
+        const VANISHED: f64 = 30.0;
         let within = self.answers.iter().map(|[x, weight]| (c * c * x, weight)).take_while(|(x, _)| *x < VANISHED);
         within.map(|(x, weight)| weight * (-x).exp()).sum()
     }
@@ -131,7 +131,7 @@ impl Law {
     }
 
     fn evidence(&self, beams: &[Vec<Datum>]) -> Result<Evidence, Failure> {
-        let settings = Settings { starts: 6, tolerance: 1e-7, ..Settings::default() };
+        let settings = Settings { starts: 5, tolerance: 1e-6, ..Settings::default() };
         let fitted = |data: &[&Datum]| self.with_problem(data, |problem| fit(problem, &settings));
         let alone =
             beams.iter().map(|beam| fitted(&beam.iter().collect::<Vec<_>>())).collect::<Result<Vec<Fit>, _>>()?;

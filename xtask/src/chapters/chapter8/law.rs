@@ -52,6 +52,9 @@ pub(super) fn observations(
     })
 }
 
+/// A parameter beyond this has run off to its limit, infinity.
+const RUN_OFF: f64 = 1e9;
+
 /// Root of the mean square of the residuals of some points.
 fn rms(residuals: &[f64], chosen: impl Fn(usize) -> bool) -> f64 {
     let squares: Vec<f64> = (0..residuals.len()).filter(|&i| chosen(i)).map(|i| residuals[i].powi(2)).collect();
@@ -99,7 +102,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     let steep = |i: usize| points[i].angle_deg > 70.0;
     let line = |name: &str, fit: &[f64], residuals: &[f64]| {
         let numbers = parameters.lengths_m.iter().map(|l| rms(residuals, |i| points[i].length_m == *l));
-        let p: Vec<String> = fit.iter().map(|p| significant(*p, 3)).collect();
+        let p: Vec<String> = fit.iter().map(|p| if *p > RUN_OFF { "∞".into() } else { significant(*p, 3) }).collect();
         let all = [rms(residuals, |_| true), rms(residuals, steep)];
         [name.to_string(), p.join(", ")]
             .into_iter()
@@ -118,7 +121,8 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         ],
     );
     study.text(&format!(
-        "Rms difference of law and resolved drop; largest {}, over all {} drops.",
+        "Rms difference of law and resolved drop; largest {}, over all {} drops. A parameter given as ∞ \
+         has run off to that limit: the law with an axial mode cannot rise towards 90°, whatever its parameters.",
         significant(found.report.max_abs, 3),
         found.report.count
     ));
@@ -130,13 +134,13 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         rms(&residuals_axial, |i| of_longest(i) && steep(i)) / rms(&found.residuals, |i| of_longest(i) && steep(i)),
     ));
     let fall = |i: usize| residuals_axial[i] - found.residuals[i];
-    let highest = (0..points.len()).filter(|&i| of_longest(i) && steep(i)).map(fall).fold(f64::NEG_INFINITY, f64::max);
+    let falls: Vec<f64> = (0..points.len()).filter(|&i| of_longest(i) && steep(i)).map(fall).collect();
     study.state(Comparison::range(
-        "largest change of e by one axial mode, 600 mm, above 70°",
+        "mean change of e by one axial mode, 600 mm, above 70°",
         "Fig. 8.3",
         "lowers the predicted restitution value",
         (-1.0, 0.0),
-        highest,
+        falls.iter().sum::<f64>() / falls.len() as f64,
     ));
     let rows: Vec<LawRow> = (0..points.len())
         .map(|i| {
@@ -169,12 +173,15 @@ fn law_curve(parameters: &Parameters, found: &Fit, length_m: f64, axial_modes: u
         .collect()
 }
 
-fn panel(title: String, points: &[Point], length_m: f64) -> Panel {
+/// The points in a legend.
+const POINTS: &str = "points fitted";
+
+fn panel(title: String, points: &[Point], length_m: f64, label: &str) -> Panel {
     let of_rod = points.iter().filter(|point| point.length_m == length_m);
     let (angle, e): (Vec<f64>, Vec<f64>) = of_rod.map(|point| (point.angle_deg, point.restitution)).unzip();
     let x = Axis::new("inclination θ").unit("°").limits(-2.0, 92.0);
     let y = Axis::new("restitution e").limits(-0.04, 1.04);
-    Panel::new(x, y).title(title).with(Series::points(&angle, &e, Marker::Plus).colour(Colour::Vermilion))
+    Panel::new(x, y).title(title).with(Series::points(&angle, &e, Marker::Plus).colour(Colour::Vermilion).label(label))
 }
 
 /// One panel a rod, as Fig. 8.2.
@@ -185,11 +192,14 @@ pub(super) fn by_rod(name: &str, parameters: &Parameters, points: &[Point], foun
     let fine = fine_angles();
     let panels = lengths
         .iter()
-        .map(|&length| {
+        .enumerate()
+        .map(|(k, &length)| {
             let modes = parameters.rod(length, 45.0).bending_modes_below_first_axial()?;
             let title = format!("{:.0} mm, {modes} bending modes", 1e3 * length);
             let curve = law_curve(parameters, found, length, 0)?;
-            Ok(panel(title, points, length).height(150.0).with(Series::line(&fine, &curve).colour(Colour::Blue)))
+            let [of_points, of_law] = if k == 0 { [POINTS, "algebraic law"] } else { [""; 2] };
+            let line = Series::line(&fine, &curve).colour(Colour::Blue).label(of_law);
+            Ok(panel(title, points, length, of_points).height(150.0).with(line))
         })
         .collect::<Result<Vec<Panel>, Failure>>()?;
     let p: Vec<String> = found.parameters.iter().map(|p| significant(*p, 3)).collect();
@@ -199,7 +209,7 @@ pub(super) fn by_rod(name: &str, parameters: &Parameters, points: &[Point], foun
 
 fn axial_figure(parameters: &Parameters, points: &[Point], found: &Fit, length_m: f64) -> Result<Figure, Failure> {
     let fine = fine_angles();
-    let mut panel = panel(String::new(), points, length_m).height(260.0);
+    let mut panel = panel(String::new(), points, length_m, POINTS).height(260.0);
     for (axial, colour, label) in [(0, Colour::Blue, "bending modes only"), (1, Colour::Green, "and one axial mode")] {
         let curve = law_curve(parameters, found, length_m, axial)?;
         panel = panel.with(Series::line(&fine, &curve).colour(colour).label(label));
