@@ -176,8 +176,8 @@ impl AgreementRow {
 /// Feasible points tried around each solution.
 const TRIALS: usize = 40;
 
-/// A minimum of `|x|^2` over a convex set is unique if and only if `|x|^2 - |x*|^2 >= |x - x*|^2` on all of it. Gives
-/// the least ratio of the two sides over random feasible points, near and far.
+/// A point `x*` of a convex set is its only minimum of `|x|^2` if `|x|^2 - |x*|^2 >= |x - x*|^2` on all of it. Gives the
+/// least ratio of the two sides over random feasible points, near and far.
 fn least_growth(case: &Case, closed: &Rebound, seed: u64) -> Result<f64, Failure> {
     let mut random = Random(seed);
     let mut solution = vec![0.0; case.phi.len()];
@@ -221,10 +221,11 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     Ok(INTRODUCTION)
 }
 
-/// Rows where more inequalities are active than there are unknowns, so that no active set proves the optimum and the
-/// interior point's own floor shows.
-fn is_overdetermined(row: &AgreementRow) -> bool {
-    row.beta1 == 1.0
+/// Groups of cases by what limits a numerical solution.
+const GROUPS: [&str; 3] = ["random, β₁ < 1", "random, β₁ = 1", "degenerate"];
+
+fn group(row: &AgreementRow) -> &'static str {
+    GROUPS[if row.kind == "degenerate" { 2 } else { usize::from(row.beta1 == 1.0) }]
 }
 
 fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
@@ -243,26 +244,29 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
         // what agrees to the last bit stands at the foot
         let shown: Vec<f64> = rows.iter().map(|row| difference(row).map_or(f64::NAN, |d| d.max(1.5e-17))).collect();
         panel = panel.with(Series::points(&z, &shown, marker).label(name));
-        for (group, over) in [("β₁ < 1", false), ("β₁ = 1", true)] {
-            let of_group = rows.iter().filter(|row| is_overdetermined(row) == over);
-            let found: Vec<f64> = of_group.filter_map(difference).collect();
-            let largest = found.iter().copied().fold(0.0, f64::max);
-            lines.push(vec![name.to_string(), group.to_string(), found.len().to_string(), significant(largest, 2)]);
-            if !over {
-                study.state(Comparison::range(
-                    format!("largest difference of e between closed form and {name}"),
-                    "6.4",
-                    "P₀ and P₁ are equivalent",
-                    (0.0, 1e-10),
-                    largest,
-                ));
+        for name_of_group in GROUPS {
+            let found: Vec<f64> =
+                rows.iter().filter(|row| group(row) == name_of_group).filter_map(difference).collect();
+            if found.is_empty() {
+                continue;
             }
+            let largest = found.iter().copied().fold(0.0, f64::max);
+            let tolerance = if name_of_group == GROUPS[0] { 1e-10 } else { 1e-7 };
+            lines.push(vec![name.into(), name_of_group.into(), found.len().to_string(), significant(largest, 2)]);
+            study.state(Comparison::range(
+                format!("largest difference of e between closed form and {name}; {name_of_group}"),
+                "6.4",
+                "P₀ and P₁ are equivalent",
+                (0.0, tolerance),
+                largest,
+            ));
         }
     }
     study.table(&["form beside the closed one", "cases", "number", "largest difference of e"], &lines);
     study.text(
-        "With β₁ = 1 and v_f = ē, a_k' = 0 more rows are active at the minimum than there are unknowns; no active set \
-         proves it, and what shows is the floor of the interior-point method, not of the closed form.",
+        "With β₁ = 1 more rows are active at the minimum than there are unknowns; at the kink a multiplier vanishes; \
+         shapes of 1e-9 leave P₁ next to singular. No active set then proves the interior-point method's result, and what \
+         shows is its own floor, up to some 1e-8, not one of the closed form: the enumeration agrees with that to 1e-13.",
     );
     study.figure(
         "agreement",
@@ -292,8 +296,8 @@ fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(),
     let lowest = rows.iter().map(|row| row.restitution).fold(f64::INFINITY, f64::min);
     study.state(Comparison::range("least restitution", "6.2, item 3", "v_f ≥ 0", (0.0, 1.0), lowest));
     study.text(&format!(
-        "A minimum of a quadratic energy over a convex set is unique exactly where the energy of every other feasible \
-         point exceeds the least one by at least its squared distance in the norm of the energy. {TRIALS} random feasible \
+        "If the energy of every other feasible point exceeds that of a solution by at least its squared distance, in the \
+         norm of the energy, the solution is the only minimum, and for a minimum over a convex set it must. {TRIALS} random feasible \
          points a case, near and far, bear it out. The feasible point v_f = ē, a_k' = 0 shows that at most ē² of the \
          energy is left."
     ));

@@ -6,7 +6,7 @@ use super::{Dataset, LAW_MODES, SETTLED_MODES};
 use crate::chapters::Failure;
 use crate::chapters::study::Study;
 use emoc::Impact;
-use fitting::{Fit, Parameter, Problem, Residuals, Settings, cross_validate, fit};
+use fitting::{Fit, Method, Parameter, Problem, Residuals, Settings, cross_validate, fit};
 use serde::Serialize;
 use vibroimpact::net;
 use vibroimpact::plot::Colour;
@@ -131,7 +131,7 @@ impl Law {
     }
 
     fn evidence(&self, beams: &[Vec<Datum>]) -> Result<Evidence, Failure> {
-        let settings = Settings { starts: 5, tolerance: 1e-6, ..Settings::default() };
+        let settings = Settings { method: Method::LevenbergMarquardt, tolerance: 1e-7, ..Settings::default() };
         let fitted = |data: &[&Datum]| self.with_problem(data, |problem| fit(problem, &settings));
         let alone =
             beams.iter().map(|beam| fitted(&beam.iter().collect::<Vec<_>>())).collect::<Result<Vec<Fit>, _>>()?;

@@ -122,7 +122,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     );
     study.text(&format!(
         "Rms difference of law and resolved drop; largest {}, over all {} drops. A parameter given as ∞ \
-         has run off to that limit: the law with an axial mode cannot rise towards 90°, whatever its parameters.",
+         has run off to that limit: the law with an axial mode cannot rise to 1 towards 90°, whatever its parameters.",
         significant(found.report.max_abs, 3),
         found.report.count
     ));
