@@ -7,6 +7,7 @@ use contact_models::{
     Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
 };
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solver, Striker, Structure};
 
 /// Numbers spread evenly over the decades `10^from .. 10^to`.
@@ -24,7 +25,7 @@ fn law() -> impl Strategy<Value = Law> {
         stiffness().prop_map(|k| LinearSpring::new(k).unwrap().into()),
         (stiffness(), decades(-3.0, 5.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
         (stiffness(), 1.0..3.0, decades(-3.0, 2.0)).prop_map(|(k, n, d)| HuntCrossley::new(k, n, d).unwrap().into()),
-        (stiffness(), 0.0..1.0).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),
+        (stiffness(), 0.01..1.0).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),
         (stiffness(), 0.05..1.0).prop_map(|(k, e)| Flores::new(k, e).unwrap().into()),
         (decades(6.0, 12.0), decades(-3.0, 0.0), decades(5.0, 10.0))
             .prop_map(|(modulus, radius, yields)| Thornton::new(modulus, radius, yields).unwrap().into()),
@@ -49,7 +50,7 @@ fn structure() -> impl Strategy<Value = Structure> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(2019), failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn every_impact_ends_with_sound_numbers(
         structure in structure(),
@@ -64,7 +65,7 @@ proptest! {
         prop_assert!(!solution.sub_impacts.is_empty());
         for contact in &solution.sub_impacts {
             prop_assert!(contact.end_s >= contact.start_s && contact.end_s.is_finite());
-            prop_assert!(contact.impulse_n_s >= -1e-6 * mass_kg * speed_m_s);
+            prop_assert!(contact.impulse_n_s >= -1e-6 * mass_kg * speed_m_s, "{contact:?} of {}", solution.sub_impacts.len());
             prop_assert!(contact.peak_force_n.is_finite() && contact.peak_compression_m.is_finite());
         }
         if let Some(restitution) = solution.restitution {

@@ -33,7 +33,7 @@ pub(crate) struct Setting<'a, L> {
 }
 
 /// Energy is looked at once in this many steps.
-const REST_CHECK: u64 = 64;
+const REST_CHECK: u64 = 8;
 /// A step is doubled when its error is this many times below the tolerance.
 const GROWTH: f64 = 10.0;
 /// Part of the tolerated error that the nodal forces may have.
@@ -123,14 +123,19 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         }
         // a polynomial through Q nodes follows t^1.5 to about this fraction of its size
         const SINGULAR: f64 = 1e-4;
-        (J_MIN..J_MAX)
-            .find(|&j| {
-                let h = step_s(j);
-                let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
-                let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
-                SINGULAR * force * h <= self.setting.impulse_tolerance
-            })
-            .unwrap_or(J_MAX)
+        let small = |j: i32| {
+            let h = step_s(j);
+            let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
+            let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
+            SINGULAR * force * h <= self.setting.impulse_tolerance
+        };
+        // the force at the end of a step grows with the step
+        let (mut coarse, mut fine) = (J_MIN, J_MAX);
+        while coarse < fine {
+            let middle = coarse + (fine - coarse) / 2;
+            if small(middle) { fine = middle } else { coarse = middle + 1 }
+        }
+        fine
     }
 
     fn follow(&mut self) -> ContactEnd {
@@ -188,7 +193,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.ladder.advance(self.level, &mut self.motion.vibration, &force);
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
-        if let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
+        let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
+        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
             std::mem::swap(self.motion, &mut self.before);
             return self.approach(which, place * h, h);
         }
@@ -320,9 +326,12 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     }
 }
 
-/// What the polynomial may be missing: the larger of its last two coefficients (one alone vanishes by accident).
+/// What the polynomial may be missing: its next two coefficients, if they fall as the last two do against the two
+/// before. Pairs, because a single coefficient vanishes by accident.
 fn truncation(force: &Nodal) -> f64 {
-    force[Q - 1].abs().max(force[Q - 2].abs())
+    let last = force[Q - 1].abs().max(force[Q - 2].abs());
+    let before = force[Q - 3].abs().max(force[Q - 4].abs());
+    if last < before { last * (last / before) } else { last }
 }
 
 /// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its

@@ -6,11 +6,15 @@
 //! can come before the root of the best of these parabolas. With `K = 0` it is a straight line: where that rises, the
 //! bodies never meet again.
 
-use super::ladder::{J_MAX, Ladder, level_within, step_s};
-use super::landing::{REACH, taylor_of_free_motion};
-use super::legendre::TAYLOR;
+use super::ladder::{Ladder, level_within, step_s};
+use super::landing::{REACH, advance, taylor_of_free_motion};
+use super::legendre::{Q, TAYLOR};
 use super::motion::Motion;
 use super::solution::Counts;
+
+/// The gap is expanded in a power series once the next safe step is this many levels finer than the series reaches;
+/// until then a few more plain steps cost less.
+const WINDOW: i32 = 2;
 
 /// What free flight came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,6 +98,8 @@ pub(crate) fn fly(
     if overlap > 0.0 {
         motion.drift -= overlap;
     }
+    // the power series of the gap serves for one ladder step
+    let near = level_within(reach);
     loop {
         counts.flight_steps += 1;
         if counts.flight_steps > max_steps {
@@ -103,31 +109,28 @@ pub(crate) fn fly(
         if safe == f64::INFINITY {
             return FlightEnd::Never;
         }
-        if safe > reach && level_within(safe) < J_MAX {
-            let level = level_within(safe);
-            ladder.rotate(level, &mut motion.vibration);
-            motion.coast(step_s(level));
-            continue;
+        let mut level = level_within(safe);
+        if level >= near + WINDOW {
+            let mut series = taylor_of_free_motion(ladder, &motion.vibration);
+            series[0] += motion.drift - touch;
+            series[1] += motion.drift_rate;
+            let curvature = bounds.cuts.last().map_or(0.0, |cut| cut.2);
+            let noise = 4.0 * f64::EPSILON * bounds.size;
+            if let Some(time) = first_root(&series, curvature, step_s(near), noise) {
+                advance(ladder, &mut motion.vibration, time, &[0.0; Q]);
+                motion.coast(time);
+                return FlightEnd::Contact;
+            }
+            level = near;
         }
-        // near: the gap as a power series, searched from below with the same bound
-        let mut series = taylor_of_free_motion(ladder, &motion.vibration);
-        series[0] += motion.drift - touch;
-        series[1] += motion.drift_rate;
-        let curvature = bounds.cuts.last().map_or(0.0, |cut| cut.2);
-        let (time, met) = first_root(&series, curvature, reach, 4.0 * f64::EPSILON * bounds.size, safe);
-        if time > 0.0 {
-            super::landing::advance(ladder, &mut motion.vibration, time, &[0.0; super::legendre::Q]);
-            motion.coast(time);
-        }
-        if met {
-            return FlightEnd::Contact;
-        }
+        ladder.rotate(level, &mut motion.vibration);
+        motion.coast(step_s(level));
     }
 }
 
-/// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below:
-/// `(time, true)`, or `(reach, false)`. Overlaps within `noise` count as zero.
-fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64, safe: f64) -> (f64, bool) {
+/// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below.
+/// Overlaps within `noise` count as zero.
+fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64) -> Option<f64> {
     let evaluate = |t: f64| {
         let (mut value, mut slope) = (0.0, 0.0);
         for p in (0..TAYLOR).rev() {
@@ -137,20 +140,20 @@ fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64, sa
         (value, slope)
     };
     // a grazing touch leaves the surfaces together for so short a time that the overlap stays rounding
-    let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { reach };
-    let mut t = if reach.is_finite() { 0.0 } else { safe };
+    let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
+    let mut t = 0.0;
     for _ in 0..10_000 {
         let (overlap, rate) = evaluate(t);
         if overlap >= -noise && rate > 0.0 {
-            return (t, true);
+            return Some(t);
         }
         let step = first_root_of_parabola((-overlap).max(0.0), -rate, curvature);
         t += if rate > 0.0 { step } else { step.max(least) };
         if t >= reach {
-            return (reach, false);
+            return None;
         }
     }
-    (t, false)
+    None
 }
 
 #[cfg(test)]

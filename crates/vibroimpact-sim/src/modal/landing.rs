@@ -7,7 +7,7 @@ use super::ladder::{Ladder, Vibration};
 use super::legendre::{BASIS, Nodal, Q, TAYLOR, dot, evaluate};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
-use contact_models::{Branch, ContactLaw};
+use contact_models::{Boundary, Branch, ContactLaw};
 
 /// The series is used while the fastest motion turns by at most this many radians.
 pub(crate) const REACH: f64 = 0.7;
@@ -89,7 +89,7 @@ impl<L: ContactLaw> Approach<'_, L> {
                 + dot(&basis.end_slope_from_nodes, &step.compression);
             (gap - self.residual_compliance * evaluate(&force, 1.0), slope / length)
         };
-        let margin = self.law.boundaries(self.branch)[self.which].margin(compression, rate);
+        let margin = self.boundary().margin(compression, rate);
         Some((Landed { length, step, force, compression, rate }, margin))
     }
 
@@ -103,13 +103,33 @@ impl<L: ContactLaw> Approach<'_, L> {
         (value, slope)
     }
 
+    fn boundary(&self) -> Boundary {
+        self.law.boundaries(self.branch)[self.which]
+    }
+
+    /// Where free motion would meet the boundary. Near a separation the force is too small to matter much, and brings
+    /// it only a little forward.
+    fn without_force(&self, expected: f64, longest: f64) -> f64 {
+        let boundary = self.boundary();
+        let mut length = expected.clamp(1e-3 * longest, longest);
+        for _ in 0..if boundary.per_rate == 0.0 { 3 } else { 0 } {
+            let (gap, rate) = self.free(length);
+            let next = length - boundary.margin(gap, rate) / (boundary.per_compression * rate);
+            if !(next > 0.0 && next < longest) {
+                break;
+            }
+            length = next;
+        }
+        length
+    }
+
     /// Searches `(0, longest]` for the length at which the boundary is met, starting near `expected`; `None` if the
     /// branch does not end there.
     pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
         let start = self.free(0.0);
-        let initial = self.law.boundaries(self.branch)[self.which].margin(self.start_compression, start.1).max(0.0);
+        let initial = self.boundary().margin(self.start_compression, start.1).max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
-        let mut high = (1.2 * expected).max(1e-3 * longest).min(longest);
+        let mut high = self.without_force(expected, longest);
         let mut guess = [0.0; Q];
         let mut side = 0;
         let (mut best, mut best_margin) = loop {
@@ -127,7 +147,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         let mut high_margin = best_margin;
         // Newton's method on the length where the margin's slope is at hand, regula falsi where it is not, both
         // kept within the bracket
-        let per = self.law.boundaries(self.branch)[self.which];
+        let per = self.boundary();
         for _ in 0..60 {
             let slope = if per.per_rate == 0.0 { per.per_compression * best.rate } else { 0.0 };
             let newton = best.length - best_margin / slope;
@@ -154,6 +174,16 @@ impl<L: ContactLaw> Approach<'_, L> {
     }
 }
 
+/// How many terms of the series a motion that turns by `angle` (rad) needs to be exact to rounding.
+fn terms(angle: f64) -> usize {
+    let (mut terms, mut size) = (2, angle);
+    while terms < TAYLOR && size > 1e-17 {
+        size *= angle / terms as f64;
+        terms += 1;
+    }
+    terms
+}
+
 /// `g^(p)/p!` of the structure's free motion at the contact.
 pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration) -> [f64; TAYLOR] {
     let mut here = state.alpha.clone();
@@ -178,7 +208,8 @@ pub(crate) fn advance(ladder: &Ladder, state: &mut Vibration, length: f64, force
     // free motion and impulse response both follow the derivatives of the mode's own equation
     let (mut moments, mut powers) = ([0.0; TAYLOR], [0.0; TAYLOR]);
     let (mut undivided, mut divided) = (length, 1.0);
-    for p in 0..TAYLOR {
+    let terms = terms(ladder.fastest_rad_s * length);
+    for p in 0..terms {
         (moments[p], powers[p]) = (undivided * dot(&BASIS.power_end[p], force), divided);
         undivided *= length;
         divided *= length / (p + 1) as f64;
@@ -188,7 +219,7 @@ pub(crate) fn advance(ladder: &Ladder, state: &mut Vibration, length: f64, force
         let (mut free, mut free_next) = (state.alpha[k], state.beta[k]);
         let (mut forced, mut forced_next) = (0.0, -ladder.weight[k]);
         let (mut alpha, mut beta) = (0.0, 0.0);
-        for p in 0..TAYLOR {
+        for p in 0..terms {
             alpha += free * powers[p] + forced * moments[p];
             beta += free_next * powers[p] + forced_next * moments[p];
             (free, free_next) = (free_next, -drag * free_next - square * free);

@@ -29,8 +29,8 @@
 //! In free flight nothing is integrated: a bound on the gap's motion gives a time before which no contact can come
 //! (see `flight.rs`), and a proof that none will come ends the impact.
 //!
-//! The uncertainty of the restitution is the tolerance and twice the difference to a second solution, of 32 times the
-//! tolerance. Undamped
+//! The uncertainty of the restitution is five times the tolerance and three times the difference to a second solution,
+//! of 32 times the tolerance. Undamped
 //! impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
 
 mod contact;

@@ -12,7 +12,7 @@ use crate::InvalidInput;
 use contact_models::{ContactLaw, Memory};
 
 /// Part of the stated tolerance that one step may use up, as a share of the striker's momentum.
-const STEP_SHARE: f64 = 1.0;
+const STEP_SHARE: f64 = 0.25;
 /// How much more coarsely the second solution, for the uncertainty, is computed.
 const COARSER: f64 = 32.0;
 
@@ -132,8 +132,8 @@ impl Solver {
             let tolerance = (COARSER * settings.tolerance).min(0.1);
             let second = self.run(striker, law, start, settings, tolerance, &mut counts, &mut None);
             // a second solution that ends otherwise says that nothing is certain
-            self.restitution(&second, striker, start)
-                .map_or(1.0, |other| 2.0 * (other - value).abs() + settings.tolerance)
+            let other = self.restitution(&second, striker, start);
+            other.map_or(1.0, |other| 5.0 * settings.tolerance + 3.0 * (other - value).abs())
         });
         let (amplitude, rate) = modal_state(&self.modes, &self.place, &run.motion, start);
         Ok(Solution {
