@@ -10,7 +10,7 @@ use chapters::Failure;
 use clap::{Parser, Subcommand};
 
 /// The chapters that can be reproduced.
-const CHAPTERS: [u32; 3] = [2, 3, 4];
+const CHAPTERS: [u32; 6] = [2, 3, 4, 6, 7, 8];
 
 /// Keeps the house, and reproduces the chapters of the thesis.
 #[derive(Parser)]
@@ -25,7 +25,7 @@ enum Task {
     Ci,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
-        /// The chapter: 2, 3 or 4
+        /// The chapter: 2, 3, 4, 6, 7 or 8
         chapter: u32,
         /// Fewer points through the same code
         #[arg(long)]
@@ -33,6 +33,9 @@ enum Task {
         /// The folder to write to; out/chapter-N when left out
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Chapter 8: measured points to fit as well (CSV: length_m, angle_deg, restitution)
+        #[arg(long, value_name = "FILE")]
+        data: Option<PathBuf>,
     },
 }
 
@@ -53,18 +56,18 @@ fn run(task: Task) -> Result<(), Failure> {
             ci::run(root, || {
                 CHAPTERS.into_iter().try_for_each(|chapter| {
                     let out = root.join(format!("out/ci/chapter-{chapter}"));
-                    reproduce(chapter, &out, true)
+                    reproduce(chapter, &out, true, None)
                 })
             })
         }
-        Task::ReproduceChapter { chapter, quick, out } => {
+        Task::ReproduceChapter { chapter, quick, out, data } => {
             let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
-            reproduce(chapter, &out, quick)
+            reproduce(chapter, &out, quick, data.as_deref())
         }
     }
 }
 
-fn reproduce(chapter: u32, out: &Path, quick: bool) -> Result<(), Failure> {
-    println!("{}", chapters::run(chapter, out, quick)?);
+fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
+    println!("{}", chapters::run(chapter, out, quick, data)?);
     Ok(())
 }

@@ -39,7 +39,7 @@ impl Impact {
 }
 
 /// The solver's fault under the names that scenes use.
-fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
+pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
     let fault = InvalidInput::from(fault);
     match fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("].")) {
         Some((k, quantity)) => {

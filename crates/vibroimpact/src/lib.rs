@@ -27,16 +27,19 @@
 //! |---|---|
 //! | [`scene`] | the scene file, field by field, and what can be wrong with it |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, the picture as SVG |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
-//! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`].
+//! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
+//! [`fitting`].
 
 mod impact;
 
 pub mod export;
 pub mod infinite;
+pub mod net;
 pub mod plot;
 pub mod report;
 pub mod scene;
@@ -45,6 +48,8 @@ pub mod text;
 
 pub use beam_modes;
 pub use contact_models;
+pub use emoc;
+pub use fitting;
 pub use impact::Impact;
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;

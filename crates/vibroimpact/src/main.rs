@@ -11,7 +11,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use serde_json::json;
+use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::net::{self, FitSummary};
 use vibroimpact::summary::Summary;
 use vibroimpact::{InvalidInput, Scene, SceneError, text};
 
@@ -42,6 +44,34 @@ const MODES_EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json --count 40 --json  the same as one JSON object of lists
 
 Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";
+
+const EMOC_EXAMPLES: &str = "Examples:
+  vibroimpact emoc ball.json                               all parameters 1, where nothing has been fitted
+  vibroimpact emoc ball.json --mu0 0.5 --alpha0 8 --alpha1 0.3 --emoc-modes 50 --json
+
+Nothing is integrated in time: the restitution is that of least kinetic energy after the impact under the law's
+inequalities, which has a closed form in the mode shapes at the point of impact,
+
+  e = ebar max(1/(1+Z), (beta0+beta1)/(1+beta0)),   Z = m sum phi_k^2,   t = mu0 Z,   ebar = (t^2+1)/(t^2+t+1),
+  beta0 = x/(1+x) with x = alpha0 Z/N,              beta1 = y/(1+y) with y = alpha1 m phi_1^2.
+
+The branch printed is the term that is active. Contact, speed and frequencies do not enter. Parameters for a beam come
+from `vibroimpact fit`.";
+
+const FIT_EXAMPLES: &str = "Examples:
+  vibroimpact fit measured.csv --scene ball.json           the three parameters, their intervals, the error
+  vibroimpact fit measured.csv --scene ball.json --json    the same as one JSON object
+
+The table is comma-separated, its first line names the columns:
+
+  mass_kg,location_m,restitution
+  0.0638,0.25,0.41
+  0.0638,0.50,0.38
+
+Other columns are ignored. The scene gives the beam; masses and places come from the table. At least three lines are
+needed, and they should cover light and heavy strikers. The search starts from many points, because the sum of squares
+has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
+a law with three parameters are not: take them as a lower bound on the uncertainty.";
 
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]
@@ -80,6 +110,42 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Net restitution without integration in time: energy minimisation under outward constraints
+    #[command(after_help = EMOC_EXAMPLES)]
+    Emoc {
+        /// The scene file
+        scene: PathBuf,
+        /// Moderated mass ratio coefficient, not negative
+        #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+        mu0: f64,
+        /// Modal richness coefficient, not negative
+        #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+        alpha0: f64,
+        /// Slow response coefficient, not negative
+        #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+        alpha1: f64,
+        /// Number of modes in the law; the scene's when left out
+        #[arg(long, value_name = "N")]
+        emoc_modes: Option<usize>,
+        /// Print one JSON object in place of the list
+        #[arg(long)]
+        json: bool,
+    },
+    /// Fit the three parameters of `emoc` to a table of restitutions
+    #[command(after_help = FIT_EXAMPLES)]
+    Fit {
+        /// The table (CSV): mass_kg, location_m, restitution
+        data: PathBuf,
+        /// The scene file that describes the beam
+        #[arg(long)]
+        scene: PathBuf,
+        /// Number of modes in the law
+        #[arg(long, value_name = "N", default_value_t = 50)]
+        emoc_modes: usize,
+        /// Print one JSON object in place of the list
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 fn main() -> ExitCode {
@@ -97,6 +163,11 @@ fn main() -> ExitCode {
 
 fn is_broken_pipe(failure: &Failure) -> bool {
     failure.downcast_ref::<std::io::Error>().is_some_and(|error| error.kind() == ErrorKind::BrokenPipe)
+}
+
+/// A fault in the number of modes, which an option gave.
+fn of_option(fault: InvalidInput) -> InvalidInput {
+    if fault.field == "modes" { InvalidInput { field: "--emoc-modes".to_owned(), ..fault } } else { fault }
 }
 
 fn run(command: Command) -> Result<(), Failure> {
@@ -134,6 +205,18 @@ fn run(command: Command) -> Result<(), Failure> {
             }
         }
         Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
+        Command::Emoc { scene, mu0, alpha0, alpha1, emoc_modes, json } => {
+            let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
+            let rebound = Scene::read(&scene)?.emoc(&parameters, emoc_modes);
+            let rebound = if emoc_modes.is_some() { rebound.map_err(of_option)? } else { rebound? };
+            if json { export::json(&rebound)? } else { text::net_rebound(&rebound) }
+        }
+        Command::Fit { data, scene, emoc_modes, json } => {
+            let scene = Scene::read(&scene)?;
+            let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option)?;
+            let fit = FitSummary::new(&observations, emoc_modes)?;
+            if json { export::json(&fit)? } else { text::fit(&fit) }
+        }
     };
     print(&printed)
 }

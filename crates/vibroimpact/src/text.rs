@@ -5,6 +5,8 @@ use std::fmt::Write;
 use vibroimpact_sim::modal::Mode;
 
 use crate::impact::Impact;
+use crate::net::{FitSummary, NetRebound};
+use crate::report::significant;
 use crate::scene::{Scene, Structure};
 use crate::summary::Summary;
 
@@ -151,6 +153,43 @@ pub fn modes(modes: &[Mode]) -> String {
     for (k, mode) in modes.iter().enumerate() {
         let frequency = mode.omega_rad_s / std::f64::consts::TAU;
         let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);
+    }
+    text
+}
+
+/// A net restitution and what it follows from.
+pub fn net_rebound(rebound: &NetRebound) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<14}{value}");
+    };
+    line("restitution", format!("{:.6}", rebound.restitution));
+    let not = if rebound.branch == "outward" { "" } else { "not " };
+    line("branch", format!("{} (the outward inequality is {not}active)", rebound.branch));
+    line("z", significant(rebound.z, 6));
+    line("ebar", significant(rebound.ebar, 6));
+    line("beta0", significant(rebound.beta0, 6));
+    line("beta1", significant(rebound.beta1, 6));
+    line("modes", rebound.modes.to_string());
+    line("mass", quantity(rebound.mass_kg * 1e3, "g"));
+    text
+}
+
+/// Parameters fitted to a table.
+pub fn fit(fit: &FitSummary) -> String {
+    let mut text = String::new();
+    for (k, (name, value)) in [("mu0", fit.mu0), ("alpha0", fit.alpha0), ("alpha1", fit.alpha1)].iter().enumerate() {
+        let interval = match fit.intervals {
+            Some(all) => format!("95 %: {} to {}", significant(all[k][0], 4), significant(all[k][1], 4)),
+            None => "interval: these data do not determine one".to_owned(),
+        };
+        let _ = writeln!(text, "  {name:<12}{:<14}{interval}", significant(*value, 6));
+    }
+    let _ = writeln!(text, "  {:<12}{:.6}", "rms", fit.rms);
+    let _ = writeln!(text, "  {:<12}{:.6}", "max_error", fit.max_error);
+    let _ = writeln!(text, "  {:<12}{} impacts, {} modes in the law", "count", fit.count, fit.modes);
+    if !fit.converged {
+        text += "  the search ended at its limit; these are the best parameters that it met\n";
     }
     text
 }

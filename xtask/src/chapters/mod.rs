@@ -5,6 +5,9 @@ mod beam;
 mod chapter2;
 mod chapter3;
 mod chapter4;
+mod chapter6;
+mod chapter7;
+mod chapter8;
 mod figures;
 mod impact;
 mod study;
@@ -17,15 +20,24 @@ use study::Study;
 /// Whatever can go wrong on the way: bad parameters, a full disk.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
-/// Runs chapter 2, 3 or 4 and writes its folder. `quick` takes fewer points through the same code.
+/// Runs a chapter and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
+/// for chapter 8.
 /// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
-pub fn run(chapter: u32, out: &Path, quick: bool) -> Result<String, Failure> {
+pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<String, Failure> {
+    if data.is_some() && chapter != 8 {
+        return Err(
+            format!("--data is not allowed with chapter {chapter}: only chapter 8 takes measured points").into()
+        );
+    }
     let mut study = Study::new(out, quick)?;
     let introduction = match chapter {
         2 => chapter2::run(&mut study)?,
         3 => chapter3::run(&mut study)?,
         4 => chapter4::run(&mut study)?,
-        other => return Err(format!("chapter = {other} is not allowed: 2, 3 or 4").into()),
+        6 => chapter6::run(&mut study)?,
+        7 => chapter7::run(&mut study)?,
+        8 => chapter8::run(&mut study, data)?,
+        other => return Err(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8").into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
 }

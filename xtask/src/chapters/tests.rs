@@ -20,7 +20,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-    pool.install(|| run(chapter, out, true)).unwrap()
+    pool.install(|| run(chapter, out, true, None)).unwrap()
 }
 
 fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
@@ -107,12 +107,65 @@ fn chapter_4_is_complete_and_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn chapter_6_is_complete_and_the_same_on_any_number_of_threads() {
+    check_chapter(6, &["agreement", "energy", "closed-form"], &["agreement.csv"]);
+}
+
+#[test]
+fn chapter_7_is_complete_and_the_same_on_any_number_of_threads() {
+    let figures = [
+        "fig-7-03",
+        "fig-7-04",
+        "fig-7-05",
+        "fig-7-06",
+        "fig-7-07",
+        "where-it-fails",
+        "attached-modes-cantilever",
+        "attached-modes-pinned-pinned",
+    ];
+    check_chapter(7, &figures, &["fits.csv", "fig-7-03.csv", "fig-7-07.csv", "laws.csv", "attached-modes.csv"]);
+}
+
+#[test]
+fn chapter_8_is_complete_and_the_same_on_any_number_of_threads() {
+    check_chapter(8, &["drops", "fig-8-02", "fig-8-03"], &["drops.csv", "upright.csv", "fig-8-02.csv"]);
+}
+
+#[test]
+fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let (points, out) = (folder.path().join("points.csv"), folder.path().join("out"));
+    let header = "rod,restitution,angle_deg,length_m\n";
+    fs::write(&points, format!("{header}a,0.7,10,0.6\na,0.6,50,0.6\nb,0.9,85,0.3\nb,0.7,0,0.3\n")).unwrap();
+    run(8, &out, true, Some(&points)).unwrap();
+    let table = fs::read_to_string(out.join("measured.csv")).unwrap();
+    assert_eq!(table.lines().count(), 5);
+    assert!(fs::read_to_string(out.join("figures/measured.svg")).unwrap().contains("300 mm"));
+
+    let refused = folder.path().join("refused");
+    for (text, part) in [
+        ("length_m,angle_deg\n0.6,10\n".to_string(), "missing field `restitution`"),
+        (format!("{header}a,high,10,0.6\n"), "line: 2"),
+        (format!("{header}a,NaN,10,0.6\n"), "restitution = NaN is not allowed"),
+        (format!("{header}a,0.5,95,0.6\n"), "angle_deg = 95 is not allowed"),
+        (format!("{header}a,0.5,15,0\n"), "length_m = 0 is not allowed"),
+        (header.to_string(), "0 points are not allowed"),
+    ] {
+        fs::write(&points, text).unwrap();
+        let message = run(8, &refused, true, Some(&points)).unwrap_err().to_string();
+        assert!(message.contains(part), "{part}: {message}");
+        assert!(!refused.exists());
+    }
+    assert!(run(7, &refused, true, Some(&points)).unwrap_err().to_string().contains("--data"));
+}
+
+#[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(run(5, folder.path(), true).unwrap_err().to_string().contains("2, 3 or 4"));
+    assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("2, 3, 4, 6, 7 or 8"));
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    assert!(run(3, &file.join("below"), true).is_err());
+    assert!(run(3, &file.join("below"), true, None).is_err());
 }
 
 #[test]

@@ -60,6 +60,13 @@ macro_rules! from_crate {
 
 from_crate!(beam_modes, contact_models, vibroimpact_sim);
 
+impl From<emoc::InvalidInput> for InvalidInput {
+    fn from(fault: emoc::InvalidInput) -> InvalidInput {
+        let place = fault.index.map_or_else(String::new, |index| format!("[{index}]"));
+        InvalidInput::new(format!("{}{place}", fault.field), number(fault.value), fault.allowed)
+    }
+}
+
 impl fmt::Display for InvalidInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let field = if self.field.is_empty() { "the scene" } else { &self.field };

@@ -61,17 +61,10 @@ impl Structure {
         location_m: Option<f64>,
         count: Option<usize>,
     ) -> Result<Vec<modal::Mode>, InvalidInput> {
-        if let Some(count) = count.filter(|&count| count > MAX_MODES) {
-            return Err(InvalidInput::new("modes", count.to_string(), fields::allowed("modes").unwrap_or_default()));
-        }
+        count.map_or(Ok(()), require_count)?;
         match (self, location_m, count) {
             (Structure::InfiniteBeam(_) | Structure::InfinitePlate(_), _, _) => Err(self.no_modes()),
-            (Structure::Beam(beam), Some(location_m), Some(count)) => {
-                beam.modes(location_m, count).map_err(|fault| match fault.field.as_str() {
-                    "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault },
-                    _ => fault.within("structure"),
-                })
-            }
+            (Structure::Beam(beam), Some(location_m), Some(count)) => beam.modes(count)?.seen_from(location_m),
             (Structure::Beam(_), None, _) => {
                 Err(InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default()))
             }
@@ -117,6 +110,14 @@ impl Structure {
 /// Largest number of modes that a scene may ask for.
 const MAX_MODES: usize = 10_000;
 
+fn require_count(count: usize) -> Result<(), InvalidInput> {
+    if count <= MAX_MODES {
+        Ok(())
+    } else {
+        Err(InvalidInput::new("modes", count.to_string(), fields::allowed("modes").unwrap_or_default()))
+    }
+}
+
 impl Beam {
     /// The beam in the terms of [`beam_modes`].
     ///
@@ -137,16 +138,36 @@ impl Beam {
         })
     }
 
-    /// The first `count` modes as seen from a place on the beam.
-    fn modes(&self, location_m: f64, count: usize) -> Result<Vec<modal::Mode>, InvalidInput> {
-        if !(self.damping_ratio >= 0.0 && self.damping_ratio.is_finite()) {
-            let allowed = fields::allowed("damping_ratio").unwrap_or_default();
-            return Err(InvalidInput::new("damping_ratio", number(self.damping_ratio), allowed));
-        }
-        let modes = self.to_beam()?.modes(count)?;
-        let shapes = modes.shapes_at(location_m)?;
+    /// The first `count` modes, to be seen from any place.
+    pub(crate) fn modes(&self, count: usize) -> Result<BeamModes, InvalidInput> {
+        require_count(count)?;
+        let damping_ratio = self.damping_ratio;
+        let modes = || {
+            if !(damping_ratio >= 0.0 && damping_ratio.is_finite()) {
+                let allowed = fields::allowed("damping_ratio").unwrap_or_default();
+                return Err(InvalidInput::new("damping_ratio", number(damping_ratio), allowed));
+            }
+            Ok(self.to_beam()?.modes(count)?)
+        };
+        Ok(BeamModes { modes: modes().map_err(|fault| fault.within("structure"))?, damping_ratio })
+    }
+}
+
+/// The modes of a beam.
+pub(crate) struct BeamModes {
+    modes: beam_modes::Modes,
+    damping_ratio: f64,
+}
+
+impl BeamModes {
+    /// The modes as a striker at a place on the beam meets them.
+    pub(crate) fn seen_from(&self, location_m: f64) -> Result<Vec<modal::Mode>, InvalidInput> {
+        let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.as_str() {
+            "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
+            _ => InvalidInput::from(fault).within("structure"),
+        })?;
         let mode = |(&omega_rad_s, shape)| modal::Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape };
-        Ok(modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
+        Ok(self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
     }
 }
 

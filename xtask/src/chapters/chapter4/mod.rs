@@ -4,7 +4,7 @@ mod courses;
 mod finite_elements;
 mod settled;
 mod studies;
-mod tables;
+pub(super) mod tables;
 
 use super::Failure;
 use super::beam::{Beam, End, segment};
@@ -24,14 +24,14 @@ our choices (`datasets/chapter4.json`), so the figures of the stepped beams can 
 /// The parameter file; see its own remarks.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parameters {
+pub(super) struct Parameters {
     #[serde(rename = "about")]
     _about: String,
     material: Material,
     side_m: f64,
     speed_m_s: f64,
     damping_ratio: f64,
-    modes: usize,
+    pub(super) modes: usize,
     places: usize,
     finite_elements: usize,
     our_choice: Choice,
@@ -112,14 +112,14 @@ struct Target {
 }
 
 /// The chapter's beams and balls with everything that its sections vary.
-struct Case {
-    parameters: Parameters,
-    beams: Vec<Beam>,
+pub(super) struct Case {
+    pub(super) parameters: Parameters,
+    pub(super) beams: Vec<Beam>,
     balls: Vec<Ball>,
 }
 
 impl Case {
-    fn load() -> Result<Case, Failure> {
+    pub(super) fn load() -> Result<Case, Failure> {
         let parameters: Parameters = serde_json::from_str(include_str!("../../../../datasets/chapter4.json"))?;
         let choice = &parameters.our_choice;
         let most = choice.settled_modes.iter().copied().fold(choice.convergence_study.most_modes, usize::max);

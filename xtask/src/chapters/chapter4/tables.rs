@@ -9,7 +9,7 @@ use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 use vibroimpact::report::Comparison;
 
 /// The table of one beam: rows of places, in each one result a ball.
-pub(super) struct Table<'a> {
+pub(in crate::chapters) struct Table<'a> {
     pub beam: &'a Beam,
     pub places_m: Vec<f64>,
     pub balls: Vec<Ball>,
@@ -48,7 +48,7 @@ impl Table<'_> {
 
 /// The tables of all beams for one model: so many modes, with or without the residual
 /// compliance. Each place's structure is built once and serves all balls.
-pub(super) fn compute<'a>(
+pub(in crate::chapters) fn compute<'a>(
     study: &mut Study,
     case: &'a Case,
     modes: usize,

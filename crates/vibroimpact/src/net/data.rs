@@ -1,0 +1,128 @@
+//! Tables of measured or computed restitutions.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::fit::Observations;
+use super::impact_on;
+use crate::scene::{InvalidInput, Scene, SceneError, Structure};
+
+/// Largest file that is read (bytes).
+const MAX_FILE_BYTES: u64 = 64 << 20;
+const COLUMNS: [&str; 3] = ["mass_kg", "location_m", "restitution"];
+const NEEDED: &str = "a table of comma-separated values with a line of names that holds mass_kg, location_m and \
+                      restitution once each";
+
+/// One impact of a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Datum {
+    /// Line of the file, from 1, for messages.
+    pub line: u64,
+    /// Mass of the striker (kg).
+    pub mass_kg: f64,
+    /// Place on the beam, from its left end (m).
+    pub location_m: f64,
+    /// Net restitution.
+    pub restitution: f64,
+}
+
+/// Reads a CSV file with the columns `mass_kg`, `location_m` and `restitution`, in any order and among others.
+///
+/// # Errors
+/// A file that cannot be read, a column that is missing, or a cell that is no finite number (with its line).
+pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
+    let fault = |source| SceneError::Read { path: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(fault)?;
+    Ok(parse(&bytes)?)
+}
+
+fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut table = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let header = table.headers().map_err(unreadable)?.clone();
+    let mut places = [0; 3];
+    for (place, name) in places.iter_mut().zip(COLUMNS) {
+        let found: Vec<usize> = (0..header.len()).filter(|&i| &header[i] == name).collect();
+        *place = match found.as_slice() {
+            [one] => *one,
+            [] => return Err(InvalidInput::missing(format!("column {name}"), NEEDED)),
+            _ => return Err(InvalidInput::new(format!("column {name}"), format!("{} columns", found.len()), NEEDED)),
+        };
+    }
+    let row = |record: Result<csv::StringRecord, csv::Error>| {
+        let record = record.map_err(unreadable)?;
+        let line = record.position().map_or(0, |start| line_of(bytes, start));
+        let mut values = [0.0; 3];
+        for ((value, place), name) in values.iter_mut().zip(places).zip(COLUMNS) {
+            let field = format!("line {line}, {name}");
+            let text = record.get(place).filter(|text| !text.is_empty());
+            let text = text.ok_or_else(|| InvalidInput::missing(&field, "a finite number"))?;
+            let shown: String = text.chars().take(40).collect();
+            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+            *value = number.ok_or_else(|| InvalidInput::new(field, shown, "a finite number"))?;
+        }
+        let [mass_kg, location_m, restitution] = values;
+        Ok(Datum { line, mass_kg, location_m, restitution })
+    };
+    table.records().map(row).collect()
+}
+
+/// The line in which a record stands. The reader's own count takes it to start where the last record ended, before
+/// line breaks and empty lines.
+fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
+    let rest = usize::try_from(start.byte()).ok().and_then(|place| bytes.get(place..)).unwrap_or_default();
+    let passed = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();
+    start.line() + passed as u64
+}
+
+fn unreadable(fault: csv::Error) -> InvalidInput {
+    let line = fault.position().map_or_else(|| "the table".to_owned(), |place| format!("line {}", place.line()));
+    InvalidInput::new(line, "text that is not UTF-8", NEEDED)
+}
+
+impl Scene {
+    /// The impacts of a table on the scene's beam, as the law takes them. Striker, location and modes of the scene
+    /// itself are not used: the table's masses and places and `modes` take their place.
+    ///
+    /// # Errors
+    /// A structure that is no beam, or a value out of range, with its line.
+    ///
+    /// ```
+    /// use vibroimpact::{Scene, net::Datum};
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "beam", "ends": ["clamped", "free"],
+    ///                    "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+    ///     "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+    ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 }
+    /// }"#)?;
+    /// let table = [(0.01, 0.3), (0.1, 0.6), (0.1, 1.0), (0.5, 0.8)].map(|(mass_kg, location_m)| {
+    ///     Datum { line: 1, mass_kg, location_m, restitution: 0.4 }
+    /// });
+    /// let fit = scene.observations(&table, 50)?.fit().unwrap();
+    /// assert!(fit.report.rms < 0.4);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn observations(&self, table: &[Datum], modes: usize) -> Result<Observations, InvalidInput> {
+        let Structure::Beam(beam) = &self.structure else {
+            let allowed = "beam: the table's places need a structure with places";
+            return Err(InvalidInput::new("structure.kind", "modal", allowed));
+        };
+        let modes = beam.modes(modes)?;
+        let mut observations = Observations::default();
+        for datum in table {
+            let at =
+                |fault: InvalidInput| InvalidInput { field: format!("line {}, {}", datum.line, fault.field), ..fault };
+            if !(-0.5..=1.5).contains(&datum.restitution) {
+                let allowed = "a number from -0.5 to 1.5 (energy allows 0 to 1; the rest is for errors of measurement)";
+                return Err(at(InvalidInput::new("restitution", datum.restitution.to_string(), allowed)));
+            }
+            let seen = modes.seen_from(datum.location_m).map_err(at)?;
+            observations.impacts.push(impact_on(&seen, datum.mass_kg).map_err(at)?);
+            observations.restitution.push(datum.restitution);
+        }
+        Ok(observations)
+    }
+}

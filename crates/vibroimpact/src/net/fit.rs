@@ -1,0 +1,137 @@
+//! The three parameters of the law from observed restitutions.
+
+use emoc::{Impact, Parameters};
+use fitting::{Fit, FitError, Outcome, Parameter, Problem, Settings};
+use serde::Serialize;
+
+use crate::scene::InvalidInput;
+
+/// Where the parameters are sought; a fit may leave it.
+const SEARCH: (f64, f64) = (1e-3, 1e3);
+/// Starting points. The sum of squares has several minima, because `ebar` treats small and large `Z` alike.
+const STARTS: usize = 24;
+
+/// Impacts and the restitution that each was observed to have.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Observations {
+    /// The impacts as the law takes them.
+    pub impacts: Vec<Impact>,
+    /// Their net restitutions; as many as impacts (what is longer is cut).
+    pub restitution: Vec<f64>,
+}
+
+impl Observations {
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.impacts.len().min(self.restitution.len())
+    }
+
+    /// `mu_0`, `alpha_0`, `alpha_1` as the search takes them: positive, first tried at 1.
+    pub fn parameters() -> Vec<Parameter> {
+        ["mu0", "alpha0", "alpha1"].map(|name| Parameter::positive(name, 1.0, SEARCH)).into()
+    }
+
+    /// Settings with which the least of the minima is found.
+    pub fn settings() -> Settings {
+        Settings { starts: STARTS, ..Settings::default() }
+    }
+
+    /// Writes the law's restitution less the observed one for each impact. NaN for parameters that the law does not
+    /// take.
+    pub fn residuals(&self, parameters: &[f64], residuals: &mut [f64]) {
+        let law = law(parameters);
+        for ((r, impact), observed) in residuals.iter_mut().zip(&self.impacts).zip(&self.restitution) {
+            *r = law.rebound(impact).map_or(f64::NAN, |rebound| rebound.restitution - observed);
+        }
+    }
+
+    /// Writes the derivatives of the residuals in the three parameters, row by row.
+    pub fn jacobian(&self, parameters: &[f64], rows: &mut [f64]) {
+        let law = law(parameters);
+        for (row, impact) in rows.chunks_exact_mut(3).zip(&self.impacts) {
+            if let Ok((_, gradient)) = law.rebound_with_gradient(impact) {
+                row.copy_from_slice(&[gradient.per_mu0, gradient.per_alpha0, gradient.per_alpha1]);
+            }
+        }
+    }
+
+    /// Calls `work` with the least-squares problem.
+    pub fn with_problem<R>(&self, work: impl FnOnce(&Problem) -> R) -> R {
+        work(&Problem {
+            parameters: Observations::parameters(),
+            count: self.count(),
+            residuals: &|p, r| self.residuals(p, r),
+            jacobian: Some(&|p, rows| self.jacobian(p, rows)),
+        })
+    }
+
+    /// Fits the three parameters.
+    ///
+    /// # Errors
+    /// Fewer than three observations.
+    pub fn fit(&self) -> Result<Fit, FitError> {
+        self.with_problem(|problem| fitting::fit(problem, &Observations::settings()))
+    }
+}
+
+/// The law with these three parameters; the notional restitution is 1 (thesis 7.1).
+pub fn law(parameters: &[f64]) -> Parameters {
+    let at = |k: usize| parameters.get(k).copied().unwrap_or(f64::NAN);
+    Parameters { mu0: at(0), alpha0: at(1), alpha1: at(2), notional_restitution: 1.0 }
+}
+
+/// Probability with which the intervals of [`FitSummary`] hold their parameter.
+const LEVEL: f64 = 0.95;
+
+/// What `vibroimpact fit` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitSummary {
+    /// Moderated mass ratio coefficient (Eq. 7.4).
+    pub mu0: f64,
+    /// Modal richness coefficient (Eq. 7.6).
+    pub alpha0: f64,
+    /// Slow response coefficient (Eq. 7.7).
+    pub alpha1: f64,
+    /// Root of the mean square of law less observation.
+    pub rms: f64,
+    /// Largest difference.
+    pub max_error: f64,
+    /// Number of observations.
+    pub count: usize,
+    /// Number of modes in the law.
+    pub modes: usize,
+    /// 95 % intervals of the three; null where the observations do not determine them.
+    pub intervals: Option<[[f64; 2]; 3]>,
+    /// Whether the search ended at a minimum rather than at its limit.
+    pub converged: bool,
+}
+
+impl FitSummary {
+    /// Fits the parameters to the observations and sums up.
+    ///
+    /// # Errors
+    /// Fewer than three observations, or such that the law is not finite.
+    pub fn new(observations: &Observations, modes: usize) -> Result<FitSummary, InvalidInput> {
+        let lines = observations.count();
+        let needed = Observations::parameters().len();
+        let fault = |allowed: String| InvalidInput::new("lines of data", lines.to_string(), allowed);
+        if lines < needed {
+            return Err(fault(format!("at least {needed}, one for each parameter")));
+        }
+        let fit = observations.fit().map_err(|error| fault(format!("such as can be fitted ({error})")))?;
+        let intervals = fit.intervals(LEVEL).ok().flatten();
+        let ends = |k: usize| intervals.as_ref().and_then(|all| all.get(k)).map(|found| [found.low, found.high]);
+        let [mu0, alpha0, alpha1] = [0, 1, 2].map(|k| fit.parameters.get(k).copied().unwrap_or(f64::NAN));
+        Ok(FitSummary {
+            mu0,
+            alpha0,
+            alpha1,
+            rms: fit.report.rms,
+            max_error: fit.report.max_abs,
+            count: fit.report.count,
+            modes,
+            intervals: ends(0).zip(ends(1)).zip(ends(2)).map(|((a, b), c)| [a, b, c]),
+            converged: fit.outcome == Outcome::Converged,
+        })
+    }
+}

@@ -1,0 +1,102 @@
+//! Net restitution without its course in time: the law of energy minimisation under outward constraints
+//! ([`emoc`], thesis chapters 6 to 8) for a scene, and its three parameters from data.
+//!
+//! Modes of the structure enter with their shapes at the point of impact alone. Rigid-body modes are no vibration:
+//! as in Eq. 8.9 they join the striker in one effective mass, `1/m_eff = 1/m + sum phi_rigid^2`, so that the
+//! restitution is that of the rigid-body motions, as it is in a resolved impact.
+
+mod data;
+mod fit;
+
+pub use data::{Datum, read};
+pub use fit::{FitSummary, Observations, law};
+
+use emoc::{Impact, Parameters, Site};
+use serde::Serialize;
+use vibroimpact_sim::modal::{Mode, Solver};
+
+use crate::impact::in_scene;
+use crate::scene::{InvalidInput, Scene};
+
+/// What `vibroimpact emoc` prints: the restitution and the dimensionless numbers that it follows from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NetRebound {
+    /// Net restitution.
+    pub restitution: f64,
+    /// Moderated mass ratio `Z` (Eq. 7.3).
+    pub z: f64,
+    /// Restitution of the contact points (Eq. 7.5).
+    pub ebar: f64,
+    /// `beta_0` of the outward inequality (Eq. 7.6).
+    pub beta0: f64,
+    /// `beta_1` of the outward inequality (Eq. 7.7).
+    pub beta1: f64,
+    /// `basic` or `outward`: which term of the maximum is active.
+    pub branch: &'static str,
+    /// Number `N` of vibration modes in the law.
+    pub modes: usize,
+    /// Mass in the law (kg): the striker's, or less if the structure has rigid-body modes.
+    pub mass_kg: f64,
+}
+
+impl Scene {
+    /// The net restitution by the three-parameter law, with the first `modes` modes (the scene's own number for
+    /// `None`).
+    ///
+    /// # Errors
+    /// A value out of range in the scene or in the parameters, or more modes than a modal structure lists.
+    ///
+    /// ```
+    /// use vibroimpact::{Scene, emoc::Parameters};
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "modal", "omega_rad_s": [100, 400], "shape_at_location": [1, 1] },
+    ///     "striker": { "mass_kg": 0.5, "speed_m_s": 1 },
+    ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1e10 }
+    /// }"#)?;
+    /// let rebound = scene.emoc(&Parameters::default(), None)?;
+    /// assert_eq!((rebound.z, rebound.branch), (1.0, "outward"));
+    /// // ebar = 2/3 at Z = 1; beta_0 = beta_1 = 1/3
+    /// assert!((rebound.restitution - 2.0 / 3.0 * (2.0 / 3.0) / (4.0 / 3.0)).abs() < 1e-15);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn emoc(&self, parameters: &Parameters, modes: Option<usize>) -> Result<NetRebound, InvalidInput> {
+        let modes = match modes {
+            Some(count) => self.mode_shapes(count)?,
+            None => self.structure.modes(self.location_m, self.modes)?,
+        };
+        // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
+        let resolved = self.impact()?;
+        Solver::new(&resolved.structure).map_err(in_scene)?;
+        let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.as_str() {
+            "mass_kg" => fault.within("striker"),
+            _ => fault,
+        })?;
+        let coefficients = parameters.coefficients(&impact)?;
+        let rebound = parameters.rebound(&impact)?;
+        Ok(NetRebound {
+            restitution: rebound.restitution,
+            z: impact.z,
+            ebar: coefficients.ebar,
+            beta0: coefficients.beta0,
+            beta1: coefficients.beta1,
+            branch: rebound.branch.as_str(),
+            modes: vibrating(&modes).len(),
+            mass_kg: impact.mass_kg,
+        })
+    }
+}
+
+/// Shapes of the modes that are no rigid-body motion.
+fn vibrating(modes: &[Mode]) -> Vec<f64> {
+    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| mode.shape).collect()
+}
+
+/// The numbers that the law takes: a striker of mass `mass_kg` on a structure seen from the point of impact.
+fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
+    InvalidInput::require_positive("mass_kg", mass_kg)?;
+    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
+    // without rigid-body modes the mass itself, to the last bit
+    let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
+    Ok(Impact::new(effective_kg, &Site::new(&vibrating(modes))?)?)
+}
