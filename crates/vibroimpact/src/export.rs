@@ -23,7 +23,7 @@ const AFTERMATH: f64 = 0.1;
 
 /// The files of one impact, ready in memory, so that nothing is written unless all of it can be.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Files(Vec<(&'static str, Vec<u8>)>);
+pub struct Files(pub(crate) Vec<(&'static str, Vec<u8>)>);
 
 impl Files {
     /// `result.json`, `history.csv`, `modal_energies.csv`, `sub_impacts.csv` and `impact.svg`.

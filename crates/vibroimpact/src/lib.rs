@@ -29,6 +29,7 @@
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, the picture as SVG |
+//! | [`infinite`] | the same for impacts on infinite beams and plates |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
@@ -37,6 +38,7 @@
 mod impact;
 
 pub mod export;
+pub mod infinite;
 pub mod net;
 pub mod plot;
 pub mod report;

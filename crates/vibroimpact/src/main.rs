@@ -3,6 +3,8 @@
 //! Exit codes: 0 for a result (sustained contact and a limit reached among them), 2 for input that cannot be used,
 //! 1 for results that cannot be written.
 
+mod infinite_beam;
+
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,7 +27,8 @@ const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, 
     "location_m": 0.4, "modes": 40 }
 
 Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
-instead. Laws of contact: hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley,
+instead. A structure without ends is { "kind": "infinite-beam" } with such a section, or "infinite-plate".
+Laws of contact: hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley,
 lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
 
 const SIMULATE_EXAMPLES: &str = "Examples:
@@ -140,6 +143,9 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Solve the impact on an infinite beam, posed by its one number S or by a scene
+    #[command(after_help = infinite_beam::EXAMPLES)]
+    InfiniteBeam(infinite_beam::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -168,6 +174,9 @@ fn run(command: Command) -> Result<(), Failure> {
     let printed = match command {
         Command::Simulate { scene, json, out } => {
             let scene = Scene::read(&scene)?;
+            if scene.is_infinite() {
+                return print(&infinite_beam::of_scene(&scene, json, out)?);
+            }
             let impact = scene.impact()?;
             let (solution, history) = impact.record()?;
             let summary = Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
@@ -207,7 +216,12 @@ fn run(command: Command) -> Result<(), Failure> {
             let fit = FitSummary::new(&observations, emoc_modes)?;
             if json { export::json(&fit)? } else { text::fit(&fit) }
         }
+        Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
     };
+    print(&printed)
+}
+
+fn print(printed: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     stdout.write_all(printed.as_bytes())?;
     stdout.flush()?;

@@ -56,6 +56,8 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
             format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
         }
         Structure::Modal(_) => "structure given by its modes".to_owned(),
+        Structure::InfiniteBeam(_) => "infinite beam".to_owned(),
+        Structure::InfinitePlate(_) => "infinite plate".to_owned(),
     };
     let place = scene.location_m.map_or_else(String::new, |x| format!(", at {}", quantity(x, "m")));
     let striker = impact.striker;
@@ -65,6 +67,13 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
         quantity(striker.speed_m_s, "m/s"),
         scene.contact.law_name()
     )
+}
+
+/// One line on what strikes what, for an infinite structure.
+pub fn infinite_headline(scene: &Scene, impact: &vibroimpact_sim::infinite::Impact) -> String {
+    let (mass, speed) = (quantity(impact.mass_kg * 1e3, "g"), quantity(impact.speed_m_s, "m/s"));
+    let structure = scene.structure.kind().replace('-', " ");
+    format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
 }
 
 /// The result of an impact.

@@ -31,11 +31,26 @@ fn restitution(scene: &Scene) -> f64 {
 fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
     let gallery = gallery();
     assert!(gallery.len() >= 10);
-    for (name, scene) in gallery {
+    for (name, scene) in gallery.into_iter().filter(|(_, scene)| !scene.is_infinite()) {
         let (solution, history) = scene.impact().unwrap().record().unwrap();
         let energy = history.energy_ledger();
         assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < 1.0), "{name}: {solution:?}");
         assert!(energy.residual_j.abs() < 1e-9 * energy.initial_j, "{name}: {energy:?}");
+        assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");
+    }
+}
+
+#[test]
+fn every_infinite_scene_of_the_gallery_runs() {
+    use vibroimpact::vibroimpact_sim::infinite::{Outcome, Settings, solve};
+    let infinite: Vec<_> = gallery().into_iter().filter(|(_, scene)| scene.is_infinite()).collect();
+    assert_eq!(infinite.len(), 2);
+    for (name, scene) in infinite {
+        let impact = scene.infinite_impact().unwrap();
+        let solution = solve(impact.structure, impact.groups().unwrap().s, &Settings::default()).unwrap();
+        assert_ne!(solution.outcome, Outcome::LimitReached, "{name}");
+        assert!(solution.digits().is_some_and(|digits| digits > 9.0), "{name}");
+        assert_eq!(scene.impact().unwrap_err().field, "structure.kind", "{name}");
         assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");
     }
 }
@@ -237,6 +252,10 @@ proptest! {
         *tree.pointer_mut(at.get(&all).as_str()).unwrap() = spoil;
         match Scene::from_value(&tree) {
             Err(fault) => prop_assert!(fault.value.is_some() || !fault.field.is_empty()),
+            Ok(scene) if scene.is_infinite() => match scene.infinite_impact() {
+                Err(fault) => prop_assert!(!fault.field.is_empty(), "{fault}"),
+                Ok(impact) => prop_assert!(impact.impulse_response > 0.0),
+            },
             Ok(scene) => match scene.impact() {
                 Err(fault) => prop_assert!(!fault.field.is_empty(), "{fault}"),
                 Ok(impact) => prop_assert!(impact.structure.modes.iter().all(|mode| mode.shape.is_finite())),

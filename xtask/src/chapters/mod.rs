@@ -2,6 +2,7 @@
 //! sets every number of the text beside ours.
 
 mod beam;
+mod chapter2;
 mod chapter3;
 mod chapter4;
 mod chapter6;
@@ -30,12 +31,13 @@ pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result
     }
     let mut study = Study::new(out, quick)?;
     let introduction = match chapter {
+        2 => chapter2::run(&mut study)?,
         3 => chapter3::run(&mut study)?,
         4 => chapter4::run(&mut study)?,
         6 => chapter6::run(&mut study)?,
         7 => chapter7::run(&mut study)?,
         8 => chapter8::run(&mut study, data)?,
-        other => return Err(format!("chapter = {other} is not allowed: 3, 4, 6, 7 or 8").into()),
+        other => return Err(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8").into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
 }

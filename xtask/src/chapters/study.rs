@@ -22,6 +22,7 @@ pub(super) struct Study {
     statements: Vec<Comparison>,
     files: Vec<String>,
     timings: Vec<Timing>,
+    remarks: Vec<String>,
     started: Instant,
     bar: ProgressBar,
 }
@@ -63,6 +64,7 @@ impl Study {
             statements: Vec::new(),
             files: Vec::new(),
             timings: Vec::new(),
+            remarks: Vec::new(),
             started: Instant::now(),
             bar,
         })
@@ -139,6 +141,16 @@ impl Study {
         self.csv(name, &course.rows())
     }
 
+    /// Writes a figure outside the report, as one that differs from run to run has to be.
+    pub fn aside(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
+        self.file(name, figure.svg()?.as_bytes())
+    }
+
+    /// Adds a line to the closing summary, for what differs from run to run.
+    pub fn remark(&mut self, line: String) {
+        self.remarks.push(line);
+    }
+
     fn file(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         write_whole(&self.out.join(name), bytes)?;
         self.files.push(name.into());
@@ -176,10 +188,11 @@ impl Study {
 
         let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();
         Ok(format!(
-            "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n\
+            "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}\
              {agree} of {} statements of the text agree within their tolerance.\nReport: {}",
             total,
             self.started.elapsed().as_secs_f64(),
+            self.remarks.iter().map(|line| format!("{line}\n")).collect::<String>(),
             self.statements.len(),
             self.out.join("report.html").display()
         ))

@@ -126,8 +126,25 @@ impl Impact {
         )
     }
 
-    /// A sphere on a thin plate, both of one material. The impulse response of the plate is
-    /// `1 / (8 sqrt(D rho h))`, `D = E h^3 / (12 (1 - nu^2))` (Zener 1941).
+    /// On a thin plate of given flexural rigidity `E h^3 / (12 (1 - nu^2))` (N m) and mass per area (kg/m^2). Its
+    /// impulse response is `1 / (8 sqrt(rigidity * mass per area))` (Zener 1941).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] unless all are finite and positive.
+    pub fn on_plate(
+        flexural_rigidity_n_m: f64,
+        mass_per_area_kg_m2: f64,
+        stiffness_n_m1_5: f64,
+        mass_kg: f64,
+        speed_m_s: f64,
+    ) -> Result<Impact, InvalidInput> {
+        positive("flexural_rigidity_n_m", flexural_rigidity_n_m)?;
+        positive("mass_per_area_kg_m2", mass_per_area_kg_m2)?;
+        let impulse_response = 0.125 / (flexural_rigidity_n_m * mass_per_area_kg_m2).sqrt();
+        Impact { structure: Structure::Plate, impulse_response, stiffness_n_m1_5, mass_kg, speed_m_s }.checked()
+    }
+
+    /// A sphere on a thin plate, both of one material.
     ///
     /// # Errors
     /// [`InvalidInput`] unless all are finite and positive and Poisson's ratio possible.
@@ -140,16 +157,13 @@ impl Impact {
         material.check()?;
         positive("thickness_m", thickness_m)?;
         positive("radius_m", radius_m)?;
-        let rigidity =
-            material.young_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poisson_ratio.powi(2)));
-        Impact {
-            structure: Structure::Plate,
-            impulse_response: 0.125 / (rigidity * material.density_kg_m3 * thickness_m).sqrt(),
-            stiffness_n_m1_5: material.hertz_stiffness(radius_m),
-            mass_kg: 4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,
+        Impact::on_plate(
+            material.young_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poisson_ratio.powi(2))),
+            material.density_kg_m3 * thickness_m,
+            material.hertz_stiffness(radius_m),
+            4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,
             speed_m_s,
-        }
-        .checked()
+        )
     }
 
     fn checked(self) -> Result<Impact, InvalidInput> {

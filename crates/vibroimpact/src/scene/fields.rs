@@ -8,8 +8,8 @@ const NOT_NEGATIVE: &str = "a finite number not less than 0";
 const FIELDS: &[(&str, &str)] = &[
     ("", "a scene is a JSON object with structure, striker and contact"),
     ("description", "a text"),
-    ("structure", "an object with the field kind, one of beam, modal"),
-    ("kind", "one of beam, modal"),
+    ("structure", "an object with the field kind, one of beam, modal, infinite-beam, infinite-plate"),
+    ("kind", "one of beam, modal, infinite-beam, infinite-plate"),
     ("striker", "an object with mass_kg (or density_kg_m3 and radius_m) and speed_m_s"),
     ("contact", "an object with the field law and the parameters of that law"),
     (

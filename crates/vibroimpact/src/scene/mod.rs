@@ -6,6 +6,7 @@
 mod contact;
 mod error;
 mod fields;
+mod infinite;
 mod json;
 mod materials;
 mod sets;
@@ -21,6 +22,7 @@ use serde_json::Value;
 
 pub use contact::Contact;
 pub use error::{InvalidInput, SceneError};
+pub use infinite::{InfiniteBeam, InfinitePlate};
 pub use materials::{HertzStiffness, Materials};
 pub use striker::Striker;
 pub use structure::{Beam, End, Modal, Segment, Structure};

@@ -9,6 +9,7 @@ use vibroimpact_sim::modal;
 
 use super::error::InvalidInput;
 use super::fields;
+use super::infinite::{InfiniteBeam, InfinitePlate};
 use super::json::{number, objects, read, split_tag};
 use super::sets::one_of_sets;
 
@@ -21,16 +22,37 @@ pub enum Structure {
     Beam(Beam),
     /// `"modal"`: any linear structure, given by its modes (measured, or from finite elements).
     Modal(Modal),
+    /// `"infinite-beam"`: a beam without ends, [`vibroimpact_sim::infinite`].
+    InfiniteBeam(InfiniteBeam),
+    /// `"infinite-plate"`: a thin plate without edges, [`vibroimpact_sim::infinite`].
+    InfinitePlate(InfinitePlate),
 }
 
 impl Structure {
     pub(crate) fn from_value(value: &Value) -> Result<Structure, InvalidInput> {
-        let (kind, rest) = split_tag(value, "kind", &["beam", "modal"])?;
+        let (kind, rest) = split_tag(value, "kind", &["beam", "modal", "infinite-beam", "infinite-plate"])?;
         let rest = Value::Object(rest);
         match kind {
             "beam" => read(&rest).map(Structure::Beam),
+            "infinite-beam" => read(&rest).map(Structure::InfiniteBeam),
+            "infinite-plate" => read(&rest).map(Structure::InfinitePlate),
             _ => read(&rest).map(Structure::Modal),
         }
+    }
+
+    /// The value of `"kind"`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Structure::Beam(_) => "beam",
+            Structure::Modal(_) => "modal",
+            Structure::InfiniteBeam(_) => "infinite-beam",
+            Structure::InfinitePlate(_) => "infinite-plate",
+        }
+    }
+
+    /// Infinite structures cannot be described by modes.
+    fn no_modes(&self) -> InvalidInput {
+        InvalidInput::new("structure.kind", format!("\"{}\"", self.kind()), "beam or modal, the structures with modes")
     }
 
     /// The first `count` modes as seen from the point of impact (all that there are, for `None`).
@@ -41,6 +63,7 @@ impl Structure {
     ) -> Result<Vec<modal::Mode>, InvalidInput> {
         count.map_or(Ok(()), require_count)?;
         match (self, location_m, count) {
+            (Structure::InfiniteBeam(_) | Structure::InfinitePlate(_), _, _) => Err(self.no_modes()),
             (Structure::Beam(beam), Some(location_m), Some(count)) => beam.modes(count)?.seen_from(location_m),
             (Structure::Beam(_), None, _) => {
                 Err(InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default()))
@@ -65,6 +88,7 @@ impl Structure {
     /// Static compliance at the point of impact (m/N) of the whole elastic structure.
     pub(crate) fn static_compliance_m_n(&self, location_m: Option<f64>) -> Result<f64, InvalidInput> {
         match self {
+            Structure::InfiniteBeam(_) | Structure::InfinitePlate(_) => Err(self.no_modes()),
             Structure::Beam(beam) => beam
                 .to_beam()
                 .and_then(|beam| Ok(beam.static_compliance(location_m.unwrap_or(f64::NAN))?))
@@ -148,7 +172,7 @@ impl BeamModes {
 }
 
 impl Segment {
-    fn to_segment(self) -> Result<beam_modes::Segment, InvalidInput> {
+    pub(super) fn to_segment(self) -> Result<beam_modes::Segment, InvalidInput> {
         let given = [
             ("flexural_rigidity_n_m2", self.flexural_rigidity_n_m2),
             ("mass_per_length_kg_m", self.mass_per_length_kg_m),

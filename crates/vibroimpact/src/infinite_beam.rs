@@ -1,0 +1,115 @@
+//! The command `infinite-beam`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use vibroimpact::export::{self, Failure};
+use vibroimpact::infinite::{Summary, TurningPoints, files, text, turning_points_text};
+use vibroimpact::vibroimpact_sim::infinite::{
+    Groups, MOST_TURNING_POINTS, Settings, Structure, critical_s, solve, turning_points,
+};
+use vibroimpact::{InvalidInput, Scene};
+
+pub const EXAMPLES: &str = "Examples:
+  vibroimpact infinite-beam --s 15                       a summary to read
+  vibroimpact infinite-beam --s 15 --json                one JSON object for programs
+  vibroimpact infinite-beam beam.json --out beam/        CSV tables, the picture impact.svg, result.json
+  vibroimpact infinite-beam turning-points --count 20    where the n-th separation disappears
+
+S = C^10 k_H^2 m^8 v is the one number that matters; S up to 1.5605 gives a rebound after one contact, larger S one
+or more separations, then sustained contact, and S above 35264 sustained contact at once. S from 1e-12 to 1e8 is
+solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"limit reached\".
+A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and a hertz contact.";
+
+/// What to solve, and where to put it.
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct Arguments {
+    /// A scene file whose structure is an infinite-beam
+    #[arg(required_unless_present = "s", conflicts_with = "s")]
+    scene: Option<PathBuf>,
+    /// The nondimensional number S, in place of a scene
+    #[arg(long, value_name = "S", allow_hyphen_values = true)]
+    s: Option<f64>,
+    /// Print one JSON object in place of the summary
+    #[arg(long)]
+    json: bool,
+    /// Write histories, picture and result into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(subcommand)]
+    study: Option<Study>,
+}
+
+/// Studies over all S.
+#[derive(Subcommand)]
+enum Study {
+    /// List the critical S and the turning points, at which the n-th separation disappears
+    TurningPoints {
+        /// How many turning points, from the first (at the largest S); 1 to 60
+        #[arg(long, value_name = "N")]
+        count: usize,
+        /// Print one JSON object in place of the table
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Carries the command out and returns what is to be printed.
+pub fn run(arguments: Arguments) -> Result<String, Failure> {
+    match arguments {
+        Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
+        Arguments { scene: Some(path), json, out, .. } => {
+            let scene = Scene::read(&path)?;
+            if scene.structure.kind() != "infinite-beam" {
+                let kind = format!("\"{}\"", scene.structure.kind());
+                let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
+                return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
+            }
+            of_scene(&scene, json, out)
+        }
+        Arguments { s, json, out, .. } => {
+            let s = s.unwrap_or(f64::NAN);
+            result(&format!("Impact on an infinite beam, S = {s}"), Structure::Beam, s, None, json, out)
+        }
+    }
+}
+
+/// Solves a scene with an infinite structure and returns what is to be printed.
+pub fn of_scene(scene: &Scene, json: bool, out: Option<PathBuf>) -> Result<String, Failure> {
+    let impact = scene.infinite_impact()?;
+    let groups = impact.groups().map_err(InvalidInput::from)?;
+    let headline = vibroimpact::text::infinite_headline(scene, &impact);
+    result(&headline, impact.structure, groups.s, Some(&groups), json, out)
+}
+
+fn result(
+    headline: &str,
+    structure: Structure,
+    s: f64,
+    groups: Option<&Groups>,
+    json: bool,
+    out: Option<PathBuf>,
+) -> Result<String, Failure> {
+    let solution = solve(structure, s, &Settings::default()).map_err(InvalidInput::from)?;
+    let summary = Summary::new(&solution, groups);
+    let mut printed = if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text(&summary)) };
+    if let Some(folder) = out {
+        let files = files(headline, &solution, groups)?;
+        files.write(&folder)?;
+        if !json {
+            let names: Vec<&str> = files.names().collect();
+            printed += &format!("\n  wrote {} to {}\n", names.join(", "), folder.display());
+        }
+    }
+    Ok(printed)
+}
+
+fn list(count: usize, json: bool) -> Result<String, Failure> {
+    if !(1..=MOST_TURNING_POINTS).contains(&count) {
+        let allowed = format!("a whole number from 1 to {MOST_TURNING_POINTS}");
+        return Err(InvalidInput { field: "count".into(), value: Some(count.to_string()), allowed }.into());
+    }
+    let points = TurningPoints::new(critical_s(), &turning_points(count).map_err(InvalidInput::from)?);
+    if json { export::json(&points) } else { Ok(turning_points_text(&points)) }
+}

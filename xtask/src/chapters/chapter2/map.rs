@@ -1,0 +1,219 @@
+//! Every contact for every `S`: Fig. 2.8 with its turning points, and the regimes of Fig. 2.4.
+
+use super::{Parameters, in_ratio, solved};
+use crate::chapters::Failure;
+use crate::chapters::study::Study;
+use serde::Serialize;
+use std::time::Instant;
+use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+use vibroimpact::report::{Comparison, significant};
+use vibroimpact_sim::infinite::{Contact, CriticalS, Outcome, TurningPoint, critical_s, turning_points};
+
+/// Agreement that the thesis's turning points are worth.
+const AGREEMENT: f64 = 1e-3;
+/// How close to a turning point its curves are drawn, as a share of the distance from the critical `S`.
+const CLOSE: f64 = 1e-6;
+/// Longest time that Fig. 2.8 shows (units of `T`).
+const LATEST: f64 = 1e6;
+
+/// One value of `S`.
+struct Point {
+    s: f64,
+    outcome: Outcome,
+    separations: usize,
+    contacts: Vec<Contact>,
+}
+
+/// One contact of one value of `S`; times in units of `T`.
+#[derive(Serialize)]
+struct Row {
+    s: f64,
+    contact: usize,
+    start: f64,
+    end: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct TurningRow {
+    n: usize,
+    s: f64,
+    uncertainty: f64,
+    s_thesis: Option<f64>,
+}
+
+pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
+    study.section("Map of separations and turning points (Figs. 2.4 and 2.8)");
+    let choice = &parameters.our_choice;
+    let critical = critical_s();
+    // a fifth of the values below the critical S, where little happens
+    let below = choice.map_values / 5;
+    let mut values = in_ratio(choice.map_from, 0.999 * critical.s, below);
+    let above = in_ratio(choice.map_closest, choice.map_to - critical.s, choice.map_values - below);
+    values.extend(above.iter().map(|distance| critical.s + distance));
+    let values = study.thin(&values, 100);
+    let count = if study.quick { 12 } else { choice.turning_points };
+
+    let point = |&s: &f64| {
+        let solution = solved(s, 0.0)?;
+        let separations = solution.separations();
+        Ok(Point { s, outcome: solution.outcome, separations, contacts: solution.contacts })
+    };
+    let start = Instant::now();
+    let (points, turnings) = rayon::join(|| study.sweep(&values, 1, point), || turning_points(count));
+    let seconds = start.elapsed().as_secs_f64();
+    let (mut points, turnings) = (points?, turnings?);
+    study.remark(format!(
+        "Map of {} values of S and {count} turning points: {seconds:.2} s (aim: 3 s for 1000 and 30 on two cores).",
+        values.len()
+    ));
+    let row = |point: &Point| {
+        let s = point.s;
+        let one = move |(i, c): (usize, &Contact)| Row { s, contact: i + 1, start: c.start, end: c.end };
+        point.contacts.iter().enumerate().map(one).collect::<Vec<_>>()
+    };
+    study.csv("fig-2-08.csv", &points.iter().flat_map(row).collect::<Vec<_>>())?;
+    turning_table(study, parameters, critical, &turnings)?;
+    regimes(study, &points, critical, &turnings)?;
+
+    let first = points.iter().filter_map(|point| point.contacts.first()?.end.filter(|_| point.s > critical.s));
+    study.state(Comparison::about(
+        "shortest time of a separation above the critical S (T)",
+        "2.5",
+        "about 0.5",
+        0.5,
+        0.05,
+        first.fold(f64::INFINITY, f64::min),
+    )
+    .note("The shortest first contact ends a little below the first turning point. The thesis reads its number from a logarithmic axis."));
+
+    // the curves close at their turning points
+    let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
+    points.extend(study.sweep(&ends, 1, point)?);
+    points.sort_by(|a, b| a.s.total_cmp(&b.s));
+    contact_map(study, &points, critical)
+}
+
+fn turning_table(
+    study: &mut Study,
+    parameters: &Parameters,
+    critical: CriticalS,
+    turnings: &[TurningPoint],
+) -> Result<(), Failure> {
+    let printed = |n: usize| parameters.turning_points.get(n - 1).copied();
+    let rows: Vec<TurningRow> = turnings
+        .iter()
+        .map(|t| TurningRow { n: t.n, s: t.s, uncertainty: t.uncertainty, s_thesis: printed(t.n) })
+        .collect();
+    study.csv("turning-points.csv", &rows)?;
+    for row in &rows {
+        let Some(thesis) = row.s_thesis else { continue };
+        let quantity = format!("turning point {}", row.n);
+        study.state(Comparison::about(quantity, "2.5", &significant(thesis, 6), thesis, AGREEMENT * thesis, row.s));
+    }
+    let thesis = parameters.critical_s;
+    study.state(
+        Comparison::about(
+            "S at which the first rebound velocity vanishes",
+            "2.5",
+            &significant(thesis, 4),
+            thesis,
+            AGREEMENT * thesis,
+            critical.s,
+        )
+        .note(format!("Ours: {:.13} ± {:.0e}.", critical.s, critical.uncertainty)),
+    );
+    study.text(&format!(
+        "Critical S: {:.14} ± {:.0e}. The n-th separation exists for S below the n-th turning point; the numbers go on \
+         for ever towards the critical value.",
+        critical.s, critical.uncertainty
+    ));
+    let cells = |row: &TurningRow| {
+        vec![
+            row.n.to_string(),
+            format!("{:.13e}", row.s),
+            format!("{:.0e}", row.uncertainty),
+            row.s_thesis.map_or_else(String::new, |thesis| significant(thesis, 6)),
+            row.s_thesis.map_or_else(String::new, |thesis| format!("{:+.3} %", 100.0 * (thesis / row.s - 1.0))),
+        ]
+    };
+    study.table(&["n", "turning point", "±", "thesis", "thesis − ours"], &rows.iter().map(cells).collect::<Vec<_>>());
+    Ok(())
+}
+
+/// Fig. 2.4: what happens, against `S`.
+fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &[TurningPoint]) -> Result<(), Failure> {
+    let wrong = points.iter().filter(|point| {
+        let beyond = turnings.iter().filter(|t| t.s > point.s).count();
+        let expected = if point.s < critical.s { Outcome::Rebound } else { Outcome::Sustained };
+        let counted = point.s < critical.s || beyond == turnings.len() || point.separations == beyond;
+        point.outcome != expected || (point.s < critical.s && point.separations != 1) || !counted
+    });
+    study.state(Comparison::range(
+        "values of S at which outcome or separations contradict critical S and turning points",
+        "Fig. 2.4",
+        "rebound after one contact; separations, then sustained contact; sustained contact at once",
+        (0.0, 0.0),
+        wrong.count() as f64,
+    ));
+    let of = |outcome: Outcome| -> (Vec<f64>, Vec<f64>) {
+        points.iter().filter(|p| p.outcome == outcome).map(|p| (p.s, p.separations as f64)).unzip()
+    };
+    let (rebound, sustained) = (of(Outcome::Rebound), of(Outcome::Sustained));
+    let mut panel = Panel::new(Axis::new("S").log().limits(1e-2, 1e6), Axis::new("separations").integers())
+        .height(220.0)
+        .with(Series::vertical_rule(critical.s));
+    if let Some(last) = turnings.first() {
+        panel = panel.with(Series::vertical_rule(last.s));
+    }
+    let panel = panel
+        .with(
+            Series::line_points(&rebound.0, &rebound.1, Marker::Dot).colour(Colour::Blue).label("one contact, rebound"),
+        )
+        .with(
+            Series::step(&sustained.0, &sustained.1)
+                .colour(Colour::Vermilion)
+                .label("separations (if any), then sustained contact"),
+        );
+    study.figure(
+        "fig-2-04",
+        &Figure::new("Fig. 2.4  Possible behaviours").row([panel]),
+        "Left of the first upright line the body leaves after one contact; right of the second it never separates. Towards \
+         the first line from the right the number of separations grows without bound.",
+    )
+}
+
+/// Fig. 2.8.
+fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Result<(), Failure> {
+    let s: Vec<f64> = points.iter().map(|point| point.s).collect();
+    let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0);
+    let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
+    let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
+    let time = Axis::new("time").unit("T").log().limits(0.3, LATEST);
+    let mut upper = Panel::new(Axis::new("S").log().limits(1e-2, 2e5), time).title("(a)").height(320.0);
+    let x = Axis::new("S above its critical value").log().limits(0.02, 1e3);
+    let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
+        .title("(b) the later contacts, magnified")
+        .height(360.0);
+    for k in 0..most {
+        // start and end of a contact in one colour
+        let colour = if k == 0 { Colour::Purple } else { Colour::of_series(k - 1) };
+        let value = |of: fn(&Contact) -> Option<f64>| -> Vec<f64> {
+            points.iter().map(|point| point.contacts.get(k).and_then(of).unwrap_or(f64::NAN)).collect()
+        };
+        let (starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
+        let width = if k == 0 { 2.4 } else { 1.0 };
+        let start = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(1.0).dashed();
+        let end = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(width);
+        upper = upper.with(start(&s, &starts)).with(end(&s, &ends));
+        let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
+        lower = lower.with(start(&distance, &relative(&starts))).with(end(&distance, &relative(&ends)));
+    }
+    study.figure(
+        "fig-2-08",
+        &Figure::new("Fig. 2.8  Starts (dashed) and ends (solid) of contacts against S")
+            .row([upper.with(Series::vertical_rule(critical.s))])
+            .row([lower]),
+        "A curve of separation and the next curve of touch meet at a turning point. Colours repeat. All curves approach \
+         the critical S, where the second contact comes after infinite time.",
+    )
+}
