@@ -107,9 +107,6 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
-    /// Solve the impact on an infinite beam, posed by its one number S or by a scene
-    #[command(after_help = infinite_beam::EXAMPLES)]
-    InfiniteBeam(infinite_beam::Arguments),
     /// Net restitution without integration in time: energy minimisation under outward constraints
     #[command(after_help = EMOC_EXAMPLES)]
     Emoc {
@@ -146,6 +143,9 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Solve the impact on an infinite beam, posed by its one number S or by a scene
+    #[command(after_help = infinite_beam::EXAMPLES)]
+    InfiniteBeam(infinite_beam::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -204,7 +204,6 @@ fn run(command: Command) -> Result<(), Failure> {
                 text::modes(&modes)
             }
         }
-        Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
         Command::Emoc { scene, mu0, alpha0, alpha1, emoc_modes, json } => {
             let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
             let rebound = Scene::read(&scene)?.emoc(&parameters, emoc_modes);
@@ -217,6 +216,7 @@ fn run(command: Command) -> Result<(), Failure> {
             let fit = FitSummary::new(&observations, emoc_modes)?;
             if json { export::json(&fit)? } else { text::fit(&fit) }
         }
+        Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
     };
     print(&printed)
 }

@@ -12,7 +12,7 @@ use crate::InvalidInput;
 use contact_models::{ContactLaw, Memory};
 
 /// Part of the stated tolerance that one step may use up, as a share of the striker's momentum.
-const STEP_SHARE: f64 = 0.25;
+const STEP_SHARE: f64 = 0.1;
 /// How much more coarsely the second solution, for the uncertainty, is computed.
 const COARSER: f64 = 32.0;
 
