@@ -51,13 +51,13 @@ impl Scene {
     ///
     /// let scene = Scene::from_json(r#"{
     ///     "structure": { "kind": "modal", "omega_rad_s": [100, 400], "shape_at_location": [1, 1] },
-    ///     "striker": { "mass_kg": 0.5, "speed_m_s": 1 },
+    ///     "striker": { "mass_kg": 1, "speed_m_s": 1 },
     ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1e10 }
     /// }"#)?;
     /// let rebound = scene.emoc(&Parameters::default(), None)?;
-    /// assert_eq!((rebound.z, rebound.branch), (1.0, "outward"));
-    /// // ebar = 2/3 at Z = 1; beta_0 = beta_1 = 1/3
-    /// assert!((rebound.restitution - 2.0 / 3.0 * (2.0 / 3.0) / (4.0 / 3.0)).abs() < 1e-15);
+    /// assert_eq!((rebound.z, rebound.branch), (2.0, "outward"));
+    /// // ebar = 5/7 at Z = 2; beta_0 = beta_1 = 1/2
+    /// assert!((rebound.restitution - 5.0 / 7.0 * 1.0 / 1.5).abs() < 1e-15);
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn emoc(&self, parameters: &Parameters, modes: Option<usize>) -> Result<NetRebound, InvalidInput> {
