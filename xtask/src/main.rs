@@ -3,10 +3,11 @@
 mod chapters;
 mod ci;
 
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use chapters::Failure;
+use chapters::{BadInput, Failure};
 use clap::{Parser, Subcommand};
 
 /// The chapters that can be reproduced.
@@ -44,7 +45,8 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("error: {failure}");
-            ExitCode::FAILURE
+            // 2 for input that cannot be used, as in the program itself
+            if failure.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
 }
@@ -68,6 +70,10 @@ fn run(task: Task) -> Result<(), Failure> {
 }
 
 fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
-    println!("{}", chapters::run(chapter, out, quick, data)?);
-    Ok(())
+    let summary = chapters::run(chapter, out, quick, data)?;
+    match writeln!(std::io::stdout(), "{summary}") {
+        // a reader that has seen enough is no failure
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
 }

@@ -13,6 +13,7 @@ mod impact;
 mod study;
 
 use std::error::Error;
+use std::fmt;
 use std::path::Path;
 
 use study::Study;
@@ -20,14 +21,25 @@ use study::Study;
 /// Whatever can go wrong on the way: bad parameters, a full disk.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
+/// Input that cannot be used: what, its value, and what is allowed.
+#[derive(Debug)]
+pub struct BadInput(String);
+
+impl fmt::Display for BadInput {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+impl Error for BadInput {}
+
 /// Runs a chapter and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
 /// for chapter 8.
 /// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
 pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<String, Failure> {
     if data.is_some() && chapter != 8 {
-        return Err(
-            format!("--data is not allowed with chapter {chapter}: only chapter 8 takes measured points").into()
-        );
+        let fault = format!("--data is not allowed with chapter {chapter}: only chapter 8 takes measured points");
+        return Err(BadInput(fault).into());
     }
     let mut study = Study::new(out, quick)?;
     let introduction = match chapter {
@@ -37,7 +49,7 @@ pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result
         6 => chapter6::run(&mut study)?,
         7 => chapter7::run(&mut study)?,
         8 => chapter8::run(&mut study, data)?,
-        other => return Err(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8").into()),
+        other => return Err(BadInput(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8")).into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
 }

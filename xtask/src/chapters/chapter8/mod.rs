@@ -5,8 +5,8 @@ mod law;
 mod measured;
 mod upright;
 
-use super::Failure;
 use super::study::Study;
+use super::{BadInput, Failure};
 use serde::Deserialize;
 use std::path::Path;
 use vibroimpact_sim::dropped_rod::DroppedRod;
@@ -71,7 +71,7 @@ impl Parameters {
 pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str, Failure> {
     let parameters = Parameters::load()?;
     // a fault in a person's file is told before anything is computed
-    let points = data.map(measured::read).transpose()?;
+    let points = data.map(measured::read).transpose().map_err(|fault| BadInput(fault.to_string()))?;
     let drops = drops::run(study, &parameters)?;
     upright::run(study, &parameters)?;
     law::run(study, &parameters, &drops)?;
