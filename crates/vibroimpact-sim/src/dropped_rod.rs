@@ -97,7 +97,7 @@ impl DroppedRod {
         let first_axial = PI / self.length_m * (self.youngs_modulus_pa / self.density_kg_m3).sqrt();
         let mut count = 8;
         loop {
-            let bending = self.beam().modes(count).map_err(foreign)?;
+            let bending = self.beam().modes(count)?;
             let omega = bending.omega_rad_s();
             if omega.last().is_none_or(|omega| *omega > first_axial) || count > 100_000 {
                 return Ok(omega.iter().filter(|omega| **omega > 0.0 && **omega < first_axial).count());
@@ -119,13 +119,12 @@ impl DroppedRod {
         let mut modes = vec![rigid(1.0 / root), rigid(3f64.sqrt() * cos / root)];
 
         let (beam, rod) = (self.beam(), self.rod());
-        let bending = beam.modes(2 + self.bending_modes).map_err(foreign)?;
-        let axial = rod.modes(1 + self.axial_modes).map_err(foreign)?;
-        let mut residual = beam.static_compliance(0.0).map_err(foreign)? * cos * cos
-            + rod.static_compliance(0.0).map_err(foreign)? * sin * sin;
+        let bending = beam.modes(2 + self.bending_modes)?;
+        let axial = rod.modes(1 + self.axial_modes)?;
+        let mut residual = beam.static_compliance(0.0)? * cos * cos + rod.static_compliance(0.0)? * sin * sin;
         let families = [(&bending, cos), (&axial, sin)];
         for (family, direction) in families {
-            let shapes = family.shapes_at(0.0).map_err(foreign)?;
+            let shapes = family.shapes_at(0.0)?;
             for (omega, shape) in family.omega_rad_s().iter().zip(shapes).filter(|(omega, _)| **omega > 0.0) {
                 let shape = shape * direction;
                 residual -= (shape / omega).powi(2);
@@ -139,11 +138,7 @@ impl DroppedRod {
             poissons_ratio: self.poissons_ratio,
             radius_m: 0.5 * self.diameter_m,
         };
-        let law = Hertz::from_bodies(&end, &Body::rigid(f64::INFINITY)).map_err(|error| InvalidInput {
-            field: error.field,
-            value: error.value,
-            allowed: error.allowed,
-        })?;
+        let law = Hertz::from_bodies(&end, &Body::rigid(f64::INFINITY))?;
         Ok(Drop {
             structure: Structure { modes, residual_compliance_m_n: residual.max(0.0) },
             surface: Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 },
@@ -193,9 +188,4 @@ impl DroppedRod {
         };
         Rod { segments: vec![segment], ends: [RodEnd::Free, RodEnd::Free] }
     }
-}
-
-/// The mode finder's own error in this crate's words.
-fn foreign(error: beam_modes::InvalidInput) -> InvalidInput {
-    InvalidInput { field: error.field, value: error.value, allowed: error.allowed }
 }

@@ -23,3 +23,15 @@ impl InvalidInput {
         if ok { Ok(()) } else { Err(InvalidInput { field: field.into(), value: value.to_string(), allowed }) }
     }
 }
+
+impl From<beam_modes::InvalidInput> for InvalidInput {
+    fn from(error: beam_modes::InvalidInput) -> InvalidInput {
+        InvalidInput { field: error.field, value: error.value, allowed: error.allowed }
+    }
+}
+
+impl From<contact_models::InvalidInput> for InvalidInput {
+    fn from(error: contact_models::InvalidInput) -> InvalidInput {
+        InvalidInput { field: error.field, value: error.value, allowed: error.allowed }
+    }
+}

@@ -152,6 +152,7 @@ impl<L: ContactLaw> History<L> {
         for (i, piece) in self.pieces.iter().enumerate() {
             match &piece.contact {
                 None => {
+                    stored = 0.0;
                     // a free mode loses what its exact motion loses
                     let next = self.pieces.get(i + 1).map_or(&piece.start, |next| &next.start);
                     modal_damping_j += self.elastic_energy(&piece.start) - self.elastic_energy(next);
@@ -162,9 +163,6 @@ impl<L: ContactLaw> History<L> {
                     contact_j += taken;
                     stored = 0.5 * self.residual_compliance * evaluate(&contact.force, 1.0).powi(2);
                 }
-            }
-            if piece.contact.is_none() {
-                stored = 0.0;
             }
         }
         let residual_j = initial_j - striker_j - modes_j.iter().sum::<f64>() - modal_damping_j - contact_j - stored;
