@@ -8,7 +8,7 @@ use contact_models::Law;
 use tempfile::TempDir;
 use vibroimpact_sim::modal::{History, Sample};
 
-use crate::plot::{Axis, Figure, Panel, Series};
+use crate::pictures;
 use crate::summary::Summary;
 
 /// Whatever can go wrong between the numbers and the disk.
@@ -39,7 +39,7 @@ impl Files {
             ("history.csv", history_csv(&samples)?),
             ("modal_energies.csv", energies_csv(history, until_s, summary.modes)?),
             ("sub_impacts.csv", sub_impacts_csv(summary)?),
-            ("impact.svg", picture(title, &samples).svg()?.into_bytes()),
+            ("impact.svg", pictures::impact(title, summary, history).svg()?.into_bytes()),
         ]))
     }
 
@@ -118,24 +118,4 @@ fn sub_impacts_csv(summary: &Summary) -> Result<Vec<u8>, Failure> {
         table.serialize((i + 1, contact))?;
     }
     Ok(table.into_inner()?)
-}
-
-/// Motion, velocity and force against time, as in thesis Figs. 3.12 and 4.5.
-fn picture(title: &str, samples: &[Sample]) -> Figure {
-    let column = |scale: f64, of: fn(&Sample) -> f64| samples.iter().map(|s| scale * of(s)).collect::<Vec<f64>>();
-    let time = column(1e3, |s| s.time_s);
-    let pair = |structure: &[f64], striker: &[f64]| {
-        [Series::line(&time, structure).label("structure"), Series::line(&time, striker).label("striker")]
-    };
-    let panel = |label: &str, unit: &str, series: Vec<Series>| {
-        let axes = Panel::new(Axis::new("time").unit("ms"), Axis::new(label).unit(unit));
-        [series.into_iter().fold(axes, Panel::with)]
-    };
-    let displacement = pair(&column(1e3, |s| s.structure_displacement_m), &column(1e3, |s| s.striker_displacement_m));
-    let velocity = pair(&column(1.0, |s| s.structure_velocity_m_s), &column(1.0, |s| s.striker_velocity_m_s));
-    let force = Series::line(&time, &column(1.0, |s| s.force_n));
-    Figure::new(title)
-        .row(panel("displacement", "mm", displacement.into()))
-        .row(panel("velocity", "m/s", velocity.into()))
-        .row(panel("contact force", "N", vec![force]))
 }

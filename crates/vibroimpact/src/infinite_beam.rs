@@ -4,16 +4,20 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use vibroimpact::export::{self, Failure};
-use vibroimpact::infinite::{Summary, TurningPoints, files, text, turning_points_text};
+use vibroimpact::infinite::{Summary, TurningPoints, files, picture, text, turning_points_text};
+use vibroimpact::report;
 use vibroimpact::vibroimpact_sim::infinite::{
-    Groups, MOST_TURNING_POINTS, Settings, Structure, critical_s, solve, turning_points,
+    Groups, MOST_TURNING_POINTS, Settings, Solution, Structure, critical_s, solve, turning_points,
 };
 use vibroimpact::{InvalidInput, Scene};
+
+use crate::products::Products;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact infinite-beam --s 15                       a summary to read
   vibroimpact infinite-beam --s 15 --json                one JSON object for programs
   vibroimpact infinite-beam beam.json --out beam/        CSV tables, the picture impact.svg, result.json
+  vibroimpact infinite-beam --s 15 --plot s15.png        the picture alone; .svg or .png
   vibroimpact infinite-beam turning-points --count 20    where the n-th separation disappears
 
 S = C^10 k_H^2 m^8 v is the one number that matters; S up to 1.5605 gives a rebound after one contact, larger S one
@@ -37,6 +41,8 @@ pub struct Arguments {
     /// Write histories, picture and result into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    products: Products,
     #[command(subcommand)]
     study: Option<Study>,
 }
@@ -59,50 +65,57 @@ enum Study {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     match arguments {
         Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
-        Arguments { scene: Some(path), json, out, .. } => {
+        Arguments { scene: Some(path), json, out, products, .. } => {
             let scene = Scene::read(&path)?;
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
                 let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
                 return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
             }
-            of_scene(&scene, json, out)
+            of_scene(&scene, json, out, &products)
         }
-        Arguments { s, json, out, .. } => {
+        Arguments { s, json, out, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
-            result(&format!("Impact on an infinite beam, S = {s}"), Structure::Beam, s, None, json, out)
+            let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
+            let headline = format!("Impact on an infinite beam, S = {s}");
+            result(&headline, &solution, None, json, out, &products)
         }
     }
 }
 
 /// Solves a scene with an infinite structure and returns what is to be printed.
-pub fn of_scene(scene: &Scene, json: bool, out: Option<PathBuf>) -> Result<String, Failure> {
+pub fn of_scene(scene: &Scene, json: bool, out: Option<PathBuf>, products: &Products) -> Result<String, Failure> {
     let impact = scene.infinite_impact()?;
     let groups = impact.groups().map_err(InvalidInput::from)?;
     let headline = vibroimpact::text::infinite_headline(scene, &impact);
-    result(&headline, impact.structure, groups.s, Some(&groups), json, out)
+    let solution = solve(impact.structure, groups.s, &Settings::default()).map_err(InvalidInput::from)?;
+    result(&headline, &solution, Some((scene, &groups)), json, out, products)
 }
 
 fn result(
     headline: &str,
-    structure: Structure,
-    s: f64,
-    groups: Option<&Groups>,
+    solution: &Solution,
+    posed: Option<(&Scene, &Groups)>,
     json: bool,
     out: Option<PathBuf>,
+    products: &Products,
 ) -> Result<String, Failure> {
-    let solution = solve(structure, s, &Settings::default()).map_err(InvalidInput::from)?;
-    let summary = Summary::new(&solution, groups);
+    let (scene, groups) = posed.unzip();
+    let summary = Summary::new(solution, groups);
     let mut printed = if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text(&summary)) };
+    let prepared = products.prepare(
+        || picture(headline, solution, groups),
+        |figure| report::of_infinite_impact(headline, scene, &summary, figure),
+    )?;
     if let Some(folder) = out {
-        let files = files(headline, &solution, groups)?;
+        let files = files(headline, solution, groups)?;
         files.write(&folder)?;
         if !json {
             let names: Vec<&str> = files.names().collect();
             printed += &format!("\n  wrote {} to {}\n", names.join(", "), folder.display());
         }
     }
-    Ok(printed)
+    Ok(printed + &prepared.write(json)?)
 }
 
 fn list(count: usize, json: bool) -> Result<String, Failure> {

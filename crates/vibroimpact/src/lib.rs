@@ -28,7 +28,8 @@
 //! | [`scene`] | the scene file, field by field, and what can be wrong with it |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
-//! | [`export`] | histories as CSV, the picture as SVG |
+//! | [`export`] | histories as CSV, pictures, the result as JSON |
+//! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
@@ -40,6 +41,7 @@ mod impact;
 pub mod export;
 pub mod infinite;
 pub mod net;
+pub mod pictures;
 pub mod plot;
 pub mod report;
 pub mod scene;

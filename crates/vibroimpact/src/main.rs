@@ -4,18 +4,21 @@
 //! 1 for results that cannot be written.
 
 mod infinite_beam;
+mod products;
 
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
+use products::Products;
 use serde_json::json;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::net::{self, FitSummary};
 use vibroimpact::summary::Summary;
-use vibroimpact::{InvalidInput, Scene, SceneError, text};
+use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
 
 const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, and its name says which:
 
@@ -35,6 +38,8 @@ const SIMULATE_EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json                 a summary to read
   vibroimpact simulate ball.json --json          one JSON object for programs
   vibroimpact simulate ball.json --out ball/     CSV histories, the picture impact.svg, result.json
+  vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
+  vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
 
 The exit code is 0 for every result, sustained contact and a limit reached among them, 2 for a scene that cannot be
 used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
@@ -42,6 +47,8 @@ used (the message names the field, its value and what is allowed; nothing is wri
 const MODES_EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
   vibroimpact modes ball.json --count 40 --json  the same as one JSON object of lists
+  vibroimpact modes ball.json --count 6 --plot modes.svg
+                                                 shapes along the beam, with the place of impact; .svg or .png
 
 Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";
 
@@ -73,6 +80,15 @@ needed, and they should cover light and heavy strikers. The search starts from m
 has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
 a law with three parameters are not: take them as a lower bound on the uncertainty.";
 
+const COMPLETIONS_EXAMPLES: &str = "Examples:
+  vibroimpact completions bash > ~/.local/share/bash-completion/completions/vibroimpact
+  vibroimpact completions zsh > ~/.zfunc/_vibroimpact         (a folder in fpath, before compinit)
+  vibroimpact completions fish > ~/.config/fish/completions/vibroimpact.fish
+  vibroimpact completions powershell >> $PROFILE";
+
+const MANUAL_EXAMPLES: &str = "Example:
+  vibroimpact manual > ~/.local/share/man/man1/vibroimpact.1";
+
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]
 #[command(version, after_help = EXAMPLE, arg_required_else_help = true)]
@@ -94,6 +110,8 @@ enum Command {
         /// Write histories, picture and result into this folder
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        #[command(flatten)]
+        products: Products,
     },
     /// List natural frequencies, and mode shapes at the point of impact
     #[command(after_help = MODES_EXAMPLES)]
@@ -106,6 +124,9 @@ enum Command {
         /// Print one JSON object in place of the table
         #[arg(long)]
         json: bool,
+        /// Draw the modes into this file, .svg or .png
+        #[arg(long, value_name = "FILE", value_parser = products::picture_file)]
+        plot: Option<PathBuf>,
     },
     /// Net restitution without integration in time: energy minimisation under outward constraints
     #[command(after_help = EMOC_EXAMPLES)]
@@ -146,6 +167,15 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Print a script that completes commands and options in a shell
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions {
+        /// Which shell
+        shell: Shell,
+    },
+    /// Print the manual page (roff)
+    #[command(after_help = MANUAL_EXAMPLES)]
+    Manual,
 }
 
 fn main() -> ExitCode {
@@ -172,10 +202,10 @@ fn of_option(fault: InvalidInput) -> InvalidInput {
 
 fn run(command: Command) -> Result<(), Failure> {
     let printed = match command {
-        Command::Simulate { scene, json, out } => {
+        Command::Simulate { scene, json, out, products } => {
             let scene = Scene::read(&scene)?;
             if scene.is_infinite() {
-                return print(&infinite_beam::of_scene(&scene, json, out)?);
+                return print(&infinite_beam::of_scene(&scene, json, out, &products)?);
             }
             let impact = scene.impact()?;
             let (solution, history) = impact.record()?;
@@ -183,6 +213,10 @@ fn run(command: Command) -> Result<(), Failure> {
             let headline = text::headline(&scene, &impact);
             let mut printed =
                 if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
+            let prepared = products.prepare(
+                || pictures::impact(&headline, &summary, &history),
+                |figure| report::of_impact(&headline, &scene, &report::modelled(&scene, &impact), &summary, figure),
+            )?;
             if let Some(folder) = out {
                 let files = Files::new(&headline, &summary, &history)?;
                 files.write(&folder)?;
@@ -191,18 +225,24 @@ fn run(command: Command) -> Result<(), Failure> {
                     printed += &format!("\n  wrote {} to {}\n", names.join(", "), folder.display());
                 }
             }
-            printed
+            printed + &prepared.write(json)?
         }
-        Command::Modes { scene, count, json } => {
-            let modes = Scene::read(&scene)?.mode_shapes(count)?;
-            if json {
+        Command::Modes { scene, count, json, plot } => {
+            let scene = Scene::read(&scene)?;
+            let modes = scene.mode_shapes(count)?;
+            let told = match plot {
+                Some(path) => products::Prepared::picture(&path, &pictures::modes(&scene, count)?)?.write(json)?,
+                None => String::new(),
+            };
+            let printed = if json {
                 let omega: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s).collect();
                 let frequency: Vec<f64> = omega.iter().map(|omega| omega / std::f64::consts::TAU).collect();
                 let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
                 export::json(&json!({ "omega_rad_s": omega, "frequency_hz": frequency, "shape_at_location": shape }))?
             } else {
                 text::modes(&modes)
-            }
+            };
+            printed + &told
         }
         Command::Emoc { scene, mu0, alpha0, alpha1, emoc_modes, json } => {
             let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
@@ -217,6 +257,16 @@ fn run(command: Command) -> Result<(), Failure> {
             if json { export::json(&fit)? } else { text::fit(&fit) }
         }
         Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "vibroimpact", &mut script);
+            String::from_utf8(script)?
+        }
+        Command::Manual => {
+            let mut page = Vec::new();
+            clap_mangen::Man::new(Cli::command()).render(&mut page)?;
+            String::from_utf8(page)?
+        }
     };
     print(&printed)
 }

@@ -35,7 +35,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// The restitution with as many digits as can be trusted, and its uncertainty.
-fn restitution(value: f64, uncertainty: Option<f64>) -> String {
+pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
     match uncertainty {
         Some(error) if error > 0.0 => {
             let decimals = (-error.log10()).ceil().clamp(1.0, 12.0) as usize;

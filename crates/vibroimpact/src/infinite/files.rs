@@ -4,7 +4,8 @@ use vibroimpact_sim::infinite::{Groups, Solution};
 
 use super::{Sample, Summary, samples, telling_time};
 use crate::export::{Failure, Files, json};
-use crate::plot::{Axis, Figure, Panel, Series};
+use crate::pictures::{Peak, force_panel};
+use crate::plot::{Axis, Colour, Figure, Panel, Series};
 
 /// Samples of each kind in the history.
 const SAMPLES: usize = 1000;
@@ -24,7 +25,7 @@ pub fn files(title: &str, solution: &Solution, groups: Option<&Groups>) -> Resul
         ("result.json", json(&summary)?.into_bytes()),
         ("history.csv", history_csv(&samples, &units)?),
         ("contacts.csv", contacts_csv(&summary, &units)?),
-        ("impact.svg", picture(title, solution, &samples, &units).svg()?.into_bytes()),
+        ("impact.svg", picture(title, solution, groups).svg()?.into_bytes()),
     ]))
 }
 
@@ -115,29 +116,69 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
     Ok(table.into_inner()?)
 }
 
-/// Motion and force against time, as in thesis Fig. 2.3; logarithmic axes where later contacts would not show otherwise.
-fn picture(title: &str, solution: &Solution, samples: &[Sample], units: &Units) -> Figure {
+/// Where the bodies were, how fast the striker went, and the force, with every contact's peak marked and numbered, as in
+/// thesis Fig. 2.3; in SI units with `groups`, otherwise in units of the solution. Grey stripes are the times in contact.
+/// Time and force are on logarithmic axes where later contacts would not show otherwise.
+///
+/// ```
+/// use vibroimpact::infinite::picture;
+/// use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
+/// let solution = solve(Structure::Beam, 15.0, &Settings::default())?;
+/// assert!(picture("S = 15", &solution, None).svg().expect("a picture").contains("time (T)"));
+/// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
+/// ```
+pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>) -> Figure {
+    let samples = samples(solution, telling_time(solution), SAMPLES);
+    let units = Units::new(groups);
+    let [time_unit, force_unit, displacement_unit, speed_unit] = units.names;
     let until = samples.last().map_or(0.0, |sample| sample.time);
     let first = solution.contacts.first().and_then(|contact| contact.end);
-    let wide = first.is_some_and(|first| until > WIDE * first);
-    let axis = |label: &str, name: &str| Axis::new(label).unit(name);
-    let peaks = || solution.extrema.iter().filter(|e| !e.minimum).map(|e| solution.s.sqrt() * e.compression.powf(1.5));
-    let (low, high) = (0.01 * peaks().fold(f64::INFINITY, f64::min), 2.0 * peaks().fold(0.0, f64::max));
-    let (time_axis, force_axis) = match first.filter(|_| wide) {
-        Some(first) => (
-            axis("time", units.names[0]).log().limits(0.03 * units.time * first, units.time * until),
-            axis("contact force", units.names[1]).log().limits(units.force * low, units.force * high),
-        ),
-        None => (axis("time", units.names[0]), axis("contact force", units.names[1])),
+    let wide = first.filter(|first| until > WIDE * first);
+    let time_axis = || {
+        let axis = Axis::new("time").unit(time_unit);
+        match wide {
+            Some(first) => axis.log().limits(0.03 * units.time * first, units.time * until),
+            None => axis.limits(0.0, units.time * until),
+        }
     };
     let column = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).collect::<Vec<f64>>();
     let time = column(&|sample| units.time * sample.time);
-    let striker = column(&|sample| -units.displacement * sample.state.body_displacement);
-    let structure = column(&|sample| -units.displacement * sample.state.structure_displacement);
+    let starts: Vec<f64> = solution.contacts.iter().map(|c| (units.time * c.start).max(f64::MIN_POSITIVE)).collect();
+    let ends: Vec<f64> = solution.contacts.iter().map(|c| units.time * c.end.unwrap_or(until)).collect();
+    let panel = |label: &str, unit: &str, height_px: f64| {
+        Panel::new(time_axis().unlabelled(), Axis::new(label).unit(unit))
+            .height(height_px)
+            .with(Series::spans(&starts, &ends))
+    };
+    let line = |of: &dyn Fn(&Sample) -> f64| Series::line(&time, &column(of));
+    let displacement = panel("displacement", displacement_unit, 150.0)
+        .with(
+            line(&|s| -units.displacement * s.state.structure_displacement)
+                .label("structure")
+                .colour(Colour::Vermilion),
+        )
+        .with(line(&|s| -units.displacement * s.state.body_displacement).label("striker").colour(Colour::Blue));
+    let velocity = panel("striker's velocity", speed_unit, 110.0)
+        .with(Series::horizontal_rule(0.0))
+        .with(line(&|s| -units.speed * s.state.body_speed).colour(Colour::Blue));
     let force = column(&|sample| units.force * sample.state.force);
-    Figure::new(title)
-        .row([Panel::new(time_axis.clone(), axis("displacement", units.names[2]))
-            .with(Series::line(&time, &structure).label("structure"))
-            .with(Series::line(&time, &striker).label("striker"))])
-        .row([Panel::new(time_axis, force_axis).with(Series::line(&time, &force))])
+    let peaks: Vec<Peak> = solution
+        .contacts
+        .iter()
+        .zip(&Summary::new(solution, None).contacts)
+        .map(|(contact, found)| {
+            let end = contact.end.unwrap_or(until);
+            let within = samples.iter().filter(|s| (contact.start..=end).contains(&s.time));
+            let highest = within.max_by(|a, b| a.state.force.total_cmp(&b.state.force));
+            let time = highest.map_or(contact.start, |sample| sample.time);
+            Peak { time: units.time * time, force: units.force * found.peak_force }
+        })
+        .collect();
+    Figure::new(title).row([displacement]).row([velocity]).row([force_panel(
+        time_axis(),
+        force_unit,
+        &time,
+        &force,
+        &peaks,
+    )])
 }

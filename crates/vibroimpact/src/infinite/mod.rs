@@ -1,5 +1,5 @@
 //! Impacts on infinite beams and plates, as files and people read them: [`Summary`] for programs, [`text`] for people,
-//! [`files`] for tables and pictures. The solver is [`vibroimpact_sim::infinite`].
+//! [`files`] for tables, [`picture`] for a figure. The solver is [`vibroimpact_sim::infinite`].
 
 mod files;
 mod text;
@@ -7,7 +7,7 @@ mod text;
 use serde::Serialize;
 use vibroimpact_sim::infinite::{CriticalS, Groups, Outcome, Solution, State, TurningPoint};
 
-pub use files::files;
+pub use files::{files, picture};
 pub use text::{text, turning_points_text};
 
 /// What `infinite-beam --json` prints: one object. Times are in units of `T`, speeds of `v`, forces of `F` (thesis

@@ -90,6 +90,8 @@ pub(super) struct Scale {
     high: f64,
     logarithmic: bool,
     integers: bool,
+    /// Whether the unit takes the power of ten as an SI prefix.
+    prefixed: bool,
 }
 
 /// A tick: place in the axis's own measure and text, empty for a minor tick.
@@ -119,7 +121,13 @@ impl Scale {
             let half = if axis.logarithmic { half.max(0.5) } else { half };
             (low, high) = (low - half, high + half);
         }
-        Scale { low, high, logarithmic: axis.logarithmic, integers: axis.integers }
+        Scale {
+            low,
+            high,
+            logarithmic: axis.logarithmic,
+            integers: axis.integers,
+            prefixed: prefix(&axis.unit, 3).is_some(),
+        }
     }
 
     /// Place of a value along the axis: 0 at the low end, 1 at the high end.
@@ -171,7 +179,8 @@ impl Scale {
         }
         let step = digit * 10f64.powi(power);
         let largest = self.low.abs().max(self.high.abs()).log10().floor() as i32;
-        let exponent = if (-2..5).contains(&largest) { 0 } else { 3 * largest.div_euclid(3) };
+        let plain = if self.prefixed { -1..3 } else { -2..5 };
+        let exponent = if plain.contains(&largest) { 0 } else { 3 * largest.div_euclid(3) };
         let decimals = (exponent - power).clamp(0, 12) as usize;
         let first = (self.low / step - 1e-6).ceil();
         let last = (self.high / step + 1e-6).floor();
@@ -213,10 +222,24 @@ fn log_label(decade: i32, digit: i32, plain: bool) -> String {
     }
 }
 
-/// Axis label with its unit and the power of ten taken out of the tick labels.
+/// Units that take an SI prefix at their front.
+const PREFIXABLE: [&str; 11] = ["s", "m", "N", "J", "W", "Pa", "Hz", "m/s", "N/m", "m/N", "N s"];
+/// SI prefixes of the powers of a thousand from 10^-18.
+const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P", "E"];
+
+/// The prefix that stands for a power of ten before a unit, if it can.
+fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
+    let place = usize::try_from(exponent.div_euclid(3) + 6).ok()?;
+    PREFIXES.get(place).copied().filter(|_| exponent % 3 == 0 && PREFIXABLE.contains(&unit))
+}
+
+/// Axis label with its unit and the power of ten taken out of the tick labels: as a prefix, or before the unit.
 pub(super) fn full_label(axis: &Axis, exponent: i32) -> String {
-    let factor = if exponent == 0 { String::new() } else { format!("10{}", superscript(exponent)) };
-    let scale = [factor, axis.unit.clone()].into_iter().filter(|t| !t.is_empty()).collect::<Vec<_>>().join(" ");
+    let scale = match prefix(&axis.unit, exponent) {
+        Some(prefix) => format!("{prefix}{}", axis.unit),
+        None if exponent == 0 => axis.unit.clone(),
+        None => format!("10{} {}", superscript(exponent), axis.unit).trim_end().to_owned(),
+    };
     match (axis.label.is_empty(), scale.is_empty()) {
         (_, true) => axis.label.clone(),
         (true, false) => format!("({scale})"),

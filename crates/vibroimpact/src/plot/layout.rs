@@ -6,7 +6,7 @@ use super::colour::Colour;
 use super::heat::{STRIP_PX, edges};
 use super::panel;
 use super::series::Series;
-use super::text::width_px;
+use super::text::{width_px, wrapped};
 use super::{Figure, Panel};
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -17,6 +17,8 @@ const EDGE_PX: f64 = 10.0;
 const LABEL_PX: f64 = 12.0;
 const TICK_PX: f64 = 11.0;
 const LEGEND_LINE_PX: f64 = 17.0;
+const TITLE_PX: f64 = 14.0;
+const TITLE_LINE_PX: f64 = 18.0;
 
 /// Lettering of tick labels, from which the other kinds are made.
 pub(super) const SMALL: Lettering =
@@ -132,7 +134,8 @@ pub(super) fn draw(figure: &Figure) -> io::Result<String> {
     let inner = width - 2.0 * EDGE_PX;
     let lines_px = |e: &[Entry], width: f64| LEGEND_LINE_PX * legend_lines(e, width).len() as f64;
 
-    let title_px = if figure.title.is_empty() { 0.0 } else { 24.0 };
+    let title = wrapped(&figure.title, TITLE_PX, inner);
+    let title_px = if title.is_empty() { 0.0 } else { TITLE_LINE_PX * title.len() as f64 + 6.0 };
     let mut y = EDGE_PX + title_px;
     let shared_top = y;
     if let Some(entries) = shared {
@@ -163,9 +166,9 @@ pub(super) fn draw(figure: &Figure) -> io::Result<String> {
     }
 
     picture((width, y + EDGE_PX - 4.0), &figure.title, |canvas| {
-        if !figure.title.is_empty() {
-            let l = Lettering { size_px: 14.0, horizontal: HPos::Left, ..SMALL };
-            canvas.text(&figure.title, (EDGE_PX, EDGE_PX), l)?;
+        for (k, line) in title.iter().enumerate() {
+            let l = Lettering { size_px: TITLE_PX, horizontal: HPos::Left, ..SMALL };
+            canvas.text(line, (EDGE_PX, EDGE_PX + TITLE_LINE_PX * k as f64), l)?;
         }
         if let Some(entries) = shared {
             draw_legend(canvas, entries, (EDGE_PX, shared_top), inner)?;

@@ -1,4 +1,4 @@
-//! Charts in one consistent style, written as SVG.
+//! Charts in one consistent style, as SVG and PNG.
 //!
 //! A [`Figure`] is rows of [`Panel`]s; a panel has two [`Axis`] descriptions and either series
 //! (lines, markers, steps, stems, bands, error bars) or a [`HeatMap`]. Axis limits, ticks,
@@ -21,20 +21,23 @@
 mod axis;
 mod canvas;
 mod colour;
+mod format;
 mod heat;
 mod layout;
 mod panel;
+#[cfg(feature = "png")]
+mod png;
 mod series;
 mod text;
 
 pub use axis::Axis;
 pub use colour::Colour;
+pub use format::Format;
 pub use heat::HeatMap;
 pub use series::{Marker, Series};
 pub(crate) use text::superscript;
 
 use std::io;
-use std::path::Path;
 
 /// A picture: rows of panels under one title.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,11 +73,6 @@ impl Figure {
     /// The picture as an SVG document.
     pub fn svg(&self) -> io::Result<String> {
         layout::draw(self)
-    }
-
-    /// Writes the picture to a file.
-    pub fn write(&self, path: &Path) -> io::Result<()> {
-        std::fs::write(path, self.svg()?)
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::Panel;
 use super::axis::{Scale, drawable};
-use super::canvas::{Canvas, Pen, Rectangle};
+use super::canvas::{Canvas, Lettering, Pen, Rectangle};
 use super::colour::Colour;
 use super::layout::{Entry, SMALL};
 use super::series::{Mark, Marker, Series};
+use super::text::width_px;
 use plotters::style::text_anchor::VPos;
 use std::io;
 
@@ -42,7 +43,7 @@ pub(super) fn draw(canvas: &Canvas, panel: &Panel, x: &Scale, y: &Scale, r: &Rec
     let empty = panel.heat.is_none() && panel.series.iter().all(|s| s.x.is_empty());
     if empty {
         let middle = (0.5 * (r.left + r.right), 0.5 * (r.top + r.bottom));
-        canvas.text("no data", middle, super::canvas::Lettering { vertical: VPos::Center, ..SMALL })?;
+        canvas.text("no data", middle, Lettering { vertical: VPos::Center, ..SMALL })?;
     }
     Ok(())
 }
@@ -101,17 +102,35 @@ fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, 
                 let outline: Vec<(f64, f64)> =
                     run.iter().map(|p| clamp(p.0)).chain(run.iter().rev().map(|p| clamp(p.1))).collect();
                 if run.len() > 1 {
-                    canvas.polygon(&outline, colour.rgb(), 0.22)?;
+                    canvas.polygon(&outline, colour.rgb(), series.opacity)?;
                 }
             }
             Ok(())
         }
+        Mark::Spans => {
+            for (&from, &to) in series.x.iter().zip(&series.spread) {
+                draw_span(canvas, r, colour, at(from, 1.0).zip(at(to, 1.0)))?;
+            }
+            Ok(())
+        }
+        Mark::Labels => draw_labels(canvas, series, colour, r, &points),
         Mark::ErrorBars(marker) => {
             for ((u, v), half) in pairs().zip(&series.spread) {
                 if let (Some(low), Some(high)) = (at(u, v - half), at(u, v + half)) {
                     canvas.clipped_path(&[low, high], r, pen)?;
                     for end in [low, high] {
                         canvas.clipped_path(&[(end.0 - 2.5, end.1), (end.0 + 2.5, end.1)], r, pen)?;
+                    }
+                }
+            }
+            markers(marker)
+        }
+        Mark::LevelErrorBars(marker) => {
+            for ((u, v), half) in pairs().zip(&series.spread) {
+                if let (Some(left), Some(right)) = (at(u - half, v), at(u + half, v)) {
+                    canvas.clipped_path(&[left, right], r, pen)?;
+                    for end in [left, right] {
+                        canvas.clipped_path(&[(end.0, end.1 - 2.5), (end.0, end.1 + 2.5)], r, pen)?;
                     }
                 }
             }
@@ -135,6 +154,53 @@ fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, 
     }
 }
 
+/// A stripe between two abscissas, never thinner than a fine line.
+fn draw_span(canvas: &Canvas, r: &Rectangle, colour: Colour, ends: Option<((f64, f64), (f64, f64))>) -> io::Result<()> {
+    const THINNEST_PX: f64 = 0.8;
+    let Some(((from, _), (to, _))) = ends else { return Ok(()) };
+    if to < r.left || from > r.right {
+        return Ok(());
+    }
+    let widen = (0.5 * (THINNEST_PX - (to - from))).max(0.0);
+    let (left, right) = ((from - widen).clamp(r.left, r.right), (to + widen).clamp(r.left, r.right));
+    let corners = [(left, r.top), (right, r.top), (right, r.bottom), (left, r.bottom)];
+    canvas.polygon(&corners, colour.rgb(), 0.25)
+}
+
+fn draw_labels(
+    canvas: &Canvas,
+    series: &Series,
+    colour: Colour,
+    r: &Rectangle,
+    points: &[Option<(f64, f64)>],
+) -> io::Result<()> {
+    const ABOVE_PX: f64 = 5.0;
+    let lettering = Lettering { colour: colour.rgb(), vertical: VPos::Bottom, ..SMALL };
+    let mut drawn: Vec<Rectangle> = Vec::new();
+    for (point, text) in points.iter().zip(&series.texts) {
+        let Some((x, y)) = point.filter(|&(x, y)| (r.left..=r.right).contains(&x) && (r.top..=r.bottom).contains(&y))
+        else {
+            continue;
+        };
+        let half = 0.5 * width_px(text, lettering.size_px);
+        // pushed inside where the point is near the edge
+        let middle = x.min(r.right - half).max(r.left + half);
+        let bottom = (y - ABOVE_PX).max(r.top + lettering.size_px);
+        let place = Rectangle { left: middle - half, right: middle + half, top: bottom - lettering.size_px, bottom };
+        let apart = |other: &Rectangle| {
+            place.right + 2.0 < other.left
+                || other.right + 2.0 < place.left
+                || place.bottom < other.top
+                || other.bottom < place.top
+        };
+        if drawn.iter().all(apart) {
+            canvas.text(text, (middle, bottom), lettering)?;
+            drawn.push(place);
+        }
+    }
+    Ok(())
+}
+
 /// The sample of a series' look in a legend, 20 px wide from `(left, y)`.
 pub(super) fn draw_key(canvas: &Canvas, series: &Series, colour: Colour, (left, y): (f64, f64)) -> io::Result<()> {
     let middle = (left + 10.0, y);
@@ -149,10 +215,15 @@ pub(super) fn draw_key(canvas: &Canvas, series: &Series, colour: Colour, (left, 
             canvas.path(&[(middle.0, y - 5.0), (middle.0, y + 5.0)], pen(series, colour))?;
             canvas.marker(middle, marker, colour.rgb())
         }
-        Mark::Band => {
+        Mark::LevelErrorBars(marker) => {
+            line()?;
+            canvas.marker(middle, marker, colour.rgb())
+        }
+        Mark::Band | Mark::Spans => {
             let area = [(left, y - 4.0), (left + 20.0, y - 4.0), (left + 20.0, y + 4.0), (left, y + 4.0)];
-            canvas.polygon(&area, colour.rgb(), 0.22)
+            canvas.polygon(&area, colour.rgb(), series.opacity)
         }
         Mark::Line | Mark::Step | Mark::VerticalRule | Mark::HorizontalRule => line(),
+        Mark::Labels => Ok(()),
     }
 }

@@ -29,6 +29,9 @@ pub(super) enum Mark {
     Stem(Marker),
     Band,
     ErrorBars(Marker),
+    LevelErrorBars(Marker),
+    Spans,
+    Labels,
     VerticalRule,
     HorizontalRule,
 }
@@ -38,13 +41,17 @@ pub(super) enum Mark {
 pub struct Series {
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
-    /// Upper edge of a band; half length of an error bar.
+    /// Upper edge of a band; half length of an error bar; right end of a span.
     pub(super) spread: Vec<f64>,
+    /// What labels say.
+    pub(super) texts: Vec<String>,
     pub(super) mark: Mark,
     pub(super) label: String,
     pub(super) colour: Option<Colour>,
     pub(super) dashed: bool,
     pub(super) width_px: f64,
+    /// Of areas.
+    pub(super) opacity: f64,
 }
 
 impl Series {
@@ -54,11 +61,13 @@ impl Series {
             x: x[..n].to_vec(),
             y: y[..n].to_vec(),
             spread: Vec::new(),
+            texts: Vec::new(),
             mark,
             label: String::new(),
             colour: None,
             dashed: false,
             width_px: 1.4,
+            opacity: 0.22,
         }
     }
 
@@ -100,6 +109,29 @@ impl Series {
         Series { spread: half[..n].to_vec(), ..Series::new(&x[..n], y, Mark::ErrorBars(marker)) }
     }
 
+    /// A marker at each point with a bar from `x - half` to `x + half`.
+    pub fn level_error_bars(x: &[f64], y: &[f64], half: &[f64], marker: Marker) -> Series {
+        let n = x.len().min(y.len()).min(half.len());
+        Series { spread: half[..n].to_vec(), ..Series::new(&x[..n], y, Mark::LevelErrorBars(marker)) }
+    }
+
+    /// Grey stripes across the panel from each `from` to its `to`, at least as wide as a thin line.
+    pub fn spans(from: &[f64], to: &[f64]) -> Series {
+        let n = from.len().min(to.len());
+        Series {
+            spread: to[..n].to_vec(),
+            colour: Some(Colour::Grey),
+            ..Series::new(&from[..n], &vec![0.0; n], Mark::Spans)
+        }
+    }
+
+    /// A text above each point; one that would run into an earlier one is left out.
+    pub fn labels(x: &[f64], y: &[f64], texts: impl IntoIterator<Item = String>) -> Series {
+        let texts: Vec<String> = texts.into_iter().take(x.len().min(y.len())).collect();
+        let n = texts.len();
+        Series { texts, colour: Some(Colour::Black), ..Series::new(&x[..n], &y[..n], Mark::Labels) }
+    }
+
     /// A thin grey upright line across the panel.
     pub fn vertical_rule(x: f64) -> Series {
         Series { colour: Some(Colour::Grey), width_px: 0.8, ..Series::new(&[x], &[0.0], Mark::VerticalRule) }
@@ -138,20 +170,32 @@ impl Series {
         self
     }
 
+    /// Sets how strongly areas cover what is below them, from 0 to 1.
+    #[must_use]
+    pub fn opacity(mut self, opacity: f64) -> Series {
+        self.opacity = if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 };
+        self
+    }
+
     pub(super) fn has_markers(&self) -> bool {
-        use Mark::{ErrorBars, LinePoints, Points, Stem};
-        matches!(self.mark, Points(_) | LinePoints(_) | Stem(_) | ErrorBars(_))
+        use Mark::{ErrorBars, LevelErrorBars, LinePoints, Points, Stem};
+        matches!(self.mark, Points(_) | LinePoints(_) | Stem(_) | ErrorBars(_) | LevelErrorBars(_))
     }
 
     /// Everything that has to lie within the horizontal limits.
     pub(super) fn abscissas(&self) -> impl Iterator<Item = f64> + '_ {
         let counted = self.mark != Mark::HorizontalRule;
-        self.x.iter().copied().filter(move |_| counted)
+        let values = self.x.iter().enumerate().flat_map(|(i, &x)| match self.mark {
+            Mark::Spans => [x, self.spread[i]],
+            Mark::LevelErrorBars(_) => [x - self.spread[i], x + self.spread[i]],
+            _ => [x, x],
+        });
+        values.filter(move |_| counted)
     }
 
     /// Everything that has to lie within the vertical limits.
     pub(super) fn ordinates(&self) -> impl Iterator<Item = f64> + '_ {
-        let counted = self.mark != Mark::VerticalRule;
+        let counted = !matches!(self.mark, Mark::VerticalRule | Mark::Spans);
         let values = self.y.iter().enumerate().flat_map(|(i, &y)| match self.mark {
             Mark::Band => [y, self.spread[i]],
             Mark::ErrorBars(_) => [y - self.spread[i], y + self.spread[i]],

@@ -18,6 +18,26 @@ pub(super) fn width_px(text: &str, size_px: f64) -> f64 {
     em * size_px
 }
 
+/// A text in lines no wider than `room_px`, as far as its words allow; its own line breaks stay.
+pub(super) fn wrapped(text: &str, size_px: f64, room_px: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+            if line.is_empty() || width_px(&longer, size_px) <= room_px {
+                line = longer;
+            } else {
+                lines.push(std::mem::replace(&mut line, word.to_owned()));
+            }
+        }
+        if !line.is_empty() {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
 /// Text without the characters that XML does not allow.
 pub(super) fn printable(text: &str) -> String {
     text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')).collect()

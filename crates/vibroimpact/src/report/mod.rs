@@ -18,8 +18,10 @@
 
 mod comparison;
 mod html;
+mod simulation;
 
 pub use comparison::{Comparison, Expected, Verdict, significant};
+pub use simulation::{modelled, of_impact, of_infinite_impact};
 
 use crate::plot::Figure;
 use std::collections::BTreeMap;
@@ -50,6 +52,20 @@ impl Report {
     /// Adds Markdown. Raw HTML in it shows up as text.
     pub fn text(&mut self, markdown: &str) {
         self.body += &format!("\n{}\n", markdown.trim_end());
+    }
+
+    /// Adds a list.
+    pub fn list(&mut self, items: &[String]) {
+        let lines: Vec<String> = items.iter().map(|item| format!("- {}", one_line(item))).collect();
+        self.text(&lines.join("\n"));
+    }
+
+    /// Adds text as it stands, in a fixed font. Nothing in it counts as Markdown.
+    pub fn code(&mut self, text: &str) {
+        // a fence longer than any run of backticks in the text cannot be closed by it
+        let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
+        let fence = "`".repeat(longest.max(2) + 1);
+        self.text(&format!("{fence}\n{}\n{fence}", text.trim_end()));
     }
 
     /// Adds a figure under a file name without extension, with a caption in Markdown.
@@ -126,6 +142,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let part = path.with_file_name(name);
     fs::write(&part, bytes)?;
     fs::rename(&part, path)
+}
+
+/// Text from outside as Markdown that shows it as it stands, in one line.
+///
+/// ```
+/// assert_eq!(vibroimpact::report::literal("*a*\n[b](c)"), "\\*a\\* \\[b\\]\\(c\\)");
+/// ```
+pub fn literal(text: &str) -> String {
+    let escape = |c: char| c.is_ascii_punctuation().then_some('\\').into_iter().chain([c]);
+    one_line(text).chars().flat_map(escape).collect()
 }
 
 fn one_line(text: &str) -> String {

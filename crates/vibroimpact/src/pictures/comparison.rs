@@ -1,0 +1,51 @@
+//! Results of several models beside each other.
+
+use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+use crate::text::restitution as with_uncertainty;
+
+/// The restitution of each model with its uncertainty, and what it cost. A value that is not finite (no result, no
+/// uncertainty known, no cost measured) is left out; lists that are too short count as such values.
+///
+/// ```
+/// use vibroimpact::pictures::comparison;
+/// let figure = comparison(
+///     "A ball on a beam",
+///     &["rigid", "infinite beam", "modal, N = 40"],
+///     &[1.0, 0.131, 0.1425],
+///     &[f64::NAN, 1e-9, 3e-3],
+///     &[1e-6, 2e-4, 3e-3],
+/// );
+/// assert!(figure.svg()?.contains("infinite beam"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn comparison(
+    title: &str,
+    names: &[impl AsRef<str>],
+    restitution: &[f64],
+    uncertainty: &[f64],
+    cost_s: &[f64],
+) -> Figure {
+    let count = names.len();
+    let value = |list: &[f64], i: usize| list.get(i).copied().filter(|v| v.is_finite()).unwrap_or(f64::NAN);
+    // the first model on top
+    let line: Vec<f64> = (0..count).map(|i| (count - i) as f64).collect();
+    let of = |list: &[f64]| (0..count).map(|i| value(list, i)).collect::<Vec<f64>>();
+    let (restitution, cost) = (of(restitution), of(cost_s));
+    let error = |i: usize| Some(value(uncertainty, i)).filter(|u| *u > 0.0);
+    let half: Vec<f64> = (0..count).map(|i| error(i).unwrap_or(0.0)).collect();
+    let texts = (0..count).map(|i| match restitution[i].is_finite() {
+        true => with_uncertainty(restitution[i], error(i)),
+        false => String::new(),
+    });
+    let ticks = || line.iter().zip(names).map(|(&y, name)| (y, name.as_ref().to_owned()));
+    let y = || Axis::new("").ticks_at(ticks()).limits(0.4, count as f64 + 0.8);
+    let height_px = 20.0 + 34.0 * count as f64;
+    let results = Panel::new(Axis::new("restitution"), y())
+        .height(height_px)
+        .with(Series::level_error_bars(&restitution, &line, &half, Marker::Dot).colour(Colour::Blue))
+        .with(Series::labels(&restitution, &line, texts));
+    let costs = Panel::new(Axis::new("time to compute").unit("s").log(), y().unlabelled())
+        .height(height_px)
+        .with(Series::points(&cost, &line, Marker::Square).colour(Colour::Vermilion));
+    Figure::new(title).row([results, costs])
+}

@@ -1,0 +1,49 @@
+//! The pictures of the commands: an impact ([`impact`], and [`crate::infinite::picture`] for infinite structures), the
+//! modes of a structure ([`modes`]), results of several models beside each other ([`comparison`]).
+//!
+//! Axes are in SI units with prefixes, whatever the scale of the impact.
+
+mod comparison;
+mod impact;
+mod modes;
+
+pub use comparison::comparison;
+pub use impact::impact;
+pub use modes::modes;
+
+use crate::plot::{Axis, Marker, Panel, Series};
+
+/// Contacts are numbered in a picture as far as their numbers find room.
+pub(crate) fn numbers(count: usize) -> impl Iterator<Item = String> {
+    (1..=count).map(|number| number.to_string())
+}
+
+/// Peaks that differ by more than this ratio are drawn on a logarithmic axis.
+const WIDE_PEAKS: f64 = 100.0;
+
+/// Largest force of a contact, and when it is reached.
+pub(crate) struct Peak {
+    pub time: f64,
+    pub force: f64,
+}
+
+/// The contact force with every contact's peak marked and numbered. Weak contacts after strong ones show, because the
+/// axis turns logarithmic where they would not.
+pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f64], peaks: &[Peak]) -> Panel {
+    let times: Vec<f64> = peaks.iter().map(|peak| peak.time).collect();
+    let forces: Vec<f64> = peaks.iter().map(|peak| peak.force).collect();
+    let positive = || forces.iter().copied().filter(|force| *force > 0.0);
+    let (low, high) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
+    let axis = Axis::new("contact force").unit(unit);
+    // room for the numbers above the peaks
+    let axis = match (low < high / WIDE_PEAKS, high > 0.0) {
+        (true, _) => axis.log().limits(0.1 * low, high * (high / low).powf(0.15)),
+        (false, true) => axis.limits(0.0, 1.2 * high),
+        (false, false) => axis,
+    };
+    Panel::new(time_axis, axis)
+        .height(140.0)
+        .with(Series::line(time, force).colour(crate::plot::Colour::Black).line_width(1.0))
+        .with(Series::points(&times, &forces, Marker::Dot).colour(crate::plot::Colour::Vermilion))
+        .with(Series::labels(&times, &forces, numbers(peaks.len())))
+}

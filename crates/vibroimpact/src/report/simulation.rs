@@ -1,0 +1,239 @@
+//! The report on one impact.
+
+use std::io;
+
+use super::{Report, literal};
+use crate::Impact;
+use crate::infinite;
+use crate::plot::Figure;
+use crate::scene::{Scene, Structure};
+use crate::summary::Summary;
+use crate::text::{quantity, restitution};
+
+/// Contacts in the table; the rest are counted.
+const LISTED: usize = 200;
+
+/// The report on an impact on a modal structure: the result with its uncertainty, what was modelled and why (one
+/// sentence an item, in Markdown), pictures, contacts, energy, the scene, and how to repeat it.
+///
+/// # Errors
+/// Those of the figure.
+pub fn of_impact(
+    headline: &str,
+    scene: &Scene,
+    modelled: &[String],
+    summary: &Summary,
+    figure: &Figure,
+) -> io::Result<Report> {
+    let mut report = begun(headline, Some(scene));
+    report.table(&["result", ""], &result(summary));
+    report.heading("What was modelled, and why");
+    report.list(modelled);
+    report.heading("The impact");
+    report.figure(
+        "impact",
+        figure,
+        "Grey stripes are the times in contact; numbers are those of the contacts below.",
+    )?;
+    report.heading("Contacts");
+    let rows: Vec<Vec<String>> = summary
+        .sub_impacts
+        .iter()
+        .take(LISTED)
+        .enumerate()
+        .map(|(i, contact)| {
+            vec![
+                (i + 1).to_string(),
+                quantity(contact.start_s, "s"),
+                quantity(contact.end_s, "s"),
+                quantity(contact.impulse_n_s, "N s"),
+                quantity(contact.peak_force_n, "N"),
+                quantity(contact.peak_compression_m, "m"),
+            ]
+        })
+        .collect();
+    report.table(&["contact", "from", "to", "impulse", "largest force", "largest compression"], &rows);
+    more(&mut report, summary.sub_impact_count);
+    report.heading("Energy");
+    report.table(&["where", "energy", "share"], &energy(summary));
+    report.text(
+        "The last row is what the others leave of the energy before the impact: a measure of the computation's \
+         accuracy.",
+    );
+    ended(&mut report, Some(scene), "vibroimpact simulate scene.json");
+    Ok(report)
+}
+
+/// The report on an impact on an infinite beam or plate; without a scene it was posed by `S` alone.
+///
+/// # Errors
+/// Those of the figure.
+pub fn of_infinite_impact(
+    headline: &str,
+    scene: Option<&Scene>,
+    summary: &infinite::Summary,
+    figure: &Figure,
+) -> io::Result<Report> {
+    let mut report = begun(headline, scene);
+    let mut rows = vec![row("outcome", summary.outcome.to_owned())];
+    let digits = summary.digits.unwrap_or(0.0);
+    if let Some(ratio) = summary.rebound_ratio {
+        rows.push(row("rebound ratio", format!("{ratio:.*}", (digits as usize).clamp(1, 12))));
+    }
+    if let Some(velocity) = summary.physical.as_ref().and_then(|physical| physical.rebound_velocity_m_s) {
+        rows.push(row("striker leaves at", quantity(velocity, "m/s")));
+    }
+    rows.push(row("separations", summary.separations.to_string()));
+    rows.push(row(
+        "digits that agree",
+        format!("{digits:.0} (with a solution of higher resolution, in every contact)"),
+    ));
+    report.table(&["result", ""], &rows);
+    report.heading("What was modelled, and why");
+    report.list(&[
+        "An infinite structure, because the scene says so: no wave ever returns from an end or an edge.".to_owned(),
+        format!("Hertz contact. The impact depends on one number, S = {}.", summary.s),
+        "The contact force follows from a Volterra equation, which is solved to rounding error, contact by contact."
+            .to_owned(),
+    ]);
+    report.heading("The impact");
+    report.figure(
+        "impact",
+        figure,
+        "Grey stripes are the times in contact; numbers are those of the contacts below.",
+    )?;
+    report.heading("Contacts");
+    let open = |value: Option<String>| value.unwrap_or_else(|| "does not end".to_owned());
+    let rows: Vec<Vec<String>> = match &summary.physical {
+        Some(physical) => (physical.contacts.iter().map(|contact| {
+            vec![
+                quantity(contact.start_s, "s"),
+                open(contact.end_s.map(|end| quantity(end, "s"))),
+                quantity(contact.peak_force_n, "N"),
+            ]
+        }))
+        .collect(),
+        None => (summary.contacts.iter().map(|contact| {
+            let end = open(contact.end.map(|end| format!("{end:.6e} T")));
+            vec![format!("{:.6e} T", contact.start), end, format!("{:.6e} F", contact.peak_force)]
+        }))
+        .collect(),
+    };
+    let numbered = |(i, cells): (usize, Vec<String>)| [vec![(i + 1).to_string()], cells].concat();
+    let rows: Vec<Vec<String>> = rows.into_iter().take(LISTED).enumerate().map(numbered).collect();
+    report.table(&["contact", "from", "to", "largest force"], &rows);
+    more(&mut report, summary.contacts.len());
+    let command = match scene {
+        Some(_) => "vibroimpact simulate scene.json".to_owned(),
+        None => format!("vibroimpact infinite-beam --s {}", summary.s),
+    };
+    ended(&mut report, scene, &command);
+    Ok(report)
+}
+
+/// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item.
+pub fn modelled(scene: &Scene, impact: &Impact) -> Vec<String> {
+    let modes = &impact.structure.modes;
+    let hertz = |omega_rad_s: f64| quantity(omega_rad_s / std::f64::consts::TAU, "Hz");
+    let range = match (modes.first(), modes.last()) {
+        (Some(first), Some(last)) => format!(", {} to {}", hertz(first.omega_rad_s), hertz(last.omega_rad_s)),
+        _ => ": the structure does not move".to_owned(),
+    };
+    let why = match (&scene.structure, scene.modes) {
+        (_, Some(_)) => "as the scene asks",
+        _ => "all that the scene lists",
+    };
+    let structure = match &scene.structure {
+        Structure::Beam(beam) => format!(
+            "The structure by its modes, because it has ends from which waves return: an Euler-Bernoulli beam of {} \
+             segment{}, damping ratio {} in every mode.",
+            beam.segments.len(),
+            if beam.segments.len() == 1 { "" } else { "s" },
+            beam.damping_ratio
+        ),
+        _ => "The structure by the modes that the scene gives.".to_owned(),
+    };
+    let residual = match impact.structure.residual_compliance_m_n {
+        0.0 => "Modes beyond those kept do not answer at all.".to_owned(),
+        compliance => format!(
+            "Modes beyond those kept answer with their static compliance, {}, so that the result converges in the \
+             number of modes.",
+            quantity(compliance, "m/N")
+        ),
+    };
+    vec![
+        structure,
+        format!("{} modes{range}, {why}.", modes.len()),
+        residual,
+        format!(
+            "A striker of {} at {}; the contact law is {}.",
+            quantity(impact.striker.mass_kg * 1e3, "g"),
+            quantity(impact.striker.speed_m_s, "m/s"),
+            scene.contact.law_name()
+        ),
+        format!(
+            "Modes move exactly, and only the contact force is approximated; the accuracy aimed at in the restitution \
+             is {:e}.",
+            impact.settings.tolerance
+        ),
+    ]
+}
+
+fn begun(headline: &str, scene: Option<&Scene>) -> Report {
+    let mut report = Report::new(headline);
+    if let Some(description) = scene.and_then(|scene| scene.description.as_deref()) {
+        report.text(&literal(description));
+    }
+    report
+}
+
+fn row(name: &str, value: String) -> Vec<String> {
+    vec![name.to_owned(), value]
+}
+
+fn result(summary: &Summary) -> Vec<Vec<String>> {
+    let mut rows = vec![row("outcome", summary.outcome.to_owned())];
+    if let Some(value) = summary.restitution {
+        let value = restitution(value, summary.restitution_uncertainty);
+        rows.push(row("restitution", format!("**{value}**")));
+    }
+    rows.push(row("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")));
+    rows.push(row("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s"))));
+    rows
+}
+
+fn energy(summary: &Summary) -> Vec<Vec<String>> {
+    let energy = &summary.energy;
+    let parts = [
+        ("before the impact", energy.initial_j),
+        ("striker", energy.striker_j),
+        ("structure", energy.structure_j),
+        ("lost to modal damping", energy.modal_damping_j),
+        ("lost in the contact", energy.contact_j),
+        ("unaccounted", energy.residual_j),
+    ];
+    let share = |part: f64| if energy.initial_j > 0.0 { 100.0 * part / energy.initial_j } else { 0.0 };
+    let cells = |(name, part): (&str, f64)| vec![name.to_owned(), quantity(part, "J"), percent(share(part))];
+    parts.map(cells).into()
+}
+
+fn percent(share: f64) -> String {
+    if share == 0.0 || share.abs() >= 0.01 { format!("{share:.2} %") } else { format!("{share:.0e} %") }
+}
+
+fn more(report: &mut Report, count: usize) {
+    if count > LISTED {
+        report.text(&format!("... and {} more.", count - LISTED));
+    }
+}
+
+fn ended(report: &mut Report, scene: Option<&Scene>, command: &str) {
+    if let Some(scene) = scene {
+        report.heading("The scene");
+        report.code(&scene.to_json());
+    }
+    report.heading("How to repeat this");
+    let save = if scene.is_some() { "save the scene above as `scene.json` and run" } else { "run" };
+    report.text(&format!("With vibroimpact {}, {save}", env!("CARGO_PKG_VERSION")));
+    report.code(command);
+}
