@@ -35,7 +35,7 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
     let modes = scene.mode_shapes(count)?;
     let frequency: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s / TAU).collect();
     let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
-    let at_place = Panel::new(Axis::new("frequency").unit("Hz"), Axis::new("shape there").unit("kg⁻¹ᐟ²"))
+    let at_place = Panel::new(Axis::new("frequency").unit("Hz"), Axis::new("shape there").unit("1/√kg"))
         .title("Mass-normalised shape at the place of impact")
         .height(130.0)
         .with(Series::horizontal_rule(0.0))

@@ -159,7 +159,18 @@ impl Scale {
 
     /// At most about `count` labelled ticks, and the power of ten by which labels are divided.
     fn ticks(&self, count: usize) -> (Vec<Tick>, i32) {
-        if self.logarithmic { (self.log_ticks(count), 0) } else { self.linear_ticks(count) }
+        if !self.logarithmic {
+            return self.linear_ticks(count);
+        }
+        let ticks = self.log_ticks(count);
+        // a piece of a decade too short for two of its own ticks takes those of a linear axis
+        if count < 2 || ticks.iter().filter(|tick| !tick.1.is_empty()).count() > 1 {
+            return (ticks, 0);
+        }
+        let linear = Scale { low: 10f64.powf(self.low), high: 10f64.powf(self.high), logarithmic: false, ..*self };
+        let (ticks, exponent) = linear.linear_ticks(count.min(4));
+        let positive = ticks.into_iter().filter(|tick| tick.0 > 0.0);
+        (positive.map(|(value, text)| (value.log10(), text)).collect(), exponent)
     }
 
     fn linear_ticks(&self, count: usize) -> (Vec<Tick>, i32) {

@@ -1,4 +1,4 @@
-//! The palette and the colour map.
+//! The palette and the colour maps.
 
 use plotters::style::RGBColor;
 
@@ -59,11 +59,34 @@ const VIRIDIS: [[f64; 3]; 9] = [
     [253.0, 231.0, 37.0],
 ];
 
-/// The colour at `fraction` of the map, from 0 (dark) to 1 (bright).
+/// Blue over white to red (RdBu of ColorBrewer, Brewer 2003, safe for colour-blind readers), for values on both sides
+/// of zero.
+const BLUE_RED: [[f64; 3]; 9] = [
+    [33.0, 102.0, 172.0],
+    [67.0, 147.0, 195.0],
+    [146.0, 197.0, 222.0],
+    [209.0, 229.0, 240.0],
+    [247.0, 247.0, 247.0],
+    [253.0, 219.0, 199.0],
+    [244.0, 165.0, 130.0],
+    [214.0, 96.0, 77.0],
+    [178.0, 24.0, 43.0],
+];
+
+/// The colour at `fraction` of viridis, from 0 (dark) to 1 (bright).
 pub(super) fn viridis(fraction: f64) -> RGBColor {
-    let place = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let below = (place as usize).min(VIRIDIS.len() - 2);
+    between(&VIRIDIS, fraction)
+}
+
+/// The colour at `fraction` of a scale with zero in its middle.
+pub(super) fn blue_red(fraction: f64) -> RGBColor {
+    between(&BLUE_RED, fraction)
+}
+
+fn between(map: &[[f64; 3]; 9], fraction: f64) -> RGBColor {
+    let place = fraction.clamp(0.0, 1.0) * (map.len() - 1) as f64;
+    let below = (place as usize).min(map.len() - 2);
     let part = place - below as f64;
-    let [r, g, b] = [0, 1, 2].map(|c| VIRIDIS[below][c] + part * (VIRIDIS[below + 1][c] - VIRIDIS[below][c]));
+    let [r, g, b] = [0, 1, 2].map(|c| map[below][c] + part * (map[below + 1][c] - map[below][c]));
     RGBColor(r.round() as u8, g.round() as u8, b.round() as u8)
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::Figure;
 
 /// Pixels of a PNG file for each pixel of the figure: sharp on paper and on dense screens.
+#[cfg(feature = "png")]
 const FILE_SCALE: f64 = 2.0;
 
 /// A kind of picture file.

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Scale, full_label};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle};
-use super::colour::viridis;
+use super::colour::{blue_red, viridis};
 use super::text::width_px;
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -20,7 +20,7 @@ pub struct HeatMap {
     pub y: Vec<f64>,
     /// Values, one row of cells per ordinate; missing or not finite ones stay grey.
     pub rows: Vec<Vec<f64>>,
-    /// What the colour stands for, with unit and limits.
+    /// What the colour stands for, with unit and limits; limits symmetric about zero give colours that part there.
     pub value: Axis,
 }
 
@@ -37,6 +37,14 @@ impl HeatMap {
         Scale::new(&self.value, extent, 0.0, true)
     }
 
+    /// Viridis; where the limits lie symmetrically about zero, blue for what is below and red for what is above.
+    fn shade(&self, fraction: f64) -> RGBColor {
+        match self.value.limits {
+            Some((low, high)) if low == -high && !self.value.logarithmic => blue_red(fraction),
+            _ => viridis(fraction),
+        }
+    }
+
     /// Draws the cells; `place` maps a pair of values to the picture.
     pub(super) fn draw(
         &self,
@@ -50,7 +58,7 @@ impl HeatMap {
             for (i, column) in columns.windows(2).enumerate() {
                 let value = self.rows.get(j).and_then(|r| r.get(i)).copied().unwrap_or(f64::NAN);
                 let known = super::axis::drawable(value, self.value.logarithmic);
-                let colour = if known { viridis(scale.fraction(value)) } else { RGBColor(215, 215, 215) };
+                let colour = if known { self.shade(scale.fraction(value)) } else { RGBColor(190, 190, 190) };
                 let ((left, bottom), (right, top)) = (place(column[0], line[0]), place(column[1], line[1]));
                 // half a pixel under the next cell, which is drawn later: no seams
                 let cell = Rectangle {
@@ -75,7 +83,7 @@ impl HeatMap {
         for k in 0..shades {
             let at = |k: usize| bar.bottom - bar.height() * k as f64 / shades as f64;
             let shade = Rectangle { top: (at(k + 1) - 0.5).max(bar.top), bottom: at(k), ..bar };
-            canvas.fill(&shade, viridis((k as f64 + 0.5) / shades as f64))?;
+            canvas.fill(&shade, self.shade((k as f64 + 0.5) / shades as f64))?;
         }
         canvas.frame(&bar, Pen::new(text.colour, 0.7))?;
         let (ticks, exponent) = scale.ticks_up(bar.height(), text.size_px);

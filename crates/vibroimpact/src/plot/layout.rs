@@ -128,9 +128,10 @@ pub(super) fn draw(figure: &Figure) -> io::Result<String> {
     let width = if figure.width_px.is_finite() { figure.width_px.clamp(200.0, 4000.0) } else { 760.0 };
     let rows: Vec<Vec<Plan>> = figure.rows.iter().map(|row| row.iter().map(Plan::new).collect()).collect();
 
-    // one legend for all panels if each that has one has the same
+    // one legend for all panels if each that has one has the same; beside a map, a legend stays with its panel
     let with_legend: Vec<Vec<Entry>> = figure.rows.iter().flatten().map(entries).filter(|e| !e.is_empty()).collect();
-    let shared = with_legend.first().filter(|first| with_legend.iter().all(|e| same(e, first)));
+    let lone = with_legend.len() == 1 && figure.rows.iter().flatten().any(|panel| panel.heat.is_some());
+    let shared = with_legend.first().filter(|first| !lone && with_legend.iter().all(|e| same(e, first)));
     let inner = width - 2.0 * EDGE_PX;
     let lines_px = |e: &[Entry], width: f64| LEGEND_LINE_PX * legend_lines(e, width).len() as f64;
 
@@ -139,7 +140,7 @@ pub(super) fn draw(figure: &Figure) -> io::Result<String> {
     let mut y = EDGE_PX + title_px;
     let shared_top = y;
     if let Some(entries) = shared {
-        y += lines_px(entries, inner) + 4.0;
+        y += lines_px(entries, inner) + 8.0;
     }
     let mut placed = Vec::new();
     for row in &rows {

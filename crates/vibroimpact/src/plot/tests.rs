@@ -1,5 +1,5 @@
 use super::axis::{Axis, Scale, full_label};
-use super::text::{fixed, superscript, width_px};
+use super::text::{fixed, superscript, width_px, wrapped};
 use super::*;
 
 /// The coordinates of every polyline of a picture.
@@ -49,6 +49,9 @@ fn every_kind_of_mark_is_drawn_the_same_each_time() {
             .with(Series::stem(&x, &y, Marker::Dot))
             .with(Series::band(&x, &y, &[4.0, 4.0, 4.0]))
             .with(Series::error_bars(&x, &y, &[0.1, 0.2, 0.3], Marker::Dot))
+            .with(Series::level_error_bars(&x, &y, &[0.1, 0.2, 0.3], Marker::Dot).label("level"))
+            .with(Series::spans(&x, &[1.5, 2.0, 9.0]).label("spans"))
+            .with(Series::labels(&x, &y, ["a".to_owned(), "b".to_owned(), "c".to_owned()]))
             .with(Series::vertical_rule(2.0))
             .with(Series::horizontal_rule(2.0));
         let map = HeatMap::new(&x, &y, vec![vec![1.0, 2.0, f64::NAN]; 2], Axis::new("e"));
@@ -79,6 +82,9 @@ fn unusual_data_gives_a_sound_picture() {
                 .with(Series::points(&[a, 1.0, b], &[b, a, 2.0], Marker::Dot))
                 .with(Series::band(&[a, 1.0, b], &[b, a, 2.0], &[a, a, b]))
                 .with(Series::error_bars(&[a, 1.0], &[b, 2.0], &[a, b], Marker::Dot))
+                .with(Series::level_error_bars(&[a, 1.0], &[b, 2.0], &[a, b], Marker::Dot))
+                .with(Series::spans(&[a, 1.0, b], &[b, a, 2.0]))
+                .with(Series::labels(&[a, 1.0, b], &[b, a, 2.0], (0..3).map(|i| i.to_string())).opacity(a))
                 .with(Series::vertical_rule(a))
                 .with(Series::horizontal_rule(b))
                 .height(a);
@@ -165,11 +171,125 @@ fn panels_with_the_same_legend_share_it() {
 }
 
 #[test]
-fn the_file_holds_the_picture() {
+fn units_take_prefixes_where_they_have_them() {
+    let label = |unit: &str, low: f64, high: f64| {
+        let axis = Axis::new("q").unit(unit).limits(low, high);
+        let (ticks, exponent) = Scale::new(&axis, None, 0.0, true).ticks_up(190.0, 11.0);
+        (full_label(&axis, exponent), ticks.last().unwrap().1.clone())
+    };
+    assert_eq!(label("N", 0.0, 2000.0), ("q (kN)".into(), "2.0".into()));
+    assert_eq!(label("s", 0.0, 0.03), ("q (ms)".into(), "30".into()));
+    assert_eq!(label("m", -0.8, 0.2), ("q (m)".into(), "0.2".into()));
+    assert_eq!(label("m/s", 0.0, 2e-5), ("q (µm/s)".into(), "20".into()));
+    assert_eq!(label("N", 0.0, 2e24), ("q (10²⁴ N)".into(), "2.0".into()));
+    assert_eq!(label("kg^-1/2", 0.0, 2e6), ("q (10⁶ kg^-1/2)".into(), "2.0".into()));
+    assert_eq!(label("", 0.0, 2e6), ("q (10⁶)".into(), "2.0".into()));
+}
+
+#[test]
+fn labels_that_would_overlap_are_left_out_and_titles_are_broken() {
+    let x: Vec<f64> = (0..400).map(f64::from).collect();
+    let panel = Panel::new(Axis::new("x"), Axis::new("y")).with(Series::labels(
+        &x,
+        &vec![1.0; 400],
+        (0..400).map(|i| format!("n{i}")),
+    ));
+    let svg = Figure::new("word ".repeat(60)).row([panel]).svg().unwrap();
+    let drawn = svg.lines().filter(|line| line.starts_with('n')).count();
+    assert!((5..60).contains(&drawn), "{drawn}");
+    assert!(wrapped(&"word ".repeat(60), 14.0, 740.0).len() > 1);
+    assert_eq!(wrapped("two\nlines", 14.0, 740.0), ["two", "lines"]);
+    assert_eq!(wrapped("unbreakable", 14.0, 1.0), ["unbreakable"]);
+    assert!(wrapped(" ", 14.0, 740.0).is_empty());
+}
+
+/// Width, height and pixels (red, green, blue, alpha) of a PNG file.
+#[cfg(feature = "png")]
+fn decoded(png: &[u8]) -> (u32, u32, Vec<[u8; 4]>) {
+    let picture = resvg::tiny_skia::Pixmap::decode_png(png).unwrap();
+    let pixels = picture.pixels().iter().map(|p| [p.red(), p.green(), p.blue(), p.alpha()]).collect();
+    (picture.width(), picture.height(), pixels)
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn a_png_has_the_size_asked_for_and_shows_lines_and_text() {
+    let figure = |title: &str| {
+        let axes = Panel::new(Axis::new("x"), Axis::new("y"));
+        let panel = axes.with(Series::line(&[0.0, 1.0], &[0.0, 1.0]).colour(Colour::Vermilion));
+        Figure::new(title).row([panel])
+    };
+    let png = figure("Σ µ ⁻¹ é").png(1.5).unwrap();
+    assert_eq!(png, figure("Σ µ ⁻¹ é").png(1.5).unwrap());
+    let (width, height, pixels) = decoded(&png);
+    assert_eq!(width, 1140);
+    assert!(height > 300 && pixels.iter().all(|p| p[3] == 255));
+    assert!(pixels.contains(&[255, 255, 255, 255]) && pixels.contains(&[213, 94, 0, 255]));
+    // the title is ink where the figure with another title, as high and as wide, has less
+    let ink = |title: &str| {
+        let (width, _, pixels) = decoded(&figure(title).png(1.5).unwrap());
+        pixels[..36 * width as usize].iter().filter(|p| p[0] < 128).count()
+    };
+    for glyph in ["A", "Σ", "µ", "⁻¹", "é", "−", "×", "±", "²", "√", "δ"] {
+        assert!(ink(&format!("A{glyph}")) > ink("A"), "{glyph}");
+        // a box stands for a glyph that is missing
+        let missing = ink("A\u{e000}");
+        assert!(ink(&format!("A{glyph}")) != missing, "{glyph}");
+    }
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn pngs_of_impossible_size_are_refused() {
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9, 1e-9] {
+        assert_eq!(line(&[0.0], &[0.0]).png(scale).unwrap_err().kind(), std::io::ErrorKind::InvalidInput, "{scale}");
+    }
+}
+
+#[test]
+fn the_file_holds_the_picture_in_the_format_of_its_name() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("line.svg");
     let figure = line(&[0.0, 1.0], &[0.0, 1.0]);
+    let path = folder.path().join("made/line.svg");
     figure.write(&path).unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), figure.svg().unwrap());
-    assert!(figure.write(&folder.path().join("missing/line.svg")).is_err());
+    #[cfg(feature = "png")]
+    {
+        figure.write(&folder.path().join("line.PNG")).unwrap();
+        assert_eq!(std::fs::read(folder.path().join("line.PNG")).unwrap(), figure.png(2.0).unwrap());
+    }
+    for name in ["line.jpg", "line", "svg", ".svg", "line.svg.gz"] {
+        let error = figure.write(&folder.path().join(name)).unwrap_err();
+        assert_eq!(error.kind(), std::io::ErrorKind::InvalidInput, "{name}");
+        assert!(!folder.path().join(name).exists());
+    }
+    assert!(figure.write(&path.join("line.svg")).is_err());
+}
+
+#[test]
+fn a_piece_of_a_decade_still_has_ticks() {
+    for (low, high) in [(1050.0, 4900.0), (105.0, 180.0), (0.95, 0.98), (1e-7, 1.00001e-7), (3.0, 4.0)] {
+        let axis = Axis::new("x").log().limits(low, high);
+        let (ticks, exponent) = Scale::new(&axis, None, 0.0, true).ticks_along(300.0, 11.0);
+        let labelled: Vec<_> = ticks.iter().filter(|tick| !tick.1.is_empty()).collect();
+        assert!(labelled.len() >= 2, "{low} to {high}: {ticks:?}");
+        for (measure, text) in labelled {
+            if exponent != 0 {
+                let value: f64 = text.parse().unwrap();
+                let at = 10f64.powf(*measure);
+                assert!((value * 10f64.powi(exponent) / at - 1.0).abs() < 1e-3, "{text} at {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_map_about_zero_takes_colours_that_part_there() {
+    let svg = |low: f64, high: f64| {
+        let map = HeatMap::new(&[0.0, 1.0], &[0.0], vec![vec![-1.0, 1.0]], Axis::new("e").limits(low, high));
+        Figure::new("").row([Panel::new(Axis::new("x"), Axis::new("y")).map(map)]).svg().unwrap()
+    };
+    let [blue, red] = ["#2166AC", "#B2182B"];
+    assert!(svg(-1.0, 1.0).contains(blue) && svg(-1.0, 1.0).contains(red));
+    assert!(!svg(-1.0, 2.0).contains(blue) && !svg(-1.0, 2.0).contains(red));
 }

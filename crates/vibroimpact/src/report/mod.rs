@@ -140,8 +140,10 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut name = path.file_name().ok_or_else(|| io::Error::other("a file needs a name"))?.to_os_string();
     name.push(".part");
     let part = path.with_file_name(name);
-    fs::write(&part, bytes)?;
-    fs::rename(&part, path)
+    fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).inspect_err(|_| {
+        // what is left of an attempt is of no use; that it could not be removed is less than why it failed
+        let _ = fs::remove_file(&part);
+    })
 }
 
 /// Text from outside as Markdown that shows it as it stands, in one line.

@@ -85,3 +85,18 @@ fn files_are_written_whole() {
     assert!(names.iter().all(|n| !n.to_string_lossy().ends_with(".part")));
     assert!(write_whole(Path::new("/"), b"x").is_err());
 }
+
+#[test]
+fn text_from_outside_stays_text() {
+    let hostile =
+        "![x](http://evil/a.png) <img src=//evil> `a` [l](http://evil)\n# h | c ~~~ ``` ````\n\n<script>1</script>";
+    let mut report = Report::new(literal(hostile));
+    report.text(&literal(hostile));
+    report.code(hostile);
+    let html = report.html();
+    for tag in ["<img", "<a ", "<script", "<h1>h", "<h2"] {
+        assert!(!html.contains(tag), "{tag} in {html}");
+    }
+    assert!(html.contains("![x](http://evil/a.png) &lt;img src=//evil&gt; `a`"));
+    assert_eq!(html.matches("<pre>").count(), 1);
+}

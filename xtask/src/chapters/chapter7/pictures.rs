@@ -64,7 +64,8 @@ pub(super) struct Curve<'a> {
 /// One panel a ball: restitution along the beam, the table in red and the curves over it.
 pub(super) fn by_ball(title: &str, data: &Dataset, curves: &[Curve]) -> Figure {
     let balls = &data.table.balls;
-    let per_row = 3;
+    // full rows, so that panels stand under each other
+    let per_row = [3, 4, 2].into_iter().find(|n| balls.len() % n == 0).unwrap_or(3);
     let panel = |(j, ball): (usize, &crate::chapters::impact::Ball)| {
         let of_ball: Vec<usize> = (0..data.rows.len()).filter(|&i| data.rows[i].mass_kg == ball.mass_kg).collect();
         let b: Vec<f64> = of_ball.iter().map(|&i| data.rows[i].location_m).collect();

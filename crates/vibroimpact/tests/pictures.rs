@@ -1,0 +1,154 @@
+//! Pictures and reports as the program writes them.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes");
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn scene(name: &str) -> String {
+    format!("{SCENES}/{name}.json")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn simulate_draws_and_reports_every_kind_of_scene() {
+    for name in ["pinned-beam-small-ball", "measured-modes", "linear-stop", "infinite-beam", "infinite-plate"] {
+        let folder = tempfile::tempdir().unwrap();
+        let arguments = ["simulate", &scene(name), "--plot", "a/b.svg", "--report", "r.html"];
+        let printed = stdout(&run(folder.path(), &arguments));
+        assert!(printed.contains("wrote a/b.svg") && printed.contains("wrote r.html"), "{printed}");
+        let svg = fs::read_to_string(folder.path().join("a/b.svg")).unwrap();
+        for part in ["displacement (", "contact force (", "structure", "striker", "<text"] {
+            assert!(svg.contains(part), "{part} in the picture of {name}");
+        }
+        let html = fs::read_to_string(folder.path().join("r.html")).unwrap();
+        for part in ["<svg", "How to repeat this", "Contacts", "What was modelled", env!("CARGO_PKG_VERSION")] {
+            assert!(html.contains(part), "{part} in the report of {name}");
+        }
+        assert_eq!(names(folder.path()), ["a", "r.html"]);
+        assert_eq!(names(&folder.path().join("a")), ["b.svg"]);
+        // the same again
+        stdout(&run(folder.path(), &arguments));
+        assert_eq!(fs::read_to_string(folder.path().join("a/b.svg")).unwrap(), svg);
+        assert_eq!(fs::read_to_string(folder.path().join("r.html")).unwrap(), html);
+    }
+}
+
+#[test]
+fn a_report_stands_alone_and_escapes_what_the_scene_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(scene("linear-stop")).unwrap();
+    let mut hostile: serde_json::Value = serde_json::from_str(&text).unwrap();
+    hostile["description"] = "<script>alert(1)</script> ![x](http://evil/x.png) ``` | <a href='//evil'>b</a>".into();
+    fs::write(folder.path().join("s.json"), hostile.to_string()).unwrap();
+    stdout(&run(folder.path(), &["simulate", "s.json", "--json", "--report", "r.HTML"]));
+    let html = fs::read_to_string(folder.path().join("r.HTML")).unwrap();
+    for tag in ["<script", "<img", "<a ", "<link", "@import", "url(", "<iframe"] {
+        assert!(!html.contains(tag), "{tag}");
+    }
+    assert!(html.contains("&lt;script&gt;alert(1)&lt;/script&gt; ![x](http://evil/x.png) ```"));
+    // nothing is fetched: no address but the name of SVG's language and that in the description
+    let addresses = html.matches("http").count();
+    assert_eq!(addresses, html.matches("http://www.w3.org/2000/svg").count() + html.matches("http://evil").count());
+    assert!(!html.contains("src=") && html.matches("href=").count() == html.matches("href='//evil'").count());
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn png_files_are_png() {
+    let folder = tempfile::tempdir().unwrap();
+    stdout(&run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "a.png"]));
+    stdout(&run(folder.path(), &["modes", &scene("stepped-cantilever"), "--count", "6", "--plot", "m.png"]));
+    for name in ["a.png", "m.png"] {
+        let png = fs::read(folder.path().join(name)).unwrap();
+        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000);
+        assert_eq!(u32::from_be_bytes([png[16], png[17], png[18], png[19]]), 1520);
+    }
+}
+
+#[test]
+fn modes_are_drawn_along_a_beam_and_as_stems() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, count: &str| {
+        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg"]));
+        fs::read_to_string(folder.path().join("m.svg")).unwrap()
+    };
+    let beam = draw("stepped-cantilever", "12");
+    assert!(beam.contains("place along the beam (m)") && beam.contains("frequency (kHz)"));
+    assert!(!draw("measured-modes", "2").contains("along the beam"));
+    assert!(draw("stepped-cantilever", "0").contains("no data"));
+}
+
+#[test]
+fn other_endings_are_refused_before_anything_is_solved() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, allowed) in [
+        (vec!["simulate", "missing.json", "--plot", "a.jpg"], ".svg"),
+        (vec!["simulate", "missing.json", "--plot", "svg"], ".svg"),
+        (vec!["simulate", "missing.json", "--report", "a.pdf"], ".html"),
+        (vec!["modes", "missing.json", "--count", "3", "--plot", "a"], ".svg"),
+        (vec!["infinite-beam", "--s", "15", "--plot", "a.gif"], ".svg"),
+    ] {
+        let output = run(folder.path(), &arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        // the ending is found first: the missing scene is not yet a fault
+        assert!(message.contains(allowed) && !message.contains("missing.json"), "{message}");
+        assert!(output.stdout.is_empty() && names(folder.path()).is_empty());
+    }
+}
+
+#[test]
+fn a_place_that_cannot_be_written_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "").unwrap();
+    let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "file/a.svg"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to file/a.svg"));
+    assert_eq!(names(folder.path()), ["file"]);
+    // a folder stands where the picture should go
+    fs::create_dir(folder.path().join("a.svg")).unwrap();
+    let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "a.svg"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(names(folder.path()), ["a.svg", "file"]);
+}
+
+#[test]
+fn completions_and_manual_name_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = stdout(&run(folder.path(), &["completions", shell]));
+        for word in ["simulate", "modes", "infinite-beam", "--plot", "turning-points"] {
+            let word = if shell == "fish" { word.trim_start_matches("--") } else { word };
+            assert!(script.contains(word), "{word} for {shell}");
+        }
+    }
+    assert_eq!(run(folder.path(), &["completions", "cmd"]).status.code(), Some(2));
+    let manual = stdout(&run(folder.path(), &["manual"]));
+    assert!(manual.contains(".TH vibroimpact") && manual.contains("simulate"));
+}
+
+#[test]
+fn every_command_shows_examples() {
+    let folder = tempfile::tempdir().unwrap();
+    for command in ["simulate", "modes", "emoc", "fit", "infinite-beam", "completions", "manual"] {
+        let help = stdout(&run(folder.path(), &[command, "--help"]));
+        assert!(help.contains(&format!("  vibroimpact {command}")), "{command}");
+    }
+}
