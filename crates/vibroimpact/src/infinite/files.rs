@@ -158,7 +158,7 @@ pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>) -> Fig
                 .colour(Colour::Vermilion),
         )
         .with(line(&|s| -units.displacement * s.state.body_displacement).label("striker").colour(Colour::Blue));
-    let velocity = panel("striker's velocity", speed_unit, 110.0)
+    let velocity = panel("velocity", speed_unit, 110.0)
         .with(Series::horizontal_rule(0.0))
         .with(line(&|s| -units.speed * s.state.body_speed).colour(Colour::Blue));
     let force = column(&|sample| units.force * sample.state.force);

@@ -54,7 +54,7 @@ pub fn impact(title: &str, summary: &Summary, history: &History<Law>) -> Figure 
     let displacement = panel("displacement", "m", 130.0)
         .with(Series::line(&time, &column(|s| s.structure_displacement_m)).label("structure").colour(Colour::Vermilion))
         .with(Series::line(&time, &column(|s| s.striker_displacement_m)).label("striker").colour(Colour::Blue));
-    let velocity = panel("striker's velocity", "m/s", 100.0)
+    let velocity = panel("velocity", "m/s", 100.0)
         .with(Series::horizontal_rule(0.0))
         .with(Series::line(&time, &column(|s| s.striker_velocity_m_s)).colour(Colour::Blue));
     let peaks: Vec<Peak> = contacts.iter().map(|contact| peak(contact, &samples)).collect();

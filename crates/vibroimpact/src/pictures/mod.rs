@@ -11,13 +11,10 @@ pub use comparison::comparison;
 pub use impact::impact;
 pub use modes::modes;
 
-use crate::plot::{Axis, Marker, Panel, Series};
+use crate::plot::{Axis, Colour, Marker, Panel, Series};
 
-/// Contacts are numbered in a picture as far as their numbers find room.
-pub(crate) fn numbers(count: usize) -> impl Iterator<Item = String> {
-    (1..=count).map(|number| number.to_string())
-}
-
+/// Contacts are numbered in a picture up to this many; more numbers would hide what they name.
+const NUMBERED: usize = 20;
 /// Peaks that differ by more than this ratio are drawn on a logarithmic axis.
 const WIDE_PEAKS: f64 = 100.0;
 
@@ -27,7 +24,7 @@ pub(crate) struct Peak {
     pub force: f64,
 }
 
-/// The contact force with every contact's peak marked and numbered. Weak contacts after strong ones show, because the
+/// The contact force with every contact's peak marked, and numbered if they are few. Weak contacts after strong ones show, because the
 /// axis turns logarithmic where they would not.
 pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f64], peaks: &[Peak]) -> Panel {
     let times: Vec<f64> = peaks.iter().map(|peak| peak.time).collect();
@@ -41,9 +38,10 @@ pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f6
         (false, true) => axis.limits(0.0, 1.2 * high),
         (false, false) => axis,
     };
-    Panel::new(time_axis, axis)
+    let few = peaks.len() <= NUMBERED;
+    let panel = Panel::new(time_axis, axis)
         .height(140.0)
-        .with(Series::line(time, force).colour(crate::plot::Colour::Black).line_width(1.0))
-        .with(Series::points(&times, &forces, Marker::Dot).colour(crate::plot::Colour::Vermilion))
-        .with(Series::labels(&times, &forces, numbers(peaks.len())))
+        .with(Series::line(time, force).colour(Colour::Black).line_width(if few { 1.0 } else { 0.5 }))
+        .with(Series::points(&times, &forces, Marker::Dot).colour(Colour::Vermilion));
+    if few { panel.with(Series::labels(&times, &forces, (1..=peaks.len()).map(|n| n.to_string()))) } else { panel }
 }

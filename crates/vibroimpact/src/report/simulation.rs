@@ -10,6 +10,9 @@ use crate::scene::{Scene, Structure};
 use crate::summary::Summary;
 use crate::text::{quantity, restitution};
 
+/// Under the picture of an impact.
+const PICTURE_CAPTION: &str =
+    "Grey stripes are the times in contact; the velocity is the striker's; numbers are those of the contacts below.";
 /// Contacts in the table; the rest are counted.
 const LISTED: usize = 200;
 
@@ -30,11 +33,7 @@ pub fn of_impact(
     report.heading("What was modelled, and why");
     report.list(modelled);
     report.heading("The impact");
-    report.figure(
-        "impact",
-        figure,
-        "Grey stripes are the times in contact; numbers are those of the contacts below.",
-    )?;
+    report.figure("impact", figure, PICTURE_CAPTION)?;
     report.heading("Contacts");
     let rows: Vec<Vec<String>> = summary
         .sub_impacts
@@ -97,11 +96,7 @@ pub fn of_infinite_impact(
             .to_owned(),
     ]);
     report.heading("The impact");
-    report.figure(
-        "impact",
-        figure,
-        "Grey stripes are the times in contact; numbers are those of the contacts below.",
-    )?;
+    report.figure("impact", figure, PICTURE_CAPTION)?;
     report.heading("Contacts");
     let open = |value: Option<String>| value.unwrap_or_else(|| "does not end".to_owned());
     let rows: Vec<Vec<String>> = match &summary.physical {
