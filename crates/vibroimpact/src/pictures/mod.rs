@@ -24,8 +24,8 @@ pub(crate) struct Peak {
     pub force: f64,
 }
 
-/// The contact force with every contact's peak marked, and numbered if they are few. Weak contacts after strong ones show, because the
-/// axis turns logarithmic where they would not.
+/// The contact force with every contact's peak marked, and numbered if they are few. Weak contacts after strong ones
+/// show, because the axis turns logarithmic where they would not.
 pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f64], peaks: &[Peak]) -> Panel {
     let times: Vec<f64> = peaks.iter().map(|peak| peak.time).collect();
     let forces: Vec<f64> = peaks.iter().map(|peak| peak.force).collect();
