@@ -9,15 +9,16 @@ use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 use serde_json::json;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::net::{self, FitSummary};
+use vibroimpact::scene::schema;
 use vibroimpact::summary::Summary;
 use vibroimpact::{InvalidInput, Scene, SceneError, text};
 
-const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, and its name says which:
+const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
 
   { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
                    "segments": [ { "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
@@ -72,6 +73,12 @@ Other columns are ignored. The scene gives the beam; masses and places come from
 needed, and they should cover light and heavy strikers. The search starts from many points, because the sum of squares
 has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
 a law with three parameters are not: take them as a lower bound on the uncertainty.";
+
+const SCHEMA_EXAMPLES: &str = "Example:
+  vibroimpact schema scene > scene.schema.json
+
+A scene that says { \"$schema\": \"scene.schema.json\", ... } is then completed and checked by editors that know JSON
+Schema.";
 
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]
@@ -146,6 +153,20 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Print the JSON Schema of a kind of input file, for editors
+    #[command(after_help = SCHEMA_EXAMPLES)]
+    Schema {
+        /// The kind of file
+        #[arg(value_enum, default_value_t = InputFile::Scene)]
+        of: InputFile,
+    },
+}
+
+/// Files that come in and have a schema.
+#[derive(Clone, Copy, ValueEnum)]
+enum InputFile {
+    /// A scene
+    Scene,
 }
 
 fn main() -> ExitCode {
@@ -217,6 +238,7 @@ fn run(command: Command) -> Result<(), Failure> {
             if json { export::json(&fit)? } else { text::fit(&fit) }
         }
         Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
+        Command::Schema { of: InputFile::Scene } => schema::text(&schema::of_scenes()),
     };
     print(&printed)
 }
