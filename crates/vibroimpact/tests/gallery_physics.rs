@@ -78,9 +78,16 @@ fn a_plate_by_its_modes_has_the_shapes_and_the_compliance_of_the_closed_forms() 
         assert!(((kept + structure.residual_compliance_m_n) / whole - 1.0).abs() < 2e-5);
         assert!(structure.residual_compliance_m_n > 0.01 * whole);
     }
-    // the middle yields most, and keeps most of the energy
-    let at = |point: &str| restitution(&vibroimpact::Scene { location: Some(point.to_owned()), ..scene.clone() });
-    assert!(at("centre") < at("quarter"));
+    // until its edges answer, the plate is Zener's infinite one
+    let mut infinite = named("infinite-plate");
+    let Structure::InfinitePlate(ref mut plate) = infinite.structure else { panic!() };
+    plate.thickness_m = thickness;
+    let impact = infinite.infinite_impact().unwrap();
+    let solution = infinite::solve(impact.structure, impact.groups().unwrap().s, &Default::default()).unwrap();
+    for point in ["centre", "quarter"] {
+        let finite = vibroimpact::Scene { location: Some(point.to_owned()), ..scene.clone() };
+        assert!((restitution(&finite) - solution.rebound_ratio().unwrap()).abs() < 0.015, "{point}");
+    }
 }
 
 #[test]
@@ -93,9 +100,7 @@ fn the_bat_is_the_beam_that_its_table_was_made_from_and_has_a_sweet_spot() {
     };
     let modes = bat.to_beam().unwrap().modes(8).unwrap();
     let mut scene = named("baseball-bat");
-    for (point, x) in
-        [("barrel_end", 0.0), ("at_50_mm", 0.05), ("at_100_mm", 0.1), ("at_150_mm", 0.15), ("at_190_mm", 0.19)]
-    {
+    for (point, x) in [("barrel_end", 0.0), ("50_mm", 0.05), ("100_mm", 0.1), ("150_mm", 0.15), ("190_mm", 0.19)] {
         scene.location = Some(point.to_owned());
         let listed = scene.structure().unwrap().modes;
         let shapes = modes.shapes_at(x).unwrap();
@@ -120,8 +125,8 @@ fn the_bat_is_the_beam_that_its_table_was_made_from_and_has_a_sweet_spot() {
         let energy = scene.impact().unwrap().record().unwrap().1.energy_ledger();
         energy.modes_j[2..].iter().sum::<f64>() / energy.initial_j
     };
-    let near = vibration("at_150_mm");
-    assert!(near < 0.1 * vibration("barrel_end") && near < vibration("at_50_mm"));
+    let near = vibration("150_mm");
+    assert!(near < 0.1 * vibration("barrel_end") && near < vibration("50_mm"));
 }
 
 #[test]

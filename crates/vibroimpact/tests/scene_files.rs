@@ -76,7 +76,7 @@ fn a_fault_in_toml_is_located() {
             "[structure]\nkind = 'beam'\nends = []\nsegments = [{ length_m = -inf }]",
             "structure.segments[0].length_m = -inf",
         ),
-        ("[[striker]]", "contact is missing"),
+        ("[[striker]]", "striker = [{}] is not allowed"),
         ("location_m = 1979-05-27", "location_m = \"1979-05-27\" is not allowed"),
         ("é = = 1", "line 1, column"),
         ("", "is missing"),
@@ -409,4 +409,33 @@ fn a_scene_that_is_too_large_or_no_text_is_refused() {
     fs::File::create(&path).unwrap().set_len(65 << 20).unwrap();
     assert!(Scene::read(&path).unwrap_err().to_string().contains("larger than 64 MiB"));
     assert!(datasets("scenes/README.md").exists());
+}
+
+#[test]
+fn the_program_reads_every_kind_of_file_and_prints_the_schema() {
+    let run = |arguments: &[&std::ffi::OsStr]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_vibroimpact")).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(run(&["schema".as_ref()]).1, schema::text(&schema::of_scenes()));
+    for (file, headline) in [
+        (
+            "stepped-shaft.toml",
+            "263.1 g striker at 2.000 m/s on a pinned-pinned beam of 3 segments, 700.0 mm, at 350.0 mm",
+        ),
+        ("baseball-bat.json", "145.0 g striker at 40.00 m/s on a structure given by its modes, at 150_mm"),
+        ("sdnl32.json", "immovable stop before a pinned-free beam, 783.0 mm, at 783.0 mm; linear-spring contact"),
+        ("dropped-rod.json", "rod of 200.0 mm, 12.70 mm across, dropped at 1.000 m/s on a floor, inclined at 45°"),
+    ] {
+        let (code, printed, told) = run(&["simulate".as_ref(), datasets("scenes").join(file).as_os_str()]);
+        assert_eq!(code, Some(0), "{told}");
+        assert!(printed.starts_with(headline), "{printed}");
+        assert!(!printed.contains("NaN") && !printed.contains("inf "), "{printed}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let newer = folder.path().join("newer.toml");
+    fs::write(&newer, "version = 2\n").unwrap();
+    let (code, _, told) = run(&["simulate".as_ref(), newer.as_os_str()]);
+    assert_eq!(code, Some(2));
+    assert!(told.starts_with("error: version = 2 is not allowed"), "{told}");
 }

@@ -49,7 +49,7 @@ fn refine(schema: &mut Schema) {
         }
     }
     if properties.contains_key("law") {
-        schema.insert("additionalProperties".to_owned(), false.into());
+        schema.insert("unevaluatedProperties".to_owned(), false.into());
     }
 }
 
