@@ -30,6 +30,7 @@
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, the picture as SVG |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
+//! | [`sweep`] | many scenes that differ in some fields: grids, lists, ranges, random draws |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
@@ -44,6 +45,7 @@ pub mod plot;
 pub mod report;
 pub mod scene;
 pub mod summary;
+pub mod sweep;
 pub mod text;
 
 pub use beam_modes;

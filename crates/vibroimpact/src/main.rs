@@ -1,9 +1,10 @@
 //! The command line: scene files in, results out.
 //!
 //! Exit codes: 0 for a result (sustained contact and a limit reached among them), 2 for input that cannot be used,
-//! 1 for results that cannot be written.
+//! 1 for results that cannot be written, 130 for a sweep that was asked to stop.
 
 mod infinite_beam;
+mod sweep_command;
 
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::net::{self, FitSummary};
 use vibroimpact::summary::Summary;
+use vibroimpact::sweep::SweepError;
 use vibroimpact::{InvalidInput, Scene, SceneError, text};
 
 const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, and its name says which:
@@ -146,7 +148,16 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
+    #[command(after_help = sweep_command::SWEEP_EXAMPLES)]
+    Sweep(sweep_command::SweepArguments),
+    /// Join the parts of a sweep, and prove that none is missing
+    #[command(after_help = sweep_command::MERGE_EXAMPLES)]
+    Merge(sweep_command::MergeArguments),
 }
+
+/// Exit code of a sweep that was asked to stop.
+const STOPPED: u8 = 130;
 
 fn main() -> ExitCode {
     match run(Cli::parse().command) {
@@ -155,8 +166,12 @@ fn main() -> ExitCode {
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("error: {failure}");
+            let of_sweep = failure.downcast_ref::<SweepError>();
+            if matches!(of_sweep, Some(SweepError::Stopped { .. })) {
+                return ExitCode::from(STOPPED);
+            }
             let of_input = failure.is::<SceneError>() || failure.is::<InvalidInput>();
-            ExitCode::from(if of_input { 2 } else { 1 })
+            ExitCode::from(if of_input || of_sweep.is_some_and(SweepError::is_of_input) { 2 } else { 1 })
         }
     }
 }
@@ -217,6 +232,8 @@ fn run(command: Command) -> Result<(), Failure> {
             if json { export::json(&fit)? } else { text::fit(&fit) }
         }
         Command::InfiniteBeam(arguments) => infinite_beam::run(arguments)?,
+        Command::Sweep(arguments) => sweep_command::sweep(arguments)?,
+        Command::Merge(arguments) => sweep_command::merge(arguments)?,
     };
     print(&printed)
 }

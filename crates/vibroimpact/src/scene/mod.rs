@@ -7,7 +7,7 @@ mod contact;
 mod error;
 mod fields;
 mod infinite;
-mod json;
+pub(crate) mod json;
 mod materials;
 mod sets;
 mod striker;
