@@ -207,11 +207,15 @@ impl Sweep {
         Ok(())
     }
 
+    /// The number of the varied field in which a fault stands.
+    fn varies(&self, fault: &InvalidInput) -> Option<usize> {
+        let found = FieldPath::parse(&fault.field)?;
+        self.fields().position(|field| field.holds(&found))
+    }
+
     /// A fault at the first point, under the name of what has to be changed in the sweep file.
     fn blame(&self, fault: InvalidInput) -> InvalidInput {
-        let found = FieldPath::parse(&fault.field);
-        let varied = self.fields().position(|field| found.as_ref().is_some_and(|found| field.holds(found)));
-        match varied {
+        match self.varies(&fault) {
             None => fault.within("scene"),
             Some(i) if fault.allowed.starts_with("no such field") => {
                 let name = format!("{}.field", self.entry(i));
@@ -237,8 +241,11 @@ impl Sweep {
                 Err(fault) => faults.push(fault),
             }
         }
-        match faults.split_first() {
-            Some((first, others)) if others.iter().all(|other| other == first) => Err(self.blame(first.clone())),
+        // a fault of a varied field is one of its value's; what stands fast must be wrong in itself
+        let (varied, fast): (Vec<_>, Vec<_>) = faults.iter().partition(|fault| self.varies(fault).is_some());
+        let judged = if fast.is_empty() { varied } else { fast };
+        match judged.split_first() {
+            Some((first, others)) if others.iter().all(|other| other == first) => Err(self.blame((*first).clone())),
             _ => Ok(()),
         }
     }

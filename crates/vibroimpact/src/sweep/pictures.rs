@@ -22,6 +22,9 @@ const MOST_DOTS: u64 = 4000;
 /// The share of the draws within a band is that between these quantiles.
 const BAND: RangeInclusive<f64> = 0.05..=0.95;
 
+/// A longer description does not fit over a picture.
+const LONGEST_TITLE: usize = 90;
+
 /// What is drawn of one point; not a number where there is none.
 #[derive(Debug, Clone, Copy)]
 struct Drawn {
@@ -223,7 +226,8 @@ impl<'a> Pictures<'a> {
     }
 
     fn title(&self, otherwise: &str) -> String {
-        self.sweep.description.clone().unwrap_or_else(|| otherwise.to_owned())
+        let title = self.sweep.description.as_ref().filter(|text| text.chars().count() <= LONGEST_TITLE);
+        title.map_or(otherwise, String::as_str).to_owned()
     }
 
     fn told_band(&self) -> &'static str {

@@ -36,7 +36,7 @@ fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
         advances += u32::from(now > done);
         done = now;
     }
-    assert!(advances > 1, "killed too early to tell");
+    assert!(advances > 0, "killed too early to tell");
     bench.succeeds(&arguments);
     assert_same(&bench.path("whole"), &bench.path("killed"));
 }
