@@ -155,6 +155,9 @@ pub(super) fn from_tree(canonical: Value) -> Result<Contents, InvalidInput> {
         return Err(InvalidInput::new("scene_file", quote(&name.into()), allowed));
     }
     let scene = file.scene.ok_or_else(|| missing("scene"))?;
+    if !scene.is_object() {
+        return Err(fault("scene", quote(&scene)));
+    }
     let axes = file.vary.into_iter().enumerate().map(|(i, entry)| axis(&format!("vary[{i}]"), entry));
     let axes = axes.collect::<Result<Vec<_>, _>>()?;
     let random = file.random.map(|value| random(&value).map_err(|found| found.within("random"))).transpose()?;

@@ -71,7 +71,10 @@ fn share(world: &SimpleCommunicator, mut bytes: Vec<u8>) -> Vec<u8> {
     let mut length = bytes.len() as u64;
     root.broadcast_into(&mut length);
     bytes.resize(length as usize, 0);
-    root.broadcast_into(&mut bytes[..]);
+    // MPI refuses to send nothing
+    if length > 0 {
+        root.broadcast_into(&mut bytes[..]);
+    }
     bytes
 }
 
@@ -82,8 +85,8 @@ fn work(world: &SimpleCommunicator, stop: &AtomicBool) {
     let tree = serde_json::from_slice(&text).ok();
     let Some(sweep) = tree.and_then(|tree| Sweep::from_value(&tree).ok()) else { return };
     let lead = world.process_at_rank(0);
-    // a message is a chunk's number and its rows; the first is empty, and that after a stop has END as its number
-    let mut message = Vec::new();
+    // a message is a chunk's number and its rows; the first is too short for a number, that after a stop has END as its
+    let mut message = vec![0];
     loop {
         lead.send(&message[..]);
         let (chunk, _) = lead.receive::<u64>();
@@ -117,7 +120,7 @@ fn lead(
     // until every worker has been sent home, whatever happens in between
     while working > 0 {
         match world.any_process().immediate_matched_probe() {
-            Some((message, _)) => {
+            Some(message) => {
                 let (bytes, status) = message.matched_receive_vec::<u8>();
                 if let Some((number, rows)) = bytes.split_first_chunk::<8>() {
                     match u64::from_le_bytes(*number) {

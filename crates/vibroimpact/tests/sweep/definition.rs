@@ -133,7 +133,7 @@ fn a_base_scene_that_is_broken_is_refused() {
     );
     refused(|file| file["scene"]["contact"]["stiffness_n_m1_5"] = json!(-1), "scene.contact.stiffness_n_m1_5 = -1");
     refused(|file| drop(file["scene"].as_object_mut().unwrap().remove("contact")), "scene.contact is missing");
-    refused(|file| file["scene"] = json!(7), "7 is not allowed: a scene is a JSON object");
+    refused(|file| file["scene"] = json!(7), "scene = 7 is not allowed: a scene as an object");
 }
 
 #[test]
