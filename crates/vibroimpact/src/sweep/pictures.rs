@@ -33,6 +33,9 @@ struct Drawn {
     sub_impacts: f64,
 }
 
+/// A quantity of a map, and the axis of its colours.
+type Quantity = (fn(&Drawn) -> f64, Axis);
+
 /// The results that pictures need.
 pub(super) struct Pictures<'a> {
     sweep: &'a Sweep,
@@ -106,7 +109,7 @@ impl<'a> Pictures<'a> {
         let [across, up] = [x, y].map(|axis| label_and_unit(&self.sweep.axes[axis].field).0);
         let mut figure = Figure::new(self.title(&format!("Restitution and sub-impacts over {across} and {up}")));
         let others = self.others(&[x, y]);
-        let quantities: [(fn(&Drawn) -> f64, Axis); 2] = [
+        let quantities: [Quantity; 2] = [
             (|drawn| drawn.restitution, Axis::new("restitution")),
             (|drawn| drawn.sub_impacts, Axis::new("sub-impacts").integers()),
         ];
