@@ -30,6 +30,9 @@ impl Coverage {
     fn note(&mut self, error: f64, stated: f64, what: impl FnOnce() -> String) {
         self.cases += 1;
         self.covered += usize::from(error <= stated);
+        if error > stated {
+            println!("UNCOVERED {:e} {:e}", error, stated);
+        }
         if error / stated > self.worst.0 {
             self.worst = (error / stated, format!("error {error:e}, stated {stated:e}: {}", what()));
         }
