@@ -2,13 +2,13 @@
 
 mod common;
 
-use common::random::{cases, ordinary_damping, ordinary_impact, ordinary_striker};
+use common::random::{Impact, cases, ordinary_damping, ordinary_impact, ordinary_striker};
 use common::{hertz, pinned, runge_kutta, settings};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use vibroimpact_sim::infinite;
-use vibroimpact_sim::modal::{Outcome, Solver};
+use vibroimpact_sim::modal::{Outcome, Settings, Solver};
 
 /// The same row of random values on every machine.
 fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
@@ -30,9 +30,6 @@ impl Coverage {
     fn note(&mut self, error: f64, stated: f64, what: impl FnOnce() -> String) {
         self.cases += 1;
         self.covered += usize::from(error <= stated);
-        if error > stated {
-            println!("UNCOVERED {:e} {:e}", error, stated);
-        }
         if error / stated > self.worst.0 {
             self.worst = (error / stated, format!("error {error:e}, stated {stated:e}: {}", what()));
         }
@@ -45,20 +42,29 @@ impl Coverage {
     }
 }
 
-/// True errors from a solution at 1e-13, whose own uncertainty is taken off.
+/// True errors from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
+/// become that exact, it ends with its limit, and one at 1e-12 takes its place.
 #[test]
 fn the_modal_restitution() {
+    let impacts = draw(ordinary_impact(), 150);
+    let tight = |impact: &Impact, tolerance: f64| {
+        let settings = Settings { max_steps: 20_000, ..settings(tolerance) };
+        let mut solver = Solver::new(&impact.structure).unwrap();
+        let solution = solver.solve(&impact.striker, &impact.law, None, &settings).unwrap();
+        solution.restitution.zip(solution.restitution_uncertainty)
+    };
+    let references: Vec<(f64, f64)> =
+        impacts.iter().filter_map(|impact| tight(impact, 1e-13).or_else(|| tight(impact, 1e-12))).collect();
+    assert_eq!(references.len(), impacts.len());
     for tolerance in [1e-9, 1e-7, 1e-5] {
         let mut coverage = Coverage::default();
-        for impact in draw(ordinary_impact(), 150) {
-            let reference = impact.solve(1e-13);
+        for (impact, (reference, rest)) in impacts.iter().zip(&references) {
             let solution = impact.solve(tolerance);
             assert_eq!(solution.outcome, Outcome::Rebound, "{impact:?}");
-            let error = (solution.restitution.unwrap() - reference.restitution.unwrap()).abs();
-            let beyond = (error - reference.restitution_uncertainty.unwrap()).max(0.0);
+            let beyond = ((solution.restitution.unwrap() - reference).abs() - rest).max(0.0);
             coverage.note(beyond, solution.restitution_uncertainty.unwrap(), || format!("{tolerance:e} {impact:?}"));
         }
-        coverage.assert(150);
+        coverage.assert(impacts.len());
     }
 }
 

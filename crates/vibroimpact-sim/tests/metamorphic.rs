@@ -13,7 +13,7 @@ use common::settings;
 use contact_models::{Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
-use vibroimpact_sim::modal::{Mode, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Outcome, Solution, Solver, Start, Striker, Structure};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -125,20 +125,25 @@ proptest! {
     #[test]
     fn time_reversed(structure in ordinary_structure(Just(0.0)), striker in ordinary_striker(), law in conservative_law()) {
         let mut solver = Solver::new(&structure).unwrap();
-        let there = solver.solve(&striker, &law, None, &settings(1e-12)).unwrap();
-        prop_assume!(there.striker_velocity_m_s > 0.0);
-        // the residual compliance has no state of its own: it is at rest when the surfaces part
-        let rate = there.rate.iter().map(|rate| -rate).collect();
-        let start = Start { amplitude: there.amplitude.clone(), rate, gap_m: 0.0 };
-        let back = Striker { mass_kg: striker.mass_kg, speed_m_s: there.striker_velocity_m_s };
-        let again = solver.solve(&back, &law, Some(&start), &settings(1e-12)).unwrap();
-        let (Some(stated), Some(returned)) = (there.restitution_uncertainty, again.restitution_uncertainty) else {
-            return Err(TestCaseError::fail(format!("{:?}, {:?}", there.outcome, again.outcome)));
+        // there and back again at a tolerance: the speed returned
+        let mut round_trip = |tolerance: f64| {
+            let there = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
+            let rate = there.rate.iter().map(|rate| -rate).collect();
+            let start = Start { amplitude: there.amplitude, rate, gap_m: 0.0 };
+            let back = Striker { mass_kg: striker.mass_kg, speed_m_s: there.striker_velocity_m_s };
+            let again = solver.solve(&back, &law, Some(&start), &settings(tolerance)).unwrap();
+            (there.outcome, there.striker_velocity_m_s, again.outcome, again.striker_velocity_m_s)
         };
-        // either way's error is amplified as the other's is
-        let allowed = striker.speed_m_s * stated + back.speed_m_s * returned;
-        let error = (again.striker_velocity_m_s - striker.speed_m_s).abs();
-        prop_assert!(error <= allowed, "{:e} m/s, stated {:e}", error, allowed);
+        let (there, away, back, returned) = round_trip(1e-12);
+        prop_assert_eq!((there, back), (Outcome::Rebound, Outcome::Rebound));
+        // a structure that outruns a striker never touches it again, whichever way time goes
+        prop_assume!(away > 0.0);
+        // the way back amplifies errors of the whole state, which no stated uncertainty covers: the solver's own
+        // recipe for the round trip, five tolerances and three times the difference to 32 times the tolerance
+        let (.., coarse) = round_trip(3.2e-11);
+        let allowed = 5e-12 * striker.speed_m_s + 3.0 * (coarse - returned).abs();
+        let error = (returned - striker.speed_m_s).abs();
+        prop_assert!(error <= allowed, "{:e} m/s, allowed {:e}", error, allowed);
     }
 
     /// A mode is the same as two of its frequency that share its `phi^2`.
