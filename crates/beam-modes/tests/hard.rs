@@ -97,7 +97,9 @@ fn counts_of_modes() {
     for count in [0, 1, 2, 50] {
         let few = beam.modes(count).unwrap();
         assert_eq!(few.len(), count);
-        assert_eq!(few.omega_rad_s(), &many.omega_rad_s()[..count]);
+        for (x, y) in few.omega_rad_s().iter().zip(many.omega_rad_s()) {
+            assert!((x - y).abs() <= 1e-14 * y, "{count} modes: {x} against {y}");
+        }
     }
     assert!(many.omega_rad_s().windows(2).all(|pair| pair[0] < pair[1]));
     // far up, frequencies follow a uniform beam's: k sum l_i (m_i/EI_i)^(1/4) grows by pi a mode

@@ -43,7 +43,7 @@ impl Coverage {
 }
 
 /// True errors from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
-/// become that exact, it ends with its limit, and one at 1e-12 takes its place.
+/// become that exact, it ends with its limit, and one at 1e-12 or 1e-11 takes its place.
 #[test]
 fn the_modal_restitution() {
     let impacts = draw(ordinary_impact(), 150);
@@ -53,8 +53,16 @@ fn the_modal_restitution() {
         let solution = solver.solve(&impact.striker, &impact.law, None, &settings).unwrap();
         solution.restitution.zip(solution.restitution_uncertainty)
     };
-    let references: Vec<(f64, f64)> =
-        impacts.iter().filter_map(|impact| tight(impact, 1e-13).or_else(|| tight(impact, 1e-12))).collect();
+    let reference = |impact: &Impact| {
+        [1e-13, 1e-12, 1e-11].into_iter().find_map(|tolerance| {
+            let found = tight(impact, tolerance);
+            if found.is_none() {
+                println!("NOREF {tolerance:e} {} {:?} {:?} {}", impact.structure.modes.len(), impact.law, impact.striker, impact.structure.residual_compliance_m_n);
+            }
+            found
+        })
+    };
+    let references: Vec<(f64, f64)> = impacts.iter().filter_map(reference).collect();
     assert_eq!(references.len(), impacts.len());
     for tolerance in [1e-9, 1e-7, 1e-5] {
         let mut coverage = Coverage::default();
