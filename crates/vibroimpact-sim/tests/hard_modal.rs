@@ -236,6 +236,30 @@ fn hysteresis_with_tiny_loops() {
     }
 }
 
+/// Reversals of a law with branches, seen through a residual compliance: the rate of compression is then a quotient of
+/// small differences, and must not be taken for a reversal where it is rounding.
+#[test]
+fn reversals_behind_a_residual_compliance() {
+    let law = Law::from(Hysteretic::new(6608692376.459647, 1.6, 1.4, 0.4, 5e-8).unwrap());
+    let striker = Striker { mass_kg: 2.6387535597869674, speed_m_s: 1.5590651578333043 };
+    for n in [5, 7] {
+        let mut structure = pinned(n, 0.047728347855474716, 0.337);
+        structure.residual_compliance_m_n = 2.9744130805296775e-8;
+        let mut solver = Solver::new(&structure).unwrap();
+        let mut e = |tolerance: f64| {
+            let solution = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
+            assert_eq!(solution.outcome, Outcome::Rebound, "N = {n}, tolerance {tolerance:e}");
+            assert!(solution.counts.contact_steps < 5_000, "N = {n}, tolerance {tolerance:e}: {:?}", solution.counts);
+            (solution.restitution.unwrap(), solution.restitution_uncertainty.unwrap())
+        };
+        let (reference, _) = e(1e-13);
+        for power in 5..=12 {
+            let (value, stated) = e(10f64.powi(-power));
+            assert!((value - reference).abs() <= stated, "N = {n}, 1e-{power}: {value} against {reference}");
+        }
+    }
+}
+
 /// A structure that swings freely and only just reaches an immovable stop.
 #[test]
 fn a_stop_at_the_end_of_a_swing() {
@@ -271,8 +295,12 @@ fn a_stop_at_the_end_of_a_swing() {
 /// Places along the beam between which the number of contacts changes, narrowed down until one contact only grazes.
 #[test]
 fn contacts_that_come_and_go() {
-    let count = |b: f64| run(&pinned(25, 0.02, b), &ball(), &hertz()).sub_impacts.len();
-    let places: Vec<f64> = (0..=40).map(|i| 0.3 + 0.01 * f64::from(i)).collect();
+    let once = Settings { estimate_uncertainty: false, ..settings(1e-9) };
+    let count = |b: f64| {
+        let mut solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
+        solver.solve(&ball(), &hertz(), None, &once).unwrap().sub_impacts.len()
+    };
+    let places: Vec<f64> = (0..=20).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
     let mut found = 0;
     for pair in places.windows(2) {
         let (mut low, mut high) = (pair[0], pair[1]);
@@ -299,7 +327,7 @@ fn contacts_that_come_and_go() {
         assert!(few.abs_diff(other) <= 2, "at b = {low}: {few} and {other}");
         found += 1;
     }
-    assert!(found >= 8, "only {found} places");
+    assert!(found >= 5, "only {found} places");
 }
 
 /// Between the contacts found, the surfaces never overlap: no contact was missed.
@@ -318,7 +346,7 @@ fn no_overlap(b: f64) {
 }
 
 proptest! {
-    #![proptest_config(config(300))]
+    #![proptest_config(config(200))]
 
     #[test]
     fn every_impact_ends_with_sound_numbers(

@@ -87,7 +87,7 @@ fn scene(tree: &serde_json::Value, verdict: &mut Verdict) -> Result<(), String> 
     let scene = Scene::from_json(&tree.to_string()).map_err(|fault| format!("a sound scene was refused: {fault}"))?;
     // values may be out of range in combination (contrasts of segments, a striker on an immovable point)
     let Ok(impact) = scene.impact() else { return Ok(()) };
-    let settings = Settings { max_steps: 20_000, ..impact.settings };
+    let settings = Settings { max_steps: 2_000, max_sub_impacts: 500, ..impact.settings };
     let modal = Modal { structure: impact.structure, striker: impact.striker, law: impact.law, start: None, settings };
     modal_impact(&modal, verdict)
 }
@@ -171,7 +171,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
 
 fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict) -> Result<(), String> {
     verdict.outcome = "refused";
-    let settings = infinite::Settings { max_panels: 20_000, ..infinite::Settings::default() };
+    let settings = infinite::Settings { max_panels: 500, ..infinite::Settings::default() };
     let solved = infinite::solve(structure, s.clamp(1e-12, 1e8), &settings);
     let solution = solved.map_err(|fault| format!("a sound S was refused: {fault}"))?;
     verdict.outcome = match solution.outcome {
