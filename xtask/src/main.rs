@@ -1,11 +1,13 @@
-//! The workspace's own tasks: `cargo xtask ci` and `cargo xtask reproduce-chapter`.
+//! The workspace's own tasks: `cargo xtask ci`, `cargo xtask reproduce-chapter` and `cargo xtask soak`.
 
 mod chapters;
 mod ci;
+mod soak;
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use chapters::{BadInput, Failure};
 use clap::{Parser, Subcommand};
@@ -38,6 +40,24 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
     },
+    /// Solve random impacts, wide of anything ordinary: no panic, no NaN, no energy gained, no hang
+    Soak {
+        /// How many
+        #[arg(long, default_value_t = 1_000_000)]
+        impacts: u64,
+        /// The row of cases
+        #[arg(long, default_value_t = 2019)]
+        seed: u64,
+        /// Begin nothing new after this many minutes
+        #[arg(long)]
+        minutes: Option<u64>,
+        /// Solve this case of the row alone, and print it
+        #[arg(long, value_name = "INDEX")]
+        only: Option<u64>,
+        /// The file for the summary
+        #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -66,12 +86,23 @@ fn run(task: Task) -> Result<(), Failure> {
             let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
             reproduce(chapter, &out, quick, data.as_deref())
         }
+        Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
+        Task::Soak { impacts, seed, minutes, only: None, out } => {
+            let limit = minutes.map(|minutes| Duration::from_secs(minutes.saturating_mul(60)));
+            let summary = soak::run(impacts, seed, limit);
+            summary.write(&out)?;
+            say(&summary.to_string())?;
+            if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
+        }
     }
 }
 
 fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
-    let summary = chapters::run(chapter, out, quick, data)?;
-    match writeln!(std::io::stdout(), "{summary}") {
+    say(&chapters::run(chapter, out, quick, data)?)
+}
+
+fn say(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout(), "{text}") {
         // a reader that has seen enough is no failure
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),

@@ -180,8 +180,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + 1);
         };
         let boundaries = self.setting.law.boundaries(&self.branch);
+        let compliance = self.setting.residual_compliance;
         let start = (self.compression, self.rate);
-        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h) {
+        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, compliance) {
             return self.approach(which, place * h, h);
         }
         let tolerance = self.setting.impulse_tolerance;
@@ -196,7 +197,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
-        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h) {
+        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h, compliance) {
             std::mem::swap(self.motion, &mut self.before);
             return self.approach(which, place * h, h);
         }
@@ -271,7 +272,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);
-        (self.compression, self.rate) = (landed.compression, landed.rate);
+        (self.compression, self.rate) = (self.behind_compliance(landed.compression, landed.rate), landed.rate);
         self.previous = Some((landed.force, landed.length));
         match self.setting.law.cross(&self.branch, which, landed.compression, landed.rate) {
             After::Release(memory) => Some(ContactEnd::Released(memory)),
@@ -320,7 +321,30 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return (gap, self.motion.gap_rate());
         }
         let slope = BASIS.end_slope_from_start * self.compression + dot(&BASIS.end_slope_from_nodes, &step.compression);
-        (gap - self.setting.residual_compliance * evaluate(force, 1.0), slope / h)
+        let rate = slope / h;
+        (self.behind_compliance(gap - self.setting.residual_compliance * evaluate(force, 1.0), rate), rate)
+    }
+
+    /// The compression at which the law itself holds behind the residual compliance, `xi + c F(xi, xi') = g`, near an
+    /// estimate. The polynomial of the force misses it at the end of a step by as much as it misses the force; short
+    /// steps that begin there would see that as a rate.
+    fn behind_compliance(&self, estimate: f64, rate: f64) -> f64 {
+        let c = self.setting.residual_compliance;
+        if c == 0.0 {
+            return estimate;
+        }
+        let gap = self.motion.gap();
+        let mut compression = estimate;
+        for _ in 0..4 {
+            let force = self.setting.law.force(&self.branch, compression, rate);
+            let excess = compression + c * force.force_n - gap;
+            let next = compression - excess / (1.0 + c * force.per_compression_n_m);
+            if !next.is_finite() || next == compression {
+                break;
+            }
+            compression = next;
+        }
+        compression
     }
 
     /// Books a step that has been made: peaks, counts, record.
