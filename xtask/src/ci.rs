@@ -28,8 +28,11 @@ const STEPS: [Step; 4] = [
     Step { name: "tests", arguments: &["test", "--workspace", "--all-features", "--locked"], rustdocflags: "" },
 ];
 
-/// Runs format, clippy, docs (warnings denied), tests with doc tests, and at last the chapters in their quick form.
-pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+/// Something of our own that must not fail, with its name.
+pub type Check<'a> = (&'a str, &'a dyn Fn() -> Result<(), Failure>);
+
+/// Runs format, clippy, docs (warnings denied), tests with doc tests, and at last our own checks.
+pub fn run(root: &Path, checks: &[Check]) -> Result<(), Failure> {
     for step in &STEPS {
         timed(step.name, || {
             let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -42,7 +45,7 @@ pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) ->
             if status.success() { Ok(()) } else { Err(format!("cargo {} failed", step.arguments.join(" ")).into()) }
         })?;
     }
-    timed("chapters, quick form", quick_chapters)
+    checks.iter().try_for_each(|(name, check)| timed(name, check))
 }
 
 fn timed(name: &str, work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
