@@ -13,7 +13,7 @@ struct Step {
     rustdocflags: &'static str,
 }
 
-const STEPS: [Step; 4] = [
+const STEPS: [Step; 5] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
         name: "clippy",
@@ -25,13 +25,28 @@ const STEPS: [Step; 4] = [
         arguments: &["doc", "--workspace", "--all-features", "--no-deps", "--locked"],
         rustdocflags: "-D warnings",
     },
+    Step {
+        // that each crate can be packed; the job `alone` of ci.yml builds the packages as well
+        name: "packages",
+        arguments: &[
+            "package",
+            "--quiet",
+            "--workspace",
+            "--exclude",
+            "xtask",
+            "--no-verify",
+            "--allow-dirty",
+            "--locked",
+        ],
+        rustdocflags: "",
+    },
     Step { name: "tests", arguments: &["test", "--workspace", "--all-features", "--locked"], rustdocflags: "" },
 ];
 
 /// Something of our own that must not fail, with its name.
 pub type Check<'a> = (&'a str, &'a dyn Fn() -> Result<(), Failure>);
 
-/// Runs format, clippy, docs (warnings denied), tests with doc tests, and at last our own checks.
+/// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests, and at last our own checks.
 pub fn run(root: &Path, checks: &[Check]) -> Result<(), Failure> {
     for step in &STEPS {
         timed(step.name, || {

@@ -3,6 +3,7 @@
 mod bench;
 mod chapters;
 mod ci;
+mod examples;
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -25,6 +26,12 @@ struct Cli {
 enum Task {
     /// Check everything: format, clippy, docs, tests, the chapters in their quick form, and the record
     Ci,
+    /// Run the example programs of the crates
+    Examples {
+        /// Those outside the workspace, which use one crate alone
+        #[arg(long)]
+        alone: bool,
+    },
     /// Measure what every solver costs and how far off it is, and write the record, its history and its page
     BenchRecord {
         /// Compute the references anew, which otherwise stay
@@ -74,8 +81,18 @@ fn run(task: Task) -> Result<(), Failure> {
                 })
             };
             let record = || bench::check(root);
-            ci::run(root, &[("chapters, quick form", &quick_chapters), ("record of cost and error", &record)])
+            let examples = || examples::of_crates(root);
+            ci::run(
+                root,
+                &[
+                    ("examples", &examples),
+                    ("chapters, quick form", &quick_chapters),
+                    ("record of cost and error", &record),
+                ],
+            )
         }
+        Task::Examples { alone: false } => examples::of_crates(root),
+        Task::Examples { alone: true } => examples::alone(root),
         Task::BenchRecord { references } => bench::record(root, references),
         Task::BenchCheck => bench::check(root),
         Task::BenchRun => bench::run_all(root),

@@ -53,10 +53,10 @@ pub fn laws() -> Result<Vec<Problem>, Failure> {
         Viscous::with_restitution(k, 0.95, 1.0)?.into(),
         HuntCrossley::with_restitution(k, 1.5, 0.8, 1.0)?.into(),
         KelvinVoigt::with_restitution(1e8, 0.7, mass_kg)?.into(),
-        Hysteretic::new(k, 1.6, 1.4, 0.4, 1e-20)?.into(),
+        Hysteretic::new(k, 1.6, 1.4, 4.0, 1e-20)?.into(),
     ];
     // the last: loading and unloading in closed form, without regularisation
-    let exact = vec![0.95, 0.8, 0.7, ((1.2 / 2.5 + 2.8 / 2.9) / 1.6f64).sqrt()];
+    let exact = vec![0.95, 0.8, 0.7, ((1.2 / 2.5 + 2.8 / 6.5) / 1.6f64).sqrt()];
     Ok(vec![Problem::exact("laws/restitution at a wall", exact, move || {
         let restitutions: Result<Vec<f64>, _> = laws.iter().map(|law| law.wall_restitution(mass_kg, 1.0)).collect();
         Ok(uncounted(restitutions?))

@@ -14,7 +14,7 @@ use history::Stamp;
 pub use instructions::RUN_TASK;
 use problem::{Problem, Reference, error, measured_problem};
 use record::{Comparison, Conditions, Entry, Record, compare};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -54,7 +54,11 @@ fn problems(root: &Path) -> Result<Vec<Problem>, Failure> {
     problems.extend(leaves::fits());
     problems.extend(leaves::fractional());
     problems.extend(leaves::scenes(root)?);
-    Ok(problems)
+    let mut names = BTreeSet::new();
+    match problems.iter().find(|problem| !names.insert(&problem.name)) {
+        Some(twice) => Err(format!("two problems are called {}", twice.name).into()),
+        None => Ok(problems),
+    }
 }
 
 /// Runs every problem once, for callgrind to watch.
@@ -69,13 +73,10 @@ pub fn record(root: &Path, references: bool) -> Result<(), Failure> {
     let problems = problems(root)?;
     let kept: References =
         if references || !files.references.exists() { References::new() } else { read(&files.references)? };
-    let mut truth = References::new();
-    for problem in &problems {
-        if let Reference::Tighter(compute) = &problem.reference {
-            let known = kept.get(&problem.name).cloned().map_or_else(compute, Ok);
-            truth.insert(problem.name.clone(), known.map_err(|error| format!("{}: {error}", problem.name))?);
-        }
-    }
+    let truth: References = for_each(&problems, |problem| match &problem.reference {
+        Reference::Exact(_) => Ok(None),
+        Reference::Tighter(compute) => kept.get(&problem.name).cloned().map_or_else(compute, Ok).map(Some),
+    })?;
     let measured = measure(root, &problems, &truth)?;
     if measured.conditions.valgrind.is_none() {
         eprintln!("valgrind is not installed: the record has no instructions");
@@ -142,14 +143,28 @@ fn measure(root: &Path, problems: &[Problem], truth: &References) -> Result<Reco
         Some(_) => instructions::count(&root.join("out/callgrind"), problems.len())?.into_iter().map(Some).collect(),
         None => vec![None; problems.len()],
     };
-    let mut entries = BTreeMap::new();
+    let mut entries = for_each(problems, |problem| measure_one(problem, truth).map(Some))?;
     for (problem, instructions) in problems.iter().zip(instructions) {
-        let entry = measure_one(problem, truth).map_err(|error| format!("{}: {error}", problem.name))?;
-        if entries.insert(problem.name.clone(), Entry { instructions, ..entry }).is_some() {
-            return Err(format!("two problems are called {}", problem.name).into());
+        if let Some(entry) = entries.get_mut(&problem.name) {
+            entry.instructions = instructions;
         }
     }
     Ok(Record { conditions, problems: entries })
+}
+
+/// Something for every problem that has it, by name; or all problems that failed.
+fn for_each<T>(
+    problems: &[Problem],
+    of: impl Fn(&Problem) -> Result<Option<T>, Failure>,
+) -> Result<BTreeMap<String, T>, Failure> {
+    let (mut all, mut faults) = (BTreeMap::new(), Vec::new());
+    for problem in problems {
+        match of(problem) {
+            Ok(found) => all.extend(found.map(|found| (problem.name.clone(), found))),
+            Err(error) => faults.push(format!("{}: {error}", problem.name)),
+        }
+    }
+    if faults.is_empty() { Ok(all) } else { Err(faults.join("\n").into()) }
 }
 
 fn measure_one(problem: &Problem, truth: &References) -> Result<Entry, Failure> {
