@@ -100,14 +100,13 @@ pub fn on_modes(root: &Path) -> Result<Vec<Problem>, Failure> {
 
 /// The laws with branches, damping or memory, around the stiffness of the thesis's ball.
 fn laws(hertz: &Law) -> Result<Vec<Law>, Failure> {
-    use contact_models::{HuntCrossley, Hysteretic, KelvinVoigt, Thornton, Viscous};
+    use contact_models::{HuntCrossley, Hysteretic, Thornton, Viscous};
     let Law::Hertz(hertz) = hertz else { return Err("the scene's contact is not Hertzian".into()) };
     let k = hertz.stiffness_n_m1_5;
     Ok(vec![
         Viscous::with_restitution(k, 0.95, 1.0)?.into(),
         Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8)?.into(),
         HuntCrossley::new(k, 1.5, 0.2)?.into(),
-        KelvinVoigt::new(1e8, 200.0)?.into(),
         Thornton::new(1.1e11, 0.015, 2e9)?.into(),
     ])
 }
