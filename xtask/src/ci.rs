@@ -14,7 +14,7 @@ struct Step {
 }
 
 /// Every step but the first takes the workspace's features: all but `mpi`, which needs more than Rust.
-const STEPS: [Step; 4] = [
+const STEPS: [Step; 5] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
         name: "clippy",
@@ -26,18 +26,36 @@ const STEPS: [Step; 4] = [
         arguments: &["doc", "--workspace", "--no-deps", "--locked", "FEATURES"],
         rustdocflags: "-D warnings",
     },
+    Step {
+        // that each crate can be packed; the job `alone` of ci.yml builds the packages as well
+        name: "packages",
+        arguments: &[
+            "package",
+            "--quiet",
+            "--workspace",
+            "--exclude",
+            "xtask",
+            "--no-verify",
+            "--allow-dirty",
+            "--locked",
+        ],
+        rustdocflags: "",
+    },
     Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
 ];
 
-/// Runs format, clippy, docs (warnings denied), tests with doc tests (sweeps over MPI among them where it is
-/// installed), and at last the chapters in their quick form.
-pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+/// Something of our own that must not fail, with its name.
+pub type Check<'a> = (&'a str, &'a dyn Fn() -> Result<(), Failure>);
+
+/// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests (sweeps over MPI among them where it is
+/// installed), and at last our own checks.
+pub fn run(root: &Path, checks: &[Check]) -> Result<(), Failure> {
     let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
     if !mpi {
         eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
     }
     STEPS.iter().try_for_each(|step| carry_out(step, root, mpi))?;
-    timed("chapters, quick form", quick_chapters)
+    checks.iter().try_for_each(|(name, check)| timed(name, check))
 }
 
 /// What the `mpi` feature is built and tested with; clang stands for its library.

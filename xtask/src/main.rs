@@ -1,7 +1,9 @@
-//! The workspace's own tasks: `cargo xtask ci`, `cargo xtask reproduce-chapter` and `cargo xtask soak`.
+//! The workspace's own tasks: checks, the thesis's chapters, studies, and the record of cost and error.
 
+mod bench;
 mod chapters;
 mod ci;
+mod examples;
 mod soak;
 
 use std::io::{ErrorKind, Write};
@@ -24,8 +26,25 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Check everything: format, clippy, docs, tests, and the chapters in their quick form
+    /// Check everything: format, clippy, docs, tests, the chapters in their quick form, and the record
     Ci,
+    /// Run the example programs of the crates
+    Examples {
+        /// Those outside the workspace, which use one crate alone
+        #[arg(long)]
+        alone: bool,
+    },
+    /// Measure what every solver costs and how far off it is, and write the record, its history and its page
+    BenchRecord {
+        /// Compute the references anew, which otherwise stay
+        #[arg(long)]
+        references: bool,
+    },
+    /// Measure, and fail where cost or error is worse than recorded
+    BenchCheck,
+    /// Run every problem of the record once, for callgrind
+    #[command(hide = true, name = bench::RUN_TASK)]
+    BenchRun,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
         /// The chapter: 2, 3, 4, 6, 7 or 8
@@ -72,16 +91,31 @@ fn main() -> ExitCode {
 }
 
 fn run(task: Task) -> Result<(), Failure> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
     match task {
         Task::Ci => {
-            let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
-            ci::run(root, || {
+            let quick_chapters = || {
                 CHAPTERS.into_iter().try_for_each(|chapter| {
                     let out = root.join(format!("out/ci/chapter-{chapter}"));
                     reproduce(chapter, &out, true, None)
                 })
-            })
+            };
+            let record = || bench::check(root);
+            let examples = || examples::of_crates(root);
+            ci::run(
+                root,
+                &[
+                    ("examples", &examples),
+                    ("chapters, quick form", &quick_chapters),
+                    ("record of cost and error", &record),
+                ],
+            )
         }
+        Task::Examples { alone: false } => examples::of_crates(root),
+        Task::Examples { alone: true } => examples::alone(root),
+        Task::BenchRecord { references } => bench::record(root, references),
+        Task::BenchCheck => bench::check(root),
+        Task::BenchRun => bench::run_all(root),
         Task::ReproduceChapter { chapter, quick, out, data } => {
             let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
             reproduce(chapter, &out, quick, data.as_deref())

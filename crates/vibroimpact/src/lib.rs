@@ -60,3 +60,8 @@ pub use fracdiff;
 pub use impact::Impact;
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
