@@ -1,0 +1,4 @@
+//! x
+pub mod export;
+pub mod impact;
+pub mod measure;
