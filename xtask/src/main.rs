@@ -1,11 +1,11 @@
-//! The workspace's own tasks: `cargo xtask ci` and `cargo xtask reproduce-chapter`.
+//! The workspace's own tasks: `cargo xtask ci`, `cargo xtask reproduce-chapter` and `cargo xtask work-precision`.
 
 mod chapters;
 mod ci;
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use chapters::{BadInput, Failure};
 use clap::{Parser, Subcommand};
@@ -38,6 +38,18 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
     },
+    /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
+    WorkPrecision {
+        /// Fewer settings through the same code
+        #[arg(long)]
+        quick: bool,
+        /// Only problems whose name contains this
+        #[arg(long, value_name = "PROBLEM")]
+        only: Option<String>,
+        /// The folder to write to; docs for a whole run, out/work-precision otherwise
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -66,7 +78,21 @@ fn run(task: Task) -> Result<(), Failure> {
             let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
             reproduce(chapter, &out, quick, data.as_deref())
         }
+        Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
     }
+}
+
+/// Runs the package of that name, which this one does not depend on: its peers take minutes to compile.
+fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--release", "--quiet", "--package", "work-precision", "--"]);
+    command.args(quick.then_some("--quick"));
+    command.args(only.into_iter().flat_map(|only| ["--only", only]));
+    if let Some(out) = out {
+        command.arg("--out").arg(out);
+    }
+    if command.status()?.success() { Ok(()) } else { Err("work-precision failed".into()) }
 }
 
 fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {

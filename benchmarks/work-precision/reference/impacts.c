@@ -6,7 +6,7 @@
  * Contacts are integrated by Gragg's extrapolated midpoint rule with 16th-order columns and step control, free flight in
  * closed form with a search for sign changes at a sixtieth of the shortest period and for peaks between. Nothing is
  * shared with the workspace but the equations: theta of the hysteretic law is a differential equation here.
- * Every problem is solved twice, with tolerances 1e-24 and 1e-18; the difference is stated as the error of the second,
+ * Every problem is solved twice, with tolerances 1e-23 and 1e-20; the difference is stated as the error of the second,
  * and bounds that of the first. */
 #include <quadmath.h>
 #include <stdio.h>
@@ -269,7 +269,7 @@ int main(int argc, char **argv) {
         }
         fclose(file);
         int contacts, others;
-        Real coarse = solve(1e-18Q, &others, other), fine = solve(1e-24Q, &contacts, found);
+        Real coarse = solve(1e-20Q, &others, other), fine = solve(1e-23Q, &contacts, found);
         if (contacts != others) fprintf(stderr, "%s: %d and %d contacts\n", name, contacts, others);
         print(name, "net", fine, fabsq(fine - coarse), 0);
         for (int i = 0; i < contacts; i++) print(name, "contact", found[i][0], found[i][1], found[i][2]);

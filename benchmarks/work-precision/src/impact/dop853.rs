@@ -136,6 +136,7 @@ impl Integrator for Dop853 {
             max_steps: 10_000_000,
             // the test for stiffness only stops the run
             stiff_test: usize::MAX,
+            first_step: equations.first_step(self.tolerance),
             ..DOP853::default()
         };
         let start = (0.0, y.to_vec());
@@ -179,7 +180,7 @@ pub(super) fn rows(
         Flight::Exact => ("DOP853 + exact flight", Origin::Assisted),
     };
     let solver = Solver { name, origin, cost_unit: "right-hand sides" };
-    sweep(impact.name, solver, &effort.tolerances(2, 13), effort, |tolerance| {
+    sweep(impact.name, solver, &effort.tolerances(4, 15), effort, |tolerance| {
         let deadline = Instant::now() + effort.cap;
         follow(impact, &mut Dop853 { tolerance }, flight, end_s, deadline).map(|(outcome, cost)| judge(outcome, cost))
     })
