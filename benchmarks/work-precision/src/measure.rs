@@ -64,19 +64,11 @@ pub struct Effort {
 
 impl Effort {
     /// For the report.
-    pub const FULL: Effort = Effort {
-        cap: Duration::from_secs(4),
-        budget: Duration::from_millis(60),
-        most_runs: 40,
-        quick: false,
-    };
+    pub const FULL: Effort =
+        Effort { cap: Duration::from_secs(8), budget: Duration::from_millis(150), most_runs: 400, quick: false };
     /// For a test.
-    pub const QUICK: Effort = Effort {
-        cap: Duration::from_millis(400),
-        budget: Duration::from_millis(5),
-        most_runs: 3,
-        quick: true,
-    };
+    pub const QUICK: Effort =
+        Effort { cap: Duration::from_millis(400), budget: Duration::from_millis(5), most_runs: 3, quick: true };
 
     /// Powers of ten from `10^-first` to `10^-last`; every third of them in a quick run.
     pub fn tolerances(&self, first: i32, last: i32) -> Vec<f64> {

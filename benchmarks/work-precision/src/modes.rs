@@ -8,11 +8,8 @@ const FREQUENCIES: &str = include_str!("../../../crates/beam-modes/tests/data/st
 
 /// The beam called `halves` in the table.
 fn beam() -> Beam {
-    let segment = |rigidity, mass| Segment {
-        length_m: 0.5,
-        flexural_rigidity_n_m2: rigidity,
-        mass_per_length_kg_m: mass,
-    };
+    let segment =
+        |rigidity, mass| Segment { length_m: 0.5, flexural_rigidity_n_m2: rigidity, mass_per_length_kg_m: mass };
     Beam { segments: vec![segment(1.0, 1.0), segment(0.2, 0.5)], ends: [End::Clamped, End::Free] }
 }
 

@@ -145,10 +145,7 @@ pub fn rows(effort: &Effort) -> Vec<Row> {
         let variables = 2 * case.phi.len() as u64 + 1;
 
         let closed = solver("closed form", Origin::Own, "variables");
-        rows.extend(sweep(case.name, closed, &[1.0], effort, |_| {
-
-            closed_form(&case).map(|e| judge(e, 2))
-        }));
+        rows.extend(sweep(case.name, closed, &[1.0], effort, |_| closed_form(&case).map(|e| judge(e, 2))));
         let full = solver("emoc P_1 (Clarabel + active set)", Origin::Own, "variables");
         rows.extend(sweep(case.name, full, &[1.0], effort, |_| {
             single.solve_full().map(|s| judge(s.restitution, variables)).map_err(|error| error.to_string())
@@ -159,9 +156,7 @@ pub fn rows(effort: &Effort) -> Vec<Row> {
         }));
         let program = Program::new(&case);
         let pivoting = solver("P_1 by complementary pivoting", Origin::Peer, "variables");
-        rows.extend(sweep(case.name, pivoting, &[1.0], effort, |_| {
-            program.pivoting().map(|e| judge(e, variables))
-        }));
+        rows.extend(sweep(case.name, pivoting, &[1.0], effort, |_| program.pivoting().map(|e| judge(e, variables))));
         let interior = solver("P_1 by Clarabel", Origin::Peer, "iterations");
         rows.extend(sweep(case.name, interior, &effort.tolerances(2, 12), effort, |tolerance| {
             program.interior_point(tolerance).map(|(e, iterations)| judge(e, iterations))

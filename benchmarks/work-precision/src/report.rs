@@ -25,7 +25,8 @@ fn floor(problem: &str) -> f64 {
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1e-6 => format!("{:.0} ns", s * 1e9),
-        s if s < 1e-3 => format!("{:.3} µs", s * 1e6),
+        s if s < 1e-5 => format!("{:.2} µs", s * 1e6),
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
         s if s < 1.0 => format!("{:.2} ms", s * 1e3),
         s => format!("{s:.2} s"),
     }
@@ -86,7 +87,8 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
             let cells = errors.iter().map(|&error| match standing(&rows, norm, floor, error) {
                 Standing::Ratio(ratio, peer) => {
                     if ratio < 1.0 {
-                        let _ = writeln!(behind, "- {problem} at {error:.0e}: {peer} is {:.1} times faster", 1.0 / ratio);
+                        let _ =
+                            writeln!(behind, "- {problem} at {error:.0e}: {peer} is {:.1} times faster", 1.0 / ratio);
                     }
                     if ratio < 10.0 { format!("{ratio:.1}") } else { format!("{ratio:.0}") }
                 }

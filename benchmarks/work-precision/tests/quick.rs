@@ -33,7 +33,8 @@ fn every_law_is_exported_in_numbers_that_read_back() {
     work_precision::export::write(&library, folder.path()).unwrap();
     for impact in &library {
         let text = std::fs::read_to_string(folder.path().join(format!("impact-{}.txt", impact.name))).unwrap();
-        let modes: Vec<f64> = text.lines().skip(5).flat_map(str::split_whitespace).map(|x| x.parse().unwrap()).collect();
+        let modes: Vec<f64> =
+            text.lines().skip(5).flat_map(str::split_whitespace).map(|x| x.parse().unwrap()).collect();
         let wanted = impact.structure.modes.iter().flat_map(|m| [m.omega_rad_s, m.damping_ratio, m.shape]);
         assert_eq!(modes, wanted.collect::<Vec<f64>>());
         assert!(text.contains(&format!("mass_kg {:e}", impact.striker.mass_kg)));

@@ -140,8 +140,7 @@ impl Integrator for Dop853 {
             ..DOP853::default()
         };
         let start = (0.0, y.to_vec());
-        let mut watch =
-            Watch { equations, before: start.clone(), now: start, met: false, late: false, deadline };
+        let mut watch = Watch { equations, before: start.clone(), now: start, met: false, late: false, deadline };
         let (rtol, atol) = (Tolerance::Scalar(0.0), Tolerance::Vector(equations.tolerances(self.tolerance)));
         // time is counted from the start of the phase, so that short steps are not lost in it
         let length = end_s - *t_s;
