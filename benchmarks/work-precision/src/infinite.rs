@@ -73,8 +73,11 @@ fn whole_story(found: &[f64], wanted: &[f64]) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// The methods of `fracdiff` with their sweeps: name, settings, method for a setting.
-fn general_methods(effort: &Effort) -> Vec<(&'static str, Vec<f64>, fn(f64) -> Method)> {
+/// Name of a method, its settings, and the method for a setting.
+type General = (&'static str, Vec<f64>, fn(f64) -> Method);
+
+/// The methods of `fracdiff` with their sweeps.
+fn general_methods(effort: &Effort) -> Vec<General> {
     let steps: Vec<f64> = [125.0, 500.0, 2000.0, 8000.0].into_iter().take(if effort.quick { 2 } else { 4 }).collect();
     vec![
         ("fracdiff collocation", effort.tolerances(3, 13), |tolerance| {
