@@ -8,7 +8,7 @@ mod soak;
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 use std::time::Duration;
 
 use chapters::{BadInput, Failure};
@@ -77,6 +77,18 @@ enum Task {
         #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
         out: PathBuf,
     },
+    /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
+    WorkPrecision {
+        /// Fewer settings through the same code
+        #[arg(long)]
+        quick: bool,
+        /// Only problems whose name contains this
+        #[arg(long, value_name = "PROBLEM")]
+        only: Option<String>,
+        /// The folder to write to; docs for a whole run, out/work-precision otherwise
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -128,7 +140,21 @@ fn run(task: Task) -> Result<(), Failure> {
             say(&summary.to_string())?;
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }
+        Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
     }
+}
+
+/// Runs the package of that name, which this one does not depend on: its peers take minutes to compile.
+fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--release", "--quiet", "--package", "work-precision", "--"]);
+    command.args(quick.then_some("--quick"));
+    command.args(only.into_iter().flat_map(|only| ["--only", only]));
+    if let Some(out) = out {
+        command.arg("--out").arg(out);
+    }
+    if command.status()?.success() { Ok(()) } else { Err("work-precision failed".into()) }
 }
 
 fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
