@@ -38,6 +38,15 @@ enum Task {
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
     },
+    /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
+    StudyAuto {
+        /// Fewer scenes through the same code
+        #[arg(long)]
+        quick: bool,
+        /// The folder to write to
+        #[arg(long, value_name = "DIR", default_value = "out/study-auto")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -66,11 +75,15 @@ fn run(task: Task) -> Result<(), Failure> {
             let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
             reproduce(chapter, &out, quick, data.as_deref())
         }
+        Task::StudyAuto { quick, out } => print(&chapters::study_auto(&out, quick)?),
     }
 }
 
 fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
-    let summary = chapters::run(chapter, out, quick, data)?;
+    print(&chapters::run(chapter, out, quick, data)?)
+}
+
+fn print(summary: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{summary}") {
         // a reader that has seen enough is no failure
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),

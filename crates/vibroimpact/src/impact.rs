@@ -3,6 +3,7 @@
 use contact_models::Law;
 use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Striker, Structure};
 
+use crate::model;
 use crate::scene::{InvalidInput, Scene};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
@@ -56,14 +57,19 @@ pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
 }
 
 impl Scene {
-    /// The structure as the solver sees it: its modes at the point of impact and, if the scene asks for it, the
-    /// static compliance of the modes left out.
+    /// The structure as the solver sees it: its modes at the point of impact and the static compliance of the modes left
+    /// out, as far as the scene asks for it. See [`Scene::impact`] for `"modes": "auto"`.
     ///
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
     pub fn structure(&self) -> Result<Structure, InvalidInput> {
-        let modes = self.structure.modes(self.location_m, self.modes)?;
-        let residual_compliance_m_n = if self.residual_compliance {
+        if model::chooses_modes(self) { Ok(self.impact()?.structure) } else { self.structure_of(self.modes.count()) }
+    }
+
+    /// The structure with its first `count` modes, or all that are listed.
+    fn structure_of(&self, count: Option<usize>) -> Result<Structure, InvalidInput> {
+        let modes = self.structure.modes(self.location_m, count)?;
+        let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
             let whole = self.structure.static_compliance_m_n(self.location_m)?;
             let kept: f64 = modes
                 .iter()
@@ -85,7 +91,9 @@ impl Scene {
         self.structure.modes(self.location_m, Some(count))
     }
 
-    /// The whole scene in the terms of the solver.
+    /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
+    /// restitution needs to settle, which takes a few solves; [`Scene::choose`](crate::Scene::choose) tells how well
+    /// it settled, and whether another model would do.
     ///
     /// # Errors
     /// As [`Scene::structure`].
@@ -107,9 +115,14 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn impact(&self) -> Result<Impact, InvalidInput> {
+        if model::chooses_modes(self) { model::settled_impact(self) } else { self.impact_of(self.modes.count()) }
+    }
+
+    /// The impact with the first `count` modes, or all that are listed.
+    pub(crate) fn impact_of(&self, count: Option<usize>) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
         Ok(Impact {
-            structure: self.structure()?,
+            structure: self.structure_of(count)?,
             striker: Striker {
                 mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
                 speed_m_s: self.striker.speed_m_s,
@@ -121,7 +134,7 @@ impl Scene {
 }
 
 /// Compliance of the whole less that of the modes kept. Rounding may put a complete set of modes below zero.
-fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
+pub(crate) fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
     const ROUNDING: f64 = 1e-9;
     if whole >= kept * (1.0 - ROUNDING) {
         Ok((whole - kept).max(0.0))

@@ -27,6 +27,7 @@
 //! |---|---|
 //! | [`scene`] | the scene file, field by field, and what can be wrong with it |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, the picture as SVG |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
@@ -39,6 +40,7 @@ mod impact;
 
 pub mod export;
 pub mod infinite;
+pub mod model;
 pub mod net;
 pub mod plot;
 pub mod report;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{Mode, Striker};
 
-use crate::impact::Impact;
+use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::report::significant;
 use crate::scene::{Scene, Structure};
@@ -35,7 +35,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
 }
 
 /// The restitution with as many digits as can be trusted, and its uncertainty.
-fn restitution(value: f64, uncertainty: Option<f64>) -> String {
+pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
     match uncertainty {
         Some(error) if error > 0.0 => {
             let decimals = (-error.log10()).ceil().clamp(1.0, 12.0) as usize;
@@ -46,7 +46,7 @@ fn restitution(value: f64, uncertainty: Option<f64>) -> String {
 }
 
 /// One line on what strikes what.
-pub fn headline(scene: &Scene, impact: &Impact) -> String {
+pub fn headline(scene: &Scene, striker: &Striker) -> String {
     let structure = match &scene.structure {
         Structure::Beam(beam) => {
             let [left, right] = beam.ends.map(|end| format!("{end:?}").to_lowercase());
@@ -60,7 +60,6 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
         Structure::InfinitePlate(_) => "infinite plate".to_owned(),
     };
     let place = scene.location_m.map_or_else(String::new, |x| format!(", at {}", quantity(x, "m")));
-    let striker = impact.striker;
     format!(
         "{} striker at {} on a {structure}{place}; {} contact",
         quantity(striker.mass_kg * 1e3, "g"),
@@ -100,6 +99,9 @@ pub fn result(summary: &Summary) -> String {
         String::new()
     };
     line("modes", format!("{}{residual}", summary.modes));
+    if let Some(choice) = &summary.choice {
+        text += &answer_text(choice);
+    }
 
     let energy = &summary.energy;
     let share = |part: f64| {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 use serde_json::Value;
+use vibroimpact::model::Modes;
 use vibroimpact::scene::{Contact, Structure};
 use vibroimpact::{Scene, SceneError};
 
@@ -155,7 +156,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
         damping_ratios: vec![0.02; modes.len()],
         static_compliance_m_n: Some(whole),
     });
-    (scene.location_m, scene.modes) = (None, None);
+    (scene.location_m, scene.modes) = (None, Modes::Auto);
     assert_eq!(scene.structure().unwrap(), beam.structure().unwrap());
 
     let Structure::Modal(ref mut modal) = scene.structure else { panic!() };

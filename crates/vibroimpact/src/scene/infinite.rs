@@ -73,8 +73,8 @@ impl Scene {
             None => Ok(()),
         };
         left_out("location_m", self.location_m.map(number))?;
-        left_out("modes", self.modes.map(|modes| modes.to_string()))?;
-        left_out("residual_compliance", self.residual_compliance.then(|| "true".to_owned()))?;
+        left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance", self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("tolerance", self.tolerance.map(number))?;
         let Contact::Hertz(stiffness) = &self.contact else {
             let law = format!("\"{}\"", self.contact.law_name());

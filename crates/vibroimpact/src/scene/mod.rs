@@ -7,7 +7,7 @@ mod contact;
 mod error;
 mod fields;
 mod infinite;
-mod json;
+pub(crate) mod json;
 mod materials;
 mod sets;
 mod striker;
@@ -19,6 +19,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
+
+use crate::model::{Model, Modes};
 
 pub use contact::Contact;
 pub use error::{InvalidInput, SceneError};
@@ -43,12 +45,17 @@ pub struct Scene {
     pub contact: Contact,
     /// Place of the impact, from the left end (m). Required for a beam; a modal structure has none.
     pub location_m: Option<f64>,
-    /// Number of modes kept, from the lowest; 0 is an immovable structure. Required for a beam; all that are
-    /// listed when left out for a modal structure.
-    pub modes: Option<usize>,
-    /// Whether the modes left out answer with their static compliance; `false` when left out.
-    pub residual_compliance: bool,
-    /// Accuracy aimed at in the restitution; that of [`vibroimpact_sim::modal::Settings`] when left out.
+    /// Which model answers, [`Scene::answer`]; the program's choice when left out.
+    #[serde(skip_serializing_if = "Model::is_auto")]
+    pub model: Model,
+    /// Modes kept, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
+    #[serde(skip_serializing_if = "Modes::is_auto")]
+    pub modes: Modes,
+    /// Whether the modes left out answer with their static compliance. When left out: `true` where the program
+    /// chooses the modes (and knows that compliance), `false` where their number is given.
+    pub residual_compliance: Option<bool>,
+    /// Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses the
+    /// modes of a beam; that of [`vibroimpact_sim::modal::Settings`] where the modes are given.
     pub tolerance: Option<f64>,
 }
 
@@ -62,9 +69,11 @@ struct Outline {
     striker: Striker,
     contact: Value,
     location_m: Option<f64>,
-    modes: Option<usize>,
     #[serde(default)]
-    residual_compliance: bool,
+    model: Model,
+    #[serde(default)]
+    modes: Modes,
+    residual_compliance: Option<bool>,
     tolerance: Option<f64>,
 }
 
@@ -95,6 +104,7 @@ impl Scene {
             striker: outline.striker,
             contact: Contact::from_value(&outline.contact).map_err(|fault| fault.within("contact"))?,
             location_m: outline.location_m,
+            model: outline.model,
             modes: outline.modes,
             residual_compliance: outline.residual_compliance,
             tolerance: outline.tolerance,

@@ -1,6 +1,6 @@
 //! Laws beside each other: what each reaches on every beam, and how it predicts a beam that it has not seen.
 
-use super::attached::largest_share;
+use vibroimpact::model::largest_share;
 use super::pictures::{Curve, by_ball};
 use super::{Dataset, LAW_MODES, SETTLED_MODES};
 use crate::chapters::Failure;
