@@ -17,7 +17,7 @@
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
 
 use super::choose::Choice;
-use super::pose::{Pose, chooses_modes, compliance};
+use super::pose::{Pose, Source, chooses_modes, compliance};
 use super::{Answer, Cost, Model, Modes};
 use crate::impact::{Impact, in_scene};
 use crate::scene::InvalidInput;
@@ -30,6 +30,9 @@ const FIRST: f64 = 0.4;
 const ORDER: f64 = 0.47;
 /// From one number of modes to the next.
 const RAISE: f64 = std::f64::consts::SQRT_2;
+/// The last number of modes that a list allows counts if it is this many times the one before; what a smaller step
+/// changes says little about the rest.
+const LEAST_RAISE: f64 = 1.25;
 /// Fewest modes to begin with, besides rigid-body motions.
 const FEWEST: usize = 4;
 /// The uncertainty: this many times the largest of three differences, weighted below.
@@ -86,35 +89,57 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
-/// `R(N)` for modes kept and compliance left out. The stiffness is that at the compression which the contact reaches
-/// on the inverse mass `1/m + 3 c omega^2`.
-fn resolution(pose: &Pose, omega_rad_s: f64, rest_m_n: f64) -> f64 {
+/// `R(N)` where the modes up to `omega_N` add so much to the inverse mass of the striker. The stiffness is that at the
+/// compression which the contact reaches on both together.
+fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
     let (wall, striker) = (&pose.wall, &pose.striker);
     let square = omega_rad_s * omega_rad_s;
-    let inverse_mass = 1.0 / striker.mass_kg + 3.0 * rest_m_n * square;
+    let inverse_mass = 1.0 / striker.mass_kg + added;
     // k ~ xi^(n-1) and xi = v / sqrt(k inverse_mass): a power law, in closed form
     let alone = striker.speed_m_s / (wall.stiffness_n_m * inverse_mass).sqrt();
     let softer = (alone / wall.compression_m).powf(2.0 / (wall.exponent + 1.0)).min(1.0);
     square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
 }
 
+/// The number of modes that is expected to do, before any is computed: on average over a beam's length, the modes up
+/// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
+fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
+    let Source::Beam { beam, location_m, .. } = &pose.source else { return Ok(pose.source.most()) };
+    let segments = beam.to_beam().map_err(|fault| fault.within("structure"))?.segments;
+    let slowness = |s: &beam_modes::Segment| (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25);
+    let phase: f64 = segments.iter().map(|s| s.length_m * slowness(s)).sum();
+    let mut ends_m = 0.0;
+    let here = segments.iter().find(|s| {
+        ends_m += s.length_m;
+        ends_m >= *location_m
+    });
+    let Some(here) = here.or(segments.last()) else { return Ok(FEWEST) };
+    let enough = (FEWEST + 1..MOST_MODES).find(|&n| {
+        let root = n as f64 * std::f64::consts::PI / phase;
+        let added = root * slowness(here) / (std::f64::consts::PI * here.mass_per_length_kg_m);
+        resolution(pose, root * root, added) >= target
+    });
+    Ok(enough.unwrap_or(MOST_MODES))
+}
+
 /// The number of modes with which to begin, and the one that is expected to do.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
     let target = FIRST * pose.tolerance.powf(-ORDER);
     let most = pose.source.most();
-    let mut computed = 16.min(most);
+    let mut computed = (expected(pose, target)? + 2).min(most);
     let found = loop {
         let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
         let modes = pose.source.first(computed, cost)?.to_vec();
         let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
         let enough = (rigid + FEWEST + 1..=modes.len()).find(|&count| {
             let rest = (whole - compliance(&modes[..count])).max(0.0);
-            resolution(pose, modes[count - 1].omega_rad_s, rest) >= target
+            let omega = modes[count - 1].omega_rad_s;
+            resolution(pose, omega, 3.0 * rest * omega * omega) >= target
         });
         match enough {
             Some(count) => break count,
             None if computed >= most => break most,
-            None => computed = (2 * computed).min(most),
+            None => computed = (computed + computed / 4 + 1).min(most),
         }
     };
     Ok((((found as f64 / RAISE).round() as usize).max(1).min(found), found))
@@ -129,19 +154,19 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let mut before = 0.0;
     let floor = 0.5 * settings(pose.tolerance).tolerance;
     loop {
-        let next = Rung::new(pose, count.max(rungs[rungs.len() - 1].count + 1).min(most), cost)?;
+        let next = Rung::new(pose, count, cost)?;
         let last = &rungs[rungs.len() - 1];
         let pair = last.solution.restitution.zip(next.solution.restitution);
         let flights = distance(&last.flights(momentum), &next.flights(momentum));
         let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
         let mut uncertainty = CAUTION * step.max(FLIGHTS * flights).max(EARLIER * before) + floor;
         before = step;
-        let ended = next.solution.outcome != Outcome::LimitReached;
         let settled = uncertainty <= pose.tolerance && pair.is_some();
-        let exhausted = next.count >= most || !ended;
+        let limit = next.solution.outcome == Outcome::LimitReached;
         rungs.push(next);
-        if !(settled || exhausted) {
-            count = (count as f64 * RAISE).round() as usize;
+        let raised = ((count as f64 * RAISE).round() as usize).min(most);
+        if !settled && !limit && raised as f64 >= LEAST_RAISE * count as f64 {
+            count = raised;
             continue;
         }
         let values: Vec<f64> = rungs.iter().rev().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
@@ -172,7 +197,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
 
 fn lightly_damped(pose: &mut Pose) -> &'static str {
     let modes = match &pose.source {
-        super::pose::Source::Beam { modes, .. } | super::pose::Source::Listed { modes, .. } => modes,
+        Source::Beam { modes, .. } | Source::Listed { modes, .. } => modes,
     };
     match modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max) {
         0.0 => " (nothing damps the structure)",

@@ -137,7 +137,7 @@ fn geometric(values: &[f64]) -> f64 {
     mean(&values.iter().map(|v| v.ln()).collect::<Vec<f64>>()).exp()
 }
 
-pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
+pub fn run(study: &mut Study) -> Result<&'static str, Failure> {
     study.section("Random scenes");
     let count = if study.quick { SCENES.1 } else { SCENES.0 };
     let numbers: Vec<u64> = (0..count).collect();
