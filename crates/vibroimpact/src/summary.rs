@@ -1,7 +1,7 @@
 //! The result of a scene as files and people read it.
 
-use serde::Serialize;
 use crate::model::Answer;
+use serde::Serialize;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Solution, SubImpact};
 
 /// What `simulate --json` prints: one object, every name with its unit.

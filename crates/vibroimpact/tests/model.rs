@@ -40,9 +40,12 @@ fn answer(scene: &Value) -> Answer {
 fn reference(scene: &Value) -> f64 {
     let mut scene = scene.clone();
     let fields = scene.as_object_mut().unwrap();
-    for (field, value) in
-        [("model", json!("auto")), ("modes", json!(300)), ("residual_compliance", json!(true)), ("tolerance", json!(1e-10))]
-    {
+    for (field, value) in [
+        ("model", json!("auto")),
+        ("modes", json!(300)),
+        ("residual_compliance", json!(true)),
+        ("tolerance", json!(1e-10)),
+    ] {
         fields.insert(field.to_owned(), value);
     }
     answer(&scene).restitution.unwrap()
@@ -90,7 +93,8 @@ fn a_support_that_yields_law_by_law() {
 fn the_uncertainty_covers_the_error() {
     let cantilever = ("/structure/ends", json!(["clamped", "free"]));
     let free = ("/structure/ends", json!(["free", "free"]));
-    let viscous = ("/contact", json!({ "law": "viscous", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.8 }));
+    let viscous =
+        ("/contact", json!({ "law": "viscous", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.8 }));
     let stop = ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": 1e7 }));
     let scenes: Vec<Vec<(&str, Value)>> = vec![
         vec![],
@@ -123,7 +127,8 @@ fn the_uncertainty_covers_the_error() {
 #[test]
 fn what_does_not_settle_is_said_to() {
     // thesis 3.3.2: undamped, many sub-impacts
-    let scene = with(&[("/structure/damping_ratio", json!(0)), ("/location_m", json!(0.4)), ("/tolerance", json!(1e-5))]);
+    let scene =
+        with(&[("/structure/damping_ratio", json!(0)), ("/location_m", json!(0.4)), ("/tolerance", json!(1e-5))]);
     let found = answer(&scene);
     assert!(!found.settled && found.spread.is_some_and(|spread| spread > 1e-5), "{found:?}");
     assert!(found.restitution_uncertainty >= found.spread, "{found:?}");
@@ -194,7 +199,10 @@ fn a_model_that_cannot_be_had_is_refused_by_name() {
     for (changes, expected) in [
         (vec![("/model", json!("infinite-beam")), ("/structure/segments", stepped)], "not uniform"),
         (
-            vec![("/model", json!("infinite-beam")), ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": 1e7 }))],
+            vec![
+                ("/model", json!("infinite-beam")),
+                ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": 1e7 })),
+            ],
             "hertz",
         ),
         (vec![("/model", json!("emoc")), ("/structure/ends", json!(["free", "free"]))], "rigid body"),
@@ -226,7 +234,10 @@ fn a_model_that_cannot_be_had_is_refused_by_name() {
 #[test]
 fn forced_models_say_how_far_they_hold() {
     let infinite = answer(&with(&[("/model", json!("infinite-beam"))]));
-    assert_eq!((infinite.model, infinite.settled, infinite.restitution_uncertainty), (Model::InfiniteBeam, false, None));
+    assert_eq!(
+        (infinite.model, infinite.settled, infinite.restitution_uncertainty),
+        (Model::InfiniteBeam, false, None)
+    );
     let rigid = answer(&with(&[("/model", json!("rigid"))]));
     assert!(!rigid.settled && rigid.restitution == Some(1.0) && rigid.restitution_uncertainty > Some(0.5), "{rigid:?}");
     let emoc = answer(&with(&[("/model", json!("emoc"))]));
@@ -237,7 +248,11 @@ fn forced_models_say_how_far_they_hold() {
 
 #[test]
 fn plan_and_answer_agree_and_compare_lists_every_model() {
-    for changes in [vec![], vec![("/location_m", json!(0))], vec![("/striker/radius_m", json!(0.006)), ("/location_m", json!(0.5))]] {
+    for changes in [
+        vec![],
+        vec![("/location_m", json!(0))],
+        vec![("/striker/radius_m", json!(0.006)), ("/location_m", json!(0.5))],
+    ] {
         let scene = Scene::from_value(&with(&changes)).unwrap();
         let (plan, answer) = (scene.plan().unwrap(), scene.answer().unwrap());
         assert_eq!(plan.model, answer.model);

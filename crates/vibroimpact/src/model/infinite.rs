@@ -146,9 +146,9 @@ fn reach(modes: &[Mode], impulse: f64, beam_mass: f64) -> f64 {
     let elastic = || modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
     let summed: f64 = elastic().map(|mode| mode.shape.powi(2) * impulse / mode.omega_rad_s).sum();
     // beyond: no shape of a uniform beam is larger than 2/sqrt(M), and frequencies grow like squares
-    let beyond = elastic().last().map_or(f64::INFINITY, |mode| {
-        1.2 * elastic().count() as f64 * 4.0 / beam_mass * impulse / mode.omega_rad_s
-    });
+    let beyond = elastic()
+        .next_back()
+        .map_or(f64::INFINITY, |mode| 1.2 * elastic().count() as f64 * 4.0 / beam_mass * impulse / mode.omega_rad_s);
     summed + beyond
 }
 
@@ -158,12 +158,12 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
         Ok(beam) => beam,
         Err(reason) => return Ok(Err(reason)),
     };
-    if !(pose.striker.speed_m_s > 0.0) {
+    if !pose.approaches() {
         return Ok(Err("the striker does not approach".to_owned()));
     }
     // a first contact on an infinite beam lasts 0.9 to 1 times one at a wall
     let (hopeful, z) = beam.reflections(0.8 * pose.wall.duration_s);
-    if !(hopeful <= pose.tolerance) {
+    if hopeful > pose.tolerance {
         return Ok(Err(format!("waves come back from an end within the contact (z = {})", small(z))));
     }
     match solve(pose, &beam, cost)? {
@@ -182,7 +182,7 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
         Ok(beam) => beam,
         Err(reason) => return Ok(Err(format!("another model: {reason}"))),
     };
-    if !(pose.striker.speed_m_s > 0.0) {
+    if !pose.approaches() {
         return Ok(Err("another model where the striker does not approach".to_owned()));
     }
     Ok(solve(pose, &beam, cost)?.map(|(choice, _)| choice))
@@ -229,22 +229,30 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let evidence = format!(
         "one contact of {} s, S = {}; within it only waves faster than {} m/s come back from an end (z = {}), which \
          changes the restitution by {} at most",
-        small(duration_s), small(groups.s), small(speed_of_waves), small(z), small(bound)
+        small(duration_s),
+        small(groups.s),
+        small(speed_of_waves),
+        small(z),
+        small(bound)
     );
     let reason = match (ended, free) {
         (None, _) => format!(
             "infinite-beam: the striker stays on an infinite beam (S = {}); a real one sends its waves back",
             small(groups.s)
         ),
-        (_, true) if bound.is_finite() => format!("infinite-beam: {evidence}; the striker is then out of reach for ever"),
+        (_, true) if bound.is_finite() => {
+            format!("infinite-beam: {evidence}; the striker is then out of reach for ever")
+        }
         (_, true) => format!(
             "infinite-beam: the last contact ends after {} s, when waves have long come back from an end (z = {})",
-            small(duration_s), small(z)
+            small(duration_s),
+            small(z)
         ),
         (_, false) => format!(
             "infinite-beam: the last contact ends after {} s (z = {}), and that the beam's ends cause no further \
              contact is not certain",
-            small(duration_s), small(z)
+            small(duration_s),
+            small(z)
         ),
     };
     let answer = Answer {

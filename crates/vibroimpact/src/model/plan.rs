@@ -17,6 +17,9 @@ const SOLVE_S: f64 = 6e-5;
 const INFINITE_S: f64 = 1e-4;
 const FORMULA_S: f64 = 3e-5;
 
+/// Tries a tier.
+type Certify = fn(&mut Pose, &mut Cost) -> Tried;
+
 /// What [`Scene::plan`] expects.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
@@ -83,7 +86,7 @@ impl Scene {
         }
         let mut pose = Pose::new(self)?;
         let cost = &mut Cost::default();
-        let cheap: [(Model, fn(&mut Pose, &mut Cost) -> Tried, f64); 3] = [
+        let cheap: [(Model, Certify, f64); 3] = [
             (Model::Rigid, rigid::certified, FORMULA_S),
             (Model::Emoc, emoc::certified, FORMULA_S),
             (Model::InfiniteBeam, infinite::certified, INFINITE_S),
@@ -106,7 +109,7 @@ impl Scene {
 }
 
 fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
-    let (modes, reason) = if chooses_modes(pose.scene) && pose.striker.speed_m_s > 0.0 {
+    let (modes, reason) = if chooses_modes(pose.scene) && pose.approaches() {
         let (first, second) = settle::guess(pose, cost)?;
         let reason = format!(
             "begins with {first} and {second} modes and raises their number until the restitution has settled within {}",

@@ -75,7 +75,8 @@ impl Wall {
             stiffness_n_m: force.per_compression_n_m,
             exponent,
             // pi for a linear spring, 2.943 for Hertz's exponent; near enough between and beyond
-            duration_s: (std::f64::consts::PI - 0.4 * (exponent - 1.0)).max(1.0) * compression_m / striker.speed_m_s.abs(),
+            duration_s: (std::f64::consts::PI - 0.4 * (exponent - 1.0)).max(1.0) * compression_m
+                / striker.speed_m_s.abs(),
         }
     }
 }
@@ -136,6 +137,11 @@ impl<'a> Pose<'a> {
         Ok(Pose { scene, striker, law, tolerance, wall, source })
     }
 
+    /// Whether the striker moves towards the structure.
+    pub fn approaches(&self) -> bool {
+        self.striker.speed_m_s > 0.0
+    }
+
     /// The first `count` modes that a force at the place excites, and how many of them there are in all (at most
     /// `count`); what the others add to the static compliance, if that is wanted and known.
     pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<Structure, InvalidInput> {
@@ -153,7 +159,6 @@ impl<'a> Pose<'a> {
         };
         Ok(Structure { modes: kept, residual_compliance_m_n })
     }
-
 }
 
 /// Static compliance of modes (m/N).

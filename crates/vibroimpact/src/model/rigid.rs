@@ -16,9 +16,9 @@
 
 use super::choose::{Choice, Tried};
 use super::pose::{Pose, Source};
+use super::text::small;
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
-use super::text::small;
 
 /// How far below the tolerance `epsilon` has to be for a law that dissipates.
 const MARGIN: f64 = 1e-3;
@@ -37,7 +37,8 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
     if share > STILL {
         return Ok(Err("the structure moves freely as a rigid body".to_owned()));
     }
-    let still = matches!(&pose.source, Source::Listed { modes, whole_m_n: None } if modes.iter().all(|mode| mode.shape == 0.0));
+    let still =
+        matches!(&pose.source, Source::Listed { modes, whole_m_n: None } if modes.iter().all(|mode| mode.shape == 0.0));
     let Some(whole) = pose.source.whole_m_n().or(still.then_some(0.0)) else {
         return Ok(Err("the static compliance of the structure is not known".to_owned()));
     };
@@ -57,22 +58,21 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
 
 /// The wall, if the bound says that it reaches the tolerance.
 pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
-    if !(pose.striker.speed_m_s > 0.0) {
+    if !pose.approaches() {
         return Ok(Err("the striker does not approach".to_owned()));
     }
     match bound(pose, cost)? {
         Ok(bound) if bound <= pose.tolerance => wall(pose, Some(bound), cost).map(Ok),
-        Ok(bound) => Ok(Err(format!(
-            "the place moves: its compliance may change the restitution by up to {}",
-            small(bound)
-        ))),
+        Ok(bound) => {
+            Ok(Err(format!("the place moves: its compliance may change the restitution by up to {}", small(bound))))
+        }
         Err(reason) => Ok(Err(reason)),
     }
 }
 
 /// The wall, because it was asked for.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
-    if !(pose.striker.speed_m_s > 0.0) {
+    if !pose.approaches() {
         return Ok(Err("another model where the striker does not approach".to_owned()));
     }
     let bound = bound(pose, cost)?.ok();
@@ -89,7 +89,9 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
         Some(bound) if bound <= pose.tolerance => {
             format!("rigid: the place can change the restitution at a wall by {} at most", small(bound))
         }
-        Some(bound) => format!("rigid: asked for, though the place may change the restitution by up to {}", small(bound)),
+        Some(bound) => {
+            format!("rigid: asked for, though the place may change the restitution by up to {}", small(bound))
+        }
         None => "rigid: asked for; how much the structure changes is not bounded".to_owned(),
     };
     let answer = Answer {

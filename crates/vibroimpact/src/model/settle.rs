@@ -12,16 +12,16 @@
 //! guess is the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
 //! Then `N` is raised by steps of a factor of about 1.4. Restitutions alone may agree by accident while the courses
 //! of two impacts do not, and then differ again at the next `N`; so the striker's speed in every flight between two
-//! contacts is compared as well. Solver errors, made anew at every `N`, are part of the differences.
+//! contacts is compared as well, and after more than one contact a third number of modes is asked. Solver errors, made anew at every `N`, are part of the differences.
 
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
 
 use super::choose::Choice;
 use super::pose::{Pose, Source, chooses_modes, compliance};
+use super::text::small;
 use super::{Answer, Cost, Model, Modes};
 use crate::impact::{Impact, in_scene};
 use crate::scene::InvalidInput;
-use super::text::small;
 
 /// More modes than this are not tried.
 pub(super) const MOST_MODES: usize = 400;
@@ -68,8 +68,7 @@ impl Rung {
     fn new(pose: &mut Pose, count: usize, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let structure = pose.structure(count, cost)?;
         let mut solver = Solver::new(&structure).map_err(in_scene)?;
-        let solution =
-            solver.solve(&pose.striker, &pose.law, None, &settings(pose.tolerance)).map_err(in_scene)?;
+        let solution = solver.solve(&pose.striker, &pose.law, None, &settings(pose.tolerance)).map_err(in_scene)?;
         cost.add(&solution.counts, structure.modes.len());
         Ok(Rung { count, structure, solution })
     }
@@ -78,7 +77,12 @@ impl Rung {
     fn flights(&self, momentum: f64) -> Vec<f64> {
         let mut sum = 0.0;
         let separations = self.solution.sub_impacts.iter();
-        separations.map(|contact| { sum += contact.impulse_n_s; sum / momentum }).collect()
+        separations
+            .map(|contact| {
+                sum += contact.impulse_n_s;
+                sum / momentum
+            })
+            .collect()
     }
 }
 
@@ -161,7 +165,9 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
         let mut uncertainty = CAUTION * step.max(FLIGHTS * flights).max(EARLIER * before) + floor;
         before = step;
-        let settled = uncertainty <= pose.tolerance && pair.is_some();
+        // after several contacts, two impacts may agree and lack the same further contact: ask a third
+        let several = next.solution.sub_impacts.len() > 1 && rungs.len() < 2;
+        let settled = uncertainty <= pose.tolerance && pair.is_some() && !several;
         let limit = next.solution.outcome == Outcome::LimitReached;
         rungs.push(next);
         let raised = ((count as f64 * RAISE).round() as usize).min(most);
@@ -179,19 +185,30 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             _ if settled => format!(
                 "modal: with {counts} modes the last change of the restitution is {} and no flight between contacts \
                  changes its speed by more than {} of the speed of impact",
-                small(step), small(flights)
+                small(step),
+                small(flights)
             ),
             Some(spread) => format!(
                 "modal: the restitution does not settle within {} with {counts} modes{}; over the last {size} it \
                  spreads by {}",
-                small(pose.tolerance), lightly_damped(pose), small(spread)
+                small(pose.tolerance),
+                lightly_damped(pose),
+                small(spread)
             ),
             None => format!("modal: the computation reached its limit of steps with {counts} modes"),
         };
         if let Some(spread) = spread {
             uncertainty = uncertainty.max(spread);
         }
-        return Ok(Choice::modal(pose, last.structure, last.solution, Some(uncertainty.min(1.0)), settled, spread, reason));
+        return Ok(Choice::modal(
+            pose,
+            last.structure,
+            last.solution,
+            Some(uncertainty.min(1.0)),
+            settled,
+            spread,
+            reason,
+        ));
     }
 }
 

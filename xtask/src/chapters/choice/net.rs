@@ -123,7 +123,14 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
         ];
         for (what, value, tolerance, ours) in carried {
             let name = format!("net law: {what}");
-            study.state(Comparison::about(name, "carried by the program", &significant(value, 3), value, tolerance, ours));
+            study.state(Comparison::about(
+                name,
+                "carried by the program",
+                &significant(value, 3),
+                value,
+                tolerance,
+                ours,
+            ));
         }
     }
     Ok(())

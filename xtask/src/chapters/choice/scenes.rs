@@ -86,7 +86,9 @@ pub(super) fn scene(seed: u64) -> Result<Scene, Failure> {
     let striker = ball(mass, speed);
     let contact = match random.of(&["hertz", "hertz", "hertz", "viscous", "spring", "plastic"]) {
         "hertz" => hertz(),
-        "viscous" => json!({ "law": "viscous", "youngs_modulus_pa": MODULUS, "poissons_ratio": 0.3, "restitution": 0.8 }),
+        "viscous" => {
+            json!({ "law": "viscous", "youngs_modulus_pa": MODULUS, "poissons_ratio": 0.3, "restitution": 0.8 })
+        }
         "spring" => {
             // as long a contact at a wall as a ball of that mass would have, or up to ten times that
             let duration = 2e-3 * mass.cbrt() * speed.powf(-0.2) * random.log(0.1, 1.0);
