@@ -41,6 +41,8 @@ const CAUTION: f64 = 2.0;
 const FLIGHTS: f64 = 0.5;
 /// Weight of the difference before the last.
 const EARLIER: f64 = 0.1;
+/// The same once three numbers of modes have not settled: of many pairs one may agree by accident.
+const EARLIER_LATE: f64 = 0.5;
 /// Tolerance of the solver, as a share of the tolerance wanted; and its range.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-12, 1e-3);
@@ -163,8 +165,10 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         let pair = last.solution.restitution.zip(next.solution.restitution);
         let flights = distance(&last.flights(momentum), &next.flights(momentum));
         let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
-        let mut uncertainty = CAUTION * step.max(FLIGHTS * flights).max(EARLIER * before) + floor;
-        before = step;
+        let weight = if rungs.len() < 3 { EARLIER } else { EARLIER_LATE };
+        let change = step.max(FLIGHTS * flights);
+        let mut uncertainty = CAUTION * change.max(weight * before) + floor;
+        before = change;
         // after several contacts, two impacts may agree and lack the same further contact: ask a third
         let several = next.solution.sub_impacts.len() > 1 && rungs.len() < 2;
         let settled = uncertainty <= pose.tolerance && pair.is_some() && !several;
