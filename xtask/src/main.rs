@@ -89,6 +89,15 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
+    StudyAuto {
+        /// Fewer scenes through the same code
+        #[arg(long)]
+        quick: bool,
+        /// The folder to write to
+        #[arg(long, value_name = "DIR", default_value = "out/study-auto")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -141,6 +150,7 @@ fn run(task: Task) -> Result<(), Failure> {
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }
         Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
+        Task::StudyAuto { quick, out } => say(&chapters::study_auto(&out, quick)?),
     }
 }
 

@@ -28,6 +28,7 @@
 //! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
 //! | [`scene::schema`] | its JSON Schema |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
@@ -43,6 +44,7 @@ mod input;
 
 pub mod export;
 pub mod infinite;
+pub mod model;
 pub mod net;
 pub mod pictures;
 pub mod plot;

@@ -8,6 +8,7 @@ mod chapter4;
 mod chapter6;
 mod chapter7;
 mod chapter8;
+mod choice;
 mod figures;
 mod impact;
 mod study;
@@ -52,6 +53,14 @@ pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result
         other => return Err(BadInput(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8")).into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
+}
+
+/// Puts the automatic choice of the model to the test and writes the folder of that study.
+pub fn study_auto(out: &Path, quick: bool) -> Result<String, Failure> {
+    let mut study = Study::new(out, quick)?;
+    study.claims("Targets, and what was found");
+    let introduction = choice::run(&mut study)?;
+    study.finish("The automatic choice of the model", introduction)
 }
 
 #[cfg(test)]

@@ -20,6 +20,8 @@ pub(super) struct Study {
     pub quick: bool,
     body: Report,
     statements: Vec<Comparison>,
+    /// The heading above them.
+    claims: &'static str,
     files: Vec<String>,
     timings: Vec<Timing>,
     remarks: Vec<String>,
@@ -62,12 +64,18 @@ impl Study {
             quick,
             body: Report::new(""),
             statements: Vec::new(),
+            claims: "What the thesis states, beside ours",
             files: Vec::new(),
             timings: Vec::new(),
             remarks: Vec::new(),
             started: Instant::now(),
             bar,
         })
+    }
+
+    /// Heads the list of statements differently.
+    pub fn claims(&mut self, heading: &'static str) {
+        self.claims = heading;
     }
 
     /// Begins a section of the report.
@@ -173,7 +181,7 @@ impl Study {
         if self.quick {
             report.text("**This is the quick form, with fewer points.**");
         }
-        report.heading("What the thesis states, beside ours");
+        report.heading(self.claims);
         report.comparisons(&self.statements);
         report.append(self.body.clone());
         for path in report.write(&self.out)? {
