@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 
 /// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
 pub(crate) const Q: usize = 8;
-/// Powers of time kept in a Taylor series over a landing step.
-pub(crate) const TAYLOR: usize = 14;
-/// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
+/// Powers of time kept in a Taylor series, at most.
+pub(crate) const TAYLOR: usize = 28;
+/// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly: these, to degree `TAYLOR + Q - 2`.
 const FINE: usize = 20;
 
 pub(crate) type Nodal = [f64; Q];
@@ -69,13 +69,22 @@ pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
     dot(coefficients, &legendre(s))
 }
 
-/// Inner product of two short vectors.
+/// Inner product of two short vectors, on four adders at a time.
 pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..Q {
-        sum += a[i] * b[i];
+    let mut lanes = [0.0; 4];
+    for i in 0..4 {
+        lanes[i] = a[i] * b[i] + a[i + 4] * b[i + 4];
     }
-    sum
+    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
+}
+
+/// `matrix += factor * other`.
+pub(crate) fn add_multiple(matrix: &mut Matrix, factor: f64, other: &Matrix) {
+    for (row, other) in matrix.iter_mut().zip(other) {
+        for j in 0..Q {
+            row[j] += factor * other[j];
+        }
+    }
 }
 
 /// A Gauss-Legendre rule on (0, 1).
@@ -178,6 +187,12 @@ impl Basis {
             end_slope_from_nodes,
             fine,
         }
+    }
+
+    /// Nodal values on [0, part] of the polynomial with these nodal values on [0, 1].
+    pub fn restrict(&self, nodal: &Nodal, part: f64) -> Nodal {
+        let coefficients = self.coefficients(nodal);
+        self.nodes.map(|c| evaluate(&coefficients, part * c))
     }
 
     /// Legendre coefficients of the polynomial with these nodal values.
