@@ -251,9 +251,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn approach(&mut self, which: usize, expected: f64, h: f64) -> Option<ContactEnd> {
         let mut expected = expected;
         if self.is_near(which, expected) {
-            let reach = self.reach().min(h).min(2.0 * expected);
+            let reach = self.reach().min(h).min(2.0 * expected.max(0.5 * step_s(self.level)));
             let terms = terms(self.ladder.fastest_rad_s * reach);
-            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration, terms);
+            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration, reach);
             let mut approach = Approach {
                 law: self.setting.law,
                 branch: &self.branch,
@@ -265,6 +265,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 terms,
                 kernel: self.ladder.kernel,
                 residual_compliance: self.setting.residual_compliance,
+                noise: f64::EPSILON * self.motion.drift.abs(),
             };
             approach.gap[0] += self.motion.drift;
             approach.gap[1] += self.motion.drift_rate;

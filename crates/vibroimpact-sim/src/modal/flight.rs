@@ -11,11 +11,12 @@
 //! ```
 //!
 //! Where the right side is positive the window holds no contact. For a separation that starts from nothing, with all
-//! modes below the cut, `u(t)/t >= p(t)/t - h^3/162 sum D_k` serves. Windows are steps of the ladder: twice as long
-//! after an easy proof, half as long after none. What cannot be proven on a window as short as the power series of the
+//! modes below the cut, `u(t)/t >= p(t)/t - h^3/162 sum D_k` serves. Windows are steps of the ladder: longer after an
+//! easy proof, half as long after none, and where the bodies overlap at the end of one, such that they lead up to the
+//! root of the cubic. What cannot be proven on a window as short as the power series of the
 //! gap reaches is decided by the series. Once the drift alone outruns all amplitudes, the bodies never meet again.
 
-use super::ladder::{J_MIN, Ladder, Vibration, level_within, step_s, sum, terms};
+use super::ladder::{J_MIN, Ladder, Vibration, level_within, step_s, sum};
 use super::landing::{coast, taylor_of_free_motion};
 use super::legendre::TAYLOR;
 use super::motion::Motion;
@@ -23,8 +24,9 @@ use super::solution::Counts;
 
 /// Amplitudes are computed anew once in this many steps: damping makes them fall.
 const REFRESH: u64 = 8;
-/// A window twice as long leaves 16 times the doubt.
+/// A window twice as long leaves 16 times the doubt, one four times as long 256 times.
 const EASY: f64 = 16.0;
+const VERY_EASY: f64 = 256.0;
 /// In the shortest window the fastest motion turns by at most this many radians.
 const REACH: f64 = 1.0;
 /// How many levels above the power series' reach the search for a contact begins.
@@ -101,22 +103,17 @@ fn below(cubic: [f64; 4]) -> f64 {
 }
 
 /// What a window's bound came to.
-#[derive(PartialEq)]
 enum Proof {
-    /// No contact, by far.
-    Easy,
-    /// No contact.
-    Close,
-    None,
+    /// No contact; the next window may be longer by so many levels.
+    Clear(i32),
+    /// None; contact is near this time into the window if the bodies overlap at its end.
+    Failed(Option<f64>),
 }
 
 impl Proof {
-    fn of(least: f64, doubt: f64) -> Proof {
-        match least > doubt {
-            true if least > EASY * doubt => Proof::Easy,
-            true => Proof::Close,
-            false => Proof::None,
-        }
+    /// Of a separation of `least` at least, but for `doubt`.
+    fn of(least: f64, doubt: f64) -> Option<Proof> {
+        (least > doubt).then(|| Proof::Clear(i32::from(least > EASY * doubt) + i32::from(least > VERY_EASY * doubt)))
     }
 }
 
@@ -135,13 +132,26 @@ fn prove(ladder: &Ladder, bounds: &Bounds, motion: &Motion, end: &Motion, h: f64
     let fourth = power * bounds.fourth_derivative(ladder, cut);
     let noise = bounds.noise(motion);
     let cubic = window.cubic();
-    let proof = Proof::of(below(cubic), above + fourth / 384.0 + noise);
-    if proof == Proof::None && cut == n && cubic[0] >= 0.0 {
-        // p(s)/s is a quadratic with these Bernstein coefficients
+    // p(s)/s is a quadratic with the Bernstein coefficients 3 b1, 3/2 b2, b3, and more
+    let from_touch = || {
         let least = (3.0 * cubic[1]).min(1.5 * cubic[2]).min(cubic[3] - noise);
-        return Proof::of(least, fourth / 162.0);
+        if cut == n && cubic[0] >= 0.0 { Proof::of(least, fourth / 162.0) } else { None }
+    };
+    Proof::of(below(cubic), above + fourth / 384.0 + noise)
+        .or_else(from_touch)
+        .unwrap_or_else(|| Proof::Failed((end.gap() > touch).then(|| h * root(cubic))))
+}
+
+/// Where the cubic with these Bernstein coefficients on [0, 1] falls through zero, roughly.
+fn root([a, b, c, d]: [f64; 4]) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..8 {
+        let s: f64 = 0.5 * (low + high);
+        let r = 1.0 - s;
+        let value = r * r * (r * a + 3.0 * s * b) + s * s * (3.0 * r * c + s * d);
+        (low, high) = if value > 0.0 { (s, high) } else { (low, s) };
     }
-    proof
+    low
 }
 
 /// Flies from a separation to the next contact, if there is one.
@@ -162,8 +172,8 @@ pub(crate) fn fly(
     let near = level_within(reach);
     let mut bounds = Bounds { amplitude: vec![0.0; ladder.modes.len()], total: 0.0 };
     let mut end = motion.clone();
-    // the window tried first, and whether the bodies are known to meet within twice the present one
-    let (mut level, mut ahead) = (near - FIRST, false);
+    // the window tried first, and when the bodies are expected to meet
+    let (mut level, mut ahead) = (near - FIRST, f64::INFINITY);
     for step in 0.. {
         counts.flight_steps += 1;
         if counts.flight_steps > max_steps {
@@ -181,13 +191,13 @@ pub(crate) fn fly(
         end.carry_on_from(motion);
         end.coast(step_s(level));
         match prove(ladder, &bounds, motion, &end, step_s(level), touch) {
-            Proof::None if level < near => {
-                ahead |= end.gap() > touch;
-                level += 1;
+            Proof::Failed(meeting) if level < near => {
+                ahead = meeting.map_or(ahead, |after| motion.time + after);
+                level = (level + 1).max(level_within(ahead - motion.time));
                 continue;
             }
-            Proof::None => {
-                let mut series = taylor_of_free_motion(ladder, &motion.vibration, terms(REACH));
+            Proof::Failed(_) => {
+                let mut series = taylor_of_free_motion(ladder, &motion.vibration, step_s(near));
                 series[0] += motion.drift - touch;
                 series[1] += motion.drift_rate;
                 if let Some(time) = first_root(&series, bounds.curvature(ladder), step_s(near), bounds.noise(motion)) {
@@ -196,12 +206,12 @@ pub(crate) fn fly(
                     std::mem::swap(&mut motion.vibration, &mut end.vibration);
                     return FlightEnd::Contact;
                 }
-                (level, ahead) = (level - 1, false);
+                (level, ahead) = (level - 1, f64::INFINITY);
             }
-            // of the window at whose end they overlap, this was the first half
-            _ if ahead => level += 1,
-            Proof::Easy => level -= 1,
-            Proof::Close => {}
+            Proof::Clear(longer) => {
+                let left = ahead - end.time;
+                level = if left > 0.0 { (level - longer).max(level_within(left)) } else { level - longer };
+            }
         }
         std::mem::swap(motion, &mut end);
     }

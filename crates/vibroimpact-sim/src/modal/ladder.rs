@@ -89,6 +89,8 @@ pub(crate) struct Ladder {
     /// `omega_k^2` (1/s^2) and `2 zeta_k omega_k` (1/s), the coefficients of the modes' equations.
     pub square: Vec<f64>,
     pub drag: Vec<f64>,
+    /// No motion of the modes up to this one is faster (rad/s).
+    pub swift: Vec<f64>,
     /// What a free mode's fourth derivative is at most, in amplitudes (1/s^4); see `flight.rs`.
     pub fourth: Vec<f64>,
     /// Derivatives at zero of the impulse response at the contact, `sum_k phi_k^2 k_k^(p)(0)`.
@@ -108,9 +110,10 @@ impl Ladder {
         let row = |zeta: f64| (1.0 - 4.0 * zeta * zeta).hypot(4.0 * zeta - 8.0 * zeta.powi(3));
         let fourth = modes.iter().map(|mode| mode.omega_rad_s.powi(4) * row(mode.damping_ratio)).collect();
         let mut kernel = [0.0; TAYLOR];
-        let mut fastest_rad_s: f64 = 0.0;
+        let (mut swift, mut fastest_rad_s) = (Vec::with_capacity(modes.len()), 0.0f64);
         for (k, mode) in modes.iter().enumerate() {
             fastest_rad_s = fastest_rad_s.max(mode.omega_rad_s + drag[k]);
+            swift.push(fastest_rad_s);
             let (mut here, mut next) = (0.0, weight[k]);
             for value in kernel.iter_mut() {
                 *value += here;
@@ -118,7 +121,16 @@ impl Ladder {
             }
         }
         let levels = std::iter::repeat_with(Level::default).take((J_MAX - J_MIN + 1) as usize).collect();
-        Ladder { modes, weight, square, drag, fourth, kernel, fastest_rad_s, levels }
+        Ladder { modes, weight, square, drag, swift, fourth, kernel, fastest_rad_s, levels }
+    }
+
+    /// For each term `p` of the series over `length`, the first mode that still needs it: slow modes are done with few.
+    pub fn needing(&self, length: f64) -> [usize; TAYLOR] {
+        let mut first = 0;
+        BASIS.least_angle.map(|angle| {
+            first += self.swift[first..].iter().take_while(|swift| **swift * length < angle).count();
+            first
+        })
     }
 
     /// Free motion over one step of level `j`, from `state` to `end`.

@@ -3,7 +3,7 @@
 //! No mode turns by more than a few radians in it, so free motion and impulse responses are Taylor series, whose terms
 //! at the contact are the same few numbers whatever the length tried.
 
-use super::ladder::{Ladder, Vibration, sum, terms};
+use super::ladder::{Ladder, Vibration, sum};
 use super::legendre::{BASIS, Nodal, Q, TAYLOR, add_multiple, dot, evaluate};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
@@ -17,7 +17,7 @@ pub(crate) const REACH: f64 = 3.0;
 /// it, elsewhere it is smooth.
 const NEAR: f64 = 1e-2;
 /// More turns between force and length than this mean that the branch does not end here.
-const TURNS: u32 = 12;
+const TURNS: u32 = 5;
 
 /// The state at the start of a landing.
 pub(crate) struct Approach<'a, L> {
@@ -36,6 +36,8 @@ pub(crate) struct Approach<'a, L> {
     /// Derivatives of the impulse response at the contact, striker included.
     pub kernel: [f64; TAYLOR],
     pub residual_compliance: f64,
+    /// Rounding of the gap (m).
+    pub noise: f64,
 }
 
 /// A landing found.
@@ -182,6 +184,8 @@ impl<L: ContactLaw> Approach<'_, L> {
         let (mut low, mut low_margin) = (0.0, initial);
         let (mut high, mut high_margin) = (length, f64::NAN);
         let (mut at, mut bracketed, mut side) = (length, false, 0);
+        // what follows does not depend on where within these last digits the branch is left
+        let settled = (1e-14 * initial).max(boundary.per_compression.abs() * self.noise);
         for _ in 0..60 {
             let (here, slope) = margin(at);
             if here > 0.0 {
@@ -209,8 +213,7 @@ impl<L: ContactLaw> Approach<'_, L> {
             } else {
                 (1.5 * at).min(longest)
             };
-            // what follows does not depend on where within these last digits the branch is left
-            if bracketed && ((next - at).abs() <= 1e-14 * high || here.abs() <= 1e-14 * initial) {
+            if bracketed && ((next - at).abs() <= 1e-14 * high || here.abs() <= settled) {
                 return Some(next);
             }
             at = next;
@@ -219,20 +222,21 @@ impl<L: ContactLaw> Approach<'_, L> {
     }
 }
 
-/// `g^(p)/p!` of the structure's free motion at the contact, for this many `p`.
-pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration, terms: usize) -> [f64; TAYLOR] {
+/// `g^(p)/p!` of the structure's free motion at the contact, as far as they matter within `longest`.
+pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration, longest: f64) -> [f64; TAYLOR] {
     let n = state.alpha.len();
     let (square, drag) = (&ladder.square[..n], &ladder.drag[..n]);
     let (mut here, mut next) = (state.alpha.clone(), state.beta.clone());
     let mut series = [0.0; TAYLOR];
     let mut factorial = 1.0;
-    for (p, value) in series.iter_mut().enumerate().take(terms) {
+    for (p, first) in ladder.needing(longest).into_iter().enumerate().take_while(|(_, first)| *first < n) {
         if p > 1 {
             factorial *= p as f64;
         }
-        *value = sum(&here) / factorial;
-        let (a, b) = (&mut here[..n], &mut next[..n]);
-        for k in 0..n {
+        series[p] = sum(&here[first..]) / factorial;
+        let (a, b) = (&mut here[first..n], &mut next[first..n]);
+        let (square, drag) = (&square[first..n], &drag[first..n]);
+        for k in 0..n - first {
             let after = -(drag[k] * b[k] + square[k] * a[k]);
             a[k] = b[k];
             b[k] = after;
@@ -268,14 +272,11 @@ fn horner(ladder: &Ladder, state: &Vibration, end: &mut Vibration, length: f64, 
     for p in 1..TAYLOR {
         powers[p] = powers[p - 1] * length / p as f64;
     }
-    let last = terms(ladder.fastest_rad_s * length) - 1;
-    for k in 0..n {
-        alpha_end[k] = alpha[k] * powers[last];
-        beta_end[k] = beta[k] * powers[last] - weight[k] * moments[last];
-    }
-    for p in (0..last).rev() {
+    alpha_end.fill(0.0);
+    beta_end.fill(0.0);
+    for (p, first) in ladder.needing(length).into_iter().enumerate().rev() {
         let (power, moment) = (powers[p], moments[p]);
-        for k in 0..n {
+        for k in first..n {
             let (a, b) = (alpha_end[k], beta_end[k]);
             alpha_end[k] = alpha[k] * power + b;
             beta_end[k] = (beta[k] * power - weight[k] * moment) - (drag[k] * b + square[k] * a);

@@ -30,6 +30,8 @@ pub(crate) struct Basis {
     pub power_legendre: Vec<Nodal>,
     /// `node_powers[p][i]`: `c_i^p / p!`.
     pub node_powers: Vec<Nodal>,
+    /// The angle (rad) from which on a motion needs term `p` of its power series: `angle^p / p!` is no longer rounding.
+    pub least_angle: [f64; TAYLOR],
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
@@ -166,6 +168,11 @@ impl Basis {
             }
         }
 
+        let mut factorial = 1.0;
+        let least_angle = std::array::from_fn(|p| {
+            factorial *= p.max(1) as f64;
+            if p < 2 { 0.0 } else { (1e-17 * factorial).powf(1.0 / p as f64) }
+        });
         let slopes = |at: f64| derivative_weights(&nodes, at);
         let mut slope_from_start = [0.0; Q];
         let mut slope_from_nodes = [[0.0; Q]; Q];
@@ -181,6 +188,7 @@ impl Basis {
             power_end,
             power_legendre,
             node_powers,
+            least_angle,
             slope_from_start,
             slope_from_nodes,
             end_slope_from_start,
