@@ -20,7 +20,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-    pool.install(|| run(chapter, out, true, None)).unwrap()
+    pool.install(|| run(chapter, out, true, None)).unwrap().summary
 }
 
 fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
