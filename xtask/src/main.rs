@@ -1,6 +1,7 @@
 //! The workspace's own tasks: checks, the thesis's chapters, studies, and the record of cost and error.
 
 mod bench;
+mod book;
 mod chapters;
 mod ci;
 mod examples;
@@ -9,13 +10,11 @@ mod soak;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::str::FromStr;
 use std::time::Duration;
 
 use chapters::{BadInput, Failure};
 use clap::{Parser, Subcommand};
-
-/// The chapters that can be reproduced.
-const CHAPTERS: [u32; 6] = [2, 3, 4, 6, 7, 8];
 
 /// Keeps the house, and reproduces the chapters of the thesis.
 #[derive(Parser)]
@@ -28,6 +27,8 @@ struct Cli {
 enum Task {
     /// Check everything: format, clippy, docs, tests, the chapters in their quick form, and the record
     Ci,
+    /// Check the book: links, commands, scenes
+    Book,
     /// Run the example programs of the crates
     Examples {
         /// Those outside the workspace, which use one crate alone
@@ -47,12 +48,12 @@ enum Task {
     BenchRun,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
-        /// The chapter: 2, 3, 4, 6, 7 or 8
-        chapter: u32,
+        /// The chapter: 2, 3, 4, 6, 7 or 8, or `all` for the whole thesis and one report
+        chapter: Chapters,
         /// Fewer points through the same code
         #[arg(long)]
         quick: bool,
-        /// The folder to write to; out/chapter-N when left out
+        /// The folder to write to; out/chapter-N, or out/all, when left out
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Chapter 8: measured points to fit as well (CSV: length_m, angle_deg, restitution)
@@ -115,30 +116,31 @@ fn run(task: Task) -> Result<(), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
     match task {
         Task::Ci => {
-            let quick_chapters = || {
-                CHAPTERS.into_iter().try_for_each(|chapter| {
-                    let out = root.join(format!("out/ci/chapter-{chapter}"));
-                    reproduce(chapter, &out, true, None)
-                })
-            };
+            let quick_chapters = || reproduce(Chapters::All, &root.join("out/ci"), true, None);
             let record = || bench::check(root);
             let examples = || examples::of_crates(root);
+            let book = || book::run(root);
             ci::run(
                 root,
                 &[
                     ("examples", &examples),
+                    ("book", &book),
                     ("chapters, quick form", &quick_chapters),
                     ("record of cost and error", &record),
                 ],
             )
         }
+        Task::Book => book::run(root),
         Task::Examples { alone: false } => examples::of_crates(root),
         Task::Examples { alone: true } => examples::alone(root),
         Task::BenchRecord { references } => bench::record(root, references),
         Task::BenchCheck => bench::check(root),
         Task::BenchRun => bench::run_all(root),
         Task::ReproduceChapter { chapter, quick, out, data } => {
-            let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
+            let out = out.unwrap_or_else(|| match chapter {
+                Chapters::All => PathBuf::from("out/all"),
+                Chapters::One(number) => PathBuf::from(format!("out/chapter-{number}")),
+            });
             reproduce(chapter, &out, quick, data.as_deref())
         }
         Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
@@ -167,8 +169,30 @@ fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result
     if command.status()?.success() { Ok(()) } else { Err("work-precision failed".into()) }
 }
 
-fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
-    say(&chapters::run(chapter, out, quick, data)?)
+/// What `reproduce-chapter` is asked for.
+#[derive(Clone, Copy)]
+enum Chapters {
+    All,
+    One(u32),
+}
+
+impl FromStr for Chapters {
+    type Err = BadInput;
+
+    fn from_str(text: &str) -> Result<Chapters, BadInput> {
+        let known = |number: &u32| chapters::CHAPTERS.contains(number);
+        match text {
+            "all" => Ok(Chapters::All),
+            _ => text.parse().ok().filter(known).map(Chapters::One).ok_or_else(|| BadInput::chapter(text)),
+        }
+    }
+}
+
+fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
+    say(&match chapter {
+        Chapters::All => chapters::run_all(out, quick, data)?,
+        Chapters::One(number) => chapters::run(number, out, quick, data)?.summary,
+    })
 }
 
 fn say(text: &str) -> Result<(), Failure> {

@@ -4,6 +4,7 @@ use super::problem::{Found, Problem};
 use crate::chapters::Failure;
 use contact_models::Law;
 use std::path::Path;
+use vibroimpact::model::Modes;
 use vibroimpact::{Impact, Scene};
 use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite::{self, critical_s, turning_point};
@@ -71,24 +72,24 @@ pub fn on_modes(root: &Path) -> Result<Vec<Problem>, Failure> {
     let mut problems = Vec::new();
 
     let mut pinned = scene("pinned-beam-converged")?;
-    pinned.residual_compliance = false;
+    pinned.residual_compliance = Some(false);
     for n in [10, 40, 200] {
-        pinned.modes = Some(n);
+        pinned.modes = Modes::Count(n);
         for tolerance in [1e-6, 1e-9, 1e-12] {
             problems.push(modal(format!("pinned N={n} hertz"), pinned.impact()?, tolerance));
         }
     }
-    pinned.modes = Some(40);
+    pinned.modes = Modes::Count(40);
     let hertz = pinned.impact()?;
     for law in laws(&hertz.law)? {
         problems.push(modal(format!("pinned N=40 {}", law.name()), Impact { law, ..hertz.clone() }, 1e-9));
     }
-    pinned.residual_compliance = true;
+    pinned.residual_compliance = Some(true);
     problems.push(modal("pinned N=40 hertz, residual compliance".into(), pinned.impact()?, 1e-9));
 
     // undamped: amplifies whatever error there is, rounding included
     let mut undamped = scene("pinned-beam-undamped")?;
-    undamped.modes = Some(25);
+    undamped.modes = Modes::Count(25);
     problems.push(modal("undamped N=25 hertz".into(), undamped.impact()?, 1e-9).rounding(1e-7));
 
     for name in ["stepped-cantilever", "cantilever-tip"] {

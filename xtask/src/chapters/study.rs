@@ -29,6 +29,19 @@ pub(super) struct Study {
     bar: ProgressBar,
 }
 
+/// What a chapter that has run leaves for those who sum up.
+#[derive(Debug)]
+pub struct Finished {
+    /// Title of its report.
+    pub title: String,
+    /// The thesis's statements beside our numbers.
+    pub statements: Vec<Comparison>,
+    /// Number of impacts solved.
+    pub impacts: usize,
+    /// Impacts, time, agreement and the report's place, in a few lines.
+    pub summary: String,
+}
+
 /// Cost of one section.
 #[derive(Serialize)]
 struct Timing {
@@ -167,7 +180,7 @@ impl Study {
 
     /// Writes report, timings and manifest, and sums up. The manifest comes last: a folder with
     /// one is complete.
-    pub fn finish(mut self, title: &str, introduction: &str) -> Result<String, Failure> {
+    pub fn finish(mut self, title: &str, introduction: &str) -> Result<Finished, Failure> {
         let total = self.started.elapsed().as_secs_f64();
         let ends: Vec<f64> = self.timings.iter().skip(1).map(|t| t.seconds).chain([total]).collect();
         for (timing, end) in self.timings.iter_mut().zip(ends) {
@@ -195,7 +208,7 @@ impl Study {
         self.bar.finish_and_clear();
 
         let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();
-        Ok(format!(
+        let summary = format!(
             "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}\
              {agree} of {} statements of the text agree within their tolerance.\nReport: {}",
             total,
@@ -203,7 +216,8 @@ impl Study {
             self.remarks.iter().map(|line| format!("{line}\n")).collect::<String>(),
             self.statements.len(),
             self.out.join("report.html").display()
-        ))
+        );
+        Ok(Finished { title: title.to_owned(), statements: self.statements, impacts, summary })
     }
 }
 

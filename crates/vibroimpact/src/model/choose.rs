@@ -93,7 +93,11 @@ pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
 
 /// The modal tier.
 pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    if chooses_modes(pose.scene) && pose.approaches() { settle::settle(pose, cost) } else { settle::stated(pose.scene, cost) }
+    if chooses_modes(pose.scene) && pose.approaches() {
+        settle::settle(pose, cost)
+    } else {
+        settle::stated(pose.scene, cost)
+    }
 }
 
 /// A tier that was asked for; `Err` inside says why it cannot be had.

@@ -136,8 +136,7 @@ impl Scene {
             return Err(InvalidInput::new("model", format!("\"{}\"", self.model.as_str()), allowed));
         }
         let impact = self.impact_of(self.modes.count())?;
-        let refused =
-            |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
+        let refused = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
         let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(refused).into();
         tiers.push(Estimate::of_stated(impact.structure.modes.len(), impact.settings.tolerance));
         Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
