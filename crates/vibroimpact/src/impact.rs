@@ -1,9 +1,9 @@
 //! From the fields of a scene to the terms of the solver, and back again in its errors.
 
 use contact_models::Law;
-use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Start, Striker, Structure};
 
-use crate::scene::{InvalidInput, Scene};
+use crate::scene::{self, InvalidInput, Scene};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Impact {
     pub striker: Striker,
     /// The law of the contact, with its parameters.
     pub law: Law,
+    /// Motion of the structure when the clock starts, and the striker's distance; at rest and touching for `None`.
+    pub start: Option<Start>,
     /// Accuracy and limits.
     pub settings: Settings,
 }
@@ -25,7 +27,7 @@ impl Impact {
     /// A value out of range, by its name in a scene.
     pub fn solve(&self) -> Result<Solution, InvalidInput> {
         let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
-        solver.solve(&self.striker, &self.law, None, &self.settings).map_err(in_scene)
+        solver.solve(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
     /// Solves the impact and keeps its whole motion.
@@ -34,7 +36,7 @@ impl Impact {
     /// As [`Impact::solve`].
     pub fn record(&self) -> Result<(Solution, History<Law>), InvalidInput> {
         let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
-        solver.record(&self.striker, &self.law, None, &self.settings).map_err(in_scene)
+        solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 }
 
@@ -51,6 +53,10 @@ pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
             InvalidInput { field: format!("structure.{list}[{k}]"), ..fault }
         }
         None if ["mass_kg", "speed_m_s"].contains(&fault.field.as_str()) => fault.within("striker"),
+        // an amplitude or rate out of range may come from any of the ways in which a scene states the start
+        None if ["gap_m", "amplitude", "rate"].iter().any(|field| fault.field.starts_with(field)) => {
+            fault.within("start")
+        }
         None => fault,
     }
 }
@@ -62,9 +68,12 @@ impl Scene {
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
     pub fn structure(&self) -> Result<Structure, InvalidInput> {
-        let modes = self.structure.modes(self.location_m, self.modes)?;
+        if let scene::Structure::DroppedRod(rod) = &self.structure {
+            return Ok(self.drop(rod, Settings::default())?.structure);
+        }
+        let modes = self.structure.modes(self.place(), self.modes)?;
         let residual_compliance_m_n = if self.residual_compliance {
-            let whole = self.structure.static_compliance_m_n(self.location_m)?;
+            let whole = self.structure.static_compliance_m_n(self.place())?;
             let kept: f64 = modes
                 .iter()
                 .filter(|mode| mode.omega_rad_s > 0.0)
@@ -82,7 +91,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::structure`].
     pub fn mode_shapes(&self, count: usize) -> Result<Vec<vibroimpact_sim::modal::Mode>, InvalidInput> {
-        self.structure.modes(self.location_m, Some(count))
+        self.structure.modes(self.place(), Some(count))
     }
 
     /// The whole scene in the terms of the solver.
@@ -108,14 +117,21 @@ impl Scene {
     /// ```
     pub fn impact(&self) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
+        let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
+        if let scene::Structure::DroppedRod(rod) = &self.structure {
+            return self.drop(rod, settings);
+        }
+        let structure = self.structure()?;
+        let start = self.start(&structure.modes)?;
         Ok(Impact {
-            structure: self.structure()?,
+            structure,
             striker: Striker {
                 mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
                 speed_m_s: self.striker.speed_m_s,
             },
             law: self.contact.law(&self.striker)?,
-            settings: Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings },
+            start,
+            settings,
         })
     }
 }

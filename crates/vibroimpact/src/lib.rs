@@ -25,7 +25,8 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`scene`] | the scene file, field by field, and what can be wrong with it |
+//! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
+//! | [`scene::schema`] | its JSON Schema |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
@@ -34,9 +35,10 @@
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
-//! [`fitting`].
+//! [`fitting`], [`fracdiff`].
 
 mod impact;
+mod input;
 
 pub mod export;
 pub mod infinite;
@@ -52,6 +54,7 @@ pub use beam_modes;
 pub use contact_models;
 pub use emoc;
 pub use fitting;
+pub use fracdiff;
 pub use impact::Impact;
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;

@@ -10,17 +10,18 @@ use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use products::Products;
 use serde_json::json;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::net::{self, FitSummary};
+use vibroimpact::scene::schema;
 use vibroimpact::summary::Summary;
 use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
 
-const EXAMPLE: &str = r#"A scene is a JSON file; every quantity is in SI units, and its name says which:
+const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
 
   { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
                    "segments": [ { "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
@@ -88,6 +89,12 @@ const COMPLETIONS_EXAMPLES: &str = "Examples:
 
 const MANUAL_EXAMPLES: &str = "Example:
   vibroimpact manual > ~/.local/share/man/man1/vibroimpact.1";
+
+const SCHEMA_EXAMPLES: &str = "Example:
+  vibroimpact schema scene > scene.schema.json
+
+A scene that says { \"$schema\": \"scene.schema.json\", ... } is then completed and checked by editors that know JSON
+Schema.";
 
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]
@@ -176,6 +183,20 @@ enum Command {
     /// Print the manual page (roff)
     #[command(after_help = MANUAL_EXAMPLES)]
     Manual,
+    /// Print the JSON Schema of a kind of input file, for editors
+    #[command(after_help = SCHEMA_EXAMPLES)]
+    Schema {
+        /// The kind of file
+        #[arg(value_enum, default_value_t = InputFile::Scene)]
+        of: InputFile,
+    },
+}
+
+/// Files that come in and have a schema.
+#[derive(Clone, Copy, ValueEnum)]
+enum InputFile {
+    /// A scene
+    Scene,
 }
 
 fn main() -> ExitCode {
@@ -267,6 +288,7 @@ fn run(command: Command) -> Result<(), Failure> {
             clap_mangen::Man::new(Cli::command()).render(&mut page)?;
             String::from_utf8(page)?
         }
+        Command::Schema { of: InputFile::Scene } => schema::text(&schema::of_scenes()),
     };
     print(&printed)
 }

@@ -55,12 +55,29 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
                 if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
             format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
         }
-        Structure::Modal(_) => "structure given by its modes".to_owned(),
+        Structure::Modal(_) | Structure::ModesFile(_) => "structure given by its modes".to_owned(),
+        Structure::DroppedRod(rod) => {
+            return format!(
+                "rod of {}, {} across, dropped at {} on a floor, inclined at {}°; {} contact",
+                quantity(rod.length_m, "m"),
+                quantity(rod.diameter_m, "m"),
+                quantity(scene.striker.speed_m_s, "m/s"),
+                rod.inclination_deg,
+                scene.contact.law_name()
+            );
+        }
         Structure::InfiniteBeam(_) => "infinite beam".to_owned(),
         Structure::InfinitePlate(_) => "infinite plate".to_owned(),
     };
-    let place = scene.location_m.map_or_else(String::new, |x| format!(", at {}", quantity(x, "m")));
+    let place = match (scene.location_m, &scene.location) {
+        (Some(x), _) => format!(", at {}", quantity(x, "m")),
+        (None, Some(name)) => format!(", at {name}"),
+        (None, None) => String::new(),
+    };
     let striker = impact.striker;
+    if striker.mass_kg.is_infinite() {
+        return format!("immovable stop before a {structure}{place}; {} contact", scene.contact.law_name());
+    }
     format!(
         "{} striker at {} on a {structure}{place}; {} contact",
         quantity(striker.mass_kg * 1e3, "g"),

@@ -1,31 +1,12 @@
 //! Scene files: the gallery runs, what is written is read back the same, and nothing that is read makes it panic.
 
-use std::fs;
-use std::path::PathBuf;
+mod gallery;
 
+use gallery::{gallery, named, restitution};
 use proptest::prelude::*;
 use serde_json::Value;
-use vibroimpact::scene::{Contact, Structure};
+use vibroimpact::scene::{Contact, Modal, Structure};
 use vibroimpact::{Scene, SceneError};
-
-fn gallery() -> Vec<(String, Scene)> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../datasets/scenes");
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    let name = |path: &PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
-    paths
-        .iter()
-        .map(|path| (name(path), Scene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}"))))
-        .collect()
-}
-
-fn named(name: &str) -> Scene {
-    gallery().into_iter().find(|(other, _)| other == name).map(|(_, scene)| scene).unwrap()
-}
-
-fn restitution(scene: &Scene) -> f64 {
-    scene.impact().unwrap().solve().unwrap().restitution.unwrap()
-}
 
 #[test]
 fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
@@ -34,7 +15,9 @@ fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
     for (name, scene) in gallery.into_iter().filter(|(_, scene)| !scene.is_infinite()) {
         let (solution, history) = scene.impact().unwrap().record().unwrap();
         let energy = history.energy_ledger();
-        assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < 1.0), "{name}: {solution:?}");
+        // a structure that moves beforehand may give more than the striker brought
+        let most = if scene.start.is_some() { f64::INFINITY } else { 1.0 };
+        assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < most), "{name}: {solution:?}");
         assert!(energy.residual_j.abs() < 1e-9 * energy.initial_j, "{name}: {energy:?}");
         assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");
     }
@@ -149,11 +132,12 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
     let modes = beam.structure().unwrap().modes;
     let Structure::Beam(ref described) = beam.structure else { panic!() };
     let whole = described.to_beam().unwrap().static_compliance(beam.location_m.unwrap()).unwrap();
-    scene.structure = Structure::Modal(vibroimpact::scene::Modal {
+    scene.structure = Structure::Modal(Modal {
         omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
         shape_at_location: modes.iter().map(|mode| mode.shape).collect(),
         damping_ratios: vec![0.02; modes.len()],
         static_compliance_m_n: Some(whole),
+        ..Modal::default()
     });
     (scene.location_m, scene.modes) = (None, None);
     assert_eq!(scene.structure().unwrap(), beam.structure().unwrap());

@@ -1,15 +1,12 @@
 //! Tables of measured or computed restitutions.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use super::fit::Observations;
 use super::impact_on;
+use crate::input::{Row, Table, read_bytes};
 use crate::scene::{InvalidInput, Scene, SceneError, Structure};
 
-/// Largest file that is read (bytes).
-const MAX_FILE_BYTES: u64 = 64 << 20;
 const COLUMNS: [&str; 3] = ["mass_kg", "location_m", "restitution"];
 const NEEDED: &str = "a table of comma-separated values with a line of names that holds mass_kg, location_m and \
                       restitution once each";
@@ -32,54 +29,25 @@ pub struct Datum {
 /// # Errors
 /// A file that cannot be read, a column that is missing, or a cell that is no finite number (with its line).
 pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
-    let fault = |source| SceneError::Read { path: path.to_owned(), source };
-    let mut bytes = Vec::new();
-    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(fault)?;
-    Ok(parse(&bytes)?)
+    Ok(parse(&read_bytes(path)?)?)
 }
 
 fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut table = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
-    let header = table.headers().map_err(unreadable)?.clone();
+    let table = Table::parse(bytes, NEEDED)?;
     let mut places = [0; 3];
     for (place, name) in places.iter_mut().zip(COLUMNS) {
-        let found: Vec<usize> = (0..header.len()).filter(|&i| &header[i] == name).collect();
-        *place = match found.as_slice() {
-            [one] => *one,
-            [] => return Err(InvalidInput::missing(format!("column {name}"), NEEDED)),
-            _ => return Err(InvalidInput::new(format!("column {name}"), format!("{} columns", found.len()), NEEDED)),
-        };
+        let missing = || InvalidInput::missing(format!("column {name}"), NEEDED);
+        *place = table.column(name, NEEDED)?.ok_or_else(missing)?;
     }
-    let row = |record: Result<csv::StringRecord, csv::Error>| {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, |start| line_of(bytes, start));
+    let row = |row: &Row| {
         let mut values = [0.0; 3];
         for ((value, place), name) in values.iter_mut().zip(places).zip(COLUMNS) {
-            let field = format!("line {line}, {name}");
-            let text = record.get(place).filter(|text| !text.is_empty());
-            let text = text.ok_or_else(|| InvalidInput::missing(&field, "a finite number"))?;
-            let shown: String = text.chars().take(40).collect();
-            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-            *value = number.ok_or_else(|| InvalidInput::new(field, shown, "a finite number"))?;
+            *value = row.number(place, name)?;
         }
         let [mass_kg, location_m, restitution] = values;
-        Ok(Datum { line, mass_kg, location_m, restitution })
+        Ok(Datum { line: row.line, mass_kg, location_m, restitution })
     };
-    table.records().map(row).collect()
-}
-
-/// The line in which a record stands. The reader's own count takes it to start where the last record ended, before
-/// line breaks and empty lines.
-fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
-    let rest = usize::try_from(start.byte()).ok().and_then(|place| bytes.get(place..)).unwrap_or_default();
-    let passed = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();
-    start.line() + passed as u64
-}
-
-fn unreadable(fault: csv::Error) -> InvalidInput {
-    let line = fault.position().map_or_else(|| "the table".to_owned(), |place| format!("line {}", place.line()));
-    InvalidInput::new(line, "text that is not UTF-8", NEEDED)
+    table.rows.iter().map(row).collect()
 }
 
 impl Scene {

@@ -61,9 +61,12 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn emoc(&self, parameters: &Parameters, modes: Option<usize>) -> Result<NetRebound, InvalidInput> {
+        if self.start.is_some() {
+            return Err(InvalidInput::new("start", "{...}", "left out: the law is for a structure at rest"));
+        }
         let modes = match modes {
             Some(count) => self.mode_shapes(count)?,
-            None => self.structure.modes(self.location_m, self.modes)?,
+            None => self.structure.modes(self.place(), self.modes)?,
         };
         // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
         let resolved = self.impact()?;
@@ -94,7 +97,10 @@ fn vibrating(modes: &[Mode]) -> Vec<f64> {
 
 /// The numbers that the law takes: a striker of mass `mass_kg` on a structure seen from the point of impact.
 fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
-    InvalidInput::require_positive("mass_kg", mass_kg)?;
+    // an immovable floor is the limit in which the rigid-body motions alone have mass
+    if mass_kg != f64::INFINITY {
+        InvalidInput::require_positive("mass_kg", mass_kg)?;
+    }
     let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };

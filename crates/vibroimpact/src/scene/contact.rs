@@ -3,6 +3,7 @@
 use contact_models::{
     Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
 };
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -14,7 +15,7 @@ use super::{Striker, fields};
 
 /// The law of the contact; `"law"` in JSON tells which, beside its parameters. A `restitution` is that at an immovable
 /// wall, at the striker's speed, from which the law's damping follows.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Contact {

@@ -1,15 +1,22 @@
 //! What each field of a scene may hold, said once for the messages about missing and mistyped fields. (Numbers out
 //! of range are found, and described, by the crates that work with them.)
 
-const POSITIVE: &str = "a finite number greater than 0";
-const NOT_NEGATIVE: &str = "a finite number not less than 0";
+use std::ops::Bound::{self, Excluded, Included, Unbounded};
+
+pub(crate) const POSITIVE: &str = "a finite number greater than 0";
+pub(crate) const NOT_NEGATIVE: &str = "a finite number not less than 0";
 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
-    ("", "a scene is a JSON object with structure, striker and contact"),
+    ("", "a scene is an object with structure, striker and contact"),
+    ("$schema", "a text: where the schema of scenes stands"),
+    ("version", "a whole number, the version of the format: 1"),
     ("description", "a text"),
-    ("structure", "an object with the field kind, one of beam, modal, infinite-beam, infinite-plate"),
-    ("kind", "one of beam, modal, infinite-beam, infinite-plate"),
+    (
+        "structure",
+        "an object with the field kind, one of beam, modal, modes-file, infinite-beam, infinite-plate, dropped-rod",
+    ),
+    ("kind", "one of beam, modal, modes-file, infinite-beam, infinite-plate, dropped-rod"),
     ("striker", "an object with mass_kg (or density_kg_m3 and radius_m) and speed_m_s"),
     ("contact", "an object with the field law and the parameters of that law"),
     (
@@ -17,6 +24,7 @@ const FIELDS: &[(&str, &str)] = &[
         "one of hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley, lankarani-nikravesh, flores, elastoplastic",
     ),
     ("location_m", "a finite number from 0 to the length of the beam"),
+    ("location", "the name of one of the structure's points"),
     ("modes", "a whole number from 0 to 10000"),
     ("residual_compliance", "true or false"),
     ("tolerance", "a number from 1e-13 to 0.1"),
@@ -39,7 +47,29 @@ const FIELDS: &[(&str, &str)] = &[
     ("shape_at_location[]", "a finite number"),
     ("damping_ratios", "a list of finite numbers not less than 0, one a mode"),
     ("damping_ratios[]", NOT_NEGATIVE),
+    ("modal_mass_kg", "a list of finite numbers greater than 0, one a mode"),
+    ("modal_mass_kg[]", POSITIVE),
+    ("points", "an object with one object for each named point, which holds its shape"),
+    ("shape", "a list of finite numbers, one a mode"),
+    ("shape[]", "a finite number"),
     ("static_compliance_m_n", NOT_NEGATIVE),
+    ("file", "the path of a table in the folder of the scene or below, without .."),
+    ("static_compliances_m_n", "an object with a number for each named point"),
+    ("inclination_deg", "a number from 0 to 90"),
+    ("bending_modes", "a whole number from 0 to 10000"),
+    ("axial_modes", "a whole number from 0 to 10000"),
+    ("immovable", "true or false"),
+    ("start", "an object with gap_m, moving_modes, amplitude_m_kg0_5, rate_m_kg0_5_s, any of which may be left out"),
+    ("gap_m", NOT_NEGATIVE),
+    ("amplitude_m_kg0_5", "a list of finite numbers, for the first modes"),
+    ("amplitude_m_kg0_5[]", "a finite number"),
+    ("rate_m_kg0_5_s", "a list of finite numbers, for the first modes"),
+    ("rate_m_kg0_5_s[]", "a finite number"),
+    ("moving_modes", "a list of objects, each with mode and displacement_m or velocity_m_s"),
+    ("moving_modes[]", "an object with mode and displacement_m or velocity_m_s"),
+    ("mode", "a whole number from 1"),
+    ("displacement_m", "a finite number"),
+    ("velocity_m_s", "a finite number"),
     ("mass_kg", POSITIVE),
     ("radius_m", POSITIVE),
     ("speed_m_s", "a finite number, positive towards the structure"),
@@ -71,4 +101,26 @@ pub(crate) fn allowed(path: &str) -> Option<&'static str> {
         None => last.to_owned(),
     };
     FIELDS.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
+}
+
+/// The range of a number in the field of this name, where it has one; for the schema, which tests hold against what
+/// is refused. (`name[]` are the items of a list.)
+pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
+    let of_text = |text: &str| match text {
+        POSITIVE => Some((Excluded(0.0), Unbounded)),
+        NOT_NEGATIVE => Some((Included(0.0), Unbounded)),
+        _ => None,
+    };
+    match name {
+        "modes" | "bending_modes" | "axial_modes" => Some((Included(0.0), Included(10_000.0))),
+        "mode" => Some((Included(1.0), Unbounded)),
+        "tolerance" => Some((Included(1e-13), Included(0.1))),
+        "exponent" => Some((Included(1.0), Included(4.0))),
+        "restitution" => Some((Included(1e-3), Included(1.0))),
+        "k_bar" => Some((Excluded(0.0), Included(1000.0))),
+        "beta" => Some((Included(0.0), Unbounded)),
+        "poissons_ratio" | "striker_poissons_ratio" => Some((Excluded(-1.0), Included(0.5))),
+        "inclination_deg" => Some((Included(0.0), Included(90.0))),
+        _ => allowed(name).and_then(of_text),
+    }
 }

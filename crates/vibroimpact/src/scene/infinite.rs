@@ -1,5 +1,6 @@
 //! Infinite structures of a scene, and their impact in the terms of [`vibroimpact_sim::infinite`].
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::infinite;
 
@@ -8,7 +9,7 @@ use super::json::number;
 use super::{Contact, Scene, Segment, Structure};
 
 /// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`].
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InfiniteBeam {
     /// Flexural rigidity `EI` (N m^2).
@@ -28,7 +29,7 @@ pub struct InfiniteBeam {
 }
 
 /// A thin infinite plate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InfinitePlate {
     /// Young's modulus (Pa).
@@ -73,6 +74,9 @@ impl Scene {
             None => Ok(()),
         };
         left_out("location_m", self.location_m.map(number))?;
+        left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
+        left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        left_out("striker.immovable", self.striker.immovable.then(|| "true".to_owned()))?;
         left_out("modes", self.modes.map(|modes| modes.to_string()))?;
         left_out("residual_compliance", self.residual_compliance.then(|| "true".to_owned()))?;
         left_out("tolerance", self.tolerance.map(number))?;

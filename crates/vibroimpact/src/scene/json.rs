@@ -1,6 +1,7 @@
 //! From text to typed values, with every fault located: syntax errors, repeated keys, missing, unknown and
 //! mistyped fields all carry the path of the field they stand in.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -146,6 +147,14 @@ pub(crate) fn object<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserialize
 /// For `deserialize_with`: a list of structs that must be written as objects.
 pub(crate) fn objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
     Vec::deserialize(deserializer).map(|items| items.into_iter().map(|Object(inner)| inner).collect())
+}
+
+/// For `deserialize_with`: structs by name that must be written as objects.
+pub(crate) fn named_objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, T>, D::Error> {
+    let items = BTreeMap::<String, Object<T>>::deserialize(deserializer)?;
+    Ok(items.into_iter().map(|(name, Object(inner))| (name, inner)).collect())
 }
 
 /// Reads a `T` from a tree that must be an object; faults carry the path within `value`.

@@ -1,6 +1,7 @@
 //! Stiffness of a contact, and the materials it may come from.
 
 use contact_models::{Body, Hertz, effective_modulus_pa};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Striker;
@@ -8,7 +9,7 @@ use super::error::InvalidInput;
 use super::sets::one_of_sets;
 
 /// What striker and structure are made of where they touch.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Materials {
     /// Young's modulus of both bodies; of the structure alone where the striker's own is given (Pa).
     pub youngs_modulus_pa: Option<f64>,
@@ -21,7 +22,7 @@ pub struct Materials {
 }
 
 /// Stiffness of a Hertzian contact: given, or from the materials and the striker's radius.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HertzStiffness {
     /// The stiffness itself (N/m^1.5).
     pub stiffness_n_m1_5: Option<f64>,
@@ -77,6 +78,21 @@ impl Materials {
 }
 
 impl HertzStiffness {
+    /// The stiffness itself (N/m^1.5).
+    pub fn given(stiffness_n_m1_5: f64) -> HertzStiffness {
+        HertzStiffness { stiffness_n_m1_5: Some(stiffness_n_m1_5), ..HertzStiffness::default() }
+    }
+
+    /// Both bodies of one material (Pa, 1).
+    pub fn of_material(youngs_modulus_pa: f64, poissons_ratio: f64) -> HertzStiffness {
+        let materials = Materials {
+            youngs_modulus_pa: Some(youngs_modulus_pa),
+            poissons_ratio: Some(poissons_ratio),
+            ..Materials::default()
+        };
+        HertzStiffness { materials, ..HertzStiffness::default() }
+    }
+
     /// Whether the stiffness itself is given, not the materials.
     pub(crate) fn is_given(&self) -> bool {
         self.stiffness_n_m1_5.is_some()

@@ -1,37 +1,74 @@
-//! Scenes: an impact as a JSON file poses it.
+//! Scenes: an impact as a JSON or TOML file poses it.
 //!
 //! The types mirror the file field by field; [`Scene::impact`] turns them into the solver's terms. Fields are
-//! required unless a default is stated. Lengths are in metres, and so on: every name carries its unit.
+//! required unless a default is stated. Lengths are in metres, and so on: every name carries its unit. A file may say
+//! `"version": 1`, the version of this format, and an editor may find the schema by its `"$schema"`.
+//!
+//! A scene can as well be put together in Rust:
+//!
+//! ```
+//! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, Scene, Segment, Striker};
+//!
+//! let beam = Beam {
+//!     ends: [End::Pinned, End::Pinned],
+//!     segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)],
+//!     damping_ratio: 0.02,
+//! };
+//! let scene = Scene {
+//!     location_m: Some(0.6180339887498949),
+//!     modes: Some(100),
+//!     residual_compliance: true,
+//!     ..Scene::new(beam, Striker::sphere(7800.0, 0.015, 1.0), Contact::Hertz(HertzStiffness::of_material(2e11, 0.3)))
+//! };
+//! let solution = scene.impact()?.solve()?;
+//! assert!((solution.restitution.unwrap() - 0.142522).abs() < 1e-6);
+//! # Ok::<(), vibroimpact::InvalidInput>(())
+//! ```
 
+mod beam;
 mod contact;
+mod dropped_rod;
 mod error;
 mod fields;
 mod infinite;
 mod json;
 mod materials;
+mod modal;
+mod modes_file;
+pub mod schema;
 mod sets;
+mod start;
 mod striker;
 mod structure;
+mod toml;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
+pub use beam::{Beam, End, Segment};
 pub use contact::Contact;
+pub use dropped_rod::DroppedRod;
 pub use error::{InvalidInput, SceneError};
 pub use infinite::{InfiniteBeam, InfinitePlate};
 pub use materials::{HertzStiffness, Materials};
+pub use modal::{Modal, Point};
+pub use modes_file::ModesFile;
+pub use start::{MovingMode, Start};
 pub use striker::Striker;
-pub use structure::{Beam, End, Modal, Segment, Structure};
+pub use structure::Structure;
 
-/// Largest scene file that is read (bytes).
-const MAX_FILE_BYTES: u64 = 64 << 20;
+use crate::input::read_bytes;
+use structure::Place;
+
+/// The newest version of the scene format that is understood; a file without a version has version 1.
+pub const FORMAT_VERSION: u64 = 1;
 
 /// One impact: what is struck, by what, how they touch, where.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[schemars(deny_unknown_fields)]
 pub struct Scene {
     /// A text for the reader; may be left out.
     pub description: Option<String>,
@@ -41,13 +78,18 @@ pub struct Scene {
     pub striker: Striker,
     /// The law of the contact.
     pub contact: Contact,
-    /// Place of the impact, from the left end (m). Required for a beam; a modal structure has none.
+    /// Place of the impact, from the left end (m). Required for a beam; other structures have none.
     pub location_m: Option<f64>,
+    /// Name of the point that is struck. Required for a modal structure with named points; other structures have none.
+    pub location: Option<String>,
     /// Number of modes kept, from the lowest; 0 is an immovable structure. Required for a beam; all that are
     /// listed when left out for a modal structure.
     pub modes: Option<usize>,
     /// Whether the modes left out answer with their static compliance; `false` when left out.
+    #[serde(default)]
     pub residual_compliance: bool,
+    /// Motion of the structure before the impact; at rest and touched by the striker when left out.
+    pub start: Option<Start>,
     /// Accuracy aimed at in the restitution; that of [`vibroimpact_sim::modal::Settings`] when left out.
     pub tolerance: Option<f64>,
 }
@@ -58,22 +100,44 @@ pub struct Scene {
 struct Outline {
     description: Option<String>,
     structure: Value,
+    #[serde(rename = "$schema")]
+    _schema: Option<String>,
+    #[serde(rename = "version")]
+    _version: Option<u64>,
     #[serde(deserialize_with = "json::object")]
     striker: Striker,
     contact: Value,
     location_m: Option<f64>,
+    location: Option<String>,
     modes: Option<usize>,
     #[serde(default)]
     residual_compliance: bool,
+    start: Option<Value>,
     tolerance: Option<f64>,
 }
 
 impl Scene {
+    /// A scene of these, with all else left out.
+    pub fn new(structure: impl Into<Structure>, striker: Striker, contact: Contact) -> Scene {
+        Scene {
+            description: None,
+            structure: structure.into(),
+            striker,
+            contact,
+            location_m: None,
+            location: None,
+            modes: None,
+            residual_compliance: false,
+            start: None,
+            tolerance: None,
+        }
+    }
+
     /// Reads a scene from JSON text.
     ///
     /// # Errors
-    /// Text that is not JSON, a key that occurs twice, a field that is missing, unknown, or of the wrong type. Values
-    /// out of range are found by [`Scene::impact`].
+    /// Text that is not JSON, a key that occurs twice, a newer version of the format, a field that is missing,
+    /// unknown, or of the wrong type. Values out of range are found by [`Scene::impact`].
     ///
     /// ```
     /// let fault = vibroimpact::Scene::from_json(r#"{ "structure": { "kind": "bem" } }"#).unwrap_err();
@@ -83,43 +147,118 @@ impl Scene {
         Ok(Scene::from_value(&json::parse(text)?)?)
     }
 
+    /// Reads a scene from TOML text, which holds the same fields.
+    ///
+    /// # Errors
+    /// As [`Scene::from_json`].
+    ///
+    /// ```
+    /// let scene = vibroimpact::Scene::from_toml(r#"
+    ///     structure = { kind = "modal", omega_rad_s = [100, 400], shape_at_location = [1, 1] }
+    ///     striker = { mass_kg = 1, speed_m_s = 1 }
+    ///     contact = { law = "hertz", stiffness_n_m1_5 = 1e10 }
+    /// "#)?;
+    /// assert_eq!(scene, vibroimpact::Scene::from_json(&scene.to_json())?);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Scene, SceneError> {
+        Ok(Scene::from_value(&toml::parse(text)?)?)
+    }
+
     /// Reads a scene from a JSON tree.
     ///
     /// # Errors
     /// As [`Scene::from_json`], text aside.
     pub fn from_value(value: &Value) -> Result<Scene, InvalidInput> {
+        check_version(value)?;
         let outline: Outline = json::read(value)?;
+        let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Scene {
             description: outline.description,
             structure: Structure::from_value(&outline.structure).map_err(|fault| fault.within("structure"))?,
             striker: outline.striker,
             contact: Contact::from_value(&outline.contact).map_err(|fault| fault.within("contact"))?,
             location_m: outline.location_m,
+            location: outline.location,
             modes: outline.modes,
             residual_compliance: outline.residual_compliance,
+            start,
             tolerance: outline.tolerance,
         })
     }
 
-    /// Reads a scene from a JSON file.
+    /// Reads a scene from a file: TOML if its name ends in `.toml`, JSON otherwise. A table of modes that the scene
+    /// names is read too, and its numbers take its place.
     ///
     /// # Errors
-    /// As [`Scene::from_json`], or a file that cannot be read.
+    /// As [`Scene::from_json`], a file that cannot be read, or a table of modes that cannot be used.
     pub fn read(path: &Path) -> Result<Scene, SceneError> {
-        let fault = |source| SceneError::Read { path: path.to_owned(), source };
-        let mut text = String::new();
-        File::open(path).map_err(fault)?.take(MAX_FILE_BYTES).read_to_string(&mut text).map_err(fault)?;
-        Scene::from_json(&text)
+        let fault = |fault| SceneError::Read {
+            path: path.to_owned(),
+            source: std::io::Error::new(std::io::ErrorKind::InvalidData, fault),
+        };
+        let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
+        let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        let mut scene = if is_toml { Scene::from_toml(&text)? } else { Scene::from_json(&text)? };
+        scene.read_modes_file(path.parent().unwrap_or(Path::new("")))?;
+        Ok(scene)
     }
 
-    /// The scene as JSON text, without the fields that are left out.
+    /// Puts the numbers of a structure's `modes-file` in its place; `folder` is that of the scene. Other structures
+    /// stay as they are.
     ///
     /// # Errors
-    /// Never for a scene that was read; a number that is not finite has no JSON form and is left out.
+    /// A table that cannot be read or used, with its line.
+    pub fn read_modes_file(&mut self, folder: &Path) -> Result<(), SceneError> {
+        if let Structure::ModesFile(named) = &self.structure {
+            self.structure = Structure::Modal(named.load(folder)?);
+        }
+        Ok(())
+    }
+
+    /// The scene as JSON text, with its version and without the fields that are left out. A number that is not finite
+    /// has no JSON form and is left out.
     pub fn to_json(&self) -> String {
+        format!("{:#}", self.tree())
+    }
+
+    /// The scene as TOML text, likewise.
+    ///
+    /// # Errors
+    /// A whole number that TOML cannot hold, which is never one that a scene may have.
+    pub fn to_toml(&self) -> Result<String, InvalidInput> {
+        toml::write(&self.tree())
+    }
+
+    fn tree(&self) -> Value {
         let mut tree = serde_json::to_value(self).unwrap_or_default();
         drop_nulls(&mut tree);
-        format!("{tree:#}")
+        if let Value::Object(entries) = &mut tree {
+            entries.insert("version".to_owned(), FORMAT_VERSION.into());
+        }
+        tree
+    }
+
+    /// Where the structure is struck.
+    pub(crate) fn place(&self) -> Place<'_> {
+        Place { location_m: self.location_m, location: self.location.as_deref() }
+    }
+}
+
+/// A file of a newer format is told as that, before any field that only the newer format knows.
+fn check_version(value: &Value) -> Result<(), InvalidInput> {
+    match value.get("version") {
+        Some(version) if version.as_u64().is_some_and(|version| version > FORMAT_VERSION) => {
+            let allowed = format!(
+                "this program understands versions of the scene format up to {FORMAT_VERSION}; the file was written \
+                 for a newer vibroimpact, which can read it"
+            );
+            Err(InvalidInput::new("version", json::quote(version), allowed))
+        }
+        Some(version) if version.as_u64() != Some(FORMAT_VERSION) => {
+            Err(InvalidInput::new("version", json::quote(version), fields::allowed("version").unwrap_or_default()))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::InvalidInput;
@@ -11,7 +12,7 @@ use super::json::number;
 const MASS_AGREEMENT: f64 = 1e-3;
 
 /// The compact body: its mass (or a solid sphere's density and radius) and its speed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Striker {
     /// Mass (kg). May be left out when density and radius are given.
@@ -20,13 +21,32 @@ pub struct Striker {
     pub density_kg_m3: Option<f64>,
     /// Radius of curvature at the point of contact (m); needed where the contact's stiffness comes from materials.
     pub radius_m: Option<f64>,
+    /// Whether the striker is a stop that never moves, of infinite mass; `false` when left out. Its speed is then 0:
+    /// the structure comes to it, as `start` tells.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub immovable: bool,
     /// Speed towards the structure (m/s).
     pub speed_m_s: f64,
 }
 
 impl Striker {
+    /// A solid sphere (kg/m^3, m, m/s).
+    pub fn sphere(density_kg_m3: f64, radius_m: f64, speed_m_s: f64) -> Striker {
+        Striker { density_kg_m3: Some(density_kg_m3), radius_m: Some(radius_m), speed_m_s, ..Striker::default() }
+    }
+
+    /// A body of which only mass and speed matter (kg, m/s), for contacts given by their stiffness.
+    pub fn of_mass(mass_kg: f64, speed_m_s: f64) -> Striker {
+        Striker { mass_kg: Some(mass_kg), speed_m_s, ..Striker::default() }
+    }
+
+    /// A stop that never moves, which a moving structure meets.
+    pub fn stop() -> Striker {
+        Striker { immovable: true, ..Striker::default() }
+    }
+
     /// The mass as given, or that of the sphere (kg). Both may be given if they agree within 0.1 %; the mass then
-    /// counts.
+    /// counts. Infinite for an immovable striker.
     ///
     /// # Errors
     /// Neither is given, they contradict each other, or a value is not positive.
@@ -34,6 +54,9 @@ impl Striker {
         let Striker { mass_kg, density_kg_m3, radius_m, .. } = *self;
         for (field, value) in [("mass_kg", mass_kg), ("density_kg_m3", density_kg_m3), ("radius_m", radius_m)] {
             value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+        }
+        if self.immovable {
+            return self.stop_mass_kg();
         }
         let sphere = density_kg_m3.zip(radius_m).map(|(density, radius)| 4.0 / 3.0 * PI * radius.powi(3) * density);
         let agrees = |mass: f64, sphere: f64| ((mass - sphere) / sphere).abs() <= MASS_AGREEMENT;
@@ -49,6 +72,19 @@ impl Striker {
                 let field = if density_kg_m3.is_some() { "radius_m" } else { "mass_kg" };
                 Err(InvalidInput::missing(field, "give mass_kg, or density_kg_m3 and radius_m of a solid sphere"))
             }
+        }
+    }
+
+    fn stop_mass_kg(&self) -> Result<f64, InvalidInput> {
+        let left_out = "left out beside immovable: a stop has no mass";
+        match (self.mass_kg, self.density_kg_m3) {
+            (Some(mass), _) => Err(InvalidInput::new("mass_kg", number(mass), left_out)),
+            (_, Some(density)) => Err(InvalidInput::new("density_kg_m3", number(density), left_out)),
+            _ if self.speed_m_s != 0.0 => {
+                let allowed = "0 for an immovable striker; start tells how the structure comes to it";
+                Err(InvalidInput::new("speed_m_s", number(self.speed_m_s), allowed))
+            }
+            _ => Ok(f64::INFINITY),
         }
     }
 }

@@ -1,0 +1,92 @@
+//! Files that come in: read whole up to a size, and tables of comma-separated values with faults by line.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use csv::StringRecord;
+
+use crate::scene::{InvalidInput, SceneError};
+
+/// Largest file that is read (bytes).
+const MAX_FILE_BYTES: u64 = 64 << 20;
+
+/// The bytes of a file.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let fault = |source| SceneError::Read { path: path.to_owned(), source };
+    let mut bytes = Vec::new();
+    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(fault)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        let told = format!("it is larger than {} MiB", MAX_FILE_BYTES >> 20);
+        return Err(fault(std::io::Error::new(std::io::ErrorKind::FileTooLarge, told)));
+    }
+    Ok(bytes)
+}
+
+/// A table: a line of names, then rows of cells.
+pub(crate) struct Table {
+    /// The names of the columns.
+    pub header: StringRecord,
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+/// A row of a table.
+pub(crate) struct Row {
+    /// Line of the file, from 1.
+    pub line: u64,
+    cells: StringRecord,
+}
+
+impl Table {
+    /// Splits the text of a table; `needed` tells in messages what the table should be.
+    pub fn parse(bytes: &[u8], needed: &str) -> Result<Table, InvalidInput> {
+        let unreadable = |fault: csv::Error| {
+            let line = fault.position().map_or_else(|| "the table".to_owned(), |at| format!("line {}", at.line()));
+            InvalidInput::new(line, "text that is not UTF-8", needed)
+        };
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let mut table = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+        let header = table.headers().map_err(unreadable)?.clone();
+        let row = |record: Result<StringRecord, csv::Error>| {
+            let cells = record.map_err(unreadable)?;
+            Ok(Row { line: cells.position().map_or(0, |start| line_of(bytes, start)), cells })
+        };
+        let rows = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
+        Ok(Table { header, rows })
+    }
+
+    /// The place of the column with this name, which may stand there once at most.
+    pub fn column(&self, name: &str, needed: &str) -> Result<Option<usize>, InvalidInput> {
+        let found: Vec<usize> = (0..self.header.len()).filter(|&i| &self.header[i] == name).collect();
+        match found.as_slice() {
+            [] => Ok(None),
+            [one] => Ok(Some(*one)),
+            _ => Err(InvalidInput::new(format!("column {name}"), format!("{} columns", found.len()), needed)),
+        }
+    }
+}
+
+impl Row {
+    /// The finite number in the column at `place`, whose name is for messages.
+    pub fn number(&self, place: usize, name: &str) -> Result<f64, InvalidInput> {
+        let field = format!("line {}, {name}", self.line);
+        let text = self.cells.get(place).filter(|text| !text.is_empty());
+        let text = text.ok_or_else(|| InvalidInput::missing(&field, "a finite number"))?;
+        let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| InvalidInput::new(field, text.chars().take(40).collect::<String>(), "a finite number"))
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+}
+
+/// The line in which a record stands. The reader's own count takes it to start where the last record ended, before
+/// line breaks and empty lines.
+fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
+    let rest = usize::try_from(start.byte()).ok().and_then(|place| bytes.get(place..)).unwrap_or_default();
+    let passed = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();
+    start.line() + passed as u64
+}

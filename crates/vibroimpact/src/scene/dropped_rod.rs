@@ -1,0 +1,134 @@
+//! A rod that falls on the floor, as a scene.
+
+use std::f64::consts::FRAC_PI_2;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use vibroimpact_sim::dropped_rod;
+use vibroimpact_sim::modal::{Mode, Settings};
+
+use super::error::InvalidInput;
+use super::json::number;
+use super::{Contact, HertzStiffness, Scene, Striker, fields};
+use crate::impact::Impact;
+
+/// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
+/// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
+/// speed of the fall at first touch; `location_m`, `modes`, `residual_compliance` and `start` are left out. In
+/// `contact`, a striker of another material is the floor; `{ "law": "hertz" }` with nothing beside it is the rod's own
+/// material on a rigid floor. The modes left out always answer with their static compliance. The restitution is that
+/// of the contact point's rigid-body motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DroppedRod {
+    /// Length (m).
+    pub length_m: f64,
+    /// Diameter (m); the ends are hemispheres of half of it in radius.
+    pub diameter_m: f64,
+    /// Young's modulus (Pa).
+    pub youngs_modulus_pa: f64,
+    /// Density (kg/m^3).
+    pub density_kg_m3: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+    /// Angle between rod and floor (degrees): 0 lies, 90 stands upright.
+    pub inclination_deg: f64,
+    /// Damping ratio of the elastic modes; 0 when left out.
+    #[serde(default)]
+    pub damping_ratio: f64,
+    /// Bending modes kept; 40 when left out.
+    #[serde(default = "bending_modes")]
+    pub bending_modes: usize,
+    /// Axial modes kept; 20 when left out.
+    #[serde(default = "axial_modes")]
+    pub axial_modes: usize,
+}
+
+fn bending_modes() -> usize {
+    40
+}
+
+fn axial_modes() -> usize {
+    20
+}
+
+impl DroppedRod {
+    /// The rod in the terms of the solver.
+    ///
+    /// # Errors
+    /// An inclination or a damping ratio out of range; [`dropped_rod::DroppedRod::drop`] checks the rest.
+    pub fn to_rod(&self) -> Result<dropped_rod::DroppedRod, InvalidInput> {
+        for (field, value, most) in
+            [("inclination_deg", self.inclination_deg, 90.0), ("damping_ratio", self.damping_ratio, 1e6)]
+        {
+            if !(0.0..=most).contains(&value) {
+                return Err(InvalidInput::new(field, number(value), fields::allowed(field).unwrap_or_default()));
+            }
+        }
+        Ok(dropped_rod::DroppedRod {
+            length_m: self.length_m,
+            diameter_m: self.diameter_m,
+            youngs_modulus_pa: self.youngs_modulus_pa,
+            density_kg_m3: self.density_kg_m3,
+            poissons_ratio: self.poissons_ratio,
+            inclination_rad: self.inclination_deg.to_radians().min(FRAC_PI_2),
+            bending_modes: self.bending_modes,
+            axial_modes: self.axial_modes,
+            damping_ratio: self.damping_ratio,
+        })
+    }
+
+    fn at_unit_speed(&self) -> Result<dropped_rod::Drop, InvalidInput> {
+        Ok(self.to_rod()?.drop(1.0)?)
+    }
+
+    /// Rigid-body motions and modes as the floor meets them, from the lowest frequency.
+    pub(super) fn modes(&self) -> Result<Vec<Mode>, InvalidInput> {
+        let mut modes = self.at_unit_speed()?.structure.modes;
+        modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
+        Ok(modes)
+    }
+
+    /// Static compliance of the whole elastic rod at its lower end (m/N).
+    pub(super) fn static_compliance_m_n(&self) -> Result<f64, InvalidInput> {
+        let structure = self.at_unit_speed()?.structure;
+        let elastic = structure.modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
+        let kept: f64 = elastic.map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
+        Ok(kept + structure.residual_compliance_m_n)
+    }
+}
+
+impl Scene {
+    /// The fall of a rod in the terms of the solver.
+    pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
+        let left_out = |field: &str, value: Option<String>| match value {
+            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod has no use for it")),
+            None => Ok(()),
+        };
+        let Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;
+        left_out("striker.mass_kg", mass_kg.map(number))?;
+        left_out("striker.density_kg_m3", density_kg_m3.map(number))?;
+        left_out("striker.radius_m", radius_m.map(number))?;
+        left_out("striker.immovable", immovable.then(|| "true".to_owned()))?;
+        left_out("location_m", self.location_m.map(number))?;
+        left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
+        left_out("modes", self.modes.map(|modes| modes.to_string()))?;
+        left_out("residual_compliance", self.residual_compliance.then(|| "true".to_owned()))?;
+        left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
+        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.as_str() {
+            "speed_m_s" => InvalidInput::from(fault).within("striker"),
+            _ => InvalidInput::from(fault).within("structure"),
+        })?;
+        let law = match &self.contact {
+            Contact::Hertz(stiffness) if *stiffness == HertzStiffness::default() => drop.law.into(),
+            contact => contact.law(&Striker {
+                mass_kg: Some(described.rigid_body_mass_kg()),
+                radius_m: Some(0.5 * rod.diameter_m),
+                speed_m_s,
+                ..Striker::default()
+            })?,
+        };
+        Ok(Impact { structure: drop.structure, striker: drop.surface, law, start: Some(drop.start), settings })
+    }
+}

@@ -1,0 +1,194 @@
+//! A structure given by its modes.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use vibroimpact_sim::modal::{Mode, Solver, Structure};
+
+use super::error::InvalidInput;
+use super::fields;
+use super::json::{named_objects, number, read};
+
+/// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
+/// either at the one place of the impact (`shape_at_location`), or at several `points` of which the scene's `location`
+/// names the one that is struck. All lists run over the same modes.
+///
+/// ```
+/// use vibroimpact::scene::{Modal, Point};
+///
+/// let shapes = [("tip", vec![2.0, -2.0]), ("middle", vec![0.68, 1.43])];
+/// let cantilever = Modal {
+///     omega_rad_s: vec![58.2, 364.7],
+///     damping_ratios: vec![0.01, 0.01],
+///     points: shapes.map(|(name, shape)| (name.to_owned(), Point { shape, ..Point::default() })).into(),
+///     ..Modal::default()
+/// };
+/// # assert_eq!(cantilever.points["tip"].shape[1], -2.0);
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Modal {
+    /// Angular frequencies (rad/s); 0 for a rigid-body mode.
+    pub omega_rad_s: Vec<f64>,
+    /// Damping ratios, one a mode; all 0 when left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping_ratios: Vec<f64>,
+    /// Modal masses that go with the shapes (kg), one a mode. When left out, shapes are mass-normalised: 1 kg each.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub modal_mass_kg: Vec<f64>,
+    /// Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with `modal_mass_kg`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shape_at_location: Vec<f64>,
+    /// Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond the list
+    /// included; needed for `"residual_compliance": true` only.
+    pub static_compliance_m_n: Option<f64>,
+    /// Points of the structure by their names, in place of `shape_at_location` and `static_compliance_m_n`.
+    #[serde(default, deserialize_with = "named_objects", skip_serializing_if = "BTreeMap::is_empty")]
+    pub points: BTreeMap<String, Point>,
+}
+
+/// A point of a structure that is given by its modes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Shapes at the point: mass-normalised (kg^-1/2), or as they go with `modal_mass_kg`.
+    pub shape: Vec<f64>,
+    /// Static compliance at the point (m/N) of the whole elastic structure, modes beyond the list included; needed for
+    /// `"residual_compliance": true` only.
+    pub static_compliance_m_n: Option<f64>,
+}
+
+/// The shapes and the compliance at one place, and where they stand in the scene.
+struct Seen<'a> {
+    shape: &'a [f64],
+    shape_field: String,
+    static_compliance_m_n: Option<f64>,
+    compliance_field: String,
+}
+
+impl Modal {
+    pub(super) fn from_value(value: &Value) -> Result<Modal, InvalidInput> {
+        let modal: Modal = read(value)?;
+        if !modal.omega_rad_s.is_empty() && modal.shape_at_location.is_empty() && value.get("points").is_none() {
+            let allowed = "a list of finite numbers, one a mode; or give points, each with its shape";
+            return Err(match value.get("shape_at_location") {
+                Some(_) => InvalidInput::new("shape_at_location", "[]", allowed),
+                None => InvalidInput::missing("shape_at_location", allowed),
+            });
+        }
+        Ok(modal)
+    }
+
+    fn seen_from(&self, location: Option<&str>) -> Result<Seen<'_>, InvalidInput> {
+        let left_out = |field: &str, value: String| {
+            Err(InvalidInput::new(
+                format!("structure.{field}"),
+                value,
+                "left out beside points, each of which has its own",
+            ))
+        };
+        match (location, self.points.is_empty()) {
+            (None, true) => Ok(Seen {
+                shape: &self.shape_at_location,
+                shape_field: "shape_at_location".to_owned(),
+                static_compliance_m_n: self.static_compliance_m_n,
+                compliance_field: "static_compliance_m_n".to_owned(),
+            }),
+            (Some(name), true) => {
+                let allowed = "left out: the modal structure has no points, only shape_at_location";
+                Err(InvalidInput::new("location", format!("{name:?}"), allowed))
+            }
+            (_, false) if !self.shape_at_location.is_empty() => {
+                left_out("shape_at_location", format!("{} values", self.shape_at_location.len()))
+            }
+            (_, false) if self.static_compliance_m_n.is_some() => {
+                left_out("static_compliance_m_n", number(self.static_compliance_m_n.unwrap_or_default()))
+            }
+            (name, false) => {
+                let names = || format!("one of the structure's points, {}", shown(self.points.keys()));
+                let name = name.ok_or_else(|| InvalidInput::missing("location", names()))?;
+                let missing = || InvalidInput::new("location", format!("{name:?}"), names());
+                let point = self.points.get(name).ok_or_else(missing)?;
+                Ok(Seen {
+                    shape: &point.shape,
+                    shape_field: format!("points.{name}.shape"),
+                    static_compliance_m_n: point.static_compliance_m_n,
+                    compliance_field: format!("points.{name}.static_compliance_m_n"),
+                })
+            }
+        }
+    }
+
+    /// All modes as seen from a point.
+    pub(super) fn modes(&self, location: Option<&str>) -> Result<Vec<Mode>, InvalidInput> {
+        let seen = self.seen_from(location)?;
+        self.modes_of(&seen).map_err(|fault| fault.within("structure"))
+    }
+
+    fn modes_of(&self, seen: &Seen) -> Result<Vec<Mode>, InvalidInput> {
+        let listed = self.omega_rad_s.len();
+        for (field, length, needed) in [
+            (seen.shape_field.as_str(), seen.shape.len(), true),
+            ("damping_ratios", self.damping_ratios.len(), false),
+            ("modal_mass_kg", self.modal_mass_kg.len(), false),
+        ] {
+            if length != listed && (needed || length > 0) {
+                let allowed = format!("as many values as omega_rad_s has, which is {listed}");
+                return Err(InvalidInput::new(field, format!("{length} values"), allowed));
+            }
+        }
+        for (k, &mass) in self.modal_mass_kg.iter().enumerate() {
+            InvalidInput::require_positive(&format!("modal_mass_kg[{k}]"), mass)?;
+        }
+        let mode = |k: usize| Mode {
+            omega_rad_s: self.omega_rad_s[k],
+            damping_ratio: self.damping_ratios.get(k).copied().unwrap_or_default(),
+            shape: seen.shape[k] / self.modal_mass_kg.get(k).map_or(1.0, |mass| mass.sqrt()),
+        };
+        let modes: Vec<Mode> = (0..listed).map(mode).collect();
+        // the solver knows the ranges; its fault is told of the list in which the number stands
+        let structure = Structure { modes, residual_compliance_m_n: 0.0 };
+        match Solver::new(&structure) {
+            Ok(_) => Ok(structure.modes),
+            Err(fault) => Err(self.in_lists(seen, fault.into())),
+        }
+    }
+
+    fn in_lists(&self, seen: &Seen, fault: InvalidInput) -> InvalidInput {
+        let place = fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("]."));
+        let Some((k, quantity)) = place.and_then(|(k, quantity)| Some((k.parse::<usize>().ok()?, quantity))) else {
+            return fault;
+        };
+        let (list, values) = match quantity {
+            "shape" => (seen.shape_field.as_str(), seen.shape),
+            "damping_ratio" => ("damping_ratios", self.damping_ratios.as_slice()),
+            _ => ("omega_rad_s", self.omega_rad_s.as_slice()),
+        };
+        let value = values.get(k).map(|value| number(*value));
+        InvalidInput { field: format!("{list}[{k}]"), value, ..fault }
+    }
+
+    pub(super) fn static_compliance_m_n(&self, location: Option<&str>) -> Result<f64, InvalidInput> {
+        let seen = self.seen_from(location)?;
+        let field = format!("structure.{}", seen.compliance_field);
+        let allowed = || format!("needed for residual_compliance: {}", fields::NOT_NEGATIVE);
+        let value = seen.static_compliance_m_n.ok_or_else(|| InvalidInput::missing(field.as_str(), allowed()))?;
+        if value >= 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(InvalidInput::new(field, number(value), allowed()))
+        }
+    }
+}
+
+/// Names as a message lists them.
+fn shown<'a>(names: impl Iterator<Item = &'a String>) -> String {
+    const MOST: usize = 12;
+    let mut names: Vec<String> = names.take(MOST + 1).map(|name| format!("{name:?}")).collect();
+    if names.len() > MOST {
+        names[MOST] = "...".to_owned();
+    }
+    names.join(", ")
+}

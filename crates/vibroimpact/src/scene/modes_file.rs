@@ -1,0 +1,111 @@
+//! Modes from a table beside the scene.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::{Component, Path};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::error::{InvalidInput, SceneError};
+use super::fields;
+use super::modal::{Modal, Point};
+use crate::input::{Row, Table, read_bytes};
+
+/// A structure given by its modes in a table of comma-separated values. The columns, in any order:
+///
+/// | column | meaning |
+/// |---|---|
+/// | `omega_rad_s` or `frequency_hz` | frequency of the mode, in one of two units; 0 for a rigid-body mode |
+/// | `damping_ratio` | may be left out: 0 |
+/// | `modal_mass_kg` | may be left out: shapes are mass-normalised |
+/// | any other name | shapes at the point of that name (kg^-1/2, or as they go with `modal_mass_kg`) |
+///
+/// [`Scene::read`](crate::Scene::read) puts a [`Modal`] in its place, so that the scene then stands on its own.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModesFile {
+    /// Path of the table, relative to the scene file; the table stands in the same folder or below it.
+    pub file: String,
+    /// Static compliances (m/N) of the whole elastic structure at points of the table, by their names; needed for
+    /// `"residual_compliance": true` only.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub static_compliances_m_n: BTreeMap<String, f64>,
+}
+
+const NEEDED: &str = "a table of comma-separated values whose line of names holds omega_rad_s or frequency_hz, if \
+                      need be damping_ratio and modal_mass_kg, and each point's name once";
+
+impl ModesFile {
+    /// Reads the table, from a scene that stands in `folder`.
+    pub(super) fn load(&self, folder: &Path) -> Result<Modal, SceneError> {
+        let path = Path::new(&self.file);
+        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        if self.file.is_empty() || !below {
+            let allowed = fields::allowed("file").unwrap_or_default();
+            return Err(InvalidInput::new("structure.file", format!("{:?}", self.file), allowed).into());
+        }
+        let in_table = |fault: InvalidInput| InvalidInput { field: format!("{}, {}", self.file, fault.field), ..fault };
+        let mut modal = parse(&read_bytes(&folder.join(path))?).map_err(in_table)?;
+        for (name, compliance) in &self.static_compliances_m_n {
+            let Some(point) = modal.points.get_mut(name) else {
+                let field = format!("structure.static_compliances_m_n.{name}");
+                return Err(InvalidInput::new(field, super::json::number(*compliance), "a point of the table").into());
+            };
+            point.static_compliance_m_n = Some(*compliance);
+        }
+        Ok(modal)
+    }
+}
+
+fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
+    let table = Table::parse(bytes, NEEDED)?;
+    let column = |name: &str| table.column(name, NEEDED);
+    let (frequency, name, to_omega) = match (column("omega_rad_s")?, column("frequency_hz")?) {
+        (Some(place), None) => (place, "omega_rad_s", 1.0),
+        (None, Some(place)) => (place, "frequency_hz", TAU),
+        (None, None) => return Err(InvalidInput::missing("column omega_rad_s", NEEDED)),
+        (Some(_), Some(_)) => {
+            return Err(InvalidInput::new("column frequency_hz", "1 column", "left out beside omega_rad_s"));
+        }
+    };
+    let (damping, mass) = (column("damping_ratio")?, column("modal_mass_kg")?);
+    for row in table.rows.iter().filter(|row| row.len() != table.header.len()) {
+        let allowed = format!("as many as the line of names has, which is {}", table.header.len());
+        return Err(InvalidInput::new(format!("line {}", row.line), format!("{} cells", row.len()), allowed));
+    }
+    let list = |place: Option<usize>, name: &str, allowed: (&str, fn(f64) -> bool)| match place {
+        None => Ok(Vec::new()),
+        Some(place) => table.rows.iter().map(|row| within(row, place, name, allowed)).collect(),
+    };
+    let not_negative: (&str, fn(f64) -> bool) = (fields::NOT_NEGATIVE, |value| value >= 0.0);
+    let omega = list(Some(frequency), name, not_negative)?;
+    let mut modal = Modal {
+        omega_rad_s: omega.iter().map(|value| to_omega * value).collect(),
+        damping_ratios: list(damping, "damping_ratio", not_negative)?,
+        modal_mass_kg: list(mass, "modal_mass_kg", (fields::POSITIVE, |value| value > 0.0))?,
+        ..Modal::default()
+    };
+    let taken = [Some(frequency), damping, mass];
+    for (place, name) in table.header.iter().enumerate().filter(|(place, _)| !taken.contains(&Some(*place))) {
+        column(name)?;
+        if name.is_empty() {
+            return Err(InvalidInput::missing(format!("the name of column {}", place + 1), NEEDED));
+        }
+        let shape = list(Some(place), name, ("a finite number", |_| true))?;
+        modal.points.insert(name.to_owned(), Point { shape, static_compliance_m_n: None });
+    }
+    if modal.points.is_empty() {
+        return Err(InvalidInput::missing("a column with the shapes at a point", NEEDED));
+    }
+    Ok(modal)
+}
+
+fn within(row: &Row, place: usize, name: &str, allowed: (&str, fn(f64) -> bool)) -> Result<f64, InvalidInput> {
+    let value = row.number(place, name)?;
+    if allowed.1(value) {
+        Ok(value)
+    } else {
+        Err(InvalidInput::new(format!("line {}, {name}", row.line), super::json::number(value), allowed.0))
+    }
+}

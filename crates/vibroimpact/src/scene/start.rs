@@ -1,0 +1,136 @@
+//! Motion before the impact.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use vibroimpact_sim::modal::{self, Mode};
+
+use super::error::InvalidInput;
+use super::json::{number, objects};
+use super::structure::Place;
+use super::{Scene, fields};
+
+/// How the structure moves when the clock starts, and how far away the striker then is. Displacements and velocities
+/// are positive towards the striker. What is given adds up.
+///
+/// The restitution of such an impact is, as always, the relative speed of separation over that of approach, both of
+/// the rigid-body motions. Vibration counts as no approach; of a structure without rigid-body modes only the striker's
+/// speeds count, so that a structure that swings towards the striker can give it a restitution above 1. Without an
+/// approach of the rigid-body motions there is no restitution.
+///
+/// ```
+/// use vibroimpact::scene::{MovingMode, Start};
+///
+/// // the first mode moves at 0.2 m/s towards the striker where it will be struck
+/// let start = Start { moving_modes: vec![MovingMode { mode: 1, velocity_m_s: 0.2, ..MovingMode::default() }], ..Start::default() };
+/// # assert_eq!(start.gap_m, 0.0);
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
+    #[serde(default)]
+    pub gap_m: f64,
+    /// Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub amplitude_m_kg0_5: Vec<f64>,
+    /// Their rates (m kg^1/2 / s); those of the rest are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rate_m_kg0_5_s: Vec<f64>,
+    /// Modes given by how they move at a place.
+    #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
+    pub moving_modes: Vec<MovingMode>,
+}
+
+/// The motion of one mode, told at a place where it can be seen.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovingMode {
+    /// Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
+    pub mode: usize,
+    /// Place on a beam, from its left end (m); the point of impact when left out.
+    pub location_m: Option<f64>,
+    /// Name of the point of a modal structure; the point of impact when left out.
+    pub location: Option<String>,
+    /// Displacement there (m); 0 when left out.
+    #[serde(default)]
+    pub displacement_m: f64,
+    /// Velocity there (m/s); 0 when left out.
+    #[serde(default)]
+    pub velocity_m_s: f64,
+}
+
+/// A mode that moves less than this at the place, as a share of the mode that moves most there, has a node there.
+const NODE: f64 = 1e-9;
+
+impl Scene {
+    /// The start in the terms of the solver, for these modes as seen from the point of impact.
+    pub(crate) fn start(&self, modes: &[Mode]) -> Result<Option<modal::Start>, InvalidInput> {
+        self.start.as_ref().map(|start| self.posed(start, modes)).transpose()
+    }
+
+    fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {
+        let mut posed = modal::Start {
+            amplitude: padded("start.amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
+            rate: padded("start.rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
+            gap_m: start.gap_m,
+        };
+        let here = self.place();
+        for (i, moving) in start.moving_modes.iter().enumerate() {
+            let within = |fault: InvalidInput| fault.within(&format!("start.moving_modes[{i}]"));
+            let there = moving.place(here);
+            let (k, shape) = if there == here {
+                moving.shape(modes)
+            } else {
+                let seen = self.structure.modes(there, Some(modes.len())).map_err(|fault| {
+                    // a fault of the structure itself keeps its own path
+                    if fault.field.starts_with("location") { within(fault) } else { fault }
+                })?;
+                moving.shape(&seen)
+            }
+            .map_err(within)?;
+            posed.amplitude[k] += moving.displacement_m / shape;
+            posed.rate[k] += moving.velocity_m_s / shape;
+        }
+        Ok(posed)
+    }
+}
+
+/// The values of the first modes, and 0 for the rest.
+fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
+    if first.len() > count {
+        let allowed = format!("at most {count} values, the number of modes");
+        return Err(InvalidInput::new(field, format!("{} values", first.len()), allowed));
+    }
+    let mut all = first.to_vec();
+    all.resize(count, 0.0);
+    Ok(all)
+}
+
+impl MovingMode {
+    /// Where the mode's motion is told.
+    fn place<'a>(&'a self, here: Place<'a>) -> Place<'a> {
+        match (self.location_m, self.location.as_deref()) {
+            (None, None) => here,
+            (location_m, location) => Place { location_m, location },
+        }
+    }
+
+    /// The mode's index, and its shape at the place from which `modes` are seen.
+    fn shape(&self, modes: &[Mode]) -> Result<(usize, f64), InvalidInput> {
+        for (field, value) in [("displacement_m", self.displacement_m), ("velocity_m_s", self.velocity_m_s)] {
+            if !value.is_finite() {
+                return Err(InvalidInput::new(field, number(value), fields::allowed(field).unwrap_or_default()));
+            }
+        }
+        let most = modes.iter().map(|mode| mode.shape.abs()).fold(0.0, f64::max);
+        let fault = |allowed: String| InvalidInput::new("mode", self.mode.to_string(), allowed);
+        let k = self.mode.checked_sub(1).filter(|&k| k < modes.len());
+        let k = k.ok_or_else(|| fault(format!("a whole number from 1 to {}, the number of modes", modes.len())))?;
+        let shape = modes[k].shape;
+        if shape.abs() > NODE * most {
+            Ok((k, shape))
+        } else {
+            Err(fault("a mode that moves at the place; this one has a node there".to_owned()))
+        }
+    }
+}

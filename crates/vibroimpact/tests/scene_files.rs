@@ -1,0 +1,441 @@
+//! Scenes as files: JSON and TOML, versions, the schema, tables of modes, named points, motion before the impact.
+
+mod gallery;
+
+use std::fs;
+
+use gallery::{assert_checked_in, datasets, gallery, named, paths};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+use vibroimpact::scene::{MovingMode, Start, Structure, schema};
+use vibroimpact::{Scene, SceneError};
+
+fn tree(scene: &Scene) -> Value {
+    serde_json::from_str(&scene.to_json()).unwrap()
+}
+
+/// The file as JSON text or TOML text would give it, with its table of modes not yet read.
+fn file_tree(path: &std::path::Path) -> Value {
+    let text = fs::read_to_string(path).unwrap();
+    match path.extension() {
+        Some(toml) if toml == "toml" => serde_json::to_value(text.parse::<toml::Table>().unwrap()).unwrap(),
+        _ => serde_json::from_str(&text).unwrap(),
+    }
+}
+
+/// The fault of a scene, in reading or in posing the impact.
+fn fault(scene: &Value) -> vibroimpact::InvalidInput {
+    Scene::from_value(scene).and_then(|scene| scene.impact()).and_then(|impact| impact.solve()).unwrap_err()
+}
+
+#[test]
+fn json_and_toml_hold_the_same() {
+    for (name, scene) in gallery() {
+        let toml = scene.to_toml().unwrap();
+        assert_eq!(Scene::from_toml(&toml).unwrap(), scene, "{name}");
+        assert_eq!(Scene::from_json(&scene.to_json()).unwrap(), scene, "{name}");
+        // what is written is a fixed point
+        assert_eq!(tree(&Scene::from_toml(&toml).unwrap()), tree(&scene), "{name}");
+        assert_eq!(tree(&scene)["version"], 1, "{name}");
+    }
+}
+
+#[test]
+fn what_a_file_says_is_what_is_written() {
+    for path in paths() {
+        let file = file_tree(&path);
+        let Ok(scene) = Scene::from_value(&file) else { panic!("{path:?}") };
+        let written = tree(&scene);
+        // every field of the file comes back; what comes on top is a default
+        fn is_part(of: &Value, whole: &Value) -> bool {
+            match (of, whole) {
+                (Value::Object(of), Value::Object(whole)) => {
+                    of.iter().all(|(key, value)| whole.get(key).is_some_and(|other| is_part(value, other)))
+                }
+                (Value::Array(of), Value::Array(whole)) => {
+                    of.len() == whole.len() && of.iter().zip(whole).all(|(a, b)| is_part(a, b))
+                }
+                (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
+                _ => of == whole,
+            }
+        }
+        let mut file = file;
+        file.as_object_mut().unwrap().remove("$schema");
+        assert!(is_part(&file, &written), "{path:?}: {written:#}");
+    }
+}
+
+#[test]
+fn a_fault_in_toml_is_located() {
+    for (text, expected) in [
+        ("striker = { mass_kg = 1", "line 1, column"),
+        ("location_m = 1\nlocation_m = 2\n", "line 2, column 1"),
+        ("[striker]\nmass_kg = 1\n[striker]\n", "line 3, column"),
+        ("tolerance = nan", "tolerance = NaN is not allowed: a number from 1e-13 to 0.1"),
+        (
+            "[structure]\nkind = 'beam'\nends = []\nsegments = [{ length_m = -inf }]",
+            "structure.segments[0].length_m = -inf",
+        ),
+        ("[[striker]]", "striker = [{}] is not allowed"),
+        ("location_m = 1979-05-27", "location_m = \"1979-05-27\" is not allowed"),
+        ("é = = 1", "line 1, column"),
+        ("", "is missing"),
+    ] {
+        let message = Scene::from_toml(text).unwrap_err().to_string();
+        assert!(message.contains(expected), "{text}: {message}");
+    }
+}
+
+#[test]
+fn a_newer_version_is_told_before_the_fields_it_brings() {
+    let newer = Scene::from_json(r#"{ "version": 2, "gravity_m_s2": 9.81 }"#).unwrap_err().to_string();
+    assert!(newer.starts_with("version = 2 is not allowed: ") && newer.contains("up to 1"), "{newer}");
+    let newer = Scene::from_toml("version = 3\nnew = 1").unwrap_err().to_string();
+    assert!(newer.starts_with("version = 3 is not allowed: ") && newer.contains("newer vibroimpact"), "{newer}");
+    for bad in ["0", "-1", "1.5", "\"1\"", "null", "[]"] {
+        let fault = Scene::from_json(&format!("{{ \"version\": {bad} }}")).unwrap_err().to_string();
+        assert!(fault.starts_with("version = "), "{fault}");
+    }
+    let unknown = Scene::from_json(r#"{ "version": 1, "gravity_m_s2": 9.81 }"#).unwrap_err().to_string();
+    assert!(unknown.starts_with("gravity_m_s2 = 9.81"), "{unknown}");
+}
+
+#[test]
+fn the_schema_is_current_and_tells_scenes_from_others() {
+    let schema = schema::of_scenes();
+    assert_checked_in("schema/scene.schema.json", &schema::text(&schema));
+    let validator = jsonschema::draft202012::options().build(&schema).unwrap();
+    for path in paths() {
+        let faults: Vec<String> = validator.iter_errors(&file_tree(&path)).map(|fault| fault.to_string()).collect();
+        assert!(faults.is_empty(), "{path:?}: {faults:?}");
+    }
+    for (name, scene) in gallery() {
+        assert!(validator.is_valid(&tree(&scene)), "{name}");
+    }
+    // slips that the schema finds, and the program too
+    for (name, place, slip) in [
+        ("pinned-beam", "/version", json!(2)),
+        ("pinned-beam", "/gravity", json!(9.81)),
+        ("pinned-beam", "/structure", json!(null)),
+        ("pinned-beam", "/structure/kind", json!("bem")),
+        ("pinned-beam", "/structure/ends", json!(["pinned"])),
+        ("pinned-beam", "/structure/ends/1", json!("welded")),
+        ("pinned-beam", "/structure/damping_ratio", json!(-0.1)),
+        ("pinned-beam", "/structure/segments/0/length_m", json!(0)),
+        ("pinned-beam", "/structure/segments/0/width_m", json!("wide")),
+        ("pinned-beam", "/structure/segments/0/colour", json!("red")),
+        ("pinned-beam", "/structure/omega_rad_s", json!([1])),
+        ("pinned-beam", "/striker", json!([1, 2, 3])),
+        ("pinned-beam", "/striker/density_kg_m3", json!(-7800)),
+        ("pinned-beam", "/striker/weight", json!(1)),
+        ("pinned-beam", "/contact/law", json!("herz")),
+        ("pinned-beam", "/contact/restitution", json!(0.5)),
+        ("pinned-beam", "/contact/poissons_ratio", json!(0.7)),
+        ("pinned-beam", "/location_m", json!("middle")),
+        ("pinned-beam", "/modes", json!(-1)),
+        ("pinned-beam", "/modes", json!(100_000)),
+        ("pinned-beam", "/modes", json!(2.5)),
+        ("pinned-beam", "/tolerance", json!(0.5)),
+        ("pinned-beam", "/residual_compliance", json!("yes")),
+        ("pinned-beam", "/start", json!({ "gap_m": -1 })),
+        ("pinned-beam", "/start", json!({ "moving_modes": [{ "mode": 0 }] })),
+        ("hysteretic", "/contact/k_bar", json!(0)),
+        ("rubber-ball", "/contact/restitution", json!(1.5)),
+        ("infinite-plate", "/structure/length_m", json!(1)),
+        ("infinite-plate", "/structure/thickness_m", json!(-1)),
+        ("dropped-rod", "/structure/inclination_deg", json!(91)),
+        ("dropped-rod", "/structure/axial_modes", json!(10_001)),
+        ("simply-supported-plate", "/structure/points/centre/shape/0", json!("1")),
+        ("simply-supported-plate", "/structure/points/centre/colour", json!(1)),
+        ("simply-supported-plate", "/structure/omega_rad_s/3", json!(-1)),
+        ("simply-supported-plate", "/structure/modal_mass_kg", json!([0])),
+    ] {
+        let mut spoilt = tree(&named(name));
+        let (holder, key) = place.rsplit_once('/').unwrap();
+        match spoilt.pointer_mut(holder).unwrap() {
+            Value::Array(items) => items[key.parse::<usize>().unwrap()] = slip,
+            Value::Object(entries) => drop(entries.insert(key.to_owned(), slip)),
+            other => panic!("{other}"),
+        }
+        assert!(!validator.is_valid(&spoilt), "{name}{place}");
+        let refused = Scene::from_value(&spoilt).and_then(|scene| match scene.is_infinite() {
+            true => scene.infinite_impact().map(drop),
+            false => scene.impact().and_then(|impact| impact.solve()).map(drop),
+        });
+        assert!(refused.is_err(), "{name}{place}");
+    }
+}
+
+#[test]
+fn a_table_of_modes_is_read_from_the_folder_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |table: &str, location: &str| {
+        fs::write(folder.path().join("modes.csv"), table).unwrap();
+        let scene = format!(
+            r#"{{ "structure": {{ "kind": "modes-file", "file": "modes.csv", "static_compliances_m_n": {{ "tip": 1e-3 }} }},
+                 "striker": {{ "mass_kg": 0.1, "speed_m_s": 1 }}, "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1e9 }},
+                 "location": "{location}" }}"#
+        );
+        fs::write(folder.path().join("scene.json"), scene).unwrap();
+        Scene::read(&folder.path().join("scene.json"))
+    };
+    let good = "tip, frequency_hz, modal_mass_kg, damping_ratio, middle\n1,10,4,0.01,0.5\n\n-1,60,1,0.02,0.7\n";
+    let read = scene(good, "tip").unwrap();
+    let modes = read.structure().unwrap().modes;
+    assert!((modes[0].omega_rad_s - 20.0 * std::f64::consts::PI).abs() < 1e-12);
+    assert_eq!((modes[0].shape, modes[1].shape, modes[1].damping_ratio), (0.5, -1.0, 0.02));
+    // the scene stands on its own afterwards
+    let Structure::Modal(modal) = &read.structure else { panic!() };
+    assert_eq!(modal.points["tip"].static_compliance_m_n, Some(1e-3));
+    assert_eq!(Scene::from_json(&read.to_json()).unwrap(), read);
+
+    let rows = "tip,omega_rad_s,damping_ratio\n1,10,0.01\n";
+    for (table, location, expected) in [
+        (rows, "top", r#"location = "top" is not allowed: one of the structure's points, "tip""#),
+        ("tip,omega_rad_s\n1,10\n1,-5\n", "tip", "modes.csv, line 3, omega_rad_s = -5.0 is not allowed"),
+        ("tip,omega_rad_s\n1,10\n\n1,ten\n", "tip", "modes.csv, line 4, omega_rad_s = ten is not allowed"),
+        ("tip,omega_rad_s\n1,10\n1\n", "tip", "modes.csv, line 3 = 1 cells is not allowed"),
+        ("tip,omega_rad_s\n1,\n", "tip", "modes.csv, line 2, omega_rad_s is missing"),
+        ("tip,omega_rad_s,damping_ratio\n1,10,nan\n", "tip", "modes.csv, line 2, damping_ratio = nan"),
+        ("tip,omega_rad_s,modal_mass_kg\n1,10,0\n", "tip", "modes.csv, line 2, modal_mass_kg = 0.0"),
+        ("tip,tip,omega_rad_s\n1,1,10\n", "tip", "modes.csv, column tip = 2 columns"),
+        ("tip,omega_rad_s,frequency_hz\n1,1,10\n", "tip", "modes.csv, column frequency_hz = 1 column is not allowed"),
+        ("tip,damping_ratio\n1,1\n", "tip", "modes.csv, column omega_rad_s is missing"),
+        ("omega_rad_s\n1\n", "tip", "modes.csv, a column with the shapes at a point is missing"),
+        ("middle,omega_rad_s\n1,1\n", "tip", "structure.static_compliances_m_n.tip = 0.001 is not allowed"),
+        ("", "tip", "modes.csv, column omega_rad_s is missing"),
+    ] {
+        let told = scene(table, location).map_err(|fault| fault.to_string());
+        let told = told.and_then(|scene| scene.impact().map_err(|fault| fault.to_string())).unwrap_err();
+        assert!(told.starts_with(expected), "{table}: {told}");
+    }
+    for outside in ["/etc/passwd", "../modes.csv", "a/../../modes.csv", ""] {
+        let mut scene = tree(&read);
+        scene["structure"] = json!({ "kind": "modes-file", "file": outside });
+        let told = Scene::from_value(&scene).unwrap().read_modes_file(folder.path()).unwrap_err().to_string();
+        assert!(told.starts_with("structure.file = "), "{told}");
+    }
+    // one that was not read says how
+    let mut scene = tree(&read);
+    scene["structure"] = json!({ "kind": "modes-file", "file": "modes.csv" });
+    assert!(fault(&scene).to_string().contains("Scene::read"));
+    scene["structure"]["file"] = "none.csv".into();
+    let told = Scene::from_value(&scene).unwrap().read_modes_file(folder.path()).unwrap_err();
+    assert!(matches!(told, SceneError::Read { ref path, .. } if path.ends_with("none.csv")), "{told}");
+}
+
+#[test]
+fn points_of_a_modal_structure_are_named() {
+    let scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [100, 400], "modal_mass_kg": [4, 1],
+            "points": { "tip": { "shape": [2, -1], "static_compliance_m_n": 1 }, "middle": { "shape": [1, 1] } } },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 },
+        "location": "tip"
+    });
+    let with = |place: &str, value: Value| {
+        let mut scene = scene.clone();
+        let (holder, key) = place.rsplit_once('/').unwrap();
+        scene.pointer_mut(holder).unwrap()[key] = value;
+        scene
+    };
+    let posed = Scene::from_value(&scene).unwrap().structure().unwrap();
+    assert_eq!((posed.modes[0].shape, posed.modes[1].shape), (1.0, -1.0));
+    for (spoilt, field) in [
+        (with("/location", json!("top")), "location"),
+        (with("/location", json!(null)), "location"),
+        (with("/location_m", json!(1)), "location_m"),
+        (with("/structure/modal_mass_kg", json!([1])), "structure.modal_mass_kg"),
+        (with("/structure/modal_mass_kg", json!([1, -1])), "structure.modal_mass_kg[1]"),
+        (with("/structure/omega_rad_s", json!([1, -1])), "structure.omega_rad_s[1]"),
+        (with("/structure/damping_ratios", json!([-1, 0])), "structure.damping_ratios[0]"),
+        (with("/structure/points/tip/shape", json!([1])), "structure.points.tip.shape"),
+        (with("/structure/points/tip/shape", json!([1, 1e200])), "structure.points.tip.shape[1]"),
+        (with("/structure/points/tip", json!([1])), "structure.points.tip"),
+        (with("/structure/points/tip/colour", json!(1)), "structure.points.tip.colour"),
+        (with("/structure/points", json!({})), "location"),
+        (with("/structure/shape_at_location", json!([1, 1])), "structure.shape_at_location"),
+        (with("/structure/static_compliance_m_n", json!(1)), "structure.static_compliance_m_n"),
+    ] {
+        assert_eq!(fault(&spoilt).field, field, "{}", fault(&spoilt));
+    }
+    let mut scene = with("/location", json!("middle"));
+    scene["residual_compliance"] = true.into();
+    assert_eq!(fault(&scene).field, "structure.points.middle.static_compliance_m_n");
+}
+
+#[test]
+fn motion_before_the_impact_can_be_told_in_two_ways() {
+    let scene = named("moving-beam");
+    let by_place = scene.impact().unwrap().start.unwrap();
+    let shape_at_middle = {
+        let there = Scene { location_m: Some(0.5), start: None, ..scene.clone() };
+        there.structure().unwrap().modes[0].shape
+    };
+    let start = Start { gap_m: 1e-4, rate_m_kg0_5_s: vec![0.5 / shape_at_middle], ..Start::default() };
+    assert_eq!(Scene { start: Some(start), ..scene.clone() }.impact().unwrap().start.unwrap(), by_place);
+
+    let moving = |mode: MovingMode| Start { moving_modes: vec![mode], ..Start::default() };
+    let one = MovingMode { mode: 1, velocity_m_s: 1.0, ..MovingMode::default() };
+    for (start, field) in [
+        (Start { gap_m: -1.0, ..Start::default() }, "start.gap_m"),
+        (Start { gap_m: f64::NAN, ..Start::default() }, "start.gap_m"),
+        (Start { rate_m_kg0_5_s: vec![0.0; 41], ..Start::default() }, "start.rate_m_kg0_5_s"),
+        (Start { amplitude_m_kg0_5: vec![f64::INFINITY], ..Start::default() }, "start.amplitude[0]"),
+        (moving(MovingMode { mode: 0, ..one.clone() }), "start.moving_modes[0].mode"),
+        (moving(MovingMode { mode: 41, ..one.clone() }), "start.moving_modes[0].mode"),
+        (moving(MovingMode { mode: 2, location_m: Some(0.5), ..one.clone() }), "start.moving_modes[0].mode"),
+        (moving(MovingMode { location_m: Some(2.0), ..one.clone() }), "start.moving_modes[0].location_m"),
+        (moving(MovingMode { location: Some("tip".into()), ..one.clone() }), "start.moving_modes[0].location"),
+        (moving(MovingMode { velocity_m_s: f64::NAN, ..one.clone() }), "start.moving_modes[0].velocity_m_s"),
+    ] {
+        let scene = Scene { start: Some(start), ..scene.clone() };
+        let told = scene.impact().and_then(|impact| impact.solve()).unwrap_err();
+        assert_eq!(told.field, field, "{told}");
+    }
+    let mut infinite = tree(&named("infinite-beam"));
+    infinite["start"] = json!({});
+    assert_eq!(Scene::from_value(&infinite).unwrap().infinite_impact().unwrap_err().field, "start");
+}
+
+#[test]
+fn a_stop_and_a_dropped_rod_take_only_what_they_can_use() {
+    let with = |name: &str, place: &str, value: Value| {
+        let mut scene = tree(&named(name));
+        let (holder, key) = place.rsplit_once('/').unwrap();
+        scene.pointer_mut(holder).unwrap()[key] = value;
+        fault(&scene).field
+    };
+    for (place, value, field) in [
+        ("/striker/speed_m_s", json!(1), "striker.speed_m_s"),
+        ("/striker/mass_kg", json!(1), "striker.mass_kg"),
+        ("/striker/immovable", json!(1), "striker.immovable"),
+    ] {
+        assert_eq!(with("sdnl32", place, value), field);
+    }
+    for (place, value, field) in [
+        ("/striker/speed_m_s", json!(0), "striker.speed_m_s"),
+        ("/striker/mass_kg", json!(1), "striker.mass_kg"),
+        ("/location_m", json!(0.1), "location_m"),
+        ("/location", json!("end"), "location"),
+        ("/modes", json!(10), "modes"),
+        ("/start", json!({}), "start"),
+        ("/residual_compliance", json!(true), "residual_compliance"),
+        ("/structure/inclination_deg", json!(-1), "structure.inclination_deg"),
+        ("/structure/length_m", json!(-1), "structure.length_m"),
+        ("/structure/damping_ratio", json!(-1), "structure.damping_ratio"),
+        ("/structure/bending_modes", json!(100_000), "structure.bending_modes"),
+        ("/contact/law", json!("viscous"), "contact.damping_s_m"),
+    ] {
+        let found = with("dropped-rod", place, value);
+        assert!(found == field || field.starts_with("contact") && found.starts_with("contact"), "{found} {field}");
+    }
+    // a floor of the rod's own material is half as stiff as a rigid one
+    let stiffness = |scene: &Scene| match scene.impact().unwrap().law {
+        vibroimpact::contact_models::Law::Hertz(law) => law.stiffness_n_m1_5,
+        other => panic!("{other:?}"),
+    };
+    let rigid = named("dropped-rod");
+    let mut steel = tree(&rigid);
+    steel["contact"] = json!({ "law": "hertz", "youngs_modulus_pa": 2.1e11, "poissons_ratio": 0.3 });
+    let steel = Scene::from_value(&steel).unwrap();
+    assert!((stiffness(&steel) / stiffness(&rigid) - 0.5).abs() < 1e-12);
+    assert_eq!(rigid.mode_shapes(3).unwrap().len(), 3);
+    // without integration, the mass is that of the rigid-body motions (thesis Eq. 8.9); a moving beam is not covered
+    let net = rigid.emoc(&vibroimpact::emoc::Parameters::default(), None).unwrap();
+    let rod_kg = 7876.74 * std::f64::consts::PI / 4.0 * 0.0127f64.powi(2) * 0.2;
+    assert!((net.mass_kg / (rod_kg / 2.5) - 1.0).abs() < 1e-12);
+    let moving = named("moving-beam").emoc(&vibroimpact::emoc::Parameters::default(), None);
+    assert_eq!(moving.unwrap_err().field, "start");
+}
+
+/// A text with a few of its characters replaced, taken out or put in.
+fn mutated(mut text: Vec<char>, changes: &[(prop::sample::Index, Option<char>, bool)]) -> String {
+    for (at, new, insert) in changes {
+        let i = at.index(text.len().max(1)).min(text.len().saturating_sub(1));
+        match new {
+            Some(new) if *insert => text.insert(i, *new),
+            Some(new) => text[i] = *new,
+            None => drop(text.remove(i)),
+        }
+    }
+    text.into_iter().collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever the text, a scene is understood or refused with a place in the text or a field.
+    #[test]
+    fn mutated_scenes_never_panic(
+        which in any::<prop::sample::Index>(),
+        in_toml in any::<bool>(),
+        changes in prop::collection::vec(
+            (any::<prop::sample::Index>(), prop::option::of(prop::sample::select("0-.e{}[]\",=:#\n\u{e9}a9".chars().collect::<Vec<_>>())), any::<bool>()),
+            1..4,
+        ),
+    ) {
+        let gallery = gallery();
+        let scene = &which.get(&gallery).1;
+        let text = if in_toml { scene.to_toml().unwrap() } else { scene.to_json() };
+        let text = mutated(text.chars().collect(), &changes);
+        let read = if in_toml { Scene::from_toml(&text) } else { Scene::from_json(&text) };
+        match read {
+            Err(SceneError::Syntax { line, reason, .. }) => prop_assert!(line >= 1 && !reason.is_empty()),
+            Err(SceneError::Invalid(fault)) => prop_assert!(!fault.field.is_empty() || fault.value.is_some()),
+            Err(other) => prop_assert!(false, "{other}"),
+            Ok(scene) if scene.is_infinite() => drop(scene.infinite_impact()),
+            Ok(scene) => drop(scene.impact()),
+        }
+    }
+
+    #[test]
+    fn arbitrary_tables_of_modes_never_panic(table in "([a-z_0-9.,\\-]{0,12}\n){0,5}\\PC{0,10}") {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("modes.csv"), &table).unwrap();
+        let mut scene = Scene { structure: vibroimpact::scene::ModesFile { file: "modes.csv".into(), ..Default::default() }.into(), ..named("baseball-bat") };
+        if scene.read_modes_file(folder.path()).is_ok() {
+            prop_assert!(matches!(scene.structure, Structure::Modal(_)));
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_is_too_large_or_no_text_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.json");
+    fs::write(&path, [b'{', 0xff, b'}']).unwrap();
+    assert!(matches!(Scene::read(&path), Err(SceneError::Read { .. })));
+    fs::File::create(&path).unwrap().set_len(65 << 20).unwrap();
+    assert!(Scene::read(&path).unwrap_err().to_string().contains("larger than 64 MiB"));
+    assert!(datasets("scenes/README.md").exists());
+}
+
+#[test]
+fn the_program_reads_every_kind_of_file_and_prints_the_schema() {
+    let run = |arguments: &[&std::ffi::OsStr]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_vibroimpact")).args(arguments).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(run(&["schema".as_ref()]).1, schema::text(&schema::of_scenes()));
+    for (file, headline) in [
+        (
+            "stepped-shaft.toml",
+            "263.1 g striker at 2.000 m/s on a pinned-pinned beam of 3 segments, 700.0 mm, at 350.0 mm",
+        ),
+        ("baseball-bat.json", "145.0 g striker at 40.00 m/s on a structure given by its modes, at 150_mm"),
+        ("sdnl32.json", "immovable stop before a pinned-free beam, 783.0 mm, at 783.0 mm; linear-spring contact"),
+        ("dropped-rod.json", "rod of 200.0 mm, 12.70 mm across, dropped at 1.000 m/s on a floor, inclined at 45°"),
+    ] {
+        let (code, printed, told) = run(&["simulate".as_ref(), datasets("scenes").join(file).as_os_str()]);
+        assert_eq!(code, Some(0), "{told}");
+        assert!(printed.starts_with(headline), "{printed}");
+        assert!(!printed.contains("NaN") && !printed.contains("inf "), "{printed}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let newer = folder.path().join("newer.toml");
+    fs::write(&newer, "version = 2\n").unwrap();
+    let (code, _, told) = run(&["simulate".as_ref(), newer.as_os_str()]);
+    assert_eq!(code, Some(2));
+    assert!(told.starts_with("error: version = 2 is not allowed"), "{told}");
+}
