@@ -13,12 +13,12 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use products::Products;
-use serde_json::json;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::net::{self, FitSummary};
 use vibroimpact::scene::schema;
-use vibroimpact::summary::Summary;
+use vibroimpact::simulate::Simulation;
+use vibroimpact::summary::ModeTable;
 use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
 
 const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
@@ -225,21 +225,21 @@ fn run(command: Command) -> Result<(), Failure> {
     let printed = match command {
         Command::Simulate { scene, json, out, products } => {
             let scene = Scene::read(&scene)?;
-            if scene.is_infinite() {
-                return print(&infinite_beam::of_scene(&scene, json, out, &products)?);
-            }
-            let impact = scene.impact()?;
-            let (solution, history) = impact.record()?;
-            let summary = Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
-            let headline = text::headline(&scene, &impact);
-            let mut printed =
-                if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
+            let found = scene.simulate()?;
+            let (impact, summary, history) = match &found {
+                Simulation::Modal { impact, summary, history } => (impact, summary, history),
+                Simulation::Infinite { groups, solution } => {
+                    return print(&infinite_beam::of_scene(&scene, groups, solution, json, out, &products)?);
+                }
+            };
+            let headline = text::headline(&scene, impact);
+            let mut printed = if json { found.json()? } else { format!("{headline}\n\n{}", text::result(summary)) };
             let prepared = products.prepare(
-                || pictures::impact(&headline, &summary, &history),
-                |figure| report::of_impact(&headline, &scene, &report::modelled(&scene, &impact), &summary, figure),
+                || pictures::impact(&headline, summary, history),
+                |figure| report::of_impact(&headline, &scene, &report::modelled(&scene, impact), summary, figure),
             )?;
             if let Some(folder) = out {
-                let files = Files::new(&headline, &summary, &history)?;
+                let files = Files::new(&headline, summary, history)?;
                 files.write(&folder)?;
                 if !json {
                     let names: Vec<&str> = files.names().collect();
@@ -255,14 +255,7 @@ fn run(command: Command) -> Result<(), Failure> {
                 Some(path) => products::Prepared::picture(&path, &pictures::modes(&scene, count)?)?.write(json)?,
                 None => String::new(),
             };
-            let printed = if json {
-                let omega: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s).collect();
-                let frequency: Vec<f64> = omega.iter().map(|omega| omega / std::f64::consts::TAU).collect();
-                let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
-                export::json(&json!({ "omega_rad_s": omega, "frequency_hz": frequency, "shape_at_location": shape }))?
-            } else {
-                text::modes(&modes)
-            };
+            let printed = if json { export::json(&ModeTable::new(&modes))? } else { text::modes(&modes) };
             printed + &told
         }
         Command::Emoc { scene, mu0, alpha0, alpha1, emoc_modes, json } => {
