@@ -33,6 +33,7 @@
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
+//! | [`sweep`] | many scenes that differ in some fields: grids, lists, ranges, random draws |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
@@ -50,6 +51,7 @@ pub mod report;
 pub mod scene;
 pub mod simulate;
 pub mod summary;
+pub mod sweep;
 pub mod text;
 
 pub use beam_modes;

@@ -1,10 +1,11 @@
 //! The command line: scene files in, results out.
 //!
 //! Exit codes: 0 for a result (sustained contact and a limit reached among them), 2 for input that cannot be used,
-//! 1 for results that cannot be written.
+//! 1 for results that cannot be written, 130 for a sweep that was asked to stop.
 
 mod infinite_beam;
 mod products;
+mod sweep_command;
 
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
@@ -19,6 +20,7 @@ use vibroimpact::net::{self, FitSummary};
 use vibroimpact::scene::schema;
 use vibroimpact::simulate::Simulation;
 use vibroimpact::summary::ModeTable;
+use vibroimpact::sweep::SweepError;
 use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
 
 const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
@@ -174,6 +176,12 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
+    #[command(after_help = sweep_command::SWEEP_EXAMPLES)]
+    Sweep(sweep_command::SweepArguments),
+    /// Join the parts of a sweep, and prove that none is missing
+    #[command(after_help = sweep_command::MERGE_EXAMPLES)]
+    Merge(sweep_command::MergeArguments),
     /// Print a script that completes commands and options in a shell
     #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions {
@@ -199,6 +207,9 @@ enum InputFile {
     Scene,
 }
 
+/// Exit code of a sweep that was asked to stop.
+const STOPPED: u8 = 130;
+
 fn main() -> ExitCode {
     match run(Cli::parse().command) {
         Ok(()) => ExitCode::SUCCESS,
@@ -206,8 +217,12 @@ fn main() -> ExitCode {
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("error: {failure}");
+            let of_sweep = failure.downcast_ref::<SweepError>();
+            if matches!(of_sweep, Some(SweepError::Stopped { .. })) {
+                return ExitCode::from(STOPPED);
+            }
             let of_input = failure.is::<SceneError>() || failure.is::<InvalidInput>();
-            ExitCode::from(if of_input { 2 } else { 1 })
+            ExitCode::from(if of_input || of_sweep.is_some_and(SweepError::is_of_input) { 2 } else { 1 })
         }
     }
 }
@@ -282,6 +297,8 @@ fn run(command: Command) -> Result<(), Failure> {
             String::from_utf8(page)?
         }
         Command::Schema { of: InputFile::Scene } => schema::text(&schema::of_scenes()),
+        Command::Sweep(arguments) => sweep_command::sweep(arguments)?,
+        Command::Merge(arguments) => sweep_command::merge(arguments)?,
     };
     print(&printed)
 }

@@ -45,15 +45,16 @@ impl HeatMap {
         }
     }
 
-    /// Draws the cells; `place` maps a pair of values to the picture.
+    /// Draws the cells; `logarithmic` tells which of the two axes are, `place` maps a pair of values to the picture.
     pub(super) fn draw(
         &self,
         canvas: &Canvas,
         within: &Rectangle,
+        logarithmic: [bool; 2],
         place: impl Fn(f64, f64) -> (f64, f64),
     ) -> io::Result<()> {
         let scale = self.scale();
-        let (columns, lines) = (edges(&self.x), edges(&self.y));
+        let (columns, lines) = (edges(&self.x, logarithmic[0]), edges(&self.y, logarithmic[1]));
         for (j, line) in lines.windows(2).enumerate() {
             for (i, column) in columns.windows(2).enumerate() {
                 let value = self.rows.get(j).and_then(|r| r.get(i)).copied().unwrap_or(f64::NAN);
@@ -100,8 +101,12 @@ impl HeatMap {
     }
 }
 
-/// Edges of cells around centres: half way between neighbours.
-pub(super) fn edges(centres: &[f64]) -> Vec<f64> {
+/// Edges of cells around centres: half way between neighbours, as the axis measures it.
+pub(super) fn edges(centres: &[f64], logarithmic: bool) -> Vec<f64> {
+    if logarithmic && centres.iter().all(|&centre| super::axis::drawable(centre, true)) {
+        let measures: Vec<f64> = centres.iter().map(|centre| centre.log10()).collect();
+        return edges(&measures, false).into_iter().map(|edge| 10f64.powf(edge)).collect();
+    }
     let inner: Vec<f64> = centres.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let (Some(first), Some(last)) = (centres.first(), centres.last()) else { return Vec::new() };
     let half = |edge: Option<&f64>, centre: f64| edge.map_or(0.5, |e| (e - centre).abs());

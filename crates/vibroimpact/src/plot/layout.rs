@@ -47,8 +47,14 @@ impl<'a> Plan<'a> {
         let tight = if panel.heat.is_some() { 0.0 } else { 1.0 };
         // a marker on the frame would be cut in two
         let flush = !panel.series.iter().any(Series::has_markers);
-        let x_extent = extent(&panel.x, panel.series.iter().flat_map(Series::abscissas).chain(cells(&|h| edges(&h.x))));
-        let y_extent = extent(&panel.y, panel.series.iter().flat_map(Series::ordinates).chain(cells(&|h| edges(&h.y))));
+        let x_extent = extent(
+            &panel.x,
+            panel.series.iter().flat_map(Series::abscissas).chain(cells(&|h| edges(&h.x, panel.x.logarithmic))),
+        );
+        let y_extent = extent(
+            &panel.y,
+            panel.series.iter().flat_map(Series::ordinates).chain(cells(&|h| edges(&h.y, panel.y.logarithmic))),
+        );
         let (x, y) =
             (Scale::new(&panel.x, x_extent, 0.02 * tight, flush), Scale::new(&panel.y, y_extent, 0.06 * tight, flush));
         let (y_ticks, exponent) = named_or(&panel.y, y.ticks_up(height_px, TICK_PX));

@@ -30,7 +30,7 @@ fn pen(series: &Series, colour: Colour) -> Pen {
 pub(super) fn draw(canvas: &Canvas, panel: &Panel, x: &Scale, y: &Scale, r: &Rectangle) -> io::Result<()> {
     let place = |u: f64, v: f64| (r.left + x.fraction(u) * r.width(), r.bottom - y.fraction(v) * r.height());
     if let Some(heat) = &panel.heat {
-        heat.draw(canvas, r, place)?;
+        heat.draw(canvas, r, [panel.x.logarithmic, panel.y.logarithmic], place)?;
     }
     // what cannot be drawn becomes None and interrupts a line
     let at = |u: f64, v: f64| {

@@ -31,7 +31,7 @@ mod dropped_rod;
 mod error;
 mod fields;
 mod infinite;
-mod json;
+pub(crate) mod json;
 mod materials;
 mod modal;
 mod modes_file;

@@ -1,0 +1,260 @@
+//! A sweep: from the number of a point to its scene.
+
+use std::path::Path;
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use super::error::SweepError;
+use super::evaluate;
+use super::file::{self, Contents, MAX_POINTS, canonical_text};
+use super::path::FieldPath;
+use super::values::{Axis, AxisValues, Random};
+use crate::scene::json::{self, quote};
+use crate::scene::{InvalidInput, Scene};
+
+/// Changed whenever the same sweep gives other rows or other columns.
+const FORMAT: u32 = 1;
+/// Points by which it is judged whether the scene can be used at all, spread over the sweep.
+const PROBES: u64 = 5;
+/// Chunks into which a sweep is divided, unless it is so large that they would hold too many points.
+const CHUNKS: u64 = 512;
+/// Most points of a chunk: what a thread computes at a time, and may have to compute again after a stop.
+const LARGEST_CHUNK: u64 = 128;
+
+/// Many scenes that differ in some fields.
+///
+/// The points are numbered from 0. The axes of `vary` form a grid, of which the last axis runs fastest. With `random`,
+/// every point of the grid is met by all the draws, which are the same ones at each: draw `d` of grid point `g` has the
+/// number `g * draws + d`. A point depends on the sweep and its number alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// A text for the reader.
+    pub description: Option<String>,
+    /// The axes of the grid.
+    pub axes: Vec<Axis>,
+    /// What is drawn at random.
+    pub random: Option<Random>,
+    scene: Value,
+    canonical: Value,
+    points: u64,
+}
+
+impl Sweep {
+    /// Reads a sweep file, and the scene file that it names.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a fault in the sweep or in its base scene, or too many points.
+    pub fn read(path: &Path) -> Result<Sweep, SweepError> {
+        Ok(Sweep::new(file::read(path)?)?)
+    }
+
+    /// Reads a sweep from JSON text with the scene in it.
+    ///
+    /// # Errors
+    /// Text that is not JSON, otherwise as [`Sweep::read`].
+    pub fn from_json(text: &str) -> Result<Sweep, SweepError> {
+        Ok(Sweep::from_value(&json::parse(text)?)?)
+    }
+
+    /// Reads a sweep from a JSON tree with the scene in it.
+    ///
+    /// # Errors
+    /// As [`Sweep::read`], files aside.
+    pub fn from_value(value: &Value) -> Result<Sweep, InvalidInput> {
+        Sweep::new(file::from_tree(value.clone())?)
+    }
+
+    fn new(contents: Contents) -> Result<Sweep, InvalidInput> {
+        let Contents { description, scene, axes, random, canonical } = contents;
+        let sizes = axes.iter().map(Axis::count).chain(random.iter().map(|random| random.draws));
+        let points = sizes.clone().try_fold(1u64, u64::checked_mul).filter(|points| *points <= MAX_POINTS);
+        let points = points.ok_or_else(|| {
+            let product = sizes.map(|size| size.to_string()).collect::<Vec<_>>().join(" x ");
+            InvalidInput::new("number of points", product, "at most 1e12 in all")
+        })?;
+        let sweep = Sweep { description, axes, random, scene, canonical, points };
+        sweep.check_overlap()?;
+        sweep.check_values()?;
+        sweep.check_scene()?;
+        Ok(sweep)
+    }
+
+    /// How many points there are.
+    pub fn points(&self) -> u64 {
+        self.points
+    }
+
+    /// The varied fields, those of the grid first: the columns of the results.
+    pub fn fields(&self) -> impl Iterator<Item = &FieldPath> {
+        self.axes.iter().map(|axis| &axis.field).chain(self.drawn().map(|(field, _)| field))
+    }
+
+    fn drawn(&self) -> impl Iterator<Item = &(FieldPath, super::values::Interval)> {
+        self.random.iter().flat_map(|random| &random.fields)
+    }
+
+    /// Draws at each point of the grid; 1 if nothing is drawn.
+    pub(super) fn draws(&self) -> u64 {
+        self.random.as_ref().map_or(1, |random| random.draws)
+    }
+
+    /// For each axis the number of its value at a point.
+    pub(super) fn places(&self, point: u64) -> Vec<u64> {
+        let mut rest = point / self.draws();
+        let mut places: Vec<u64> = Vec::with_capacity(self.axes.len());
+        for axis in self.axes.iter().rev() {
+            places.push(rest % axis.count());
+            rest /= axis.count();
+        }
+        places.reverse();
+        places
+    }
+
+    /// The values of the varied fields at a point, in the order of [`Sweep::fields`].
+    pub fn values(&self, point: u64) -> Vec<Value> {
+        let grid = self.axes.iter().zip(self.places(point)).map(|(axis, place)| axis.value(place));
+        let drawn = self.random.iter().flat_map(|random| random.draw(point % random.draws));
+        grid.chain(drawn).collect()
+    }
+
+    /// The scene with these values of the varied fields.
+    pub(super) fn scene_with(&self, values: &[Value]) -> Result<Scene, InvalidInput> {
+        let mut tree = self.scene.clone();
+        for (field, value) in self.fields().zip(values) {
+            let set = field.set(&mut tree, value.clone());
+            set.map_err(|reason| InvalidInput::new(field.to_string(), quote(value), reason))?;
+        }
+        Scene::from_value(&tree)
+    }
+
+    /// The scene of a point.
+    ///
+    /// # Errors
+    /// Values that together make no scene.
+    pub fn scene(&self, point: u64) -> Result<Scene, InvalidInput> {
+        self.scene_with(&self.values(point))
+    }
+
+    /// Points of a chunk, the unit in which work is handed out; the last chunk may have fewer.
+    pub(super) fn points_per_chunk(&self) -> u64 {
+        (self.points / CHUNKS).clamp(1, LARGEST_CHUNK)
+    }
+
+    pub(super) fn chunks(&self) -> u64 {
+        self.points.div_ceil(self.points_per_chunk())
+    }
+
+    /// The first point of a chunk; of the one after the last, the number of points.
+    pub(super) fn first_of_chunk(&self, chunk: u64) -> u64 {
+        chunk.saturating_mul(self.points_per_chunk()).min(self.points)
+    }
+
+    /// The sweep as a JSON tree with its scene in it.
+    pub(super) fn canonical(&self) -> &Value {
+        &self.canonical
+    }
+
+    /// A number in which two sweeps differ if their rows could.
+    pub fn fingerprint(&self) -> String {
+        let version = env!("CARGO_PKG_VERSION");
+        let text = format!("vibroimpact {version}, format {FORMAT}\n{}", canonical_text(&self.canonical));
+        Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// Where in the sweep file the field with this number in [`Sweep::fields`] stands.
+    fn entry(&self, number: usize) -> String {
+        match number.checked_sub(self.axes.len()) {
+            None => format!("vary[{number}]"),
+            Some(drawn) => format!("random.fields[{drawn}]"),
+        }
+    }
+
+    /// No field may undo what one before it has set.
+    fn check_overlap(&self) -> Result<(), InvalidInput> {
+        let fields: Vec<&FieldPath> = self.fields().collect();
+        for (i, field) in fields.iter().enumerate() {
+            if let Some(before) = fields[..i].iter().position(|before| field.holds(before)) {
+                let allowed = format!("a field that does not overwrite that of {}", self.entry(before));
+                let name = format!("{}.field", self.entry(i));
+                return Err(InvalidInput::new(name, format!("\"{field}\""), allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Every field must have its place in the scene, and every value, with the others at their first, must be of a kind
+    /// that the field can hold.
+    fn check_values(&self) -> Result<(), InvalidInput> {
+        let first = self.values(0);
+        let mut tree = self.scene.clone();
+        for (i, (field, value)) in self.fields().zip(&first).enumerate() {
+            field.set(&mut tree, value.clone()).map_err(|reason| {
+                let allowed = format!("the path of a field of the scene; {reason}");
+                InvalidInput::new(format!("{}.field", self.entry(i)), format!("\"{field}\""), allowed)
+            })?;
+        }
+        Scene::from_value(&tree).map_err(|fault| self.blame(fault))?;
+        for (i, axis) in self.axes.iter().enumerate() {
+            let numbers: Vec<u64> = match &axis.values {
+                AxisValues::Range(_, count) => vec![1, count - 1],
+                AxisValues::List(values) => (1..values.len() as u64).collect(),
+            };
+            for number in numbers {
+                let mut values = first.clone();
+                values[i] = axis.value(number);
+                self.scene_with(&values).map_err(|fault| {
+                    let name = match axis.values {
+                        AxisValues::Range(..) => format!("vary[{i}].count"),
+                        AxisValues::List(_) => format!("vary[{i}].values[{number}]"),
+                    };
+                    InvalidInput::new(name, quote(&values[i]), format!("a value that the scene can hold; {fault}"))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of the varied field in which a fault stands.
+    fn varies(&self, fault: &InvalidInput) -> Option<usize> {
+        let found = FieldPath::parse(&fault.field)?;
+        self.fields().position(|field| field.holds(&found))
+    }
+
+    /// A fault at the first point, under the name of what has to be changed in the sweep file.
+    fn blame(&self, fault: InvalidInput) -> InvalidInput {
+        match self.varies(&fault) {
+            None => fault.within("scene"),
+            Some(i) if fault.allowed.starts_with("no such field") => {
+                let name = format!("{}.field", self.entry(i));
+                InvalidInput::new(name, format!("\"{}\"", fault.field), fault.allowed)
+            }
+            Some(i) => {
+                let list = self.axes.get(i).is_some_and(|axis| matches!(axis.values, AxisValues::List(_)));
+                let name = if list { "values[0]" } else { "from" };
+                InvalidInput { field: format!("{}.{name}", self.entry(i)), ..fault }
+            }
+        }
+    }
+
+    /// A scene that cannot be solved for a reason that the varied fields have no part in is refused at once.
+    fn check_scene(&self) -> Result<(), InvalidInput> {
+        let mut faults = Vec::new();
+        let probes = PROBES.min(self.points);
+        for probe in 0..probes {
+            // points number at most 1e12, so that the product is exact
+            let point = (self.points - 1) * probe / (probes - 1).max(1);
+            match self.scene(point).and_then(|scene| evaluate::check(&scene)) {
+                Ok(()) => return Ok(()),
+                Err(fault) => faults.push(fault),
+            }
+        }
+        // a fault of a varied field is one of its value's; what stands fast must be wrong in itself
+        let (varied, fast): (Vec<_>, Vec<_>) = faults.iter().partition(|fault| self.varies(fault).is_some());
+        let judged = if fast.is_empty() { varied } else { fast };
+        match judged.split_first() {
+            Some((first, others)) if others.iter().all(|other| other == first) => Err(self.blame((*first).clone())),
+            _ => Ok(()),
+        }
+    }
+}

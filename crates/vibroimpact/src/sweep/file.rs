@@ -1,0 +1,253 @@
+//! The sweep file, field by field, and its reading.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use super::error::SweepError;
+use super::path::FieldPath;
+use super::values::{Axis, AxisValues, Interval, Random, Scale};
+use crate::scene::json::{self, number, quote};
+use crate::scene::{InvalidInput, SceneError};
+
+/// Largest sweep file, or file of a base scene, that is read (bytes).
+const MAX_FILE_BYTES: u64 = 64 << 20;
+/// Most points of a sweep: indices and byte counts stay exact in every format that is written.
+pub(super) const MAX_POINTS: u64 = 1_000_000_000_000;
+
+const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m";
+
+/// Field and what it may hold.
+const FIELDS: &[(&str, &str)] = &[
+    ("", "a sweep is a JSON object with scene or scene_file, and vary or random or both"),
+    ("description", "a text"),
+    ("scene", "a scene as an object, or scene_file in its place"),
+    ("scene_file", "the name of a scene file, relative to the folder of the sweep file"),
+    ("vary", "a list of axes, each an object with field and either values or from, to and count"),
+    ("vary[]", "an object with field and either values or from, to and count"),
+    ("field", FIELD),
+    ("from", "a finite number, greater than 0 on a logarithmic scale"),
+    ("to", "a finite number other than from, greater than 0 on a logarithmic scale"),
+    ("count", "a whole number from 2 to 1e12"),
+    ("scale", "linear or log"),
+    ("whole_numbers", "true or false"),
+    ("values", "a list of at least one value, beside which from, to, count, scale and whole_numbers are left out"),
+    ("random", "an object with seed, draws and fields"),
+    ("seed", "a whole number from 0 to 18446744073709551615"),
+    ("draws", "a whole number from 1 to 1e12"),
+    ("fields", "a list of at least one object with field, from and to"),
+    ("fields[]", "an object with field, from and to"),
+];
+
+fn allowed(path: &str) -> Option<&'static str> {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    let name = last.split_once('[').map_or_else(|| last.to_owned(), |(list, _)| format!("{list}[]"));
+    FIELDS.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
+}
+
+fn fault(field: impl Into<String>, value: impl Into<String>) -> InvalidInput {
+    let field = field.into();
+    let allowed = allowed(&field).unwrap_or_default();
+    InvalidInput::new(field, value, allowed)
+}
+
+fn missing(field: impl Into<String>) -> InvalidInput {
+    let field = field.into();
+    let allowed = allowed(&field).unwrap_or_default();
+    InvalidInput::missing(field, allowed)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SweepFile {
+    description: Option<String>,
+    scene: Option<Value>,
+    scene_file: Option<String>,
+    #[serde(default, deserialize_with = "json::objects")]
+    vary: Vec<AxisEntry>,
+    random: Option<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AxisEntry {
+    field: String,
+    from: Option<f64>,
+    to: Option<f64>,
+    count: Option<u64>,
+    scale: Option<Scale>,
+    whole_numbers: Option<bool>,
+    values: Option<Vec<Value>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RandomEntry {
+    seed: u64,
+    draws: u64,
+    #[serde(deserialize_with = "json::objects")]
+    fields: Vec<IntervalEntry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct IntervalEntry {
+    field: String,
+    from: f64,
+    to: f64,
+    #[serde(default)]
+    scale: Scale,
+    #[serde(default)]
+    whole_numbers: bool,
+}
+
+/// What a sweep file says, checked by itself: not yet against the scene.
+pub(super) struct Contents {
+    pub description: Option<String>,
+    pub scene: Value,
+    pub axes: Vec<Axis>,
+    pub random: Option<Random>,
+    /// The file as a tree, with the scene in it.
+    pub canonical: Value,
+}
+
+/// Reads a sweep file and the scene file that it names.
+pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
+    let mut tree = json::parse(&text(path)?)?;
+    let name = tree.get("scene_file").and_then(Value::as_str).map(str::to_owned);
+    if let (Some(name), Some(map)) = (name, tree.as_object_mut()) {
+        if let Some(scene) = map.get("scene") {
+            return Err(InvalidInput::new("scene", quote(scene), "left out beside scene_file").into());
+        }
+        let file = path.parent().unwrap_or(Path::new("")).join(name);
+        let scene = json::parse(&text(&file)?).map_err(|found| in_file(&file, found))?;
+        map.remove("scene_file");
+        map.insert("scene".to_owned(), scene);
+    }
+    Ok(from_tree(tree)?)
+}
+
+fn text(path: &Path) -> Result<String, SceneError> {
+    let fault = |source| SceneError::Read { path: path.to_owned(), source };
+    let mut text = String::new();
+    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES).read_to_string(&mut text).map_err(fault)?;
+    Ok(text)
+}
+
+/// A fault of the scene file, told apart from those of the sweep file.
+fn in_file(path: &Path, found: SceneError) -> SceneError {
+    match found {
+        SceneError::Syntax { line, column, field, reason } => {
+            SceneError::Syntax { line, column, field, reason: format!("{reason} (in {})", path.display()) }
+        }
+        other => other,
+    }
+}
+
+/// Reads a sweep whose scene is in it.
+pub(super) fn from_tree(canonical: Value) -> Result<Contents, InvalidInput> {
+    let file: SweepFile = typed(&canonical)?;
+    if let Some(name) = file.scene_file {
+        let allowed = "a name in a sweep file; a sweep without a file has its scene in it";
+        return Err(InvalidInput::new("scene_file", quote(&name.into()), allowed));
+    }
+    let scene = file.scene.ok_or_else(|| missing("scene"))?;
+    if !scene.is_object() {
+        return Err(fault("scene", quote(&scene)));
+    }
+    let axes = file.vary.into_iter().enumerate().map(|(i, entry)| axis(&format!("vary[{i}]"), entry));
+    let axes = axes.collect::<Result<Vec<_>, _>>()?;
+    let random = file.random.map(|value| random(&value).map_err(|found| found.within("random"))).transpose()?;
+    if axes.is_empty() && random.is_none() {
+        return Err(InvalidInput::missing("vary", "give vary or random: something must change"));
+    }
+    Ok(Contents { description: file.description, scene, axes, random, canonical })
+}
+
+/// Reads an object; what is allowed is told in the terms of sweeps.
+fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
+    json::read(value).map_err(|found| {
+        let told = if found.allowed.starts_with("no such field") { None } else { allowed(&found.field) };
+        let field = if found.field.is_empty() { "the sweep".to_owned() } else { found.field };
+        InvalidInput { field, allowed: told.map_or(found.allowed, str::to_owned), ..found }
+    })
+}
+
+fn axis(place: &str, entry: AxisEntry) -> Result<Axis, InvalidInput> {
+    let AxisEntry { field, from, to, count, scale, whole_numbers, values } = entry;
+    let at = |name: &str| format!("{place}.{name}");
+    let path = field_path(at("field"), field)?;
+    let values = match values {
+        Some(values) => {
+            let range = from.is_some() || to.is_some() || count.is_some() || scale.is_some() || whole_numbers.is_some();
+            if range || values.is_empty() {
+                return Err(fault(at("values"), quote(&Value::Array(values))));
+            }
+            AxisValues::List(values)
+        }
+        None => {
+            let from = from.ok_or_else(|| missing(at("from")))?;
+            let to = to.ok_or_else(|| missing(at("to")))?;
+            let count = count.ok_or_else(|| missing(at("count")))?;
+            let scale = scale.unwrap_or_default();
+            if !(2..=MAX_POINTS).contains(&count) {
+                return Err(fault(at("count"), count.to_string()));
+            }
+            let whole_numbers = whole_numbers.unwrap_or_default();
+            AxisValues::Range(interval(place, Interval { from, to, scale, whole_numbers })?, count)
+        }
+    };
+    Ok(Axis { field: path, values })
+}
+
+fn random(value: &Value) -> Result<Random, InvalidInput> {
+    let RandomEntry { seed, draws, fields } = typed(value)?;
+    if !(1..=MAX_POINTS).contains(&draws) {
+        return Err(fault("draws", draws.to_string()));
+    }
+    if fields.is_empty() {
+        return Err(fault("fields", "[]"));
+    }
+    let field = |(i, entry): (usize, IntervalEntry)| {
+        let place = format!("fields[{i}]");
+        let IntervalEntry { field, from, to, scale, whole_numbers } = entry;
+        let path = field_path(format!("{place}.field"), field)?;
+        Ok::<_, InvalidInput>((path, interval(&place, Interval { from, to, scale, whole_numbers })?))
+    };
+    let fields = fields.into_iter().enumerate().map(field).collect::<Result<_, _>>()?;
+    Ok(Random { seed, draws, fields })
+}
+
+fn field_path(place: String, text: String) -> Result<FieldPath, InvalidInput> {
+    FieldPath::parse(&text).ok_or_else(|| fault(place, quote(&text.into())))
+}
+
+fn interval(place: &str, interval: Interval) -> Result<Interval, InvalidInput> {
+    let Interval { from, to, scale, .. } = interval;
+    let usable = |value: f64| value.is_finite() && (scale == Scale::Linear || value > 0.0);
+    for (name, value, good) in [("from", from, usable(from)), ("to", to, usable(to) && to != from)] {
+        if !good {
+            return Err(fault(format!("{place}.{name}"), number(value)));
+        }
+    }
+    Ok(interval)
+}
+
+/// The one form of a tree as text: keys in order, no spaces.
+pub(super) fn canonical_text(tree: &Value) -> String {
+    fn sorted(tree: &Value) -> Value {
+        match tree {
+            Value::Object(map) => {
+                let mut entries: Vec<_> = map.iter().map(|(key, value)| (key.clone(), sorted(value))).collect();
+                entries.sort_by(|a, b| a.0.cmp(&b.0));
+                Value::Object(Map::from_iter(entries))
+            }
+            Value::Array(items) => Value::Array(items.iter().map(sorted).collect()),
+            other => other.clone(),
+        }
+    }
+    sorted(tree).to_string()
+}

@@ -1,0 +1,298 @@
+//! The folder of a sweep: what it holds survives being cut off at any moment.
+//!
+//! `results.csv` grows at its end. After each growth has reached the disk, `progress.json`, replaced as a whole, says
+//! how many chunks are in it, how long it is and its checksum. What is beyond that length when a sweep goes on was being
+//! written when it was cut off, and is dropped.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::definition::Sweep;
+use super::error::SweepError;
+use super::row;
+use super::threads::Sink;
+
+/// One of the parts into which a sweep is divided: neighbouring chunks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Part {
+    /// Which part, from 1.
+    pub number: u64,
+    /// How many there are.
+    pub of: u64,
+}
+
+impl Part {
+    /// The whole sweep.
+    pub const WHOLE: Part = Part { number: 1, of: 1 };
+
+    /// Reads `K/N`, as in `3/8`.
+    pub fn parse(text: &str) -> Option<Part> {
+        let (number, of) = text.split_once('/')?;
+        let part = Part { number: number.parse().ok()?, of: of.parse().ok()? };
+        (part.number >= 1 && part.number <= part.of && part.of <= 1_000_000).then_some(part)
+    }
+
+    /// The chunks of this part.
+    pub(super) fn chunks(self, sweep: &Sweep) -> Range<u64> {
+        // at most 1e10 chunks and 1e6 parts: the products are exact
+        let bound = |parts: u64| sweep.chunks() * parts / self.of;
+        bound(self.number - 1)..bound(self.number)
+    }
+
+    /// The points of this part.
+    pub(super) fn points(self, sweep: &Sweep) -> Range<u64> {
+        let chunks = self.chunks(sweep);
+        sweep.first_of_chunk(chunks.start)..sweep.first_of_chunk(chunks.end)
+    }
+}
+
+/// What a folder says of itself, in `sweep.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Record {
+    pub program: String,
+    pub fingerprint: String,
+    pub points: u64,
+    pub part: Part,
+    pub sweep: Value,
+}
+
+impl Record {
+    pub(super) fn new(sweep: &Sweep, part: Part) -> Record {
+        Record {
+            program: concat!("vibroimpact ", env!("CARGO_PKG_VERSION")).to_owned(),
+            fingerprint: sweep.fingerprint(),
+            points: sweep.points(),
+            part,
+            sweep: sweep.canonical().clone(),
+        }
+    }
+}
+
+/// How far a folder has come, in `progress.json`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Progress {
+    /// Chunks whose rows are in `results.csv`.
+    pub chunks: u64,
+    /// Length of `results.csv` with them.
+    pub bytes: u64,
+    /// Checksum of these bytes.
+    pub crc32: u32,
+    /// Whether everything that is made at the end is there too.
+    pub finished: bool,
+}
+
+/// A folder that this process alone works in.
+#[derive(Debug)]
+pub(super) struct Folder {
+    path: PathBuf,
+    results: File,
+    progress: Progress,
+    /// Held as long as the folder is.
+    _lock: File,
+}
+
+pub(super) const RECORD: &str = "sweep.json";
+pub(super) const RESULTS: &str = "results.csv";
+const PROGRESS: &str = "progress.json";
+const LOCK: &str = "lock";
+
+impl Folder {
+    /// Opens the folder of a sweep to begin, or to go on.
+    ///
+    /// # Errors
+    /// A folder in use, of another sweep, or damaged; or what the system says.
+    pub(super) fn open(path: &Path, sweep: &Sweep, part: Part) -> Result<Folder, SweepError> {
+        let record = Record::new(sweep, part);
+        let found = read_json::<Record>(&path.join(RECORD))?;
+        if let Some(found) = &found {
+            same_sweep(path, found, &record)?;
+        } else if path.join(RESULTS).exists() {
+            let text =
+                format!("{} holds results, but no {RECORD}: not of a sweep; choose another folder", path.display());
+            return Err(SweepError::Refused(text));
+        }
+        fs::create_dir_all(path).map_err(SweepError::io(path))?;
+        let lock = lock(path)?;
+        if found.is_none() {
+            write_durably(&path.join(RECORD), &json(&record)?)?;
+        }
+        let file = path.join(RESULTS);
+        let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&file);
+        let results = opened.map_err(SweepError::io(&file))?;
+        let mut folder = match read_json::<Progress>(&path.join(PROGRESS))? {
+            Some(progress) => Folder { path: path.to_owned(), results, progress, _lock: lock },
+            None => {
+                let progress = Progress { chunks: 0, bytes: 0, crc32: 0, finished: false };
+                let mut folder = Folder { path: path.to_owned(), results, progress, _lock: lock };
+                folder.cut()?;
+                folder.append(0, &row::header(sweep))?;
+                folder
+            }
+        };
+        if !folder.progress.finished {
+            folder.check()?;
+            folder.cut()?;
+        }
+        Ok(folder)
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    pub(super) fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// Notes that nothing is left to do.
+    pub(super) fn finish(&mut self) -> Result<(), SweepError> {
+        self.progress.finished = true;
+        self.save()
+    }
+
+    fn save(&self) -> Result<(), SweepError> {
+        write_durably(&self.path.join(PROGRESS), &json(&self.progress)?)
+    }
+
+    /// The results must begin with what is noted of them.
+    fn check(&mut self) -> Result<(), SweepError> {
+        let file = self.path.join(RESULTS);
+        if checksum(&mut self.results, self.progress.bytes).map_err(SweepError::io(&file))? == Some(self.progress.crc32)
+        {
+            return Ok(());
+        }
+        let text = format!("{} is not as this program left it; remove the folder to begin anew", file.display());
+        Err(SweepError::Refused(text))
+    }
+
+    /// Drops what was being written when the sweep was cut off.
+    fn cut(&mut self) -> Result<(), SweepError> {
+        let bytes = self.progress.bytes;
+        let cut = self.results.set_len(bytes).and_then(|()| self.results.seek(SeekFrom::Start(bytes)));
+        cut.map(drop).map_err(SweepError::io(&self.path.join(RESULTS)))
+    }
+}
+
+impl Sink for Folder {
+    fn chunks(&self) -> u64 {
+        self.progress.chunks
+    }
+
+    /// Adds the rows of the next chunks; they are safe when this returns.
+    fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError> {
+        let written = self.results.write_all(rows).and_then(|()| self.results.sync_data());
+        written.map_err(SweepError::io(&self.path.join(RESULTS)))?;
+        let mut sum = crc32fast::Hasher::new_with_initial_len(self.progress.crc32, self.progress.bytes);
+        sum.update(rows);
+        self.progress.chunks += chunks;
+        self.progress.bytes += rows.len() as u64;
+        self.progress.crc32 = sum.finalize();
+        self.save()
+    }
+}
+
+/// What the folder of a finished part holds.
+pub(super) struct Finished {
+    pub record: Record,
+    pub progress: Progress,
+}
+
+/// Looks into the folder of a part, which must be finished and whole.
+pub(super) fn look_into(path: &Path) -> Result<Finished, SweepError> {
+    let refused = |reason: &str| SweepError::Refused(format!("{} {reason}", path.display()));
+    let record = read_json::<Record>(&path.join(RECORD))?.ok_or_else(|| refused("is not the folder of a sweep"))?;
+    let progress = read_json::<Progress>(&path.join(PROGRESS))?.filter(|progress| progress.finished);
+    let unfinished = || refused(&format!("holds part {}/{}, unfinished", record.part.number, record.part.of));
+    let progress = progress.ok_or_else(unfinished)?;
+    Ok(Finished { record, progress })
+}
+
+/// The checksum of the first bytes of a file; `None` if it has not so many.
+fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
+    file.seek(SeekFrom::Start(0))?;
+    let mut sum = crc32fast::Hasher::new();
+    let mut left = bytes;
+    let mut piece = vec![0; 1 << 20];
+    while left > 0 {
+        let wanted = left.min(piece.len() as u64) as usize;
+        let count = file.read(&mut piece[..wanted])?;
+        if count == 0 {
+            return Ok(None);
+        }
+        sum.update(&piece[..count]);
+        left -= count as u64;
+    }
+    Ok(Some(sum.finalize()))
+}
+
+fn same_sweep(path: &Path, found: &Record, wanted: &Record) -> Result<(), SweepError> {
+    let folder = path.display();
+    let text = if found.fingerprint != wanted.fingerprint {
+        let what = if found.program == wanted.program { "another sweep" } else { "a sweep by another program" };
+        format!("{folder} holds results of {what} ({}); choose another folder", found.program)
+    } else if found.part != wanted.part {
+        let Part { number, of } = found.part;
+        format!(
+            "{folder} holds part {number}/{of} of this sweep; choose another folder for {}/{}",
+            wanted.part.number, wanted.part.of
+        )
+    } else {
+        return Ok(());
+    };
+    Err(SweepError::Refused(text))
+}
+
+fn lock(path: &Path) -> Result<File, SweepError> {
+    let file = path.join(LOCK);
+    let lock = File::create(&file).map_err(SweepError::io(&file))?;
+    match lock.try_lock() {
+        Ok(()) => Ok(lock),
+        Err(TryLockError::WouldBlock) => {
+            Err(SweepError::Refused(format!("another process is working in {}", path.display())))
+        }
+        Err(TryLockError::Error(source)) => Err(SweepError::Io { path: file, source }),
+    }
+}
+
+pub(super) fn json(value: &impl Serialize) -> Result<Vec<u8>, SweepError> {
+    let text = serde_json::to_string_pretty(value).map_err(|fault| SweepError::Refused(fault.to_string()))?;
+    Ok((text + "\n").into_bytes())
+}
+
+/// Reads a JSON file that this program wrote; `None` if there is none.
+pub(super) fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<Option<T>, SweepError> {
+    let text = match fs::read_to_string(path) {
+        Err(fault) if fault.kind() == io::ErrorKind::NotFound => return Ok(None),
+        text => text.map_err(SweepError::io(path))?,
+    };
+    let damaged = |fault| SweepError::Refused(format!("{} cannot be read: {fault}", path.display()));
+    serde_json::from_str(&text).map(Some).map_err(damaged)
+}
+
+/// Replaces a file as a whole; afterwards the new one is there whatever happens to the machine.
+pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
+    let part = path.with_extension("part");
+    let write = || {
+        let mut file = File::create(&part)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        settle(&part, path)
+    };
+    write().map_err(SweepError::io(path))
+}
+
+/// Moves a file that is on the disk into its place.
+pub(super) fn settle(part: &Path, path: &Path) -> io::Result<()> {
+    fs::rename(part, path)?;
+    // the name lives in the folder, which is a file of its own to Unix
+    #[cfg(unix)]
+    if let Some(folder) = path.parent() {
+        File::open(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?.sync_all()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! Sweeps: many scenes that differ in some fields, computed on all cores, in parts on many machines, or over the ranks
+//! of an MPI job, with the same bytes as a result.
+//!
+//! A [`Sweep`] is a base scene and the fields that vary. Its points are numbered, and each is a function of its number
+//! alone. [`run`] computes them into a folder; when it is cut off at any moment, running it again goes on from there.
+//! [`merge`] makes the folder of a whole sweep from those of its parts.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `results.csv` | one row a point: `index`, the varied fields, the result, its cost, `error` if there is none |
+//! | `results.parquet` | the same, typed and compressed |
+//! | `report.html`, `report.md`, `figures/` | what was varied, what came out, pictures |
+//! | `summary.json` | a [`Tally`] |
+//! | `sweep.json`, `progress.json`, `lock` | what is computed here, how far it has come, who is at it |
+//!
+//! ```
+//! use std::sync::atomic::AtomicBool;
+//! use vibroimpact::sweep::{Part, Sweep, run};
+//!
+//! let sweep = Sweep::from_value(&serde_json::json!({
+//!     "scene": {
+//!         "structure": { "kind": "modal", "omega_rad_s": [300, 1900], "shape_at_location": [1.1, -0.7] },
+//!         "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+//!         "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 }
+//!     },
+//!     "vary": [{ "field": "striker.mass_kg", "from": 0.01, "to": 1, "count": 5, "scale": "log" }]
+//! }))?;
+//! let folder = tempfile::tempdir()?;
+//! let tally = run(&sweep, Part::WHOLE, folder.path(), 2, &AtomicBool::new(false), &mut |_| ())?;
+//! assert_eq!((tally.points, tally.failures), (5, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod assembly;
+mod columns;
+mod definition;
+mod error;
+mod evaluate;
+mod file;
+mod finish;
+mod folder;
+mod merge;
+#[cfg(feature = "mpi")]
+pub mod mpi;
+mod path;
+mod pictures;
+mod report;
+mod row;
+mod table;
+mod tally;
+mod threads;
+mod values;
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::thread::available_parallelism;
+
+pub use columns::{Column, MOST_IN_MEMORY, run_in_memory};
+pub use definition::Sweep;
+pub use error::SweepError;
+pub use folder::Part;
+pub use merge::merge;
+pub use path::FieldPath;
+pub use tally::{Extremes, FailedPoint, Tally};
+pub use values::{Axis, AxisValues, Interval, Random, Scale};
+
+use folder::Folder;
+use threads::Sink;
+
+/// How far a sweep, or a part of one, has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Status {
+    /// Points whose rows are in the folder.
+    pub done: u64,
+    /// Points in all.
+    pub points: u64,
+}
+
+impl Status {
+    fn of(sweep: &Sweep, part: Part, sink: &impl Sink) -> Status {
+        let all = part.points(sweep);
+        let done = sweep.first_of_chunk(part.chunks(sweep).start + sink.chunks());
+        Status { done: done - all.start, points: all.end - all.start }
+    }
+
+    /// Whether nothing is left to compute.
+    pub fn is_complete(&self) -> bool {
+        self.done == self.points
+    }
+}
+
+/// Computes a part of a sweep into a folder, or what is missing of it there, and says what came out. `threads` of 0
+/// stands for as many as the machine has cores. `tell` hears how far it has come, first before anything is computed,
+/// and then several times a second.
+///
+/// # Errors
+/// A folder that cannot be used, as [`SweepError`] says; [`SweepError::Stopped`] after `stop` has become true, which
+/// loses nothing that was finished. Scenes that cannot be solved are rows.
+pub fn run(
+    sweep: &Sweep,
+    part: Part,
+    path: &Path,
+    threads: usize,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(Status),
+) -> Result<Tally, SweepError> {
+    let mut folder = Folder::open(path, sweep, part)?;
+    tell(Status::of(sweep, part, &folder));
+    if folder.progress().finished {
+        return finish::summary(&folder);
+    }
+    let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads };
+    threads::compute(sweep, part, &mut folder, threads, stop, tell)?;
+    finish::finish(sweep, part, &mut folder)
+}

@@ -1,0 +1,120 @@
+//! Paths of fields, as in `structure.segments[0].length_m`.
+
+use std::fmt;
+
+use serde_json::Value;
+
+/// The place of a field in a scene file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldPath(Vec<Step>);
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Step {
+    Key(String),
+    Index(usize),
+}
+
+impl FieldPath {
+    /// Reads a path; `None` for what is none.
+    pub(super) fn parse(text: &str) -> Option<FieldPath> {
+        let mut steps = Vec::new();
+        for piece in text.split('.') {
+            let (key, mut rest) = piece.split_at(piece.find('[').unwrap_or(piece.len()));
+            if key.is_empty() || key.contains(']') {
+                return None;
+            }
+            steps.push(Step::Key(key.to_owned()));
+            while !rest.is_empty() {
+                let (index, after) = rest.strip_prefix('[')?.split_once(']')?;
+                if !index.bytes().all(|byte| byte.is_ascii_digit()) {
+                    return None;
+                }
+                steps.push(Step::Index(index.parse().ok()?));
+                rest = after;
+            }
+        }
+        Some(FieldPath(steps))
+    }
+
+    /// Puts a value in its place. All that stands above the field must be there already; the field itself need not.
+    ///
+    /// # Errors
+    /// Says what is not there.
+    pub(super) fn set(&self, tree: &mut Value, value: Value) -> Result<(), String> {
+        let mut place = tree;
+        for (depth, step) in self.0.iter().enumerate() {
+            let last = depth + 1 == self.0.len();
+            place = match (step, place) {
+                (Step::Key(key), Value::Object(map)) => {
+                    if last {
+                        map.entry(key.clone()).or_insert(Value::Null)
+                    } else {
+                        map.get_mut(key).ok_or_else(|| format!("the scene has no {}", self.upto(depth)))?
+                    }
+                }
+                (Step::Index(index), Value::Array(list)) => {
+                    let length = list.len();
+                    list.get_mut(*index)
+                        .ok_or_else(|| format!("{} has {length} entries, counted from 0", self.upto(depth - 1)))?
+                }
+                (Step::Key(_), _) if depth == 0 => return Err("the scene is not an object".to_owned()),
+                (Step::Key(_), _) => return Err(format!("{} is not an object", self.upto(depth - 1))),
+                (Step::Index(_), _) => return Err(format!("{} is not a list", self.upto(depth - 1))),
+            };
+        }
+        *place = value;
+        Ok(())
+    }
+
+    /// Whether the other field is this one or stands within it.
+    pub(super) fn holds(&self, other: &FieldPath) -> bool {
+        other.0.starts_with(&self.0)
+    }
+
+    /// The path up to and with the step at `depth`.
+    fn upto(&self, depth: usize) -> FieldPath {
+        FieldPath(self.0.iter().take(depth + 1).cloned().collect())
+    }
+}
+
+impl fmt::Display for FieldPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Key(key) if i == 0 => f.write_str(key)?,
+                Step::Key(key) => write!(f, ".{key}")?,
+                Step::Index(index) => write!(f, "[{index}]")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn paths_are_read_and_written_back() {
+        for text in ["location_m", "striker.mass_kg", "structure.segments[12].length_m", "a[0][3].b"] {
+            assert_eq!(FieldPath::parse(text).unwrap().to_string(), text);
+        }
+        for text in ["", ".", "a.", "[0]", "a[", "a[x]", "a[+1]", "a[0]b", "a[-1]", "a]", "a[99999999999999999999]"] {
+            assert_eq!(FieldPath::parse(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn values_are_put_where_a_place_is() {
+        let mut tree = json!({ "a": { "b": [1, { "c": 2 }] } });
+        let mut set = |text: &str| FieldPath::parse(text).unwrap().set(&mut tree, json!(7));
+        assert_eq!(set("a.b[1].c"), Ok(()));
+        assert_eq!(set("a.new"), Ok(()));
+        assert_eq!(set("a.x.y").unwrap_err(), "the scene has no a.x");
+        assert_eq!(set("a.b[2]").unwrap_err(), "a.b has 2 entries, counted from 0");
+        assert_eq!(set("a.b.c").unwrap_err(), "a.b is not an object");
+        assert_eq!(set("a[0]").unwrap_err(), "a is not a list");
+        assert_eq!(tree, json!({ "a": { "b": [1, { "c": 7 }], "new": 7 } }));
+    }
+}

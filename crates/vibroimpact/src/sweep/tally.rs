@@ -1,0 +1,141 @@
+//! What a sweep comes to: the figures that a person reads first.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
+
+use super::row::Row;
+use crate::report::significant;
+
+/// Failures that are told one by one.
+const FAILURES_TOLD: usize = 5;
+
+/// Counts, extremes and costs of a sweep's results.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Tally {
+    /// Points.
+    pub points: u64,
+    /// Points by outcome; those that failed are not among them.
+    pub outcomes: BTreeMap<String, u64>,
+    /// Points by the model that was solved.
+    pub models: BTreeMap<String, u64>,
+    /// Points whose scene could not be solved.
+    pub failures: u64,
+    /// The first of them.
+    pub first_failures: Vec<FailedPoint>,
+    /// Least and greatest restitution; null if there is none.
+    pub restitution: Option<Extremes>,
+    /// Least and greatest uncertainty of the restitution; null if there is none.
+    pub restitution_uncertainty: Option<Extremes>,
+    /// Least and greatest number of sub-impacts; null if there is none.
+    pub sub_impact_count: Option<Extremes>,
+    /// Steps in contact, over all points.
+    pub contact_steps: u64,
+    /// Evaluations of the contact law, over all points.
+    pub law_evaluations: u64,
+}
+
+/// A point whose scene could not be solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FailedPoint {
+    /// Its number.
+    pub index: u64,
+    /// Why.
+    pub error: String,
+}
+
+/// The least and the greatest of some numbers, and the points where they first occur.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
+    /// The least.
+    pub least: f64,
+    /// Its point.
+    pub least_index: u64,
+    /// The greatest.
+    pub greatest: f64,
+    /// Its point.
+    pub greatest_index: u64,
+}
+
+impl Extremes {
+    fn with(found: Option<Extremes>, value: f64, index: u64) -> Extremes {
+        let Some(mut all) = found else {
+            return Extremes { least: value, least_index: index, greatest: value, greatest_index: index };
+        };
+        if value < all.least {
+            (all.least, all.least_index) = (value, index);
+        }
+        if value > all.greatest {
+            (all.greatest, all.greatest_index) = (value, index);
+        }
+        all
+    }
+}
+
+impl Tally {
+    pub(super) fn add(&mut self, index: u64, row: &Row) {
+        self.points += 1;
+        let error = row.text("error");
+        if error.is_empty() {
+            *self.outcomes.entry(row.text("outcome").to_owned()).or_default() += 1;
+            *self.models.entry(row.text("model").to_owned()).or_default() += 1;
+        } else {
+            self.failures += 1;
+            if self.first_failures.len() < FAILURES_TOLD {
+                self.first_failures.push(FailedPoint { index, error: error.to_owned() });
+            }
+        }
+        for (found, name) in [
+            (&mut self.restitution, "restitution"),
+            (&mut self.restitution_uncertainty, "restitution_uncertainty"),
+            (&mut self.sub_impact_count, "sub_impact_count"),
+        ] {
+            if let Some(value) = row.number(name) {
+                *found = Some(Extremes::with(*found, value, index));
+            }
+        }
+        let count = |name: &str| row.text(name).parse().unwrap_or(0u64);
+        self.contact_steps = self.contact_steps.saturating_add(count("contact_steps"));
+        self.law_evaluations = self.law_evaluations.saturating_add(count("law_evaluations"));
+    }
+
+    /// The lines that a person reads.
+    pub fn text(&self) -> String {
+        let counts = |counts: &BTreeMap<String, u64>| {
+            counts.iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
+        };
+        let mut lines = String::new();
+        let mut line = |name: &str, text: &str| {
+            // a String does not fail to be written
+            let _ = writeln!(lines, "  {name:<22}{text}");
+        };
+        line("points", &self.points.to_string());
+        line("outcomes", &counts(&self.outcomes));
+        line("models", &counts(&self.models));
+        if self.failures > 0 {
+            line("failed", &self.failures.to_string());
+            for FailedPoint { index, error } in &self.first_failures {
+                line("", &format!("point {index}: {error}"));
+            }
+            if self.failures > self.first_failures.len() as u64 {
+                line("", "... (column error)");
+            }
+        }
+        let range = |extremes: &Extremes| {
+            let Extremes { least, least_index, greatest, greatest_index } = extremes;
+            let digits = |value: &f64| significant(*value, 4);
+            format!("{} (point {least_index}) to {} (point {greatest_index})", digits(least), digits(greatest))
+        };
+        for (name, found) in [
+            ("restitution", &self.restitution),
+            ("uncertainty", &self.restitution_uncertainty),
+            ("sub-impacts", &self.sub_impact_count),
+        ] {
+            line(name, &found.as_ref().map_or_else(|| "none".to_owned(), range));
+        }
+        let (steps, evaluations) = (self.contact_steps, self.law_evaluations);
+        line("cost", &format!("{steps} steps in contact, {evaluations} evaluations of the law"));
+        lines
+    }
+}

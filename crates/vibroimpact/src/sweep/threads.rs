@@ -1,0 +1,121 @@
+//! Computing the chunks of a sweep on the threads of one machine.
+
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::Status;
+use super::assembly::{Assembly, Order};
+use super::definition::Sweep;
+use super::error::SweepError;
+use super::folder::Part;
+use super::row;
+
+/// Rows are written this often: what a sweep that is cut off has to compute again.
+pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
+/// How often the one that asked hears how far it has come, and `stop` is looked at.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// The assembly and the sign that something in it has changed.
+struct Desk {
+    assembly: Mutex<Assembly>,
+    changed: Condvar,
+}
+
+impl Desk {
+    fn assembly(&self) -> MutexGuard<'_, Assembly> {
+        // no one panics while holding it
+        self.assembly.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Takes rows in order.
+pub(super) trait Sink {
+    /// How many chunks it has, from the first of the part.
+    fn chunks(&self) -> u64;
+    /// Takes the rows of the next chunks.
+    fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
+}
+
+/// Computes what is missing in the sink, a folder for example, and puts it there in order.
+pub(super) fn compute(
+    sweep: &Sweep,
+    part: Part,
+    sink: &mut impl Sink,
+    threads: usize,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(Status),
+) -> Result<(), SweepError> {
+    let chunks = part.chunks(sweep);
+    let begun = (chunks.start + sink.chunks())..chunks.end;
+    let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
+    // a writer that fails ends the workers too
+    let ended = AtomicBool::new(false);
+    let give_up = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(|| work(sweep, &desk, give_up))).collect();
+        let written = write(sweep, part, sink, &desk, stop, tell);
+        ended.store(true, Ordering::Relaxed);
+        desk.changed.notify_all();
+        for worker in workers {
+            worker.join().unwrap_or_else(|panic| resume_unwind(panic));
+        }
+        written
+    })
+}
+
+fn work(sweep: &Sweep, desk: &Desk, give_up: impl Fn() -> bool) {
+    while !give_up() {
+        let order = desk.assembly().hand_out();
+        match order {
+            Order::Chunk(chunk) => {
+                let Some(rows) = row::rows(sweep, chunk, &give_up) else { return };
+                desk.assembly().take_in(chunk, rows);
+                desk.changed.notify_all();
+            }
+            Order::Wait => {
+                let assembly = desk.assembly();
+                drop(desk.changed.wait_timeout(assembly, BETWEEN_LOOKS));
+            }
+            Order::Done => return,
+        }
+    }
+}
+
+fn write(
+    sweep: &Sweep,
+    part: Part,
+    sink: &mut impl Sink,
+    desk: &Desk,
+    stop: &AtomicBool,
+    tell: &mut dyn FnMut(Status),
+) -> Result<(), SweepError> {
+    let mut last = Instant::now();
+    loop {
+        let (complete, rows) = {
+            let mut assembly = desk.assembly();
+            if !assembly.is_complete() && !stop.load(Ordering::Relaxed) {
+                assembly = desk.changed.wait_timeout(assembly, BETWEEN_LOOKS).unwrap_or_else(PoisonError::into_inner).0;
+            }
+            let complete = assembly.is_complete();
+            let due = complete || stop.load(Ordering::Relaxed) || last.elapsed() >= BETWEEN_WRITES;
+            (complete, due.then(|| assembly.take_ready()))
+        };
+        if let Some((chunks, rows)) = rows {
+            last = Instant::now();
+            if chunks > 0 {
+                sink.append(chunks, &rows)?;
+            }
+        }
+        let status = Status::of(sweep, part, sink);
+        tell(status);
+        if complete {
+            return Ok(());
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Err(SweepError::Stopped { done: status.done, points: status.points });
+        }
+    }
+}

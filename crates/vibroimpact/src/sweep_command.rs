@@ -1,0 +1,225 @@
+//! The commands `sweep` and `merge`.
+
+use std::io::{IsTerminal, stderr};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use serde_json::json;
+use vibroimpact::export::{self, Failure};
+use vibroimpact::sweep::{self, Part, Status, Sweep, SweepError, Tally};
+
+pub const SWEEP_EXAMPLES: &str = r#"Examples:
+  vibroimpact sweep sweep.json --out results/                  computes, shows how long it takes, goes on if cut off
+  vibroimpact sweep sweep.json --out part-3/ --shard 3/8       the third of eight parts, for a job array
+  mpirun -n 64 vibroimpact sweep sweep.json --out results/ --mpi
+
+A sweep file holds a scene (or names one) and the fields that vary:
+
+  { "scene_file": "ball.json",
+    "vary": [ { "field": "location_m", "from": 0.02, "to": 0.98, "count": 25 },
+              { "field": "striker.mass_kg", "from": 0.01, "to": 1, "count": 20, "scale": "log" },
+              { "field": "structure.damping_ratio", "values": [0, 0.02] } ],
+    "random": { "seed": 1, "draws": 10, "fields": [ { "field": "striker.speed_m_s", "from": 0.5, "to": 2 } ] } }
+
+The axes of "vary" form a grid, whose last axis runs fastest; each of its points is met by every random draw. The folder
+gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes do not depend on threads, parts
+or ranks. A scene that cannot be solved is a row with its error.
+
+Ctrl-C stops; the same command goes on from there, also after a crash. Exit codes: 0 finished, 130 stopped, 2 for input
+that cannot be used (nothing is computed), 1 if reading or writing fails."#;
+
+pub const MERGE_EXAMPLES: &str = "Example:
+  vibroimpact merge part-*/ --out results/
+
+The folders must be those of all parts of one sweep, each once and finished; the message names those that are missing.
+The results have the very bytes that an undivided sweep gives.";
+
+/// A sweep, and where it goes.
+#[derive(Args)]
+pub struct SweepArguments {
+    /// The sweep file
+    sweep: PathBuf,
+    /// The folder for the results; one that holds a part of them goes on
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Compute the K-th of N parts only
+    #[arg(long, value_name = "K/N", value_parser = part)]
+    shard: Option<Part>,
+    /// Threads; as many as the machine has cores when left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    threads: Option<u16>,
+    /// Compute on the ranks of an MPI job, under mpirun; the first rank hands out the work
+    #[arg(long, conflicts_with = "threads")]
+    mpi: bool,
+    /// Print one JSON object in place of the summary
+    #[arg(long)]
+    json: bool,
+    /// Show no progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// The parts of a sweep, and where the whole goes.
+#[derive(Args)]
+pub struct MergeArguments {
+    /// The folders of the parts
+    #[arg(required = true, value_name = "DIR")]
+    parts: Vec<PathBuf>,
+    /// The folder for the whole
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print one JSON object in place of the summary
+    #[arg(long)]
+    json: bool,
+}
+
+fn part(text: &str) -> Result<Part, &'static str> {
+    Part::parse(text).ok_or("give K/N with whole numbers, K from 1 to N, N at most 1000000")
+}
+
+/// Carries the command `sweep` out and returns what is to be printed.
+pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
+    let part = arguments.shard.unwrap_or(Part::WHOLE);
+    let stop = stop_on_signal()?;
+    let mut progress = Progress::new(arguments.quiet);
+    let tally = if arguments.mpi {
+        match over_ranks(&arguments, part, &stop, &mut progress)? {
+            Some(tally) => tally,
+            // another rank tells
+            None => return Ok(String::new()),
+        }
+    } else {
+        let sweep = Sweep::read(&arguments.sweep)?;
+        let threads = arguments.threads.map_or(0, usize::from);
+        sweep::run(&sweep, part, &arguments.out, threads, &stop, &mut |status| progress.tell(status))?
+    };
+    progress.finish();
+    printed(&tally, &arguments.out, arguments.json, Some(&progress))
+}
+
+#[cfg(feature = "mpi")]
+fn over_ranks(
+    arguments: &SweepArguments,
+    part: Part,
+    stop: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Option<Tally>, SweepError> {
+    sweep::mpi::run(|| Sweep::read(&arguments.sweep), part, &arguments.out, stop, &mut |status| progress.tell(status))
+}
+
+#[cfg(not(feature = "mpi"))]
+fn over_ranks(_: &SweepArguments, _: Part, _: &AtomicBool, _: &mut Progress) -> Result<Option<Tally>, SweepError> {
+    let text = "--mpi: this program was built without MPI; build it with `cargo build --release --features mpi`";
+    Err(SweepError::Refused(text.to_owned()))
+}
+
+/// Carries the command `merge` out and returns what is to be printed.
+pub fn merge(arguments: MergeArguments) -> Result<String, Failure> {
+    printed(&sweep::merge(&arguments.parts, &arguments.out)?, &arguments.out, arguments.json, None)
+}
+
+/// The first signal asks for an orderly end, the second is one.
+fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    ctrlc::set_handler(move || {
+        if asked.swap(true, Ordering::Relaxed) {
+            std::process::exit(super::STOPPED.into());
+        }
+    })?;
+    Ok(stop)
+}
+
+fn printed(tally: &Tally, out: &Path, as_json: bool, progress: Option<&Progress>) -> Result<String, Failure> {
+    let (computed, elapsed_s) = progress.map_or((0, 0.0), Progress::work);
+    let rate = (computed > 0 && elapsed_s > 0.0).then(|| computed as f64 / elapsed_s);
+    if as_json {
+        let mut object = serde_json::to_value(tally)?;
+        if let Some(map) = object.as_object_mut() {
+            map.insert("folder".to_owned(), json!(out));
+            if progress.is_some() {
+                map.insert("computed_points".to_owned(), json!(computed));
+                map.insert("elapsed_s".to_owned(), json!(elapsed_s));
+                map.insert("impacts_per_s".to_owned(), json!(rate));
+            }
+        }
+        return export::json(&object);
+    }
+    let mut text = format!("{}\n\n{}", out.display(), tally.text());
+    match (progress, rate) {
+        (Some(_), Some(rate)) => {
+            text += &format!("  {:<22}{computed} points in {elapsed_s:.1} s, {rate:.0} a second\n", "computed now");
+        }
+        (Some(_), None) => text += &format!("  {:<22}nothing; all was there\n", "computed now"),
+        (None, _) => {}
+    }
+    Ok(text)
+}
+
+/// Progress on the standard error: a bar on a terminal, elsewhere a line now and then.
+struct Progress {
+    quiet: bool,
+    begun: Instant,
+    /// Where it stood when this run began, and where it stands.
+    first: Option<Status>,
+    last: Option<Status>,
+    bar: Option<ProgressBar>,
+    told: Instant,
+}
+
+/// Between two lines where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(30);
+
+impl Progress {
+    fn new(quiet: bool) -> Progress {
+        let now = Instant::now();
+        Progress { quiet, begun: now, first: None, last: None, bar: None, told: now }
+    }
+
+    fn tell(&mut self, status: Status) {
+        if self.first.is_none() {
+            self.first = Some(status);
+            self.begun = Instant::now();
+            if !self.quiet && stderr().is_terminal() && !status.is_complete() {
+                let bar = ProgressBar::new(status.points).with_position(status.done).with_style(style());
+                bar.reset_eta();
+                self.bar = Some(bar);
+            }
+            if !self.quiet && status.done > 0 && !status.is_complete() {
+                eprintln!("{} of {} points are there; going on", status.done, status.points);
+            }
+        }
+        self.last = Some(status);
+        if let Some(bar) = &self.bar {
+            bar.set_position(status.done);
+        } else if !self.quiet && self.told.elapsed() >= BETWEEN_LINES {
+            self.told = Instant::now();
+            let (computed, elapsed_s) = self.work();
+            let rate = computed as f64 / elapsed_s;
+            let left = Duration::try_from_secs_f64((status.points - status.done) as f64 / rate);
+            let left = left.map_or_else(|_| "unknown".to_owned(), |left| HumanDuration(left).to_string());
+            eprintln!("{} of {} points, {rate:.0} a second, {left} left", status.done, status.points);
+        }
+    }
+
+    fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// Points computed in this run, and the time it took.
+    fn work(&self) -> (u64, f64) {
+        let computed = self.first.zip(self.last).map_or(0, |(first, last)| last.done - first.done);
+        (computed, self.begun.elapsed().as_secs_f64())
+    }
+}
+
+fn style() -> ProgressStyle {
+    let template = "{bar:30} {human_pos} of {human_len} points, {per_sec}, {eta} left";
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
+}

@@ -1,0 +1,133 @@
+//! What comes out: right, complete, and the same to the byte for any number of threads.
+
+use super::*;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use vibroimpact::Scene;
+
+#[test]
+fn the_bytes_do_not_depend_on_the_threads() {
+    let bench = Bench::new(&super::sweep());
+    for threads in ["1", "2", "4"] {
+        bench.succeeds(&["sweep", "sweep.json", "--out", threads, "--threads", threads, "--quiet"]);
+    }
+    assert_same(&bench.path("1"), &bench.path("2"));
+    assert_same(&bench.path("1"), &bench.path("4"));
+    let names: Vec<String> = files(&bench.path("1")).into_iter().map(|(name, _)| name).collect();
+    let expected = [
+        "figures/maps.svg",
+        "progress.json",
+        "report.html",
+        "report.md",
+        "results.csv",
+        "results.parquet",
+        "summary.json",
+        "sweep.json",
+    ];
+    assert_eq!(names, expected);
+}
+
+#[test]
+fn rows_hold_the_results_of_their_scenes() {
+    let bench = Bench::new(&super::sweep());
+    let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--json"]);
+    let rows = bench.rows("out");
+    assert_eq!(rows.len(), 600);
+    let header = String::from_utf8(bench.read("out/results.csv")).unwrap();
+    assert!(header.starts_with(
+        "index,striker.mass_kg,modes,striker.speed_m_s,structure.shape_at_location[1],outcome,restitution,\
+         restitution_uncertainty,sub_impact_count,model,mode_count,contact_steps,"
+    ));
+    let mut failed = 0;
+    for (point, row) in rows.iter().enumerate() {
+        assert_eq!(row[0], point.to_string());
+        let modes: usize = row[2].parse().unwrap();
+        let error = row.get(row.len() - 1).unwrap();
+        if modes > 3 {
+            failed += 1;
+            assert_eq!(error, "modes = 4 is not allowed: at most 3, the number of modes listed");
+            assert_eq!((&row[5], &row[6]), ("", ""));
+            continue;
+        }
+        assert_eq!(error, "");
+        // the columns are the whole scene: solving it by hand gives the same digits
+        if point % 50 < 2 {
+            let mut scene = scene();
+            let number = |column: usize| json!(row[column].parse::<f64>().unwrap());
+            scene["striker"] = json!({ "mass_kg": number(1), "speed_m_s": number(3) });
+            scene["modes"] = json!(modes);
+            scene["structure"]["shape_at_location"][1] = number(4);
+            let solution = Scene::from_value(&scene).unwrap().impact().unwrap().solve().unwrap();
+            assert_eq!(&row[5], solution.outcome.as_str());
+            assert_eq!(row[6].parse::<f64>().ok(), solution.restitution);
+            assert_eq!(row[7].parse::<f64>().ok(), solution.restitution_uncertainty);
+            assert_eq!(row[8], solution.sub_impacts.len().to_string());
+        }
+    }
+    assert_eq!(failed, 200);
+
+    let summary: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!((&summary["points"], &summary["failures"]), (&json!(600), &json!(200)));
+    assert_eq!(summary["outcomes"]["rebound"], 400);
+    assert_eq!(summary["first_failures"][0]["index"], 40);
+    assert_eq!(summary["computed_points"], 600);
+    let restitutions = || rows.iter().filter_map(|row| row[6].parse::<f64>().ok());
+    assert_eq!(summary["restitution"]["least"].as_f64().unwrap(), restitutions().fold(f64::INFINITY, f64::min));
+    assert_eq!(summary["restitution"]["greatest"].as_f64().unwrap(), restitutions().fold(0.0, f64::max));
+}
+
+#[test]
+fn parquet_read_back_equals_csv() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let reader = SerializedFileReader::new(fs::File::open(bench.path("out/results.parquet")).unwrap()).unwrap();
+    let header = csv::Reader::from_reader(&bench.read("out/results.csv")[..]).headers().unwrap().clone();
+    let rows = bench.rows("out");
+    let mut count = 0;
+    for (found, row) in reader.get_row_iter(None).unwrap().zip(&rows) {
+        let found = found.unwrap();
+        for ((name, value), (column, cell)) in found.get_column_iter().zip(header.iter().zip(row)) {
+            assert_eq!(name, column);
+            match value {
+                Field::Null => assert_eq!(cell, ""),
+                Field::Long(value) => assert_eq!(cell, value.to_string()),
+                Field::Double(value) => assert_eq!(cell.parse::<f64>().unwrap().to_bits(), value.to_bits()),
+                Field::Str(value) => assert_eq!(cell, value),
+                other => panic!("{other:?}"),
+            }
+        }
+        count += 1;
+    }
+    assert_eq!((count, reader.metadata().file_metadata().num_rows()), (rows.len(), rows.len() as i64));
+}
+
+#[test]
+fn infinite_structures_can_be_swept() {
+    let bench = Bench::new(&json!({
+        "scene": {
+            "structure": { "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+                           "width_m": 0.028, "thickness_m": 0.028 },
+            "striker": { "density_kg_m3": 7800, "radius_m": 0.01, "speed_m_s": 0.5 },
+            "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 }
+        },
+        "vary": [{ "field": "striker.radius_m", "from": 0.01, "to": 0.033, "count": 6 }]
+    }));
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let rows = bench.rows("out");
+    assert!(rows.iter().all(|row| &row[6] == "infinite-beam"));
+    // a small ball rebounds, that of S = 15 stays
+    assert_eq!((&rows[0][2], &rows[5][2]), ("rebound", "sustained"));
+    assert!(rows[0][4].parse::<f64>().unwrap() < 1e-6);
+}
+
+#[test]
+fn the_report_stands_alone_and_text_is_for_readers() {
+    let bench = Bench::new(&super::sweep());
+    let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
+    for part in ["points", "600", "400 rebound", "failed", "point 40: modes = 4", "a second"] {
+        assert!(printed.contains(part), "{part} in\n{printed}");
+    }
+    let report = String::from_utf8(bench.read("out/report.html")).unwrap();
+    assert!(report.contains("<svg") && !report.contains("<img"));
+    assert!(report.contains("striker.mass_kg") && report.contains("0.01 to 1, logarithmic"));
+}

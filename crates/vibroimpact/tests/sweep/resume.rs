@@ -1,0 +1,138 @@
+//! A sweep that is cut off goes on, with nothing lost and nothing doubled.
+
+use super::*;
+use std::io::Write;
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Some thousand points: seconds of work.
+fn long_sweep() -> Value {
+    let mut sweep = super::sweep();
+    sweep["random"]["draws"] = json!(400);
+    sweep
+}
+
+fn points_done(bench: &Bench, folder: &str) -> u64 {
+    let Ok(text) = fs::read_to_string(bench.path(folder).join("progress.json")) else { return 0 };
+    serde_json::from_str::<Value>(&text).unwrap()["chunks"].as_u64().unwrap()
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
+    let bench = Bench::new(&long_sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
+    let arguments = ["sweep", "sweep.json", "--out", "killed", "--threads", "2", "--quiet"];
+    let mut done = 0;
+    let mut advances = 0;
+    for attempt in 0..12u64 {
+        let mut child = bench.command(&arguments).stdout(Stdio::null()).spawn().unwrap();
+        // moments spread over the whole course, the first within the start of the program
+        sleep(Duration::from_millis(2 + attempt * attempt * 4 + attempt * 7919 % 40));
+        let _ = child.kill();
+        child.wait().unwrap();
+        let now = points_done(&bench, "killed");
+        assert!(now >= done, "what was done is lost");
+        advances += u32::from(now > done);
+        done = now;
+    }
+    assert!(advances > 0, "killed too early to tell");
+    bench.succeeds(&arguments);
+    assert_same(&bench.path("whole"), &bench.path("killed"));
+}
+
+#[test]
+fn a_torn_line_is_dropped() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
+    bench.succeeds(&["sweep", "sweep.json", "--out", "torn", "--quiet"]);
+    // as if cut off while the rows of the second half were being written
+    let all = bench.read("torn/results.csv");
+    let half = all.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(300).unwrap().0 + 1;
+    let mut progress: Value = serde_json::from_slice(&bench.read("torn/progress.json")).unwrap();
+    progress["chunks"] = json!(300);
+    progress["bytes"] = json!(half);
+    progress["crc32"] = json!(crc32fast::hash(&all[..half]));
+    progress["finished"] = json!(false);
+    fs::write(bench.path("torn/progress.json"), progress.to_string()).unwrap();
+    fs::write(bench.path("torn/results.csv"), &all[..half + 17]).unwrap();
+    let output = bench.run(&["sweep", "sweep.json", "--out", "torn"]);
+    assert!(output.status.success());
+    assert!(String::from_utf8(output.stderr).unwrap().contains("300 of 600 points are there; going on"));
+    assert_same(&bench.path("whole"), &bench.path("torn"));
+
+    // but what was noted as safe must be there as it was
+    fs::write(bench.path("torn/progress.json"), progress.to_string()).unwrap();
+    fs::write(bench.path("torn/results.csv"), &all[..half - 1]).unwrap();
+    let told = bench.refuses(&["sweep", "sweep.json", "--out", "torn"]);
+    assert!(told.contains("is not as this program left it"), "{told}");
+}
+
+#[test]
+fn a_finished_sweep_is_not_computed_again() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
+    let before = files(&bench.path("out"));
+    let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
+    assert!(printed.contains("nothing; all was there"), "{printed}");
+    assert_eq!(before, files(&bench.path("out")));
+}
+
+#[test]
+fn another_sweep_in_the_same_folder_is_refused() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let before = files(&bench.path("out"));
+    let mut changed = super::sweep();
+    changed["scene"]["striker"]["speed_m_s"] = json!(1.0000001);
+    fs::write(bench.path("sweep.json"), changed.to_string()).unwrap();
+    let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
+    assert!(told.contains("out holds results of another sweep") && told.contains("choose another folder"), "{told}");
+    // spaces, the order of keys and the way to the scene make no other sweep
+    let mut same = super::sweep();
+    let scene = same.as_object_mut().unwrap().remove("scene").unwrap();
+    fs::write(bench.path("scene.json"), format!("{scene:#}")).unwrap();
+    same["scene_file"] = json!("scene.json");
+    fs::write(bench.path("sweep.json"), format!("{same:#}")).unwrap();
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
+    let told = bench.refuses(&["sweep", "sweep.json", "--out", "out", "--shard", "1/2"]);
+    assert!(told.contains("holds part 1/1 of this sweep"), "{told}");
+    assert_eq!(before, files(&bench.path("out")));
+}
+
+#[test]
+fn results_of_something_else_are_left_alone() {
+    let bench = Bench::new(&super::sweep());
+    fs::create_dir(bench.path("out")).unwrap();
+    fs::File::create(bench.path("out/results.csv")).unwrap().write_all(b"mine").unwrap();
+    assert!(bench.refuses(&["sweep", "sweep.json", "--out", "out"]).contains("not of a sweep"));
+    assert_eq!(files(&bench.path("out")), [("results.csv".to_owned(), b"mine".to_vec())]);
+}
+
+#[test]
+fn two_processes_do_not_share_a_folder() {
+    let bench = Bench::new(&super::sweep());
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let lock = fs::File::create(bench.path("out/lock")).unwrap();
+    lock.lock().unwrap();
+    let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
+    assert!(told.contains("another process is working in out"), "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_stops_it_in_good_order() {
+    let bench = Bench::new(&long_sweep());
+    let arguments = ["sweep", "sweep.json", "--out", "out", "--threads", "1"];
+    let child = bench.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while points_done(&bench, "out") == 0 {
+        sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("points done; the same command goes on from there"), "{told}");
+    bench.succeeds(&arguments);
+    assert_eq!(bench.rows("out").len(), 12_000);
+}
