@@ -11,7 +11,6 @@ use crate::scene::{InvalidInput, Scene};
 use crate::summary::Summary;
 
 /// What [`Scene::simulate`] found.
-#[derive(Debug, Clone, PartialEq)]
 pub enum Simulation {
     /// An impact on a structure with modes.
     Modal {
