@@ -3,7 +3,7 @@
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vibroimpact::InvalidInput;
+use vibroimpact::{InvalidInput, export};
 use vibroimpact::infinite::{self, Summary, TurningPoints};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
@@ -26,8 +26,7 @@ use crate::output;
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {
     let (json, course, energies) = py.detach(|| {
         let found = scene.scene()?.simulate()?;
-        let course = history.then(|| found.history());
-        let energies = history.then(|| found.modal_energies()).flatten();
+        let (course, energies) = if history { (found.history(), found.modal_energies()) } else { (None, None) };
         Ok::<_, Fault>((found.json()?, course, energies))
     })?;
     let result = output::result(py, &json)?;
@@ -36,6 +35,24 @@ pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<
         result.set_item("modal_energies", energies.map(|table| output::modal_energies(py, table)).transpose()?)?;
     }
     Ok(result)
+}
+
+/// Say which model would be used for a scene and why, and what each would cost; nothing costly is solved.
+///
+/// Returns what `vibroimpact plan --json` prints.
+#[pyfunction]
+pub fn plan(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.plan()?)?))?;
+    output::result(py, &json)
+}
+
+/// Answer a scene by every model, side by side.
+///
+/// Returns what `vibroimpact compare --json` prints: differences are from the model that is known best.
+#[pyfunction]
+pub fn compare(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.compare()?)?))?;
+    output::result(py, &json)
 }
 
 /// Natural frequencies, and mode shapes at the point of impact.
@@ -64,7 +81,7 @@ pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_
     let (json, course) = py.detach(|| {
         let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
         let course = history.then(|| infinite::history(&solution, None));
-        Ok::<_, Fault>((vibroimpact::export::json(&Summary::new(&solution, None))?, course))
+        Ok::<_, Fault>((export::json(&Summary::new(&solution, None))?, course))
     })?;
     let result = output::result(py, &json)?;
     if let Some(table) = course {
@@ -79,6 +96,6 @@ pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_
 /// of `n`, `s` and `uncertainty`; `count` is from 1 to 60.
 #[pyfunction]
 pub fn turning_points(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyDict>> {
-    let json = py.detach(|| Ok::<_, Fault>(vibroimpact::export::json(&TurningPoints::first(count)?)?))?;
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&TurningPoints::first(count)?)?))?;
     output::result(py, &json)
 }

@@ -18,7 +18,7 @@ mod _vibroimpact {
     #[pymodule_export]
     use super::emoc::{emoc, emoc_restitution, fit};
     #[pymodule_export]
-    use super::impact::{infinite_beam, modes, simulate, turning_points};
+    use super::impact::{compare, infinite_beam, modes, plan, simulate, turning_points};
     #[pymodule_export]
     use super::sweep::sweep;
     use super::*;

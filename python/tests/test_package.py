@@ -106,7 +106,7 @@ def test_arrays_of_a_simulation(scene):
 
 def test_no_contact_has_an_empty_table(scene):
     # a beam that moves away faster than the ball follows
-    away = {"modes": [{"mode": 1, "velocity": -5}]}
+    away = {"gap_m": 1e-3, "moving_modes": [{"mode": 1, "velocity_m_s": -2}]}
     found = vibroimpact.simulate(scene | {"start": away})
     assert found["outcome"] == "no contact"
     assert found["sub_impacts"].shape == (0,) and found["sub_impacts"]["end_s"].shape == (0,)

@@ -48,6 +48,21 @@ def test_history(name, command_line, tmp_path):
         check("modal_energies.csv", {"time_s": found["modal_energies"]["time_s"], **modes})
 
 
+@pytest.mark.parametrize("name", ["pinned-beam", "pinned-beam-small-ball", "infinite-beam"])
+def test_plan_and_compare(name, command_line):
+    path = SCENES / f"{name}.json"
+    assert plain(vibroimpact.plan(path)) == command_line("plan", path)
+    assert plain(vibroimpact.compare(path)) == command_line("compare", path)
+
+
+def test_a_model_without_a_course_in_time(scene, command_line, tmp_path):
+    file = tmp_path / "scene.json"
+    file.write_text(json.dumps(scene | {"model": "emoc"}))
+    found = vibroimpact.simulate(file, history=True)
+    assert found.pop("history") is None and found.pop("modal_energies") is None
+    assert found["model"] == "emoc" and found == command_line("simulate", file)
+
+
 def test_modes(command_line):
     for name in ("stepped-cantilever.json", "stepped-shaft.toml"):
         assert plain(vibroimpact.modes(SCENES / name, 12)) == command_line("modes", SCENES / name, "--count", 12)

@@ -8,11 +8,13 @@ and tables are numpy arrays. All functions release the interpreter's lock while 
 from ._errors import InvalidInput
 from ._vibroimpact import (
     __version__,
+    compare,
     emoc,
     emoc_restitution,
     fit,
     infinite_beam,
     modes,
+    plan,
     simulate,
     sweep,
     turning_points,
@@ -21,11 +23,13 @@ from ._vibroimpact import (
 __all__ = [
     "InvalidInput",
     "__version__",
+    "compare",
     "emoc",
     "emoc_restitution",
     "fit",
     "infinite_beam",
     "modes",
+    "plan",
     "simulate",
     "sweep",
     "turning_points",

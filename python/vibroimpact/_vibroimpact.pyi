@@ -7,11 +7,13 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "__version__",
+    "compare",
     "emoc",
     "emoc_restitution",
     "fit",
     "infinite_beam",
     "modes",
+    "plan",
     "simulate",
     "sweep",
     "turning_points",
@@ -20,6 +22,8 @@ __all__ = [
 __version__: str
 
 def simulate(scene: Mapping[str, Any] | str | PathLike[str], *, history: bool = False) -> dict[str, Any]: ...
+def plan(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
+def compare(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
 def modes(scene: Mapping[str, Any] | str | PathLike[str], count: int) -> dict[str, NDArray[np.float64]]: ...
 def infinite_beam(s: float, *, history: bool = False) -> dict[str, Any]: ...
 def turning_points(count: int) -> dict[str, Any]: ...

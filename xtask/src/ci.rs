@@ -13,53 +13,49 @@ struct Step {
     rustdocflags: &'static str,
 }
 
-// the features that are on by default are all but `mpi`, which needs more than Rust
-const STEPS: [Step; 4] = [
+/// Every step but the first takes the workspace's features: all but `mpi`, which needs more than Rust.
+const STEPS: [Step; 5] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
         name: "clippy",
-        arguments: &["clippy", "--workspace", "--all-targets", "--locked", "--", "-D", "warnings"],
+        arguments: &["clippy", "--workspace", "--all-targets", "--locked", "FEATURES", "--", "-D", "warnings"],
         rustdocflags: "",
     },
-    Step { name: "docs", arguments: &["doc", "--workspace", "--no-deps", "--locked"], rustdocflags: "-D warnings" },
-    Step { name: "tests", arguments: &["test", "--workspace", "--locked"], rustdocflags: "" },
-];
-
-/// Where MPI and what its bindings are built with are found.
-const MPI_STEPS: [Step; 2] = [
     Step {
-        name: "clippy with MPI",
+        name: "docs",
+        arguments: &["doc", "--workspace", "--no-deps", "--locked", "FEATURES"],
+        rustdocflags: "-D warnings",
+    },
+    Step {
+        // that each crate can be packed; the job `alone` of ci.yml builds the packages as well
+        name: "packages",
         arguments: &[
-            "clippy",
-            "-p",
-            "vibroimpact",
-            "--features",
-            "mpi",
-            "--all-targets",
+            "package",
+            "--quiet",
+            "--workspace",
+            "--exclude",
+            "xtask",
+            "--no-verify",
+            "--allow-dirty",
             "--locked",
-            "--",
-            "-D",
-            "warnings",
         ],
         rustdocflags: "",
     },
-    Step {
-        name: "sweeps over MPI",
-        arguments: &["test", "-p", "vibroimpact", "--features", "mpi", "--test", "sweep_mpi", "--locked"],
-        rustdocflags: "",
-    },
+    Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
 ];
 
-/// Runs format, clippy, docs (warnings denied), tests with doc tests, sweeps over MPI where it is installed, and at last
-/// the chapters in their quick form.
-pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
-    STEPS.iter().try_for_each(|step| carry_out(step, root))?;
-    if MPI_PROGRAMS.into_iter().all(is_installed) {
-        MPI_STEPS.iter().try_for_each(|step| carry_out(step, root))?;
-    } else {
+/// Something of our own that must not fail, with its name.
+pub type Check<'a> = (&'a str, &'a dyn Fn() -> Result<(), Failure>);
+
+/// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests (sweeps over MPI among them where it is
+/// installed), and at last our own checks.
+pub fn run(root: &Path, checks: &[Check]) -> Result<(), Failure> {
+    let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
+    if !mpi {
         eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
     }
-    timed("chapters, quick form", quick_chapters)
+    STEPS.iter().try_for_each(|step| carry_out(step, root, mpi))?;
+    checks.iter().try_for_each(|(name, check)| timed(name, check))
 }
 
 /// What the `mpi` feature is built and tested with; clang stands for its library.
@@ -70,11 +66,18 @@ fn is_installed(program: &str) -> bool {
     tried.is_ok_and(|status| status.success())
 }
 
-fn carry_out(step: &Step, root: &Path) -> Result<(), Failure> {
+fn carry_out(step: &Step, root: &Path, mpi: bool) -> Result<(), Failure> {
     timed(step.name, || {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = Command::new(cargo);
-        command.current_dir(root).args(step.arguments);
+        command.current_dir(root);
+        for argument in step.arguments {
+            match *argument {
+                "FEATURES" if mpi => command.args(["--features", "vibroimpact/mpi"]),
+                "FEATURES" => &mut command,
+                argument => command.arg(argument),
+            };
+        }
         if !step.rustdocflags.is_empty() {
             command.env("RUSTDOCFLAGS", step.rustdocflags);
         }

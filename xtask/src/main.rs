@@ -1,17 +1,20 @@
-//! The workspace's own tasks: `cargo xtask ci` and `cargo xtask reproduce-chapter`.
+//! The workspace's own tasks: checks, the thesis's chapters, studies, and the record of cost and error.
 
+mod bench;
+mod book;
 mod chapters;
 mod ci;
+mod examples;
+mod soak;
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
+use std::str::FromStr;
+use std::time::Duration;
 
 use chapters::{BadInput, Failure};
 use clap::{Parser, Subcommand};
-
-/// The chapters that can be reproduced.
-const CHAPTERS: [u32; 6] = [2, 3, 4, 6, 7, 8];
 
 /// Keeps the house, and reproduces the chapters of the thesis.
 #[derive(Parser)]
@@ -22,21 +25,79 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Check everything: format, clippy, docs, tests, and the chapters in their quick form
+    /// Check everything: format, clippy, docs, tests, the chapters in their quick form, and the record
     Ci,
+    /// Check the book: links, commands, scenes
+    Book,
+    /// Run the example programs of the crates
+    Examples {
+        /// Those outside the workspace, which use one crate alone
+        #[arg(long)]
+        alone: bool,
+    },
+    /// Measure what every solver costs and how far off it is, and write the record, its history and its page
+    BenchRecord {
+        /// Compute the references anew, which otherwise stay
+        #[arg(long)]
+        references: bool,
+    },
+    /// Measure, and fail where cost or error is worse than recorded
+    BenchCheck,
+    /// Run every problem of the record once, for callgrind
+    #[command(hide = true, name = bench::RUN_TASK)]
+    BenchRun,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
-        /// The chapter: 2, 3, 4, 6, 7 or 8
-        chapter: u32,
+        /// The chapter: 2, 3, 4, 6, 7 or 8, or `all` for the whole thesis and one report
+        chapter: Chapters,
         /// Fewer points through the same code
         #[arg(long)]
         quick: bool,
-        /// The folder to write to; out/chapter-N when left out
+        /// The folder to write to; out/chapter-N, or out/all, when left out
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Chapter 8: measured points to fit as well (CSV: length_m, angle_deg, restitution)
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
+    },
+    /// Solve random impacts, wide of anything ordinary: no panic, no NaN, no energy gained, no hang
+    Soak {
+        /// How many
+        #[arg(long, default_value_t = 1_000_000)]
+        impacts: u64,
+        /// The row of cases
+        #[arg(long, default_value_t = 2019)]
+        seed: u64,
+        /// Begin nothing new after this many minutes
+        #[arg(long)]
+        minutes: Option<u64>,
+        /// Solve this case of the row alone, and print it
+        #[arg(long, value_name = "INDEX")]
+        only: Option<u64>,
+        /// The file for the summary
+        #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
+        out: PathBuf,
+    },
+    /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
+    WorkPrecision {
+        /// Fewer settings through the same code
+        #[arg(long)]
+        quick: bool,
+        /// Only problems whose name contains this
+        #[arg(long, value_name = "PROBLEM")]
+        only: Option<String>,
+        /// The folder to write to; docs for a whole run, out/work-precision otherwise
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
+    StudyAuto {
+        /// Fewer scenes through the same code
+        #[arg(long)]
+        quick: bool,
+        /// The folder to write to
+        #[arg(long, value_name = "DIR", default_value = "out/study-auto")]
+        out: PathBuf,
     },
 }
 
@@ -52,26 +113,90 @@ fn main() -> ExitCode {
 }
 
 fn run(task: Task) -> Result<(), Failure> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
     match task {
         Task::Ci => {
-            let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
-            ci::run(root, || {
-                CHAPTERS.into_iter().try_for_each(|chapter| {
-                    let out = root.join(format!("out/ci/chapter-{chapter}"));
-                    reproduce(chapter, &out, true, None)
-                })
-            })
+            let quick_chapters = || reproduce(Chapters::All, &root.join("out/ci"), true, None);
+            let record = || bench::check(root);
+            let examples = || examples::of_crates(root);
+            let book = || book::run(root);
+            ci::run(
+                root,
+                &[
+                    ("examples", &examples),
+                    ("book", &book),
+                    ("chapters, quick form", &quick_chapters),
+                    ("record of cost and error", &record),
+                ],
+            )
         }
+        Task::Book => book::run(root),
+        Task::Examples { alone: false } => examples::of_crates(root),
+        Task::Examples { alone: true } => examples::alone(root),
+        Task::BenchRecord { references } => bench::record(root, references),
+        Task::BenchCheck => bench::check(root),
+        Task::BenchRun => bench::run_all(root),
         Task::ReproduceChapter { chapter, quick, out, data } => {
-            let out = out.unwrap_or_else(|| PathBuf::from(format!("out/chapter-{chapter}")));
+            let out = out.unwrap_or_else(|| match chapter {
+                Chapters::All => PathBuf::from("out/all"),
+                Chapters::One(number) => PathBuf::from(format!("out/chapter-{number}")),
+            });
             reproduce(chapter, &out, quick, data.as_deref())
+        }
+        Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
+        Task::Soak { impacts, seed, minutes, only: None, out } => {
+            let limit = minutes.map(|minutes| Duration::from_secs(minutes.saturating_mul(60)));
+            let summary = soak::run(impacts, seed, limit);
+            summary.write(&out)?;
+            say(&summary.to_string())?;
+            if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
+        }
+        Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
+        Task::StudyAuto { quick, out } => say(&chapters::study_auto(&out, quick)?),
+    }
+}
+
+/// Runs the package of that name, which this one does not depend on: its peers take minutes to compile.
+fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--release", "--quiet", "--package", "work-precision", "--"]);
+    command.args(quick.then_some("--quick"));
+    command.args(only.into_iter().flat_map(|only| ["--only", only]));
+    if let Some(out) = out {
+        command.arg("--out").arg(out);
+    }
+    if command.status()?.success() { Ok(()) } else { Err("work-precision failed".into()) }
+}
+
+/// What `reproduce-chapter` is asked for.
+#[derive(Clone, Copy)]
+enum Chapters {
+    All,
+    One(u32),
+}
+
+impl FromStr for Chapters {
+    type Err = BadInput;
+
+    fn from_str(text: &str) -> Result<Chapters, BadInput> {
+        let known = |number: &u32| chapters::CHAPTERS.contains(number);
+        match text {
+            "all" => Ok(Chapters::All),
+            _ => text.parse().ok().filter(known).map(Chapters::One).ok_or_else(|| BadInput::chapter(text)),
         }
     }
 }
 
-fn reproduce(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
-    let summary = chapters::run(chapter, out, quick, data)?;
-    match writeln!(std::io::stdout(), "{summary}") {
+fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
+    say(&match chapter {
+        Chapters::All => chapters::run_all(out, quick, data)?,
+        Chapters::One(number) => chapters::run(number, out, quick, data)?.summary,
+    })
+}
+
+fn say(text: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout(), "{text}") {
         // a reader that has seen enough is no failure
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),

@@ -66,3 +66,8 @@ pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
 pub use modes::Modes;
 pub use rod::{Rod, RodEnd, RodSegment};
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

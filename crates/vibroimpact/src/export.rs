@@ -40,6 +40,11 @@ impl Files {
         ]))
     }
 
+    /// `result.json` alone, for a model without a course in time.
+    pub fn result(json: String) -> Files {
+        Files(vec![("result.json", json.into_bytes())])
+    }
+
     /// Writes the files into a folder, which is made if it is missing. Each file appears whole or not at all, and
     /// none before all have been written beside their places.
     ///

@@ -3,6 +3,7 @@
 use contact_models::Law;
 use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Start, Striker, Structure};
 
+use crate::model;
 use crate::scene::{self, InvalidInput, Scene};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
@@ -62,8 +63,8 @@ pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
 }
 
 impl Scene {
-    /// The structure as the solver sees it: its modes at the point of impact and, if the scene asks for it, the
-    /// static compliance of the modes left out.
+    /// The structure as the solver sees it: its modes at the point of impact and the static compliance of the modes left
+    /// out, as far as the scene asks for it. See [`Scene::impact`] for `"modes": "auto"`.
     ///
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
@@ -71,15 +72,24 @@ impl Scene {
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return Ok(self.drop(rod, Settings::default())?.structure);
         }
-        let modes = self.structure.modes(self.place(), self.modes)?;
-        let residual_compliance_m_n = if self.residual_compliance {
+        if model::chooses_modes(self) { Ok(self.impact()?.structure) } else { self.structure_of(self.modes.count()) }
+    }
+
+    /// The structure with its first `count` modes, or all that are listed.
+    fn structure_of(&self, count: Option<usize>) -> Result<Structure, InvalidInput> {
+        let modes = self.structure.modes(self.place(), count)?;
+        let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
             let whole = self.structure.static_compliance_m_n(self.place())?;
             let kept: f64 = modes
                 .iter()
                 .filter(|mode| mode.omega_rad_s > 0.0)
                 .map(|mode| (mode.shape / mode.omega_rad_s).powi(2))
                 .sum();
-            residual(whole, kept)?
+            match self.structure {
+                // exact on both sides, so that less than nothing is rounding: on a support, of nothing
+                scene::Structure::Beam(_) => (whole - kept).max(0.0),
+                _ => residual(whole, kept)?,
+            }
         } else {
             0.0
         };
@@ -94,7 +104,9 @@ impl Scene {
         self.structure.modes(self.place(), Some(count))
     }
 
-    /// The whole scene in the terms of the solver.
+    /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
+    /// restitution needs to settle, which takes a few solves; [`Scene::choose`](crate::Scene::choose) tells how well
+    /// it settled, and whether another model would do.
     ///
     /// # Errors
     /// As [`Scene::structure`].
@@ -116,12 +128,17 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn impact(&self) -> Result<Impact, InvalidInput> {
+        if model::chooses_modes(self) { model::settled_impact(self) } else { self.impact_of(self.modes.count()) }
+    }
+
+    /// The impact with the first `count` modes, or all that are listed.
+    pub(crate) fn impact_of(&self, count: Option<usize>) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return self.drop(rod, settings);
         }
-        let structure = self.structure()?;
+        let structure = self.structure_of(count)?;
         let start = self.start(&structure.modes)?;
         Ok(Impact {
             structure,
@@ -137,7 +154,7 @@ impl Scene {
 }
 
 /// Compliance of the whole less that of the modes kept. Rounding may put a complete set of modes below zero.
-fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
+pub(crate) fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
     const ROUNDING: f64 = 1e-9;
     if whole >= kept * (1.0 - ROUNDING) {
         Ok((whole - kept).max(0.0))

@@ -29,6 +29,7 @@
 //! | [`scene::schema`] | its JSON Schema |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
+//! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
@@ -44,6 +45,7 @@ mod input;
 
 pub mod export;
 pub mod infinite;
+pub mod model;
 pub mod net;
 pub mod pictures;
 pub mod plot;
@@ -62,3 +64,8 @@ pub use fracdiff;
 pub use impact::Impact;
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;
+
+/// Runs the example of the readme.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -16,11 +16,13 @@ use clap_complete::Shell;
 use products::Products;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::model::{self, Answer};
 use vibroimpact::net::{self, FitSummary};
 use vibroimpact::scene::schema;
-use vibroimpact::simulate::Simulation;
+use vibroimpact::simulate::{Resolved, Simulation};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::sweep::SweepError;
+use vibroimpact::vibroimpact_sim::modal::Striker;
 use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
 
 const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
@@ -30,9 +32,9 @@ const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every qu
                                    "width_m": 0.011323, "thickness_m": 0.011323 } ] },
     "striker":   { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
     "contact":   { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
-    "location_m": 0.4, "modes": 40 }
+    "location_m": 0.4, "tolerance": 1e-3 }
 
-Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
+The model, and how many modes it takes, are the program's choice (see vibroimpact plan --help). Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
 instead. A structure without ends is { "kind": "infinite-beam" } with such a section, or "infinite-plate".
 Laws of contact: hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley,
 lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
@@ -46,6 +48,22 @@ const SIMULATE_EXAMPLES: &str = "Examples:
 
 The exit code is 0 for every result, sustained contact and a limit reached among them, 2 for a scene that cannot be
 used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
+
+const PLAN_EXAMPLES: &str = "Examples:
+  vibroimpact plan ball.json                     each model: does it apply, expected error, cost
+  vibroimpact plan ball.json --json              the same as one JSON object
+
+Nothing costly is solved. A scene chooses with these fields, each of which may be left out:
+
+  \"model\": \"auto\", \"rigid\", \"infinite-beam\", \"modal\" or \"emoc\"
+  \"modes\": \"auto\", or the number of modes that the structure is stated to have
+  \"tolerance\": accuracy of the restitution, truncation included where modes are chosen; 1e-3";
+
+const COMPARE_EXAMPLES: &str = "Examples:
+  vibroimpact compare ball.json                  restitution, uncertainty, cost of every model
+  vibroimpact compare ball.json --json           the same as one JSON object
+
+Models that do not apply are listed with the reason. Differences are from the model that is known best.";
 
 const MODES_EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
@@ -121,6 +139,24 @@ enum Command {
         out: Option<PathBuf>,
         #[command(flatten)]
         products: Products,
+    },
+    /// Say which model would be used and why, and what each would cost
+    #[command(after_help = PLAN_EXAMPLES)]
+    Plan {
+        /// The scene file
+        scene: PathBuf,
+        /// Print one JSON object in place of the table
+        #[arg(long)]
+        json: bool,
+    },
+    /// Answer a scene by every model, side by side
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare {
+        /// The scene file
+        scene: PathBuf,
+        /// Print one JSON object in place of the table
+        #[arg(long)]
+        json: bool,
     },
     /// List natural frequencies, and mode shapes at the point of impact
     #[command(after_help = MODES_EXAMPLES)]
@@ -241,17 +277,29 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Simulate { scene, json, out, products } => {
             let scene = Scene::read(&scene)?;
             let found = scene.simulate()?;
-            let (impact, summary, history) = match &found {
-                Simulation::Modal { impact, summary, history } => (impact, summary, history),
+            let Resolved { impact, summary, history } = match &found {
+                Simulation::Modal(resolved) => resolved.as_ref(),
                 Simulation::Infinite { groups, solution } => {
                     return print(&infinite_beam::of_scene(&scene, groups, solution, json, out, &products)?);
                 }
+                Simulation::Net(answer) => return print(&without_course(&scene, answer, json, out)?),
             };
-            let headline = text::headline(&scene, impact);
-            let mut printed = if json { found.json()? } else { format!("{headline}\n\n{}", text::result(summary)) };
+            let headline = text::headline(&scene, &impact.striker);
+            let mut printed = if json {
+                found.json()?
+            } else {
+                format!(
+                    "{headline}
+
+{}",
+                    text::result(summary)
+                )
+            };
+            let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
+            let modelled = report::modelled(&scene, impact, reason);
             let prepared = products.prepare(
                 || pictures::impact(&headline, summary, history),
-                |figure| report::of_impact(&headline, &scene, &report::modelled(&scene, impact), summary, figure),
+                |figure| report::of_impact(&headline, &scene, &modelled, summary, figure),
             )?;
             if let Some(folder) = out {
                 let files = Files::new(&headline, summary, history)?;
@@ -262,6 +310,16 @@ fn run(command: Command) -> Result<(), Failure> {
                 }
             }
             printed + &prepared.write(json)?
+        }
+        Command::Plan { scene, json } => {
+            let scene = Scene::read(&scene)?;
+            let plan = scene.plan()?;
+            if json { export::json(&plan)? } else { model::plan_text(&plan) }
+        }
+        Command::Compare { scene, json } => {
+            let scene = Scene::read(&scene)?;
+            let comparison = scene.compare()?;
+            if json { export::json(&comparison)? } else { model::comparison_text(&comparison) }
         }
         Command::Modes { scene, count, json, plot } => {
             let scene = Scene::read(&scene)?;
@@ -301,6 +359,24 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Merge(arguments) => sweep_command::merge(arguments)?,
     };
     print(&printed)
+}
+
+/// What `simulate` prints, and writes, for a model that has no modal history.
+fn without_course(scene: &Scene, answer: &Answer, json: bool, out: Option<PathBuf>) -> Result<String, Failure> {
+    let striker = Striker { mass_kg: scene.striker.mass_kg()?, speed_m_s: scene.striker.speed_m_s };
+    let headline = text::headline(scene, &striker);
+    let result = export::json(answer)?;
+    let mut printed = if json { result.clone() } else { format!("{headline}\n\n{}", model::net_text(answer)) };
+    if let Some(folder) = out {
+        Files::result(result).write(&folder)?;
+        if !json {
+            printed += &format!("\n  wrote result.json to {}\n", folder.display());
+        }
+    }
+    if !json {
+        printed += "\n  This model has no histories; \"model\": \"modal\" resolves the course in time.\n";
+    }
+    Ok(printed)
 }
 
 fn print(printed: &str) -> Result<(), Failure> {

@@ -7,20 +7,14 @@ use vibroimpact_sim::modal::History;
 use crate::export::{self, Failure, Table};
 use crate::impact::Impact;
 use crate::infinite as infinite_structure;
+use crate::model::Answer;
 use crate::scene::{InvalidInput, Scene};
 use crate::summary::Summary;
 
 /// What [`Scene::simulate`] found.
 pub enum Simulation {
     /// An impact on a structure with modes.
-    Modal {
-        /// What was solved.
-        impact: Impact,
-        /// The result.
-        summary: Summary,
-        /// The whole motion.
-        history: History<Law>,
-    },
+    Modal(Box<Resolved>),
     /// An impact on an infinite beam or plate.
     Infinite {
         /// The units of the solution.
@@ -28,10 +22,22 @@ pub enum Simulation {
         /// The result, which can be asked for the motion.
         solution: infinite::Solution,
     },
+    /// An answer of a model that does not resolve the course in time.
+    Net(Answer),
+}
+
+/// An impact with its course in time.
+pub struct Resolved {
+    /// What was solved.
+    pub impact: Impact,
+    /// The result.
+    pub summary: Summary,
+    /// The whole motion.
+    pub history: History<Law>,
 }
 
 impl Scene {
-    /// Resolves the impact and keeps its motion.
+    /// Solves the impact by the model that the scene asks for, or that [`Scene::choose`] chooses, and keeps its motion.
     ///
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
@@ -44,7 +50,7 @@ impl Scene {
     /// }"#)?;
     /// let found = scene.simulate()?;
     /// assert!(found.json().unwrap().contains(r#""outcome": "rebound""#));
-    /// assert_eq!(found.history().columns[0].0, "time_s");
+    /// assert_eq!(found.history().unwrap().columns[0].0, "time_s");
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn simulate(&self) -> Result<Simulation, InvalidInput> {
@@ -52,10 +58,14 @@ impl Scene {
             let (groups, solution) = self.solve_infinite()?;
             return Ok(Simulation::Infinite { groups, solution });
         }
-        let impact = self.impact()?;
+        let choice = self.choose()?;
+        let Some(impact) = choice.impact else {
+            return Ok(Simulation::Net(choice.answer));
+        };
         let (solution, history) = impact.record()?;
-        let summary = Summary::new(&solution, history.energy_ledger(), impact.structure.residual_compliance_m_n);
-        Ok(Simulation::Modal { impact, summary, history })
+        let residual_m_n = impact.structure.residual_compliance_m_n;
+        let summary = Summary::new(&solution, history.energy_ledger(), residual_m_n).chosen(choice.answer);
+        Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }
 
     /// Solves the impact on an infinite beam or plate; the groups hold the units of the solution.
@@ -77,26 +87,28 @@ impl Simulation {
     /// None that an impact could cause.
     pub fn json(&self) -> Result<String, Failure> {
         match self {
-            Simulation::Modal { summary, .. } => export::json(summary),
+            Simulation::Modal(found) => export::json(&found.summary),
             Simulation::Infinite { groups, solution } => {
                 export::json(&infinite_structure::Summary::new(solution, Some(groups)))
             }
+            Simulation::Net(answer) => export::json(answer),
         }
     }
 
-    /// Motion and force over time, the table `history.csv`.
-    pub fn history(&self) -> Table {
+    /// Motion and force over time, the table `history.csv`, if the model resolves them.
+    pub fn history(&self) -> Option<Table> {
         match self {
-            Simulation::Modal { history, .. } => export::history(history),
-            Simulation::Infinite { groups, solution } => infinite_structure::history(solution, Some(groups)),
+            Simulation::Modal(found) => Some(export::history(&found.history)),
+            Simulation::Infinite { groups, solution } => Some(infinite_structure::history(solution, Some(groups))),
+            Simulation::Net(_) => None,
         }
     }
 
     /// The energy of each mode over time, the table `modal_energies.csv`, if there are modes.
     pub fn modal_energies(&self) -> Option<Table> {
         match self {
-            Simulation::Modal { history, .. } => Some(export::modal_energies(history)),
-            Simulation::Infinite { .. } => None,
+            Simulation::Modal(found) => Some(export::modal_energies(&found.history)),
+            Simulation::Infinite { .. } | Simulation::Net(_) => None,
         }
     }
 }

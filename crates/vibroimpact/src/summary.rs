@@ -1,5 +1,6 @@
 //! The result of a scene as files and people read it.
 
+use crate::model::Answer;
 use serde::Serialize;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
@@ -28,6 +29,8 @@ pub struct Summary {
     pub energy: Energy,
     /// What the computation cost.
     pub counts: Cost,
+    /// Which model, why, and how near it came to the tolerance; null if no choice was made.
+    pub choice: Option<Answer>,
 }
 
 /// One contact.
@@ -107,7 +110,13 @@ impl Summary {
                 modes_j: energy.modes_j,
             },
             counts: Cost { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps },
+            choice: None,
         }
+    }
+
+    /// The same with the choice that led to it, whose uncertainty counts.
+    pub fn chosen(self, choice: Answer) -> Summary {
+        Summary { restitution_uncertainty: choice.restitution_uncertainty, choice: Some(choice), ..self }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{Mode, Striker};
 
-use crate::impact::Impact;
+use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::report::significant;
 use crate::scene::{Scene, Structure};
@@ -46,7 +46,7 @@ pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
 }
 
 /// One line on what strikes what.
-pub fn headline(scene: &Scene, impact: &Impact) -> String {
+pub fn headline(scene: &Scene, striker: &Striker) -> String {
     let structure = match &scene.structure {
         Structure::Beam(beam) => {
             let [left, right] = beam.ends.map(|end| format!("{end:?}").to_lowercase());
@@ -74,7 +74,6 @@ pub fn headline(scene: &Scene, impact: &Impact) -> String {
         (None, Some(name)) => format!(", at {name}"),
         (None, None) => String::new(),
     };
-    let striker = impact.striker;
     if striker.mass_kg.is_infinite() {
         return format!("immovable stop before a {structure}{place}; {} contact", scene.contact.law_name());
     }
@@ -117,6 +116,9 @@ pub fn result(summary: &Summary) -> String {
         String::new()
     };
     line("modes", format!("{}{residual}", summary.modes));
+    if let Some(choice) = &summary.choice {
+        text += &answer_text(choice);
+    }
 
     let energy = &summary.energy;
     let share = |part: f64| {

@@ -169,8 +169,14 @@ fn modes_lists_frequencies_and_shapes_that_a_modal_structure_takes() {
         "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
     });
     fs::write(folder.path().join("modal.json"), modal.to_string()).unwrap();
-    let of_beam = stdout(&run(folder.path(), &["simulate", "scene.json", "--json"]));
-    assert_eq!(stdout(&run(folder.path(), &["simulate", "modal.json", "--json"])), of_beam);
+    let result = |name: &str| {
+        let mut result: Value =
+            serde_json::from_str(&stdout(&run(folder.path(), &["simulate", name, "--json"]))).unwrap();
+        // all but the words of the reason
+        let choice = result.as_object_mut().unwrap().remove("choice").unwrap();
+        (result, choice["restitution"].clone())
+    };
+    assert_eq!(result("modal.json"), result("scene.json"));
 }
 
 #[test]
@@ -231,7 +237,6 @@ fn missing_fields_are_named() {
         ("/contact/law", "contact.law is missing"),
         ("/contact/poissons_ratio", "contact.poissons_ratio is missing"),
         ("/location_m", "location_m is missing"),
-        ("/modes", "modes is missing"),
     ] {
         let message = refusal(altered(pointer, None));
         assert!(message.contains(field), "{field}: {message}");

@@ -5,6 +5,7 @@ mod gallery;
 use gallery::{gallery, named, restitution};
 use proptest::prelude::*;
 use serde_json::Value;
+use vibroimpact::model::Modes;
 use vibroimpact::scene::{Contact, Modal, Structure};
 use vibroimpact::{Scene, SceneError};
 
@@ -139,7 +140,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
         static_compliance_m_n: Some(whole),
         ..Modal::default()
     });
-    (scene.location_m, scene.modes) = (None, None);
+    (scene.location_m, scene.modes) = (None, Modes::Auto);
     assert_eq!(scene.structure().unwrap(), beam.structure().unwrap());
 
     let Structure::Modal(ref mut modal) = scene.structure else { panic!() };

@@ -1,6 +1,7 @@
 //! The chapters of the thesis, computed anew: tables as CSV, figures as SVG, and a report that
 //! sets every number of the text beside ours.
 
+mod all;
 mod beam;
 mod chapter2;
 mod chapter3;
@@ -8,6 +9,7 @@ mod chapter4;
 mod chapter6;
 mod chapter7;
 mod chapter8;
+mod choice;
 mod figures;
 mod impact;
 mod study;
@@ -16,6 +18,8 @@ use std::error::Error;
 use std::fmt;
 use std::path::Path;
 
+pub use all::run_all;
+pub use study::Finished;
 use study::Study;
 
 /// Whatever can go wrong on the way: bad parameters, a full disk.
@@ -25,6 +29,13 @@ pub type Failure = Box<dyn Error + Send + Sync>;
 #[derive(Debug)]
 pub struct BadInput(String);
 
+impl BadInput {
+    /// A chapter that there is not.
+    pub fn chapter(found: &str) -> BadInput {
+        BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 6, 7, 8 or all"))
+    }
+}
+
 impl fmt::Display for BadInput {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.0)
@@ -33,10 +44,12 @@ impl fmt::Display for BadInput {
 
 impl Error for BadInput {}
 
+/// The chapters that can be reproduced.
+pub const CHAPTERS: [u32; 6] = [2, 3, 4, 6, 7, 8];
+
 /// Runs a chapter and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
 /// for chapter 8.
-/// Returns a summary in a few lines: impacts, time, where the report is, how many statements agree.
-pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<String, Failure> {
+pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<Finished, Failure> {
     if data.is_some() && chapter != 8 {
         let fault = format!("--data is not allowed with chapter {chapter}: only chapter 8 takes measured points");
         return Err(BadInput(fault).into());
@@ -49,9 +62,17 @@ pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result
         6 => chapter6::run(&mut study)?,
         7 => chapter7::run(&mut study)?,
         8 => chapter8::run(&mut study, data)?,
-        other => return Err(BadInput(format!("chapter = {other} is not allowed: 2, 3, 4, 6, 7 or 8")).into()),
+        other => return Err(BadInput::chapter(&other.to_string()).into()),
     };
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
+}
+
+/// Puts the automatic choice of the model to the test and writes the folder of that study.
+pub fn study_auto(out: &Path, quick: bool) -> Result<String, Failure> {
+    let mut study = Study::new(out, quick)?;
+    study.claims("Targets, and what was found");
+    let introduction = choice::run(&mut study)?;
+    Ok(study.finish("The automatic choice of the model", introduction)?.summary)
 }
 
 #[cfg(test)]

@@ -20,11 +20,26 @@ pub(super) struct Study {
     pub quick: bool,
     body: Report,
     statements: Vec<Comparison>,
+    /// The heading above them.
+    claims: &'static str,
     files: Vec<String>,
     timings: Vec<Timing>,
     remarks: Vec<String>,
     started: Instant,
     bar: ProgressBar,
+}
+
+/// What a chapter that has run leaves for those who sum up.
+#[derive(Debug)]
+pub struct Finished {
+    /// Title of its report.
+    pub title: String,
+    /// The thesis's statements beside our numbers.
+    pub statements: Vec<Comparison>,
+    /// Number of impacts solved.
+    pub impacts: usize,
+    /// Impacts, time, agreement and the report's place, in a few lines.
+    pub summary: String,
 }
 
 /// Cost of one section.
@@ -62,12 +77,18 @@ impl Study {
             quick,
             body: Report::new(""),
             statements: Vec::new(),
+            claims: "What the thesis states, beside ours",
             files: Vec::new(),
             timings: Vec::new(),
             remarks: Vec::new(),
             started: Instant::now(),
             bar,
         })
+    }
+
+    /// Heads the list of statements differently.
+    pub fn claims(&mut self, heading: &'static str) {
+        self.claims = heading;
     }
 
     /// Begins a section of the report.
@@ -159,7 +180,7 @@ impl Study {
 
     /// Writes report, timings and manifest, and sums up. The manifest comes last: a folder with
     /// one is complete.
-    pub fn finish(mut self, title: &str, introduction: &str) -> Result<String, Failure> {
+    pub fn finish(mut self, title: &str, introduction: &str) -> Result<Finished, Failure> {
         let total = self.started.elapsed().as_secs_f64();
         let ends: Vec<f64> = self.timings.iter().skip(1).map(|t| t.seconds).chain([total]).collect();
         for (timing, end) in self.timings.iter_mut().zip(ends) {
@@ -173,7 +194,7 @@ impl Study {
         if self.quick {
             report.text("**This is the quick form, with fewer points.**");
         }
-        report.heading("What the thesis states, beside ours");
+        report.heading(self.claims);
         report.comparisons(&self.statements);
         report.append(self.body.clone());
         for path in report.write(&self.out)? {
@@ -187,7 +208,7 @@ impl Study {
         self.bar.finish_and_clear();
 
         let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();
-        Ok(format!(
+        let summary = format!(
             "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}\
              {agree} of {} statements of the text agree within their tolerance.\nReport: {}",
             total,
@@ -195,7 +216,8 @@ impl Study {
             self.remarks.iter().map(|line| format!("{line}\n")).collect::<String>(),
             self.statements.len(),
             self.out.join("report.html").display()
-        ))
+        );
+        Ok(Finished { title: title.to_owned(), statements: self.statements, impacts, summary })
     }
 }
 

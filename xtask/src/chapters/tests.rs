@@ -20,7 +20,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-    pool.install(|| run(chapter, out, true, None)).unwrap()
+    pool.install(|| run(chapter, out, true, None)).unwrap().summary
 }
 
 fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
@@ -162,7 +162,7 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("2, 3, 4, 6, 7 or 8"));
+    assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("2, 3, 4, 6, 7, 8 or all"));
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     assert!(run(3, &file.join("below"), true, None).is_err());

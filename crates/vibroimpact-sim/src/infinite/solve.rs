@@ -21,7 +21,7 @@ pub fn solve(structure: Structure, s: f64, settings: &Settings) -> Result<Soluti
             tolerance: (0.1 * settings.tolerance).max(1e-14),
             ..*settings
         };
-        solution.compare(&run(structure, s, &finer));
+        solution.compare(&run(structure, s, &finer), settings.tolerance);
     }
     Ok(solution)
 }

@@ -2,7 +2,7 @@
 
 use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
-use super::oscillator::{propagate, response};
+use super::oscillator::{Propagator, propagate, response};
 use super::problem::{Mode, Start, Striker};
 use super::solution::Solution;
 use super::solve::Solver;
@@ -59,11 +59,10 @@ pub struct History<L> {
     end: (Vec<f64>, Vec<f64>, f64),
 }
 
-/// A moment of the motion with the force's time derivative, which the residual compliance needs.
+/// A moment of the motion.
 struct Moment {
     motion: Motion,
     force: f64,
-    force_rate: f64,
 }
 
 impl<L: ContactLaw> History<L> {
@@ -149,6 +148,7 @@ impl<L: ContactLaw> History<L> {
         let modes_j = self.energies(&self.end.0, &self.end.1);
 
         let (mut modal_damping_j, mut contact_j, mut stored) = (self.spectators_loss(), 0.0, 0.0);
+        let mut panel = Panel { length: 0.0, modes: vec![] };
         for (i, piece) in self.pieces.iter().enumerate() {
             match &piece.contact {
                 None => {
@@ -158,7 +158,7 @@ impl<L: ContactLaw> History<L> {
                     modal_damping_j += self.elastic_energy(&piece.start) - self.elastic_energy(next);
                 }
                 Some(contact) => {
-                    let (damped, taken) = self.dissipation(piece, contact);
+                    let (damped, taken) = self.dissipation(piece, contact, &mut panel);
                     modal_damping_j += damped;
                     contact_j += taken;
                     stored = 0.5 * self.residual_compliance * evaluate(&contact.force, 1.0).powi(2);
@@ -169,22 +169,40 @@ impl<L: ContactLaw> History<L> {
         EnergyLedger { initial_j, striker_j, modes_j, modal_damping_j, contact_j, residual_j }
     }
 
-    /// Energy lost to modal damping and taken up by the law over one step in contact, by fine quadrature.
-    fn dissipation(&self, piece: &Piece, contact: &ContactPiece) -> (f64, f64) {
+    /// Energy lost to modal damping and taken up by the law over one step in contact, by fine quadrature on equal
+    /// panels, in each of which no mode turns by more than a few radians. The tables of the last panel length are kept.
+    fn dissipation(&self, piece: &Piece, contact: &ContactPiece, panel: &mut Panel) -> (f64, f64) {
         let fastest = self.elastic.iter().map(|mode| mode.omega_rad_s).fold(0.0, f64::max);
         let panels = (fastest * contact.length / 6.0).ceil().clamp(1.0, 1e4) as usize;
+        let length = contact.length / panels as f64;
+        if panel.length != length {
+            *panel = Panel { length, modes: self.elastic.iter().map(|mode| Panel::of(mode, length)).collect() };
+        }
         let (mut damped, mut taken) = (0.0, 0.0);
-        for panel in 0..panels {
-            for &(x, w) in &BASIS.fine {
-                let weight = w * contact.length / panels as f64;
-                let moment = self.within(piece, (panel as f64 + x) * contact.length / panels as f64);
-                let motion = &moment.motion;
-                for (mode, beta) in self.elastic.iter().zip(&motion.vibration.beta) {
-                    damped += weight * 2.0 * mode.damping_ratio * mode.omega_rad_s * (beta / mode.shape).powi(2);
+        let mut motion = piece.start.clone();
+        for number in 0..panels {
+            let part = |s: f64| (number as f64 + s) / panels as f64;
+            let force: Nodal = BASIS.nodes.map(|c| evaluate(&contact.force, part(c)));
+            let start = motion.clone();
+            let places = BASIS.fine.iter().copied().chain([(1.0, 0.0)]);
+            for (q, (s, w)) in places.enumerate() {
+                let coefficients = BASIS.coefficients(&BASIS.restrict(&force, s));
+                motion.carry_on_from(&start);
+                motion.advance_drift(s * length, &coefficients, self.mu);
+                let mut lost = 0.0;
+                for (k, mode) in self.elastic.iter().enumerate() {
+                    let (free, displacement, velocity) = &panel.modes[k][q];
+                    let (a, b) = (start.vibration.alpha[k], start.vibration.beta[k]);
+                    let weight = mode.shape * mode.shape;
+                    motion.vibration.alpha[k] = free.p11 * a + free.p12 * b - weight * dot(displacement, &coefficients);
+                    let beta = free.p21 * a + free.p22 * b - weight * dot(velocity, &coefficients);
+                    motion.vibration.beta[k] = beta;
+                    lost += 2.0 * mode.damping_ratio * mode.omega_rad_s * (beta * beta / weight);
                 }
-                let compression = motion.gap() - self.residual_compliance * moment.force;
-                let rate = motion.gap_rate() - self.residual_compliance * moment.force_rate;
-                taken += weight * self.law.force(&contact.branch, compression, rate).force_n * rate;
+                let compression = motion.gap() - self.residual_compliance * evaluate(&contact.force, part(s));
+                let rate = motion.gap_rate() - self.residual_compliance * contact.force_rate(part(s));
+                damped += w * length * lost;
+                taken += w * length * self.law.force(&contact.branch, compression, rate).force_n * rate;
             }
         }
         (damped, taken)
@@ -240,7 +258,7 @@ impl<L: ContactLaw> History<L> {
         }
         let Some(contact) = &piece.contact else {
             motion.coast(t);
-            return Moment { motion, force: 0.0, force_rate: 0.0 };
+            return Moment { motion, force: 0.0 };
         };
         let t = t.min(contact.length);
         let part = t / contact.length;
@@ -253,13 +271,41 @@ impl<L: ContactLaw> History<L> {
         }
         motion.advance_drift(t, &force, self.mu);
         let value = evaluate(&contact.force, part);
-        // derivative of the polynomial: sum of (4 j + ...) lower polynomials, P_n' = sum over n-1, n-3, ..
+        Moment { motion, force: value }
+    }
+}
+
+/// One mode at one place of a panel: free motion from its start, and the displacement and velocity that unit Legendre
+/// forces between start and place have caused.
+type Place = (Propagator, Nodal, Nodal);
+
+/// A piece of a step, with the motion of every mode at the nodes of the fine rule and at its end.
+struct Panel {
+    length: f64,
+    modes: Vec<Vec<Place>>,
+}
+
+impl Panel {
+    fn of(mode: &Mode, length: f64) -> Vec<Place> {
+        let places = BASIS.fine.iter().map(|(s, _)| *s).chain([1.0]);
+        let place = |s: f64| {
+            let (displacement, velocity) = response(mode, s * length);
+            (propagate(mode, s * length), displacement, velocity)
+        };
+        places.map(place).collect()
+    }
+}
+
+impl ContactPiece {
+    /// Rate of the force (N/s) at this part of the step.
+    fn force_rate(&self, part: f64) -> f64 {
+        // d/ds P_n(2s-1) = 2 (2m+1) P_m summed over m = n-1, n-3, ..
         let mut slope = [0.0; Q];
         for n in 0..Q {
             for m in (0..n).rev().step_by(2) {
-                slope[m] += 2.0 * (2 * m + 1) as f64 * contact.force[n];
+                slope[m] += 2.0 * (2 * m + 1) as f64 * self.force[n];
             }
         }
-        Moment { motion, force: value, force_rate: evaluate(&slope, part) / contact.length }
+        evaluate(&slope, part) / self.length
     }
 }

@@ -1,6 +1,6 @@
 //! The state of an impact, and the record of how it came about.
 
-use super::ladder::Vibration;
+use super::ladder::{Vibration, sum};
 use super::legendre::Nodal;
 use contact_models::Branch;
 
@@ -20,12 +20,18 @@ pub(crate) struct Motion {
 impl Motion {
     /// Overlap of the surfaces (m).
     pub fn gap(&self) -> f64 {
-        self.drift + self.vibration.alpha.iter().sum::<f64>()
+        self.drift + sum(&self.vibration.alpha)
     }
 
     /// Its rate (m/s).
     pub fn gap_rate(&self) -> f64 {
-        self.drift_rate + self.vibration.beta.iter().sum::<f64>()
+        self.drift_rate + sum(&self.vibration.beta)
+    }
+
+    /// Takes over everything but the vibration, which is about to be overwritten.
+    pub fn carry_on_from(&mut self, other: &Motion) {
+        (self.time, self.drift, self.drift_rate) = (other.time, other.drift, other.drift_rate);
+        (self.impulse, self.impulse_integral) = (other.impulse, other.impulse_integral);
     }
 
     /// The drift over `h` seconds under a force of Legendre coefficients `force`, with inverse mass `mu`.

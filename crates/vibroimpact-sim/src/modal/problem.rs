@@ -124,7 +124,10 @@ impl Start {
             InvalidInput::unless(values.len() == modes, field, format!("{} values", values.len()), "one value a mode")?;
             for (k, value) in values.iter().enumerate() {
                 let ok = value.abs() <= SCALE_MAX;
-                InvalidInput::unless(ok, format!("{field}[{k}]"), value, "a finite number, at most 1e30 in size")?;
+                if !ok {
+                    let allowed = "a finite number, at most 1e30 in size";
+                    return Err(InvalidInput { field: format!("{field}[{k}]"), value: value.to_string(), allowed });
+                }
             }
         }
         InvalidInput::unless(

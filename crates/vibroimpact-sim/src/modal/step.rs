@@ -12,6 +12,10 @@ const ITERATIONS_MAX: u32 = 16;
 /// A ratio of successive changes above this asks for a new matrix.
 const SLOW: f64 = 0.1;
 
+/// How exact the compression behind a residual compliance is, relative to the gap: the force that it is computed from
+/// is iterated so far, and its rate, a quotient of small differences, is trusted no further.
+const BLUR: f64 = 1e-13;
+
 /// What is known before a step's force is.
 pub(crate) struct Given<'a> {
     /// Length of the step (s).
@@ -49,6 +53,11 @@ pub(crate) fn collocate<L: ContactLaw>(
     counts: &mut Counts,
 ) -> Option<Collocated> {
     let basis = &*BASIS;
+    let mut accuracy = given.accuracy;
+    if given.needs_rate && given.residual_compliance > 0.0 {
+        let gap = given.free.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        accuracy = accuracy.min(BLUR * gap / given.residual_compliance);
+    }
     let mut force = guess;
     let mut rate = [0.0; Q];
     let mut newton: Option<Newton> = None;
@@ -82,7 +91,7 @@ pub(crate) fn collocate<L: ContactLaw>(
         }
         // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
         let ratio = if last_change.is_finite() { largest / last_change } else { 1.0 };
-        if ratio * largest <= given.accuracy || largest <= 1e-15 * size {
+        if ratio * largest <= accuracy || largest <= 1e-15 * size {
             return Some(Collocated { force, compression, rate });
         }
         let first = !last_change.is_finite();
@@ -162,6 +171,7 @@ pub(crate) fn first_crossing(
     start: (f64, f64),
     end: Option<(f64, f64)>,
     h: f64,
+    residual_compliance: f64,
 ) -> Option<(usize, f64)> {
     let nodes = &BASIS.nodes;
     let mut first: Option<(usize, f64)> = None;
@@ -171,7 +181,9 @@ pub(crate) fn first_crossing(
         }
         // rounding of the interpolated rate must not look like a crossing where a branch begins on its boundary
         let size = step.compression.iter().fold(start.0.abs(), |a, b| a.max(b.abs()));
-        let noise = 1e-15 * size * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
+        let pressed = step.force.iter().fold(0.0f64, |a, b| a.max(b.abs())) * residual_compliance;
+        let noise =
+            (1e-15 * size + BLUR * pressed) * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
         let (mut before, mut inside) = (0.0, boundary.margin(start.0, start.1).max(0.0));
         let at_nodes = (0..Q).map(|i| (nodes[i], step.compression[i], step.rate[i]));
         for (at, xi, rate) in at_nodes.chain(end.map(|(xi, rate)| (1.0, xi, rate))) {

@@ -1,6 +1,8 @@
 //! What the tests of the modal impact share: the thesis's beam, and a plain Runge-Kutta integration.
 #![allow(dead_code)]
 
+pub mod random;
+
 use contact_models::{ContactLaw, Hertz, Law, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};

@@ -32,7 +32,17 @@ pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
     Ok(parse(&read_bytes(path)?)?)
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
+/// Reads the same table from the bytes of a file.
+///
+/// # Errors
+/// As [`read`], the file aside.
+///
+/// ```
+/// let table = vibroimpact::net::parse(b"restitution,mass_kg,location_m\n0.5,0.1,0.3\n")?;
+/// assert_eq!((table[0].line, table[0].mass_kg), (2, 0.1));
+/// # Ok::<(), vibroimpact::InvalidInput>(())
+/// ```
+pub fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
     let table = Table::parse(bytes, NEEDED)?;
     let mut places = [0; 3];
     for (place, name) in places.iter_mut().zip(COLUMNS) {

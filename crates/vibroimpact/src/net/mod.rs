@@ -8,7 +8,7 @@
 mod data;
 mod fit;
 
-pub use data::{Datum, read};
+pub use data::{Datum, parse, read};
 pub use fit::{FitSummary, Observations, law};
 
 use emoc::{Impact, Parameters, Site};
@@ -16,7 +16,11 @@ use serde::Serialize;
 use vibroimpact_sim::modal::{Mode, Solver};
 
 use crate::impact::in_scene;
+use crate::model;
 use crate::scene::{InvalidInput, Scene};
+
+/// Modes in the law where neither the caller nor the scene states a number (thesis 7.2).
+const LAW_MODES: usize = 50;
 
 /// What `vibroimpact emoc` prints: the restitution and the dimensionless numbers that it follows from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,8 +44,8 @@ pub struct NetRebound {
 }
 
 impl Scene {
-    /// The net restitution by the three-parameter law, with the first `modes` modes (the scene's own number for
-    /// `None`).
+    /// The net restitution by the three-parameter law, with the first `modes` modes (for `None` the scene's own
+    /// number, or 50 where the scene leaves it open).
     ///
     /// # Errors
     /// A value out of range in the scene or in the parameters, or more modes than a modal structure lists.
@@ -66,10 +70,11 @@ impl Scene {
         }
         let modes = match modes {
             Some(count) => self.mode_shapes(count)?,
-            None => self.structure.modes(self.place(), self.modes)?,
+            None if model::chooses_modes(self) => self.mode_shapes(LAW_MODES)?,
+            None => self.structure.modes(self.place(), self.modes.count())?,
         };
         // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
-        let resolved = self.impact()?;
+        let resolved = self.impact_of(self.modes.count().or(Some(modes.len())))?;
         Solver::new(&resolved.structure).map_err(in_scene)?;
         let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.as_str() {
             "mass_kg" => fault.within("striker"),

@@ -126,17 +126,14 @@ pub fn of_infinite_impact(
     Ok(report)
 }
 
-/// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item.
-pub fn modelled(scene: &Scene, impact: &Impact) -> Vec<String> {
+/// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item. `reason` is that of
+/// the choice of the model, [`Answer::reason`](crate::model::Answer::reason).
+pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     let modes = &impact.structure.modes;
     let hertz = |omega_rad_s: f64| quantity(omega_rad_s / std::f64::consts::TAU, "Hz");
     let range = match (modes.first(), modes.last()) {
         (Some(first), Some(last)) => format!(", {} to {}", hertz(first.omega_rad_s), hertz(last.omega_rad_s)),
         _ => ": the structure does not move".to_owned(),
-    };
-    let why = match (&scene.structure, scene.modes) {
-        (_, Some(_)) => "as the scene asks",
-        _ => "all that the scene lists",
     };
     let structure = match &scene.structure {
         Structure::Beam(beam) => format!(
@@ -157,8 +154,9 @@ pub fn modelled(scene: &Scene, impact: &Impact) -> Vec<String> {
         ),
     };
     vec![
+        format!("Model: {}.", literal(reason)),
         structure,
-        format!("{} modes{range}, {why}.", modes.len()),
+        format!("{} modes{range}.", modes.len()),
         residual,
         format!(
             "A striker of {} at {}; the contact law is {}.",

@@ -112,8 +112,8 @@ impl Scene {
         left_out("striker.immovable", immovable.then(|| "true".to_owned()))?;
         left_out("location_m", self.location_m.map(number))?;
         left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
-        left_out("modes", self.modes.map(|modes| modes.to_string()))?;
-        left_out("residual_compliance", self.residual_compliance.then(|| "true".to_owned()))?;
+        left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance", self.residual_compliance.map(|on| on.to_string()))?;
         left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
         let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
         let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.as_str() {

@@ -77,8 +77,8 @@ impl Scene {
         left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
         left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
         left_out("striker.immovable", self.striker.immovable.then(|| "true".to_owned()))?;
-        left_out("modes", self.modes.map(|modes| modes.to_string()))?;
-        left_out("residual_compliance", self.residual_compliance.then(|| "true".to_owned()))?;
+        left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance", self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("tolerance", self.tolerance.map(number))?;
         let Contact::Hertz(stiffness) = &self.contact else {
             let law = format!("\"{}\"", self.contact.law_name());

@@ -48,6 +48,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
+use crate::model::{Model, Modes};
+
 pub use beam::{Beam, End, Segment};
 pub use contact::Contact;
 pub use dropped_rod::DroppedRod;
@@ -82,15 +84,19 @@ pub struct Scene {
     pub location_m: Option<f64>,
     /// Name of the point that is struck. Required for a modal structure with named points; other structures have none.
     pub location: Option<String>,
-    /// Number of modes kept, from the lowest; 0 is an immovable structure. Required for a beam; all that are
-    /// listed when left out for a modal structure.
-    pub modes: Option<usize>,
-    /// Whether the modes left out answer with their static compliance; `false` when left out.
-    #[serde(default)]
-    pub residual_compliance: bool,
+    /// Which model answers, [`Scene::answer`]; the program's choice when left out.
+    #[serde(default, skip_serializing_if = "Model::is_auto")]
+    pub model: Model,
+    /// Modes kept, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
+    #[serde(default, skip_serializing_if = "Modes::is_auto")]
+    pub modes: Modes,
+    /// Whether the modes left out answer with their static compliance. When left out: `true` where the program
+    /// chooses the modes (and knows that compliance), `false` where their number is given.
+    pub residual_compliance: Option<bool>,
     /// Motion of the structure before the impact; at rest and touched by the striker when left out.
     pub start: Option<Start>,
-    /// Accuracy aimed at in the restitution; that of [`vibroimpact_sim::modal::Settings`] when left out.
+    /// Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses the
+    /// modes; that of [`vibroimpact_sim::modal::Settings`] where the modes are given.
     pub tolerance: Option<f64>,
 }
 
@@ -109,9 +115,11 @@ struct Outline {
     contact: Value,
     location_m: Option<f64>,
     location: Option<String>,
-    modes: Option<usize>,
     #[serde(default)]
-    residual_compliance: bool,
+    model: Model,
+    #[serde(default)]
+    modes: Modes,
+    residual_compliance: Option<bool>,
     start: Option<Value>,
     tolerance: Option<f64>,
 }
@@ -126,8 +134,9 @@ impl Scene {
             contact,
             location_m: None,
             location: None,
-            modes: None,
-            residual_compliance: false,
+            model: Model::Auto,
+            modes: Modes::Auto,
+            residual_compliance: None,
             start: None,
             tolerance: None,
         }
@@ -180,6 +189,7 @@ impl Scene {
             contact: Contact::from_value(&outline.contact).map_err(|fault| fault.within("contact"))?,
             location_m: outline.location_m,
             location: outline.location,
+            model: outline.model,
             modes: outline.modes,
             residual_compliance: outline.residual_compliance,
             start,

@@ -170,6 +170,11 @@ impl Modal {
         InvalidInput { field: format!("{list}[{k}]"), value, ..fault }
     }
 
+    /// Whether the static compliance at a point is stated, be its value allowed or not.
+    pub(crate) fn gives_compliance(&self, location: Option<&str>) -> bool {
+        self.seen_from(location).is_ok_and(|seen| seen.static_compliance_m_n.is_some())
+    }
+
     pub(super) fn static_compliance_m_n(&self, location: Option<&str>) -> Result<f64, InvalidInput> {
         let seen = self.seen_from(location)?;
         let field = format!("structure.{}", seen.compliance_field);

@@ -124,7 +124,10 @@ impl Structure {
             Structure::Beam(beam) => {
                 place.require_no_name("left out: the place on a beam is location_m")?;
                 let location_m = place.location_m.ok_or_else(|| missing("location_m"))?;
-                return beam.modes(count.ok_or_else(|| missing("modes"))?)?.seen_from(location_m);
+                let stated = "a whole number from 0 to 10000, where the program does not choose it: for a structure that \
+                              moves before the impact, and for an immovable striker";
+                let count = count.ok_or_else(|| InvalidInput::missing("modes", stated))?;
+                return beam.modes(count)?.seen_from(location_m);
             }
             Structure::Modal(listed) => {
                 place.require_no_distance("left out: the points of a modal structure have names")?;

@@ -1,6 +1,5 @@
 //! Laws beside each other: what each reaches on every beam, and how it predicts a beam that it has not seen.
 
-use super::attached::largest_share;
 use super::pictures::{Curve, by_ball};
 use super::{Dataset, LAW_MODES, SETTLED_MODES};
 use crate::chapters::Failure;
@@ -8,6 +7,7 @@ use crate::chapters::study::Study;
 use emoc::Impact;
 use fitting::{Fit, Method, Parameter, Problem, Residuals, Settings, cross_validate, fit};
 use serde::Serialize;
+use vibroimpact::model::largest_share;
 use vibroimpact::net;
 use vibroimpact::plot::Colour;
 use vibroimpact::report::significant;

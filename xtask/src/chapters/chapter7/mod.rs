@@ -1,6 +1,5 @@
 //! Chapter 7: the three parameters of the algebraic law, fitted to the tables of chapter 4.
 
-mod attached;
 mod failure;
 mod fits;
 mod laws;

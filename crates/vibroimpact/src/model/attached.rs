@@ -27,7 +27,7 @@ const NEGLIGIBLE: f64 = 1e-12;
 const HALVINGS: usize = 60;
 
 /// The largest share of the velocity of a mass that, attached to the structure, rides on one mode.
-pub(super) fn largest_share(mass_kg: f64, modes: &[Mode]) -> f64 {
+pub fn largest_share(mass_kg: f64, modes: &[Mode]) -> f64 {
     // m phi^2 and omega^2 of the modes that move here
     let moving: Vec<[f64; 2]> = modes
         .iter()

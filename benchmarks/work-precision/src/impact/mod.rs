@@ -1,0 +1,153 @@
+//! Impacts of a ball on a beam in its modes: the library of problems, and every solver on them.
+
+mod diffsol;
+mod dop853;
+mod drive;
+mod flight;
+mod own;
+mod reference;
+mod system;
+
+pub use drive::{Flight, Integrator, follow};
+pub use reference::{Reference, reference};
+pub use system::{Equations, Phase};
+
+use crate::measure::{Effort, Found, Row};
+use beam_modes::{Beam, End, Segment};
+use contact_models::{Body, Hertz, Hysteretic, Law, Viscous};
+use std::f64::consts::PI;
+use vibroimpact_sim::modal::{Mode, Striker, Structure};
+
+/// One impact of the library.
+#[derive(Debug, Clone)]
+pub struct Impact {
+    /// Short name.
+    pub name: &'static str,
+    /// What it is.
+    pub about: &'static str,
+    /// The beam in its modes.
+    pub structure: Structure,
+    /// The ball.
+    pub striker: Striker,
+    /// The law of contact.
+    pub law: Law,
+}
+
+/// What a solver found, in the terms of the norms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Speed of the rebound over that of the impact.
+    pub restitution: f64,
+    /// Beginnings and ends of all contacts, in order (s).
+    pub contact_times_s: Vec<f64>,
+    /// Impulse of every contact (N s).
+    pub impulses_n_s: Vec<f64>,
+}
+
+impl Outcome {
+    /// The norms in which an outcome is compared with the reference, the chief one first.
+    pub fn errors(&self, reference: &Outcome) -> Vec<(&'static str, f64)> {
+        let end = reference.contact_times_s.last().copied().unwrap_or(1.0);
+        // where the number of contacts differs, so does the story: no time is right then
+        let worst = |found: &[f64], wanted: &[f64], unit: f64| {
+            if found.len() == wanted.len() {
+                found.iter().zip(wanted).map(|(a, b)| (a - b).abs() / unit).fold(0.0, f64::max)
+            } else {
+                1.0
+            }
+        };
+        let total = |outcome: &Outcome| outcome.impulses_n_s.iter().sum::<f64>();
+        let contacts = |outcome: &Outcome| outcome.contact_times_s.len().div_ceil(2) as f64;
+        vec![
+            ("restitution", (self.restitution - reference.restitution).abs()),
+            ("total impulse", (total(self) / total(reference) - 1.0).abs()),
+            ("contact times", worst(&self.contact_times_s, &reference.contact_times_s, end)),
+            ("number of sub-impacts", (contacts(self) - contacts(reference)).abs()),
+        ]
+    }
+}
+
+const SIDE_M: f64 = 0.011323;
+const YOUNGS_MODULUS_PA: f64 = 2e11;
+const DENSITY_KG_M3: f64 = 7800.0;
+/// (sqrt 5 - 1) / 2, the thesis's second location on the unit beam.
+const GOLDEN_M: f64 = 0.618_033_988_749_894_9;
+
+/// A steel ball of this diameter at 1 m/s, and the Hertz stiffness of its contact.
+fn ball(diameter_m: f64) -> Result<(Striker, f64), String> {
+    let sphere = Body { youngs_modulus_pa: YOUNGS_MODULUS_PA, poissons_ratio: 0.3, radius_m: 0.5 * diameter_m };
+    let hertz = Hertz::from_bodies(&sphere, &Body::flat(YOUNGS_MODULUS_PA, 0.3)).map_err(|e| e.to_string())?;
+    let mass_kg = DENSITY_KG_M3 * PI / 6.0 * diameter_m.powi(3);
+    Ok((Striker { mass_kg, speed_m_s: 1.0 }, hertz.stiffness_n_m1_5))
+}
+
+/// Steel beam of unit length; `thickness` of its halves as fractions of the thesis's side.
+fn beam(ends: [End; 2], thickness: &[f64], modes: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
+    let length = 1.0 / thickness.len() as f64;
+    let segment = |part: &f64| Segment::rectangular(length, YOUNGS_MODULUS_PA, DENSITY_KG_M3, SIDE_M, part * SIDE_M);
+    let beam = Beam { segments: thickness.iter().map(segment).collect(), ends };
+    let found = beam.modes(modes).map_err(|e| e.to_string())?;
+    let shapes = found.shapes_at(x_m).map_err(|e| e.to_string())?;
+    let modes = found.omega_rad_s().iter().zip(shapes);
+    let modes = modes.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
+    Ok(Structure { modes, residual_compliance_m_n: 0.0 })
+}
+
+/// Every impact of the library (thesis sections 3.3 and 4.2; steps and balls of chapter 4 as in `datasets`).
+pub fn library() -> Result<Vec<Impact>, String> {
+    let text = |error: contact_models::InvalidInput| error.to_string();
+    let hertz = |k: f64| Hertz::new(k).map(Law::from).map_err(text);
+    let viscous = |k: f64| Viscous::new(k, 0.08).map(Law::from).map_err(text);
+    // the stiffness of the first loading is that of Hertz
+    let hysteretic = |k: f64| Hysteretic::new(k / 4.0, 1.6, 1.4, 0.4, 5e-8).map(Law::from).map_err(text);
+
+    let pinned = [End::Pinned, End::Pinned];
+    let cantilever = [End::Clamped, End::Free];
+    let chapter3 = beam(pinned, &[1.0], 40, 0.02, GOLDEN_M)?;
+    let (ball3, k3) = ball(0.03)?;
+    let slender = beam(cantilever, &[1.0], 40, 0.02, 0.75)?;
+    let (large, k_large) = ball(0.053)?;
+    let stepped = beam(cantilever, &[1.0, 0.5], 40, 0.02, 0.75)?;
+    let (middle, k_middle) = ball(0.033)?;
+    let impact = |name, about, structure: &Structure, striker, law| Impact {
+        name,
+        about,
+        structure: structure.clone(),
+        striker,
+        law,
+    };
+    Ok(vec![
+        impact("pinned-hertz", "chapter 3: pinned beam, N = 40, damped, Hertz", &chapter3, ball3, hertz(k3)?),
+        impact("pinned-viscous", "chapter 3: the same, viscous contact", &chapter3, ball3, viscous(k3)?),
+        impact("pinned-hysteretic", "chapter 3: the same, hysteretic contact", &chapter3, ball3, hysteretic(k3)?),
+        impact(
+            "pinned-undamped",
+            "chapter 3: N = 25, b = 0.4, no damping: amplifies errors",
+            &beam(pinned, &[1.0], 25, 0.0, 0.4)?,
+            ball3,
+            hertz(k3)?,
+        ),
+        impact("cantilever-hertz", "chapter 4: cantilever, 53 mm ball, Hertz", &slender, large, hertz(k_large)?),
+        impact("cantilever-viscous", "chapter 4: the same, viscous contact", &slender, large, viscous(k_large)?),
+        impact("stepped-hertz", "chapter 4: stepped cantilever, 33 mm ball, Hertz", &stepped, middle, hertz(k_middle)?),
+        impact(
+            "stepped-hysteretic",
+            "chapter 4: the same, hysteretic contact",
+            &stepped,
+            middle,
+            hysteretic(k_middle)?,
+        ),
+    ])
+}
+
+/// Every solver on one impact.
+pub fn rows(impact: &Impact, effort: &Effort) -> Result<Vec<Row>, String> {
+    let reference = reference(impact.name)?;
+    let judge = |outcome: Outcome, cost: u64| Found { cost, errors: outcome.errors(&reference.outcome) };
+    let mut rows = own::rows(impact, effort, judge);
+    for flight in [Flight::Integrated, Flight::Exact] {
+        rows.extend(dop853::rows(impact, flight, reference.end_s(), effort, judge));
+        rows.extend(diffsol::rows(impact, flight, reference.end_s(), effort, judge));
+    }
+    Ok(rows)
+}

@@ -1,0 +1,80 @@
+//! The prose of the page.
+
+use crate::{impact, infinite};
+
+/// What the page shows.
+pub const INTRODUCTION: &str = "\
+Every solver of the workspace and its peers on a fixed library of problems: error against time and against a \
+deterministic cost, over a sweep of tolerances. Times are the least of repeated runs after a warm-up. A run that fails or \
+takes too long is listed under its figure; tighter settings are then not tried. `work-precision.csv` has every number, in \
+every norm.
+
+Peers. DOP853: Hairer's explicit pair of order 8 (crate `ivp`), events by repeated steps. diffsol: variable-order BDF and \
+ESDIRK of order 4, analytic Jacobian, its own root finding. All of them integrate phase by phase, restart at every change \
+of contact, use absolute tolerances scaled to each component, and are told when the impact ends, which they cannot know. \
+*+ exact flight*: between contacts the modes are propagated in closed form and the next contact is found by a certified \
+search, so that the solver integrates contacts alone. Ours is measured with all tables built anew for every impact, and \
+with the tables kept, as for many impacts on one beam.";
+
+/// What the first table shows.
+pub const TARGETS: &str = "\
+Times at an error of 1e-6 in the restitution, between two measured points on a straight line of the logarithms.";
+
+/// What the second table shows.
+pub const EVERY_ERROR: &str = "\
+At other errors: time of the fastest peer over the time of the fastest solver of the workspace. *alone*: no peer reaches \
+the error; *nobody*: it is below what any solver or the reference reaches in double precision. For the infinite beam and \
+the fractional equations the peers are the general methods of `fracdiff`, which are solvers of this workspace too.";
+
+/// Why the workspace is not ahead where it is not.
+pub const WHY: &str = "\
+Why the ratios are what they are. A general solver on the whole system spends most of its steps on the fastest mode in \
+free flight, where nothing happens; that is the first ratio. Given exact flight it integrates contacts alone, some tens of \
+explicit steps each, and what is left is the price of a step; a single impact then pays for our tables of the structure as \
+well, which cost as much as the impact itself and are repaid by the second impact on the same beam. At errors above 1e-4 \
+every solver takes the fewest steps that it can, so that the ratio there is that of the least cost of a contact. On the infinite beam ours follows the impact to its very end, where the Volterra methods are \
+stopped at the first separation; at S = 15 that is most of the work (`beam-S15-story` compares like with like). Among the Volterra methods the second-order rules are cheap at two or three digits and are overtaken by the \
+spectral ones at about five.";
+
+/// What a problem is, what is measured, and what the reference is.
+pub fn about(problem: &str) -> String {
+    if let Ok(reference) = impact::reference(problem) {
+        let what = impact::library().ok().and_then(|all| all.into_iter().find(|impact| impact.name == problem));
+        return format!(
+            "{}. {} sub-impacts, restitution {:.12}. Reference: extrapolated midpoint rule of order 16 in quadruple \
+             precision (`reference/impacts.c`); its own error is below {:.0e}. Norms: restitution, total impulse \
+             (relative), worst time of touch or separation (relative to the last), number of sub-impacts.",
+            what.map_or("", |impact| impact.about),
+            reference.outcome.impulses_n_s.len(),
+            reference.outcome.restitution,
+            reference.restitution_error.max(1e-30),
+        );
+    }
+    match problem {
+        "beam-S15-story" => {
+            let floor = infinite::story_floor().unwrap_or(f64::NAN);
+            format!(
+                "A ball on an infinite beam, S = 15, until contact lasts for ever: worst relative error of the eight \
+                 times of separation and touch, and the number of separations. The two spectral methods share no code \
+                 and are each other's reference; at their tightest they differ by {floor:.0e}."
+            )
+        }
+        name if name.starts_with("beam-S") => format!(
+            "A ball on an infinite beam, S = {}, first contact: speed after separation over speed of impact, and time of \
+             separation (relative). Reference: one global panel in 25-digit arithmetic, exact to 14 digits.",
+            &name[6..]
+        ),
+        name if name.starts_with("fractional-") => "Largest error at the reference times up to t = 20. Reference: \
+             closed forms and Mittag-Leffler functions with 50 digits."
+            .into(),
+        name if name.starts_with("stepped-modes-N") => format!(
+            "The first {} frequencies of a stepped cantilever, worst relative error. Reference: 20 digits by `mpmath`. \
+             Exact modes have no tolerance: they are one point.",
+            &name[15..]
+        ),
+        name if name.starts_with("emoc-") => "Net restitution by energy minimisation. Reference: the conditions of \
+             optimality solved in rational numbers."
+            .into(),
+        _ => String::new(),
+    }
+}

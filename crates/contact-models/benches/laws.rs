@@ -1,0 +1,35 @@
+//! What a force costs in the inner loop of a solver, and the restitution of a rigid striker at a wall.
+
+use contact_models::{
+    ContactLaw, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, Law, Memory, Thornton, Viscous,
+};
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+
+fn laws() -> Result<Vec<Law>, InvalidInput> {
+    let k = 1.7945e10;
+    Ok(vec![
+        Hertz::new(k)?.into(),
+        Viscous::with_restitution(k, 0.95, 1.0)?.into(),
+        Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8)?.into(),
+        HuntCrossley::new(k, 1.5, 0.2)?.into(),
+        KelvinVoigt::new(1e8, 200.0)?.into(),
+        Flores::new(k, 0.8)?.into(),
+        Thornton::new(1.1e11, 0.015, 2e9)?.into(),
+    ])
+}
+
+fn forces_and_walls(criterion: &mut Criterion) {
+    for law in laws().expect("parameters in range") {
+        let branch = law.touch(&Memory::default(), 1.0);
+        criterion.bench_function(&format!("force/{}", law.name()), |bencher| {
+            bencher.iter(|| law.force(black_box(&branch), black_box(1e-5), black_box(0.5)))
+        });
+        criterion.bench_function(&format!("wall/{}", law.name()), |bencher| {
+            bencher.iter(|| law.wall_restitution(black_box(0.11), black_box(1.0)))
+        });
+    }
+}
+
+criterion_group!(benches, forces_and_walls);
+criterion_main!(benches);

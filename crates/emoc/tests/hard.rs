@@ -1,0 +1,164 @@
+//! What breaks codes for the net restitution, each case with what is to come of it.
+#![cfg(feature = "qp")]
+
+use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, SingleImpact, SolveError, Solver};
+
+const fn coefficients(ebar: f64, beta0: f64, beta1: f64) -> Coefficients<f64> {
+    Coefficients { ebar, beta0, beta1 }
+}
+
+/// One striker at 1 m/s on modes at rest.
+fn single(mass_kg: f64, phi: &[f64], coefficients: Coefficients<f64>) -> Problem {
+    Problem {
+        contacts: vec![Contact { friction: Friction::None, coefficients }],
+        inverse_inertia_per_kg: vec![1.0 / mass_kg],
+        velocity_m_s: vec![-1.0],
+        modes: phi.iter().map(|&shape| Mode { rate: 0.0, shape: vec![shape] }).collect(),
+    }
+}
+
+/// The closed form, the quadratic programs and the general solver at the ends of every range: `(Z, ebar, beta0, beta1)`
+/// and the restitution.
+#[test]
+fn ends_of_the_ranges() {
+    let table = [
+        // Z = 0: nothing vibrates, whatever the outward inequality says
+        (0.0, 1.0, 0.0, 0.0, 1.0),
+        (0.0, 0.7, 0.5, 0.3, 0.7),
+        // Z = 1e12: all that is left is what the outward inequality demands
+        (1e12, 1.0, 0.0, 0.0, 1e-12),
+        (1e12, 0.9, 0.5, 0.0, 0.3),
+        (1e12, 0.9, 0.0, 0.25, 0.225),
+        // beta1 = 1: the striker alone must show the whole rebound
+        (3.0, 0.8, 0.0, 1.0, 0.8),
+        (3.0, 0.8, 2.0, 1.0, 0.8),
+        (1e12, 0.8, 0.3, 1.0, 0.8),
+        // ebar = 0: nothing is demanded
+        (3.0, 0.0, 0.4, 0.6, 0.0),
+        (0.0, 0.0, 0.0, 1.0, 0.0),
+        (1e12, 0.0, 1.0, 1.0, 0.0),
+        // at the kink both terms are equal: 1/(1+Z) = (beta0+beta1)/(1+beta0)
+        (1.0, 1.0, 0.0, 0.5, 0.5),
+        (3.0, 1.0, 1.0 / 3.0, 0.0, 0.25),
+        // an outward weight beyond all bounds
+        (3.0, 0.6, 1e12, 0.0, 0.6 * (1.0 - 1.0 / (1.0 + 1e12))),
+    ];
+    let mut solver = Solver::new();
+    for (z, ebar, beta0, beta1, expected) in table {
+        let coefficients = coefficients(ebar, beta0, beta1);
+        let rebound = coefficients.rebound(z).unwrap();
+        assert!((rebound.restitution - expected).abs() <= 1e-15 * expected.max(1e-12) + 1e-24, "{z} {rebound:?}");
+        assert!((rebound.restitution + rebound.recoil - ebar).abs() <= 1e-15);
+        let energy = rebound.restitution.powi(2) + rebound.modal_energy_fraction(z);
+        assert!(energy <= 1.0 + 1e-15, "{z} {rebound:?}: energy {energy}");
+
+        let phi = [(0.36 * z).sqrt(), -(0.64 * z).sqrt()];
+        let impact = SingleImpact { mass_kg: 1.0, phi: &phi, coefficients };
+        for found in [impact.solve_reduced(), impact.solve_full()] {
+            // degenerate vertices (beta1 = 1) reach fewer digits; extremes may be given up, never answered wrongly
+            match found {
+                Ok(found) => assert!((found.restitution - expected).abs() < 1e-6, "{z} {coefficients:?} {found:?}"),
+                Err(SolveError::Stopped(_)) => assert!(z > 1e6 || beta0 > 1e6, "{z} {coefficients:?}"),
+                Err(error) => panic!("{z} {coefficients:?}: {error}"),
+            }
+        }
+        match solver.solve(&single(1.0, &phi, coefficients)) {
+            Ok(solution) if solution.outcome == Outcome::Solved => {
+                assert!((solution.velocity_m_s[0] - expected).abs() < 1e-6, "{z} {coefficients:?} {solution:?}");
+            }
+            Ok(solution) => {
+                // demands lowered together: said, and still without gain of energy
+                assert!(z > 1e6 || beta0 > 1e6, "{z} {coefficients:?} {solution:?}");
+                assert!(solution.energy_change_j <= 1e-8, "{solution:?}");
+            }
+            Err(SolveError::Stopped(_)) => assert!(z > 1e6 || beta0 > 1e6, "{z} {coefficients:?}"),
+            Err(error) => panic!("{z} {coefficients:?}: {error}"),
+        }
+    }
+}
+
+/// Modes with a node at the contact, none at all, and a hundred equal ones.
+#[test]
+fn modes_without_part() {
+    let c = coefficients(0.9, 0.3, 0.1);
+    let mut solver = Solver::new();
+    let expected = c.rebound(2.0).unwrap().restitution;
+    for phi in [vec![2f64.sqrt()], vec![2f64.sqrt(), 0.0, 0.0], vec![0.02f64.sqrt(); 100]] {
+        let solution = solver.solve(&single(1.0, &phi, c)).unwrap();
+        assert_eq!(solution.outcome, Outcome::Solved);
+        assert!((solution.velocity_m_s[0] - expected).abs() < 1e-9, "{} modes", phi.len());
+        let full = SingleImpact { mass_kg: 1.0, phi: &phi, coefficients: c }.solve_full().unwrap();
+        assert!((full.restitution - expected).abs() < 1e-9, "{} modes", phi.len());
+        for (rate, phi) in solution.modal_rate.iter().zip(&phi) {
+            assert!(*phi != 0.0 || *rate == 0.0, "a mode with a node at the contact moves");
+        }
+    }
+    for phi in [vec![], vec![0.0], vec![0.0; 5]] {
+        let solution = solver.solve(&single(1.0, &phi, c)).unwrap();
+        assert!((solution.velocity_m_s[0] - 0.9).abs() < 1e-12, "{phi:?} {solution:?}");
+    }
+}
+
+/// Programs whose optimum is not unique, or that have no point at all as stated.
+#[test]
+fn degenerate_and_infeasible_programs() {
+    let mut solver = Solver::new();
+    let c = coefficients(0.8, 0.2, 0.1);
+    // the same contact written down twice or five times: impulses are not unique, velocities are
+    let once = solver.solve(&single(1.0, &[1.2, -0.4], c)).unwrap();
+    for copies in [2, 5] {
+        let contact = Contact { friction: Friction::None, coefficients: c };
+        let problem = Problem {
+            contacts: vec![contact; copies],
+            inverse_inertia_per_kg: vec![1.0; copies * copies],
+            velocity_m_s: vec![-1.0; copies],
+            modes: [1.2, -0.4].iter().map(|&phi| Mode { rate: 0.0, shape: vec![phi; copies] }).collect(),
+        };
+        let solution = solver.solve(&problem).unwrap();
+        assert_eq!(solution.outcome, Outcome::Solved);
+        for velocity in &solution.velocity_m_s {
+            assert!((velocity - once.velocity_m_s[0]).abs() < 1e-7, "{copies}: {solution:?}");
+        }
+        let whole: f64 = solution.impulse_n_s.iter().sum();
+        assert!((whole - once.impulse_n_s[0]).abs() < 1e-7, "{copies}: {solution:?}");
+    }
+    // A body between two walls that both close: the rebound from each would press it into the other. No velocity
+    // satisfies that; the demands are lowered until one does.
+    let elastic = Contact { friction: Friction::None, coefficients: coefficients(1.0, 0.0, 0.0) };
+    let mode = Mode { rate: 1.0, shape: vec![1.0, 1.0] };
+    let wedged = Problem {
+        contacts: vec![elastic; 2],
+        inverse_inertia_per_kg: vec![1.0, -1.0, -1.0, 1.0],
+        velocity_m_s: vec![0.0, 0.0],
+        modes: vec![mode],
+    };
+    let solution = solver.solve(&wedged).unwrap();
+    assert!(solution.opening_m_s.iter().all(|g| *g >= -1e-7), "{solution:?}");
+    assert!(solution.energy_change_j <= 1e-8, "{solution:?}");
+    // nothing closes, nothing happens
+    let mut leaving = single(1.0, &[1.0], c);
+    leaving.velocity_m_s[0] = 1.0;
+    assert_eq!(solver.solve(&leaving).unwrap().outcome, Outcome::NoImpact);
+    // no contact at all
+    let none = Problem { contacts: vec![], inverse_inertia_per_kg: vec![], velocity_m_s: vec![], modes: vec![] };
+    assert_eq!(solver.solve(&none).unwrap().outcome, Outcome::NoImpact);
+    // an immovable body that moves is no problem that can be posed
+    let mut immovable = single(1.0, &[1.0], c);
+    immovable.inverse_inertia_per_kg[0] = 0.0;
+    assert!(matches!(solver.solve(&immovable), Err(SolveError::Invalid(_))));
+}
+
+/// Masses and shapes over twelve decades and more, with the same `Z`: the same restitution.
+#[test]
+fn twelve_decades_of_mass() {
+    let c = coefficients(0.9, 0.3, 0.2);
+    let expected = c.rebound(1.0).unwrap().restitution;
+    let mut solver = Solver::new();
+    for power in [-12, -6, 0, 6, 12] {
+        let mass_kg = 10f64.powi(power);
+        let phi = [(0.5 / mass_kg).sqrt(), -(0.5 / mass_kg).sqrt()];
+        let solution = solver.solve(&single(mass_kg, &phi, c)).unwrap();
+        assert_eq!(solution.outcome, Outcome::Solved, "1e{power} kg");
+        assert!((solution.velocity_m_s[0] - expected).abs() < 1e-9, "1e{power} kg: {solution:?}");
+    }
+}

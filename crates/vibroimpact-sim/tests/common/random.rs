@@ -1,0 +1,125 @@
+//! Random impacts for property tests: the seed is fixed, so that a run is the same everywhere.
+
+use contact_models::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use std::f64::consts::PI;
+use vibroimpact_sim::modal::{Mode, Solution, Solver, Striker, Structure};
+
+/// So many cases, times the environment variable `VIBROIMPACT_CASES` if it is set.
+pub fn cases(count: u32) -> u32 {
+    let factor = std::env::var("VIBROIMPACT_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
+    count.saturating_mul(factor)
+}
+
+pub fn config(count: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases: cases(count),
+        rng_seed: RngSeed::Fixed(2019),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+/// Numbers spread evenly over the decades `10^from .. 10^to`.
+pub fn decades(from: f64, to: f64) -> impl Strategy<Value = f64> {
+    (from..to).prop_map(|x| 10f64.powf(x))
+}
+
+/// Any law, over many decades.
+pub fn any_law() -> impl Strategy<Value = Law> {
+    let stiffness = || decades(2.0, 14.0);
+    prop_oneof![
+        stiffness().prop_map(|k| Hertz::new(k).unwrap().into()),
+        (stiffness(), decades(-4.0, 2.0)).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
+        (stiffness(), decades(-10.0, -3.0))
+            .prop_map(|(k, epsilon)| Hysteretic::new(k, 1.6, 1.4, 0.4, epsilon).unwrap().into()),
+        stiffness().prop_map(|k| LinearSpring::new(k).unwrap().into()),
+        (stiffness(), decades(-3.0, 5.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
+        (stiffness(), 1.0..3.0, decades(-3.0, 2.0)).prop_map(|(k, n, d)| HuntCrossley::new(k, n, d).unwrap().into()),
+        (stiffness(), 0.01..1.0).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),
+        (stiffness(), 0.05..1.0).prop_map(|(k, e)| Flores::new(k, e).unwrap().into()),
+        (decades(6.0, 12.0), decades(-3.0, 0.0), decades(5.0, 10.0))
+            .prop_map(|(modulus, radius, yields)| Thornton::new(modulus, radius, yields).unwrap().into()),
+    ]
+}
+
+/// Any structure, over many decades, with and without rigid-body modes and residual compliance.
+pub fn any_structure() -> impl Strategy<Value = Structure> {
+    let damping = prop_oneof![Just(0.0), decades(-4.0, 1.0)];
+    let compliance = prop_oneof![4 => Just(0.0), 1 => decades(-12.0, -6.0)];
+    let rigid = prop_oneof![2 => Just(None), 1 => decades(-2.0, 1.0).prop_map(Some)];
+    (0usize..30, decades(0.0, 5.0), 1i32..3, damping, 0.0..1.0f64, compliance, rigid).prop_map(
+        |(n, first, power, damping_ratio, place, residual_compliance_m_n, rigid)| {
+            let elastic = (1..=n).map(|k| Mode {
+                omega_rad_s: first * (k as f64).powi(power),
+                damping_ratio,
+                shape: 1.4 * (PI * k as f64 * place).sin(),
+            });
+            let rigid = rigid.map(|shape| Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape });
+            Structure { modes: elastic.chain(rigid).collect(), residual_compliance_m_n }
+        },
+    )
+}
+
+/// An impact as an engineer might pose it: of the order of the thesis's, two decades up and down.
+#[derive(Debug, Clone)]
+pub struct Impact {
+    pub structure: Structure,
+    pub striker: Striker,
+    pub law: Law,
+}
+
+impl Impact {
+    /// At rest and touching, at this tolerance.
+    pub fn solve(&self, tolerance: f64) -> Solution {
+        let mut solver = Solver::new(&self.structure).unwrap();
+        solver.solve(&self.striker, &self.law, None, &super::settings(tolerance)).unwrap()
+    }
+}
+
+/// Laws that lose energy and laws that do not, for a striker of the order of 0.1 kg at 1 m/s.
+pub fn ordinary_law() -> impl Strategy<Value = Law> {
+    let stiffness = || decades(8.0, 11.0);
+    prop_oneof![
+        3 => conservative_law(),
+        1 => (stiffness(), decades(-3.0, -0.5)).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
+        1 => stiffness().prop_map(|k| Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8).unwrap().into()),
+        1 => (decades(5.0, 8.0), decades(0.0, 3.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
+        1 => (stiffness(), decades(-3.0, -0.5)).prop_map(|(k, d)| HuntCrossley::new(k, 1.5, d).unwrap().into()),
+        1 => (decades(10.0, 11.3), decades(-2.5, -1.5), decades(8.0, 10.0))
+            .prop_map(|(modulus, radius, yields)| Thornton::new(modulus, radius, yields).unwrap().into()),
+    ]
+}
+
+/// Laws that give back all they took.
+pub fn conservative_law() -> impl Strategy<Value = Law> {
+    prop_oneof![
+        2 => decades(8.0, 11.0).prop_map(|k| Law::from(Hertz::new(k).unwrap())),
+        1 => decades(5.0, 8.0).prop_map(|k| Law::from(LinearSpring::new(k).unwrap())),
+    ]
+}
+
+/// A pinned beam in its first modes, struck anywhere, with or without the residual compliance of the others.
+pub fn ordinary_structure(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Structure> {
+    (1usize..50, damping, 0.02..0.98f64, any::<bool>()).prop_map(|(n, damping_ratio, b, residual)| match residual {
+        true => super::pinned_with_residual(n, damping_ratio, b),
+        false => super::pinned(n, damping_ratio, b),
+    })
+}
+
+pub fn ordinary_striker() -> impl Strategy<Value = Striker> {
+    (decades(-2.5, 0.5), decades(-1.0, 1.0)).prop_map(|(mass_kg, speed_m_s)| Striker { mass_kg, speed_m_s })
+}
+
+/// Damped or not.
+pub fn ordinary_damping() -> impl Strategy<Value = f64> {
+    prop_oneof![1 => Just(0.0), 4 => decades(-3.0, -1.0)]
+}
+
+pub fn ordinary_impact() -> impl Strategy<Value = Impact> {
+    (ordinary_structure(ordinary_damping()), ordinary_striker(), ordinary_law())
+        .prop_map(|(structure, striker, law)| Impact { structure, striker, law })
+}

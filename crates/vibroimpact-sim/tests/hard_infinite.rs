@@ -1,0 +1,131 @@
+//! What breaks codes for impacts on infinite beams and plates, each case with what is to come of it.
+
+mod common;
+
+use common::random::{config, decades};
+use proptest::prelude::*;
+use vibroimpact_sim::infinite::{
+    Impact, Material, Outcome, S_RANGE, Settings, Solution, Structure, critical_s, solve, turning_points,
+};
+
+fn run(s: f64) -> Solution {
+    solve(Structure::Beam, s, &Settings { max_panels: 400, ..Settings::default() }).unwrap()
+}
+
+/// `S` as near as 1e-9 and 1e-12 to the critical value and to each turning point, on both sides: how it ends, and how many
+/// separations there are (`None`: more than the panels allowed can tell).
+#[test]
+fn on_both_sides_of_every_change() {
+    let critical = critical_s();
+    let mut table = vec![
+        ("below critical", critical.s * (1.0 - 1e-9), Outcome::Rebound, Some(1)),
+        ("closer below critical", critical.s * (1.0 - 1e-11), Outcome::Rebound, Some(1)),
+        ("above critical", critical.s * (1.0 + 1e-9), Outcome::LimitReached, None),
+        ("closer above critical", critical.s * (1.0 + 1e-11), Outcome::LimitReached, None),
+        ("least S", *S_RANGE.start(), Outcome::Rebound, Some(1)),
+        ("largest S", *S_RANGE.end(), Outcome::Sustained, Some(0)),
+    ];
+    for point in turning_points(8).unwrap() {
+        for aside in [1e-6, 1e-9] {
+            assert!(point.uncertainty < 0.1 * aside * point.s, "{point:?}");
+            table.push(("below a turning point", point.s * (1.0 - aside), Outcome::Sustained, Some(point.n)));
+            table.push(("above a turning point", point.s * (1.0 + aside), Outcome::Sustained, Some(point.n - 1)));
+        }
+    }
+    for (name, s, outcome, separations) in table {
+        let solution = run(s);
+        assert_eq!(solution.outcome, outcome, "{name}: S = {s}");
+        if let Some(count) = separations {
+            assert_eq!(solution.separations(), count, "{name}: S = {s}");
+            // the number of contacts is certain, and so are their times; only where one grazes do digits go
+            assert!(solution.error.unwrap() < 1e-3, "{name}: S = {s}: {:?}", solution.error);
+        } else {
+            assert!(solution.separations() > 10, "{name}: S = {s}: {}", solution.separations());
+        }
+        assert!(solution.contacts.windows(2).all(|pair| pair[0].end.is_some_and(|end| end < pair[1].start)), "{name}");
+    }
+}
+
+/// Just below a turning point the n-th flight is short and shallow, just above it the compression has a minimum of the
+/// same smallness in its place: the nearer, the closer both come to zero.
+#[test]
+fn a_graze_is_seen_from_both_sides() {
+    for point in turning_points(6).unwrap() {
+        let mut last = f64::INFINITY;
+        for aside in [1e-4, 1e-6, 1e-8] {
+            let (below, above) = (run(point.s * (1.0 - aside)), run(point.s * (1.0 + aside)));
+            let parted = below.contacts[point.n - 1].end.unwrap();
+            let flight = below.contacts[point.n].start - parted;
+            assert!(flight > 0.0 && flight < last, "n = {}: {flight:e}", point.n);
+            // a gap that opens as the square of time is as deep as the distance from the turning point, and as long as
+            // its square root: three shrink by a hundred each, the flight by ten
+            if last.is_finite() {
+                assert!((last / flight / 10.0 - 1.0).abs() < 0.1, "n = {}: {last:e} to {flight:e}", point.n);
+            }
+            last = flight;
+            let minima = above.extrema.iter().filter(|extremum| extremum.minimum && extremum.contact == point.n - 1);
+            let least = minima.map(|extremum| extremum.compression).fold(f64::INFINITY, f64::min);
+            let largest = above.extrema.iter().filter(|extremum| extremum.contact == point.n - 1);
+            let largest = largest.map(|extremum| extremum.compression).fold(0.0, f64::max);
+            assert!(least > 0.0 && least < 10.0 * aside * largest, "n = {}: {least:e} of {largest:e}", point.n);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(config(60))]
+
+    /// Any `S`: contacts in order, a body that only ever slows down, and a rebound no faster than the approach.
+    #[test]
+    fn any_s(power in -12.0..8.0f64, plate in any::<bool>()) {
+        let structure = if plate { Structure::Plate } else { Structure::Beam };
+        let s = 10f64.powf(power);
+        let solution = solve(structure, s, &Settings { estimate_error: false, max_panels: 2_000, ..Settings::default() }).unwrap();
+        let mut speed = 1.0;
+        for contact in &solution.contacts {
+            prop_assert!(contact.closing_speed > 0.0 && contact.duration.is_none_or(|duration| duration > 0.0));
+            prop_assert!(contact.body_speed_at_start == speed);
+            speed = contact.body_speed_at_end.unwrap_or(speed);
+            prop_assert!(speed <= contact.body_speed_at_start && speed >= -1.0);
+        }
+        if let Some(ratio) = solution.rebound_ratio() {
+            prop_assert!((0.0..=1.0).contains(&ratio));
+        }
+        for i in 0..=50 {
+            let time = solution.known_until.min(1e3) * f64::from(i) / 50.0;
+            let state = solution.at(time).unwrap();
+            prop_assert!(state.force >= 0.0 && state.body_displacement.is_finite() && state.structure_speed.is_finite());
+        }
+    }
+
+    /// Scaling: impacts in which mass, stiffness and speed change but `S` does not are one impact in other units.
+    #[test]
+    fn the_same_s_in_other_units(
+        radius in decades(-3.0, -1.0), speed in decades(-2.0, 1.0), mass in decades(-2.0, 2.0), stiff in decades(-2.0, 2.0),
+    ) {
+        let one = Impact::sphere_on_beam(Material::STEEL, 0.028, 0.028, radius, speed).unwrap();
+        // S = C^10 k^2 m^8 v
+        let factor = stiff.powi(2) * mass.powi(8);
+        let response = factor.powf(-0.1);
+        let other = Impact {
+            impulse_response: one.impulse_response * response,
+            stiffness_n_m1_5: one.stiffness_n_m1_5 * stiff,
+            mass_kg: one.mass_kg * mass,
+            ..one
+        };
+        let (a, b) = (one.groups().unwrap(), other.groups().unwrap());
+        prop_assert!((a.s / b.s - 1.0).abs() < 1e-12, "{} {}", a.s, b.s);
+        prop_assert!((b.time_s / a.time_s / (response * mass).powi(2) - 1.0).abs() < 1e-12);
+        if S_RANGE.contains(&a.s) && S_RANGE.contains(&b.s) {
+            let settings = Settings { max_panels: 500, ..Settings::default() };
+            let (a, b) = (solve(Structure::Beam, a.s, &settings).unwrap(), solve(Structure::Beam, b.s, &settings).unwrap());
+            prop_assert_eq!(a.outcome, b.outcome);
+            prop_assert_eq!(a.separations(), b.separations());
+            if let (Some(x), Some(y)) = (a.rebound_ratio(), b.rebound_ratio()) {
+                // S itself differs by rounding; the restitution falls with less than its own size a decade of S
+                let stated = a.error.unwrap_or(1.0) + b.error.unwrap_or(1.0) + 1e-12;
+                prop_assert!((x - y).abs() <= 2.0 * stated, "{} {}", x, y);
+            }
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Which model a scene is given to.
+
+use super::pose::{Pose, chooses_modes, modal_only};
+use super::{Answer, Cost, Model, infinite, rigid, settle};
+use crate::impact::Impact;
+use crate::scene::{InvalidInput, Scene};
+
+/// An answer, and the modal problem that it came from if it came from one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// What was found, by what.
+    pub answer: Answer,
+    /// The modal problem last solved, to be recorded; `None` for the other models.
+    pub impact: Option<Impact>,
+}
+
+/// What became of a tier: an answer, or why it does not apply.
+pub(super) type Tried = Result<Result<Choice, String>, InvalidInput>;
+
+impl Scene {
+    /// Chooses the model and answers: restitution, how well it is known, why this model, at what cost.
+    ///
+    /// # Errors
+    /// A value out of range, fields of which too few or too many are given, or a `model` that cannot be had for the
+    /// structure or the law.
+    ///
+    /// ```
+    /// use vibroimpact::{Scene, model::Model};
+    ///
+    /// let scene = |place: f64| Scene::from_json(&format!(r#"{{
+    ///     "structure": {{ "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+    ///                    "segments": [{{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }}] }},
+    ///     "striker": {{ "mass_kg": 0.1, "speed_m_s": 1 }},
+    ///     "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1.8e10 }},
+    ///     "location_m": {place}, "tolerance": 1e-3
+    /// }}"#));
+    /// let answer = scene(0.4)?.answer()?;
+    /// assert_eq!(answer.model, Model::Modal);
+    /// assert!(answer.settled && answer.restitution_uncertainty.unwrap() <= 1e-3);
+    /// // on the support itself
+    /// let answer = scene(0.0)?.answer()?;
+    /// assert_eq!((answer.model, answer.restitution), (Model::Rigid, Some(1.0)));
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn answer(&self) -> Result<Answer, InvalidInput> {
+        Ok(self.choose()?.answer)
+    }
+
+    /// As [`Scene::answer`], with the modal problem that the answer came from.
+    ///
+    /// # Errors
+    /// As [`Scene::answer`].
+    pub fn choose(&self) -> Result<Choice, InvalidInput> {
+        if self.is_infinite() {
+            return infinite::of_infinite_structure(self);
+        }
+        let mut cost = Cost::default();
+        let refuse =
+            |model: Model, reason: String| InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason);
+        let mut choice = match (self.model, modal_only(self)) {
+            (Model::Auto | Model::Modal, Some(_)) => settle::stated(self, &mut cost)?,
+            (forced, Some(why)) => return Err(refuse(forced, format!("auto or modal: {why}"))),
+            (Model::Auto, None) => auto(&mut Pose::new(self)?, &mut cost)?,
+            (forced, None) => {
+                forced_tier(forced, &mut Pose::new(self)?, &mut cost)?.map_err(|reason| refuse(forced, reason))?
+            }
+        };
+        choice.answer.cost = cost;
+        Ok(choice)
+    }
+}
+
+/// The cheapest tier that is certain to reach the tolerance.
+fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+    if !chooses_modes(pose.scene) {
+        return settle::stated(pose.scene, cost);
+    }
+    for tier in [rigid::certified, super::emoc::certified, infinite::certified] {
+        if let Ok(choice) = tier(pose, cost)? {
+            return Ok(choice);
+        }
+    }
+    modal(pose, cost)
+}
+
+/// The modal problem with as many modes as the restitution needs to settle.
+pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
+    let mut pose = Pose::new(scene)?;
+    let choice = modal(&mut pose, &mut Cost::default())?;
+    // the modal tier always has one
+    choice.impact.map_or_else(|| scene.impact_of(Some(0)), Ok)
+}
+
+/// The modal tier.
+pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+    if chooses_modes(pose.scene) && pose.approaches() {
+        settle::settle(pose, cost)
+    } else {
+        settle::stated(pose.scene, cost)
+    }
+}
+
+/// A tier that was asked for; `Err` inside says why it cannot be had.
+pub(super) fn forced_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
+    match model {
+        Model::Rigid => rigid::forced(pose, cost),
+        Model::InfiniteBeam => infinite::forced(pose, cost),
+        Model::Emoc => super::emoc::forced(pose, cost),
+        Model::Modal | Model::Auto => modal(pose, cost).map(Ok),
+    }
+}

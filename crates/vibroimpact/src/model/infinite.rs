@@ -1,0 +1,313 @@
+//! A contact that ends before a wave has come back from an end: the infinite beam.
+//!
+//! *Damping.* Modes of one damping ratio `zeta` make, on a beam without ends, the impulse response
+//!
+//! ```text
+//! (1/(pi m')) int_0^oo exp(-zeta w t) sin(w sqrt(1-zeta^2) t) / (w sqrt(1-zeta^2)) dk = C sqrt(t) / sqrt(1 + zeta),
+//! w = sqrt(EI/m') k^2,
+//! ```
+//!
+//! that of an undamped beam (thesis Eq. 2.1) with another constant. So a damped beam has its infinite beam too, exactly.
+//!
+//! *Ends.* A wave of frequency `w` travels at `c_g = 2 sqrt(w) (EI/m')^(1/4)` and is back from an end at distance `d`
+//! after `2 d/c_g`. Within a contact of duration `tau` this leaves out frequencies below `z/tau`, with
+//!
+//! ```text
+//! z = d^2 / (sqrt(EI/m') tau).
+//! ```
+//!
+//! A beam of Euler and Bernoulli has no greatest speed, so what comes back in time is small but not nothing. Everything
+//! is similar in `z`, the damping and the number `S` of thesis Eq. 2.8; [`reflection_bound`] holds for every `S`.
+//!
+//! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the place moves away
+//! from it as on the infinite beam; afterwards it never comes back further than `W = sum phi_k^2 P/omega_k` beyond
+//! where it started, `P` the impulse. If the striker is then out of reach, it is so for ever.
+
+use contact_models::Law;
+use vibroimpact_sim::infinite::{self, Outcome};
+use vibroimpact_sim::modal::Mode;
+
+use super::choose::{Choice, Tried};
+use super::pose::{Pose, Source};
+use super::text::small;
+use super::{Answer, Cost, Model};
+use crate::scene::{End, InvalidInput, Scene};
+
+/// Times and distances from which [`reflection_bound`] holds.
+const LEAST_Z: f64 = 2.0;
+/// Above this `S` the striker does not leave an infinite beam after one contact (thesis 2.2.6: 1.559).
+const CRITICAL_S: f64 = 1.560;
+/// Modes summed one by one for the reach of the place.
+const SUMMED: usize = 24;
+
+/// How an end sends waves back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reflection {
+    /// As one image of the source: a pinned or guided end.
+    Image,
+    /// With a near field: a clamped or free end.
+    NearField,
+}
+
+impl From<End> for Reflection {
+    fn from(end: End) -> Reflection {
+        match end {
+            End::Pinned | End::Guided => Reflection::Image,
+            End::Clamped | End::Free => Reflection::NearField,
+        }
+    }
+}
+
+/// Largest change of the restitution of one contact by an end, for `z` of at least 2; infinite below.
+///
+/// The powers follow from the smoothness of the force; where damping is by modes, a clamped or free end also answers
+/// slowly and from afar. The factors are twice the largest found in resolved impacts on beams of all four ends, `S`
+/// from 1e-5 to 1.2, damping ratios up to 0.1 and `z` up to 32 (`tests/model.rs` goes through them again).
+pub fn reflection_bound(end: Reflection, z: f64, damping_ratio: f64) -> f64 {
+    if !(z >= LEAST_Z && damping_ratio <= 0.1) {
+        return f64::INFINITY;
+    }
+    let waves = 10.0 / z.powi(4);
+    match end {
+        Reflection::Image => waves,
+        Reflection::NearField => waves + 0.8 * damping_ratio / z.powf(1.5),
+    }
+}
+
+/// A uniform beam with its place.
+struct Uniform {
+    rigidity: f64,
+    mass_per_length: f64,
+    distances: [f64; 2],
+    ends: [End; 2],
+    damping_ratio: f64,
+}
+
+impl Uniform {
+    /// The beam of a scene with Hertz contact, or why there is none.
+    fn new(pose: &Pose) -> Result<Result<Uniform, String>, InvalidInput> {
+        let Source::Beam { beam, location_m, .. } = &pose.source else {
+            return Ok(Err("the structure is given by its modes, not as a beam".to_owned()));
+        };
+        if !matches!(pose.law, Law::Hertz(_)) {
+            return Ok(Err("the infinite beam is solved for hertz contact".to_owned()));
+        }
+        let built = beam.to_beam().map_err(|fault| fault.within("structure"))?;
+        let Some(first) = built.segments.first() else { return Ok(Err("there is no beam".to_owned())) };
+        let alike = built.segments.iter().all(|other| {
+            other.flexural_rigidity_n_m2 == first.flexural_rigidity_n_m2
+                && other.mass_per_length_kg_m == first.mass_per_length_kg_m
+        });
+        if !alike {
+            return Ok(Err("the beam is not uniform".to_owned()));
+        }
+        Ok(Ok(Uniform {
+            rigidity: first.flexural_rigidity_n_m2,
+            mass_per_length: first.mass_per_length_kg_m,
+            distances: [*location_m, built.length_m() - location_m],
+            ends: beam.ends,
+            damping_ratio: beam.damping_ratio,
+        }))
+    }
+
+    /// `sqrt(EI/m')` (m^2/s).
+    fn spread(&self) -> f64 {
+        (self.rigidity / self.mass_per_length).sqrt()
+    }
+
+    fn impact(&self, pose: &Pose) -> Result<infinite::Impact, InvalidInput> {
+        let stiffness = match &pose.law {
+            Law::Hertz(law) => law.stiffness_n_m1_5,
+            _ => f64::NAN,
+        };
+        let (mass, speed) = (pose.striker.mass_kg, pose.striker.speed_m_s);
+        let undamped = infinite::Impact::on_beam(self.rigidity, self.mass_per_length, stiffness, mass, speed)?;
+        Ok(infinite::Impact {
+            impulse_response: undamped.impulse_response / (1.0 + self.damping_ratio).sqrt(),
+            ..undamped
+        })
+    }
+
+    /// What both ends may change in a contact of this duration, and the smaller `z`.
+    fn reflections(&self, duration_s: f64) -> (f64, f64) {
+        let z = self.distances.map(|d| d * d / (self.spread() * duration_s));
+        let bound = |i: usize| reflection_bound(self.ends[i].into(), z[i], self.damping_ratio);
+        (bound(0) + bound(1), z[0].min(z[1]))
+    }
+
+    /// How long the place answers as that of an infinite beam (s).
+    fn undisturbed_s(&self) -> f64 {
+        self.distances[0].min(self.distances[1]).powi(2) / (LEAST_Z * self.spread())
+    }
+}
+
+/// How far the place of impact can come back towards the striker after an impulse (m).
+fn reach(modes: &[Mode], impulse: f64, beam_mass: f64) -> f64 {
+    let elastic = || modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
+    let summed: f64 = elastic().map(|mode| mode.shape.powi(2) * impulse / mode.omega_rad_s).sum();
+    // beyond: no shape of a uniform beam is larger than 2/sqrt(M), and frequencies grow like squares
+    let beyond = elastic()
+        .next_back()
+        .map_or(f64::INFINITY, |mode| 1.2 * elastic().count() as f64 * 4.0 / beam_mass * impulse / mode.omega_rad_s);
+    summed + beyond
+}
+
+/// The infinite beam, if nothing from the ends can change the restitution by more than the tolerance.
+pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
+    let beam = match Uniform::new(pose)? {
+        Ok(beam) => beam,
+        Err(reason) => return Ok(Err(reason)),
+    };
+    if !pose.approaches() {
+        return Ok(Err("the striker does not approach".to_owned()));
+    }
+    // a first contact on an infinite beam lasts 0.9 to 1 times one at a wall
+    let (hopeful, z) = beam.reflections(0.8 * pose.wall.duration_s);
+    if hopeful > pose.tolerance {
+        return Ok(Err(format!("waves come back from an end within the contact (z = {})", small(z))));
+    }
+    match solve(pose, &beam, cost)? {
+        Ok((choice, Some(_))) if choice.answer.settled => Ok(Ok(choice)),
+        Ok((_, Some(uncertainty))) => {
+            Ok(Err(format!("what comes back from the ends may change the restitution by {}", small(uncertainty))))
+        }
+        Ok((_, None)) => Ok(Err("the place may come back and meet the striker again".to_owned())),
+        Err(reason) => Ok(Err(reason)),
+    }
+}
+
+/// The infinite beam, because it was asked for.
+pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
+    let beam = match Uniform::new(pose)? {
+        Ok(beam) => beam,
+        Err(reason) => return Ok(Err(format!("another model: {reason}"))),
+    };
+    if !pose.approaches() {
+        return Ok(Err("another model where the striker does not approach".to_owned()));
+    }
+    Ok(solve(pose, &beam, cost)?.map(|(choice, _)| choice))
+}
+
+/// The choice, with an uncertainty if one can be given.
+type Solved = Result<(Choice, Option<f64>), String>;
+
+fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, InvalidInput> {
+    let groups = beam.impact(pose)?.groups()?;
+    let once = pose.scene.model == Model::Auto;
+    if once && groups.s > CRITICAL_S {
+        return Ok(Err(format!("the striker would not leave an infinite beam at once (S = {})", small(groups.s))));
+    }
+    let settings = infinite::Settings { tolerance: 1e-8, nodes: 12, estimate_error: false, ..Default::default() };
+    let solution = match infinite::solve(infinite::Structure::Beam, groups.s, &settings) {
+        Ok(solution) => solution,
+        Err(fault) => return Ok(Err(format!("S = {} cannot be solved: {}", small(groups.s), fault.allowed))),
+    };
+    cost.solves += 1;
+    cost.panels += solution.panels_tried as u64;
+    let ended = solution.contacts.last().and_then(|contact| contact.end);
+    let duration_s = ended.unwrap_or(f64::INFINITY) * groups.time_s;
+    let (bound, z) = beam.reflections(duration_s);
+
+    let modes = pose.source.first(SUMMED, cost)?;
+    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
+    let (mass, speed) = (pose.striker.mass_kg, pose.striker.speed_m_s);
+    let ratio = solution.rebound_ratio();
+    let impulse = mass * speed * (1.0 + ratio.unwrap_or(0.0));
+    let beam_mass = beam.mass_per_length * (beam.distances[0] + beam.distances[1]);
+    let reach = reach(modes, impulse, beam_mass);
+    let departs = ratio.unwrap_or(0.0) * speed * (beam.undisturbed_s() - duration_s);
+    // twice: from where it was left to where it started, and beyond
+    let free = solution.contacts.len() == 1 && departs > 2.0 * reach;
+
+    // relative to the rigid-body motion of the beam, as elsewhere
+    let relative = 1.0 + mass * rigid;
+    let restitution = ratio.map(|ratio| (1.0 + ratio) * relative - 1.0);
+    const SOLVER: f64 = 1e-7;
+    let uncertainty = restitution.filter(|_| free).map(|_| relative * (bound + SOLVER)).filter(|u| u.is_finite());
+    let settled = uncertainty.is_some_and(|u| u <= pose.tolerance);
+    let speed_of_waves = 2.0 * beam.distances[0].min(beam.distances[1]) / duration_s;
+    let evidence = format!(
+        "one contact of {} s, S = {}; within it only waves faster than {} m/s come back from an end (z = {}), which \
+         changes the restitution by {} at most",
+        small(duration_s),
+        small(groups.s),
+        small(speed_of_waves),
+        small(z),
+        small(bound)
+    );
+    let reason = match (ended, free) {
+        (None, _) => format!(
+            "infinite-beam: the striker stays on an infinite beam (S = {}); a real one sends its waves back",
+            small(groups.s)
+        ),
+        (_, true) if bound.is_finite() => {
+            format!("infinite-beam: {evidence}; the striker is then out of reach for ever")
+        }
+        (_, true) => format!(
+            "infinite-beam: the last contact ends after {} s, when waves have long come back from an end (z = {})",
+            small(duration_s),
+            small(z)
+        ),
+        (_, false) => format!(
+            "infinite-beam: the last contact ends after {} s (z = {}), and that the beam's ends cause no further \
+             contact is not certain",
+            small(duration_s),
+            small(z)
+        ),
+    };
+    let answer = Answer {
+        model: Model::InfiniteBeam,
+        outcome: outcome(solution.outcome),
+        restitution,
+        restitution_uncertainty: uncertainty,
+        tolerance: pose.tolerance,
+        sub_impact_count: Some(solution.contacts.len()),
+        modes: 0,
+        residual_compliance_m_n: 0.0,
+        settled,
+        spread: None,
+        reason,
+        cost: Cost::default(),
+    };
+    Ok(Ok((Choice { answer, impact: None }, uncertainty)))
+}
+
+fn outcome(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Rebound => "rebound",
+        Outcome::Sustained => "sustained",
+        Outcome::LimitReached => "limit reached",
+    }
+}
+
+/// A structure that has no ends to begin with.
+pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInput> {
+    if !matches!(scene.model, Model::Auto | Model::InfiniteBeam) {
+        let value = format!("\"{}\"", scene.model.as_str());
+        return Err(InvalidInput::new("model", value, "auto or infinite-beam for a structure without ends"));
+    }
+    let impact = scene.infinite_impact()?;
+    let groups = impact.groups()?;
+    let settings = infinite::Settings::default();
+    let solution = infinite::solve(impact.structure, groups.s, &settings)?;
+    let restitution = solution.rebound_ratio();
+    // relative to the change of speed
+    let uncertainty = restitution.zip(solution.error).map(|(e, error)| error * (1.0 + e)).filter(|u| u.is_finite());
+    let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
+    let kind = scene.structure.kind().replace('-', " ");
+    let answer = Answer {
+        model: Model::InfiniteBeam,
+        outcome: outcome(solution.outcome),
+        restitution,
+        restitution_uncertainty: uncertainty,
+        tolerance: super::DEFAULT_TOLERANCE,
+        sub_impact_count: Some(solution.contacts.len()),
+        modes: 0,
+        residual_compliance_m_n: 0.0,
+        settled: settled || solution.outcome == Outcome::Sustained,
+        spread: None,
+        reason: format!("the structure is an {kind}: S = {}", small(groups.s)),
+        cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
+    };
+    Ok(Choice { answer, impact: None })
+}

@@ -1,0 +1,209 @@
+//! The choice of the model: a scene and an accuracy in, the cheapest model that reaches it out.
+//!
+//! | tier | what it assumes | chosen where |
+//! |---|---|---|
+//! | [`Model::Rigid`] | the place cannot move | a bound on the energy that the structure can take up says so |
+//! | [`Model::InfiniteBeam`] | no wave comes back from an end | the contact ends first, and the striker is never caught again |
+//! | [`Model::Modal`] | finitely many modes, the others answer statically | everywhere else; raised until the restitution has settled |
+//! | [`Model::Emoc`] | no course in time at all | asked for, or the tolerance is as wide as the law's validated error |
+//!
+//! [`Scene::answer`] chooses and solves, [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
+//! beside the others. All of it is deterministic.
+
+mod attached;
+mod choose;
+mod compare;
+mod emoc;
+mod infinite;
+mod plan;
+mod pose;
+mod rigid;
+mod settle;
+mod text;
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use vibroimpact_sim::modal::Counts;
+
+pub use attached::largest_share;
+pub use choose::Choice;
+pub(crate) use choose::settled_impact;
+pub use compare::{Comparison, Tier};
+pub use emoc::{VALIDATED, Validated, law as emoc_law};
+pub use infinite::{Reflection, reflection_bound};
+pub use plan::{Estimate, Plan};
+pub(crate) use pose::chooses_modes;
+pub use text::{answer_text, comparison_text, net_text, plan_text};
+
+#[cfg(doc)]
+use crate::Scene;
+
+/// The restitution is wanted this well where the program chooses the modes and the scene states no tolerance.
+pub const DEFAULT_TOLERANCE: f64 = 1e-3;
+
+/// The scene field `"model"`, and the model that an answer came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Model {
+    /// The program chooses.
+    #[default]
+    Auto,
+    /// The place does not move: the law's restitution at a wall.
+    Rigid,
+    /// A beam without ends, [`vibroimpact_sim::infinite`]; of an infinite plate, the plate.
+    InfiniteBeam,
+    /// Modes and resolved contacts, [`vibroimpact_sim::modal`].
+    Modal,
+    /// A law for the net restitution that integrates nothing in time.
+    Emoc,
+}
+
+impl Model {
+    /// The name in scene files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Model::Auto => "auto",
+            Model::Rigid => "rigid",
+            Model::InfiniteBeam => "infinite-beam",
+            Model::Modal => "modal",
+            Model::Emoc => "emoc",
+        }
+    }
+
+    pub(crate) fn is_auto(&self) -> bool {
+        *self == Model::Auto
+    }
+}
+
+/// The scene field `"modes"`: `"auto"`, or how many modes the structure is stated to have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Modes {
+    /// As many as the restitution needs to settle.
+    #[default]
+    Auto,
+    /// This many, from the lowest.
+    Count(usize),
+}
+
+impl Modes {
+    /// The number, if one is stated.
+    pub fn count(self) -> Option<usize> {
+        match self {
+            Modes::Auto => None,
+            Modes::Count(count) => Some(count),
+        }
+    }
+
+    pub(crate) fn is_auto(&self) -> bool {
+        *self == Modes::Auto
+    }
+}
+
+impl Serialize for Modes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Modes::Auto => serializer.serialize_str("auto"),
+            Modes::Count(count) => serializer.serialize_u64(*count as u64),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Modes {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Modes, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Count(usize),
+            Word(String),
+        }
+        match Written::deserialize(deserializer) {
+            Ok(Written::Count(count)) => Ok(Modes::Count(count)),
+            Ok(Written::Word(word)) if word == "auto" => Ok(Modes::Auto),
+            _ => Err(de::Error::custom("invalid value, expected \"auto\", or a whole number from 0 to 10000")),
+        }
+    }
+}
+
+impl JsonSchema for Modes {
+    fn schema_name() -> Cow<'static, str> {
+        "Modes".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "\"auto\", or how many modes the structure is stated to have",
+            "anyOf": [{ "const": "auto" }, { "type": "integer", "minimum": 0, "maximum": 10000 }]
+        })
+    }
+}
+
+/// What [`Scene::answer`] found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Answer {
+    /// The model used; never `auto`.
+    pub model: Model,
+    /// `rebound`, `no contact`, `sustained` or `limit reached`.
+    pub outcome: &'static str,
+    /// Net restitution; null where the impact did not end in a rebound from an approach.
+    pub restitution: Option<f64>,
+    /// Estimated error of the restitution. Where the program chooses the modes of a beam, against the same beam with
+    /// infinitely many modes; where the modes are stated, against the exact motion of those modes.
+    pub restitution_uncertainty: Option<f64>,
+    /// Accuracy that was wanted.
+    pub tolerance: f64,
+    /// Number of separate contacts; null for a model that does not resolve them.
+    pub sub_impact_count: Option<usize>,
+    /// Number of modes that were integrated.
+    pub modes: usize,
+    /// Static compliance of all other modes, in series with the contact (m/N); 0 where they were left out.
+    pub residual_compliance_m_n: f64,
+    /// Whether the tolerance was reached (for stated modes: whether the solver's own estimate is within ten times its
+    /// tolerance).
+    pub settled: bool,
+    /// If it was not: largest less smallest restitution over the last numbers of modes tried.
+    pub spread: Option<f64>,
+    /// Why this model, and what shows that it holds.
+    pub reason: String,
+    /// What the answer cost.
+    pub cost: Cost,
+}
+
+/// Deterministic counts of the work, summed over every solve, those that were not kept included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Cost {
+    /// Impacts solved.
+    pub solves: u64,
+    /// Modes computed, over all computations of modes.
+    pub modes_computed: u64,
+    /// Steps accepted in contact.
+    pub contact_steps: u64,
+    /// Steps tried in contact and taken back.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of the contact law.
+    pub law_evaluations: u64,
+    /// Steps of the search for the next contact.
+    pub flight_steps: u64,
+    /// Steps of all kinds times modes: what the time of the modal solver is roughly proportional to.
+    pub mode_steps: u64,
+    /// Panels of the integral equation of the infinite beam.
+    pub panels: u64,
+}
+
+impl Cost {
+    /// Adds a solve with so many modes.
+    pub(crate) fn add(&mut self, counts: &Counts, modes: usize) {
+        self.solves += 1;
+        self.contact_steps += counts.contact_steps;
+        self.rejected_steps += counts.rejected_steps;
+        self.newton_iterations += counts.newton_iterations;
+        self.law_evaluations += counts.law_evaluations;
+        self.flight_steps += counts.flight_steps;
+        let steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
+        self.mode_steps += steps * modes.max(1) as u64;
+    }
+}

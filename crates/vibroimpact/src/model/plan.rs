@@ -1,0 +1,156 @@
+//! What would be modelled and why, before anything costly is solved.
+
+use serde::Serialize;
+
+use super::choose::{Choice, Tried};
+use super::pose::{Pose, chooses_modes, modal_only};
+use super::text::small;
+use super::{Cost, Model, emoc, infinite, rigid, settle};
+use crate::scene::{InvalidInput, Scene};
+
+/// Steps of an ordinary impact, in contact and in flight.
+const STEPS: u64 = 120;
+/// Rough time of a solve on a computer of the 2020s: for each mode (its share of the tables), and besides (s).
+const MODE_S: f64 = 8e-6;
+const SOLVE_S: f64 = 6e-5;
+/// Rough time of an impact on an infinite beam, and of a closed form (s).
+const INFINITE_S: f64 = 1e-4;
+const FORMULA_S: f64 = 3e-5;
+
+/// Tries a tier.
+type Certify = fn(&mut Pose, &mut Cost) -> Tried;
+
+/// What [`Scene::plan`] expects.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Plan {
+    /// The model that would be used.
+    pub model: Model,
+    /// Accuracy wanted of the restitution.
+    pub tolerance: f64,
+    /// Duration of the first contact, were the place immovable (s); null for infinite structures.
+    pub contact_duration_s: Option<f64>,
+    /// Each tier, the cheapest first.
+    pub tiers: Vec<Estimate>,
+}
+
+/// What is expected of one tier.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The tier.
+    pub model: Model,
+    /// Whether it reaches the tolerance.
+    pub applies: bool,
+    /// Why, or why not.
+    pub reason: String,
+    /// Expected error of the restitution; null where nothing is known.
+    pub expected_error: Option<f64>,
+    /// Numbers of modes with which it would begin.
+    pub modes: Vec<usize>,
+    /// Steps times modes.
+    pub mode_steps: u64,
+    /// Rough time (s).
+    pub time_s: f64,
+}
+
+impl Estimate {
+    /// Of a tier that was cheap enough to be tried.
+    fn tried(model: Model, tried: Result<Choice, String>, time_s: f64) -> Estimate {
+        let (applies, reason, expected_error) = match tried {
+            Ok(choice) => (true, choice.answer.reason, choice.answer.restitution_uncertainty),
+            Err(reason) => (false, reason, None),
+        };
+        Estimate { model, applies, reason, expected_error, modes: Vec::new(), mode_steps: 0, time_s }
+    }
+
+    /// Of modal solves with these numbers of modes.
+    fn of_solves(modes: Vec<usize>, tolerance: f64, reason: String) -> Estimate {
+        let sum: usize = modes.iter().map(|count| (*count).max(1)).sum();
+        Estimate {
+            model: Model::Modal,
+            applies: true,
+            reason,
+            expected_error: Some(tolerance),
+            mode_steps: STEPS * sum as u64,
+            time_s: SOLVE_S * modes.len() as f64 + MODE_S * sum as f64,
+            modes,
+        }
+    }
+
+    /// Of stated modes: once with the tolerance, once more coarsely for the uncertainty.
+    fn of_stated(count: usize, tolerance: f64) -> Estimate {
+        Estimate::of_solves(vec![count, count], tolerance, format!("{count} modes, as stated"))
+    }
+}
+
+impl Scene {
+    /// Says which model [`Scene::answer`] would use and what each would cost. Closed forms, and the infinite beam, are
+    /// evaluated; no modal impact is solved.
+    ///
+    /// # Errors
+    /// As [`Scene::answer`].
+    pub fn plan(&self) -> Result<Plan, InvalidInput> {
+        if self.is_infinite() {
+            let answer = self.answer()?;
+            let estimate = Estimate {
+                model: answer.model,
+                applies: true,
+                reason: answer.reason,
+                expected_error: answer.restitution_uncertainty,
+                modes: Vec::new(),
+                mode_steps: 0,
+                time_s: 2.0 * INFINITE_S,
+            };
+            let tolerance = answer.tolerance;
+            return Ok(Plan { model: answer.model, tolerance, contact_duration_s: None, tiers: vec![estimate] });
+        }
+        if let Some(why) = modal_only(self) {
+            return self.plan_of_modes(why);
+        }
+        let mut pose = Pose::new(self)?;
+        let cost = &mut Cost::default();
+        let cheap: [(Model, Certify, f64); 3] = [
+            (Model::Rigid, rigid::certified, FORMULA_S),
+            (Model::Emoc, emoc::certified, FORMULA_S),
+            (Model::InfiniteBeam, infinite::certified, INFINITE_S),
+        ];
+        let mut tiers = Vec::new();
+        for (model, certified, time_s) in cheap {
+            tiers.push(Estimate::tried(model, certified(&mut pose, cost)?, time_s));
+        }
+        tiers.push(modal(&mut pose, cost)?);
+        let model = match self.model {
+            Model::Auto if chooses_modes(self) => {
+                tiers.iter().find(|tier| tier.applies).map_or(Model::Modal, |tier| tier.model)
+            }
+            Model::Auto => Model::Modal,
+            forced => forced,
+        };
+        let contact_duration_s = Some(pose.wall.duration_s).filter(|duration| duration.is_finite());
+        Ok(Plan { model, tolerance: pose.tolerance, contact_duration_s, tiers })
+    }
+
+    /// The plan where there is nothing to choose.
+    fn plan_of_modes(&self, why: &str) -> Result<Plan, InvalidInput> {
+        if !matches!(self.model, Model::Auto | Model::Modal) {
+            let allowed = format!("auto or modal: {why}");
+            return Err(InvalidInput::new("model", format!("\"{}\"", self.model.as_str()), allowed));
+        }
+        let impact = self.impact_of(self.modes.count())?;
+        let refused = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
+        let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(refused).into();
+        tiers.push(Estimate::of_stated(impact.structure.modes.len(), impact.settings.tolerance));
+        Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
+    }
+}
+
+fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
+    if !(chooses_modes(pose.scene) && pose.approaches()) {
+        return Ok(Estimate::of_stated(pose.scene.modes.count().unwrap_or(pose.source.most()), pose.tolerance));
+    }
+    let (first, second) = settle::guess(pose, cost)?;
+    let reason = format!(
+        "begins with {first} and {second} modes and raises their number until the restitution has settled within {}",
+        small(pose.tolerance)
+    );
+    Ok(Estimate::of_solves(vec![first, second], pose.tolerance, reason))
+}

@@ -1,0 +1,213 @@
+//! The scene in the terms of every tier: striker, law, the scales of the contact, the modes as far as they are needed.
+
+use contact_models::{ContactLaw, Law, Memory};
+use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+
+use super::{Cost, DEFAULT_TOLERANCE, Modes};
+use crate::impact::{in_scene, residual};
+use crate::scene::json::number;
+use crate::scene::{self, InvalidInput, Scene};
+
+/// Tolerances that can be asked for where the program chooses the modes.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
+
+/// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
+const UNEXCITED: f64 = 1e-6;
+
+/// A scene, ready for any tier.
+pub(super) struct Pose<'a> {
+    pub scene: &'a Scene,
+    pub striker: Striker,
+    pub law: Law,
+    /// Accuracy wanted of the restitution.
+    pub tolerance: f64,
+    pub wall: Wall,
+    pub source: Source<'a>,
+}
+
+/// Why there is nothing to choose and the modes are resolved as they are stated; `None` for a structure at rest that a
+/// striker of its own mass meets, which every tier can look at.
+pub(super) fn modal_only(scene: &Scene) -> Option<&'static str> {
+    if matches!(scene.structure, scene::Structure::DroppedRod(_)) {
+        Some("a dropped rod is resolved in its modes")
+    } else if scene.start.is_some() {
+        Some("the structure moves before the impact")
+    } else if scene.striker.immovable {
+        Some("the striker is an immovable stop")
+    } else {
+        None
+    }
+}
+
+/// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to settle to.
+pub(crate) fn chooses_modes(scene: &Scene) -> bool {
+    let settles = match &scene.structure {
+        scene::Structure::Beam(_) => true,
+        scene::Structure::Modal(listed) => listed.gives_compliance(scene.location.as_deref()),
+        _ => false,
+    };
+    settles && scene.modes == Modes::Auto && modal_only(scene).is_none()
+}
+
+/// The first contact, if the structure stood still: scales, and for elastic laws bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wall {
+    /// Greatest compression (m).
+    pub compression_m: f64,
+    /// Greatest force (N).
+    pub force_n: f64,
+    /// Slope of the law there (N/m).
+    pub stiffness_n_m: f64,
+    /// Exponent of the law there.
+    pub exponent: f64,
+    /// Duration (s).
+    pub duration_s: f64,
+}
+
+impl Wall {
+    /// From the work that takes up the striker's energy: for `F ~ xi^n` it is `F xi / (1 + n)`.
+    fn new(law: &Law, striker: &Striker) -> Wall {
+        let energy = 0.5 * striker.mass_kg * striker.speed_m_s.powi(2);
+        let branch = law.touch(&Memory::default(), striker.speed_m_s.max(0.0));
+        let at = |xi: f64| {
+            let force = law.force(&branch, xi, 0.0);
+            let exponent = (xi * force.per_compression_n_m / force.force_n).clamp(0.5, 10.0);
+            (force, if exponent.is_finite() { exponent } else { 1.0 })
+        };
+        let (mut low, mut high) = (-40.0f64, 20.0f64);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let xi = 10f64.powf(middle);
+            let (force, exponent) = at(xi);
+            *(if force.force_n * xi / (1.0 + exponent) < energy { &mut low } else { &mut high }) = middle;
+        }
+        let compression_m = 10f64.powf(low);
+        let (force, exponent) = at(compression_m);
+        Wall {
+            compression_m,
+            force_n: force.force_n,
+            stiffness_n_m: force.per_compression_n_m,
+            exponent,
+            // pi for a linear spring, 2.943 for Hertz's exponent; near enough between and beyond
+            duration_s: (std::f64::consts::PI - 0.4 * (exponent - 1.0)).max(1.0) * compression_m
+                / striker.speed_m_s.abs(),
+        }
+    }
+}
+
+/// Where modes come from.
+pub(super) enum Source<'a> {
+    /// A beam: as many modes as are asked for.
+    Beam { beam: &'a scene::Beam, location_m: f64, whole_m_n: f64, modes: Vec<Mode> },
+    /// A structure given by its modes, and perhaps its whole static compliance.
+    Listed { modes: Vec<Mode>, whole_m_n: Option<f64> },
+}
+
+impl<'a> Pose<'a> {
+    /// Poses a scene that is not infinite.
+    pub fn new(scene: &'a Scene) -> Result<Pose<'a>, InvalidInput> {
+        let striker = Striker {
+            mass_kg: scene.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
+            speed_m_s: scene.striker.speed_m_s,
+        };
+        let law = scene.contact.law(&scene.striker)?;
+        let chosen = chooses_modes(scene);
+        let settings = Settings::default();
+        let tolerance = scene.tolerance.unwrap_or(if chosen { DEFAULT_TOLERANCE } else { settings.tolerance });
+        if chosen && !TOLERANCES.contains(&tolerance) {
+            let allowed = "a number from 1e-10 to 0.5 where the program chooses the modes";
+            return Err(InvalidInput::new("tolerance", number(tolerance), allowed));
+        }
+        // a solver without modes checks the striker, and the tolerance where it is the solver's own
+        let checked = Settings {
+            tolerance: if chosen { settings.tolerance } else { tolerance },
+            max_steps: 1,
+            estimate_uncertainty: false,
+            ..settings
+        };
+        let mut rigid = Solver::new(&Structure::default()).map_err(in_scene)?;
+        rigid.solve(&striker, &law, None, &checked).map_err(in_scene)?;
+        let source = match &scene.structure {
+            scene::Structure::Beam(beam) => {
+                // an empty list of modes checks place, segments and damping
+                scene.structure.modes(scene.place(), Some(0))?;
+                let location_m = scene.location_m.unwrap_or(f64::NAN);
+                let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
+                Source::Beam { beam, location_m, whole_m_n, modes: Vec::new() }
+            }
+            listed => {
+                let modes = listed.modes(scene.place(), scene.modes.count())?;
+                Solver::new(&Structure { modes: modes.clone(), residual_compliance_m_n: 0.0 }).map_err(in_scene)?;
+                let whole_m_n = match listed {
+                    scene::Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
+                        Some(scene.structure.static_compliance_m_n(scene.place())?)
+                    }
+                    _ => None,
+                };
+                Source::Listed { modes, whole_m_n }
+            }
+        };
+        let wall = Wall::new(&law, &striker);
+        Ok(Pose { scene, striker, law, tolerance, wall, source })
+    }
+
+    /// Whether the striker moves towards the structure.
+    pub fn approaches(&self) -> bool {
+        self.striker.speed_m_s > 0.0
+    }
+
+    /// The first `count` modes that a force at the place excites, and how many of them there are in all (at most
+    /// `count`); what the others add to the static compliance, if that is wanted and known.
+    pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<Structure, InvalidInput> {
+        let least = UNEXCITED * self.tolerance / (4.0 * self.striker.mass_kg);
+        let residual_wanted = self.scene.residual_compliance != Some(false);
+        let modes = self.source.first(count, cost)?;
+        let kept: Vec<Mode> = modes.iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
+        let static_part = compliance(&kept);
+        let residual_compliance_m_n = match &self.source {
+            _ if !residual_wanted => 0.0,
+            // rounding may leave a trace of either sign where nothing is left
+            Source::Beam { whole_m_n, .. } => (whole_m_n - static_part).max(0.0),
+            Source::Listed { whole_m_n: Some(whole), .. } => residual(*whole, static_part)?,
+            Source::Listed { whole_m_n: None, .. } => 0.0,
+        };
+        Ok(Structure { modes: kept, residual_compliance_m_n })
+    }
+}
+
+/// Static compliance of modes (m/N).
+pub(super) fn compliance(modes: &[Mode]) -> f64 {
+    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
+}
+
+impl Source<'_> {
+    /// The first `count` modes, or all of a list.
+    pub fn first(&mut self, count: usize, cost: &mut Cost) -> Result<&[Mode], InvalidInput> {
+        match self {
+            Source::Beam { beam, location_m, modes, .. } => {
+                if modes.len() < count {
+                    *modes = beam.modes(count)?.seen_from(*location_m)?;
+                    cost.modes_computed += count as u64;
+                }
+                Ok(modes.get(..count).unwrap_or(modes))
+            }
+            Source::Listed { modes, .. } => Ok(modes.get(..count).unwrap_or(modes)),
+        }
+    }
+
+    /// How many modes there are at most.
+    pub fn most(&self) -> usize {
+        match self {
+            Source::Beam { .. } => super::settle::MOST_MODES,
+            Source::Listed { modes, .. } => modes.len(),
+        }
+    }
+
+    /// Static compliance of the whole structure at the place, if it is known (m/N).
+    pub fn whole_m_n(&self) -> Option<f64> {
+        match self {
+            Source::Beam { whole_m_n, .. } => Some(*whole_m_n),
+            Source::Listed { whole_m_n, .. } => *whole_m_n,
+        }
+    }
+}

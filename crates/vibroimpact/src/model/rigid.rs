@@ -1,0 +1,119 @@
+//! A place that cannot move: the restitution of the law at a wall, and a bound on what the structure may change.
+//!
+//! The structure at rest takes up energy `E = sum 1/2 phi_k^2 J_k^2` with `J_k = |int F exp(i omega_k t) dt|` (damping
+//! aside). For a force of one hump `J_k <= 2 F_max/omega_k`, and the elastic energy of the contact never exceeds that of
+//! the striker, so that `F_max` is at most the force at a wall. Twice that `J_k`, for a force that is not quite one hump,
+//! gives with the static compliance `G = sum phi_k^2/omega_k^2`, without any mode,
+//!
+//! ```text
+//! E / (m v^2 / 2) <= epsilon = 16 G F_wall^2 / (m v^2) (1 + 64 zeta).
+//! ```
+//!
+//! The last factor covers what modes of damping ratio `zeta` dissipate during the contact. The contact only ever pushes the
+//! striker away; so after the first separation its speed is at least `sqrt(1 - epsilon) v`, further contacts can only
+//! add to it, and `e` lies between that and 1. Laws that dissipate have no such bound; for them `epsilon` itself has
+//! to be a thousand times below the tolerance.
+
+use super::choose::{Choice, Tried};
+use super::pose::{Pose, Source};
+use super::text::small;
+use super::{Answer, Cost, Model};
+use crate::scene::{Contact, InvalidInput};
+
+/// How far below the tolerance `epsilon` has to be for a law that dissipates.
+const MARGIN: f64 = 1e-3;
+/// A rigid-body motion that moves the place by less than this share of the striker's inverse mass does not move it.
+const STILL: f64 = 1e-12;
+
+/// How far the restitution can be from that at a wall; `Err` says why no bound is known.
+pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, String>, InvalidInput> {
+    let rigid_bodies = match &pose.source {
+        Source::Beam { beam, .. } => beam.to_beam().map_err(|fault| fault.within("structure"))?.rigid_body_count(),
+        Source::Listed { modes, .. } => modes.len(),
+    };
+    let mass = pose.striker.mass_kg;
+    let moving = pose.source.first(rigid_bodies, cost)?.iter().filter(|mode| mode.omega_rad_s == 0.0);
+    let share: f64 = moving.map(|mode| mass * mode.shape.powi(2)).sum();
+    if share > STILL {
+        return Ok(Err("the structure moves freely as a rigid body".to_owned()));
+    }
+    let still =
+        matches!(&pose.source, Source::Listed { modes, whole_m_n: None } if modes.iter().all(|mode| mode.shape == 0.0));
+    let Some(whole) = pose.source.whole_m_n().or(still.then_some(0.0)) else {
+        return Ok(Err("the static compliance of the structure is not known".to_owned()));
+    };
+    let damping = match &pose.source {
+        Source::Beam { beam, .. } => beam.damping_ratio,
+        Source::Listed { modes, .. } => modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max),
+    };
+    let energy = mass * pose.striker.speed_m_s.powi(2);
+    let epsilon = 16.0 * whole.max(0.0) * pose.wall.force_n.powi(2) / energy * (1.0 + 64.0 * damping);
+    let elastic = matches!(pose.scene.contact, Contact::Hertz(_) | Contact::LinearSpring { .. });
+    Ok(match epsilon {
+        e if e.is_nan() => Err("the contact has no scale".to_owned()),
+        e if elastic => Ok(1.0 - (1.0 - e.min(1.0)).sqrt()),
+        e => Ok((e / MARGIN).min(1.0)),
+    })
+}
+
+/// The wall, if the bound says that it reaches the tolerance.
+pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
+    if !pose.approaches() {
+        return Ok(Err("the striker does not approach".to_owned()));
+    }
+    match bound(pose, cost)? {
+        Ok(bound) if bound <= pose.tolerance => wall(pose, Some(bound), cost).map(Ok),
+        Ok(bound) => {
+            Ok(Err(format!("the place moves: its compliance may change the restitution by up to {}", small(bound))))
+        }
+        Err(reason) => Ok(Err(reason)),
+    }
+}
+
+/// The wall, because it was asked for.
+pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
+    if !pose.approaches() {
+        return Ok(Err("another model where the striker does not approach".to_owned()));
+    }
+    let bound = bound(pose, cost)?.ok();
+    wall(pose, bound, cost).map(Ok)
+}
+
+fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+    let restitution = pose
+        .law
+        .wall_restitution(pose.striker.mass_kg, pose.striker.speed_m_s)
+        .map_err(|fault| in_scene_of_law(fault.into()))?;
+    cost.solves += 1;
+    let reason = match bound {
+        Some(bound) if bound <= pose.tolerance => {
+            format!("rigid: the place can change the restitution at a wall by {} at most", small(bound))
+        }
+        Some(bound) => {
+            format!("rigid: asked for, though the place may change the restitution by up to {}", small(bound))
+        }
+        None => "rigid: asked for; how much the structure changes is not bounded".to_owned(),
+    };
+    let answer = Answer {
+        model: Model::Rigid,
+        outcome: "rebound",
+        restitution: Some(restitution),
+        restitution_uncertainty: bound,
+        tolerance: pose.tolerance,
+        sub_impact_count: Some(1),
+        modes: 0,
+        residual_compliance_m_n: 0.0,
+        settled: bound.is_some_and(|bound| bound <= pose.tolerance),
+        spread: None,
+        reason,
+        cost: Cost::default(),
+    };
+    Ok(Choice { answer, impact: None })
+}
+
+fn in_scene_of_law(fault: InvalidInput) -> InvalidInput {
+    match fault.field.as_str() {
+        "mass_kg" | "speed_m_s" => fault.within("striker"),
+        _ => fault.within("contact"),
+    }
+}

@@ -1,0 +1,135 @@
+//! Choice, plan and comparison as a person reads them.
+
+use std::fmt::Write;
+
+use super::{Answer, Comparison, Plan};
+use crate::text::{quantity, restitution};
+
+/// A number in passing: two significant digits.
+pub(super) fn small(value: f64) -> String {
+    crate::report::significant(value, 2)
+}
+
+/// Breaks a sentence into lines of at most this many characters.
+const WIDTH: usize = 96;
+
+fn wrapped(text: &str, indent: usize) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() + indent > WIDTH {
+            lines.push(word.to_owned());
+        } else {
+            if !lines[last].is_empty() {
+                lines[last].push(' ');
+            }
+            lines[last].push_str(word);
+        }
+    }
+    lines.join(&format!("\n{}", " ".repeat(indent)))
+}
+
+/// How near the estimate of the error is to the tolerance.
+fn against_tolerance(answer: &Answer) -> String {
+    let wanted = small(answer.tolerance);
+    match (answer.restitution_uncertainty, answer.settled) {
+        (Some(u), true) if u <= answer.tolerance => {
+            format!("wanted within {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
+        }
+        (Some(u), settled) => {
+            let not = if settled { "" } else { "; NOT SETTLED" };
+            let spread = answer.spread.map_or(String::new(), |s| format!(", spread {}", small(s)));
+            format!("wanted within {wanted}, known within {}{not}{spread}", small(u))
+        }
+        (None, _) => format!("wanted within {wanted}, known to no stated accuracy"),
+    }
+}
+
+/// What was done, and how far the estimate of the error is from the tolerance.
+pub fn answer_text(answer: &Answer) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "  {:<22}{}", "model", wrapped(&answer.reason, 24));
+    let _ = writeln!(text, "  {:<22}{}", "accuracy", against_tolerance(answer));
+    let cost = &answer.cost;
+    let _ = writeln!(text, "  {:<22}{} solves, {} mode-steps", "cost", cost.solves, cost.mode_steps);
+    text
+}
+
+/// The result of a model that resolves no course in time.
+pub fn net_text(answer: &Answer) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22}{value}");
+    };
+    line("outcome", answer.outcome.to_owned());
+    if let Some(value) = answer.restitution {
+        line("restitution", restitution(value, answer.restitution_uncertainty));
+    }
+    if let Some(count) = answer.sub_impact_count {
+        line("sub-impacts", count.to_string());
+    }
+    text + &answer_text(answer)
+}
+
+/// A plan.
+pub fn plan_text(plan: &Plan) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "  {:<22}{}", "model", plan.model.as_str());
+    let _ = writeln!(text, "  {:<22}{}", "tolerance", small(plan.tolerance));
+    if let Some(duration) = plan.contact_duration_s {
+        let _ = writeln!(text, "  {:<22}{} on an immovable surface", "contact", quantity(duration, "s"));
+    }
+    let _ = writeln!(text, "\n  {:<16}{:>10}{:>14}{:>12}", "tier", "error", "mode-steps", "time");
+    for tier in &plan.tiers {
+        let error = tier.expected_error.map_or_else(|| "-".to_owned(), small);
+        let _ = writeln!(
+            text,
+            "  {:<16}{error:>10}{:>14}{:>12}",
+            tier.model.as_str(),
+            tier.mode_steps,
+            format!("~{}", quantity(tier.time_s, "s"))
+        );
+        let applies = if tier.applies { "" } else { "no: " };
+        let _ = writeln!(text, "      {}", wrapped(&format!("{applies}{}", tier.reason), 6));
+    }
+    text
+}
+
+/// A comparison.
+pub fn comparison_text(comparison: &Comparison) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "  {:<16}{:>14}{:>12}{:>12}{:>10}{:>12}",
+        "tier", "restitution", "known to", "sub-imp.", "modes", "difference"
+    );
+    for tier in &comparison.tiers {
+        let name = tier.model.as_str();
+        let Some(answer) = &tier.answer else {
+            let refused = tier.refused.as_deref().unwrap_or_default();
+            let _ = writeln!(text, "  {name:<16}{}", wrapped(&format!("does not apply: {refused}"), 18));
+            continue;
+        };
+        let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+        let _ = writeln!(
+            text,
+            "  {name:<16}{:>14}{:>12}{:>12}{:>10}{:>12}{}",
+            or_dash(answer.restitution.map(|e| format!("{e:.6}"))),
+            or_dash(answer.restitution_uncertainty.map(small)),
+            or_dash(answer.sub_impact_count.map(|count| count.to_string())),
+            answer.modes,
+            or_dash(tier.difference.map(|d| format!("{d:+.1e}"))),
+            if answer.model == comparison.chosen.model { "   chosen" } else { "" }
+        );
+        let _ = writeln!(
+            text,
+            "      {}",
+            wrapped(
+                &format!("{}; {} solves, {} mode-steps", answer.reason, answer.cost.solves, answer.cost.mode_steps),
+                6
+            )
+        );
+    }
+    let _ = writeln!(text, "\n  Differences are from {}, the best known.", comparison.best.as_str());
+    text
+}

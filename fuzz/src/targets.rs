@@ -1,0 +1,115 @@
+//! What the fuzzer calls. The same functions take every file of the corpus in `cargo test`, without a fuzzer
+//! (`crates/vibroimpact/tests/fuzz_corpus.rs`).
+
+use arbitrary::{Arbitrary, Result, Unstructured};
+use vibroimpact::contact_models::{
+    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+};
+use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact::{Scene, net};
+
+/// A scene file: read, written and read again, posed, and solved within limits.
+pub fn scene(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(scene) = Scene::from_json(text) else { return };
+    let again = Scene::from_json(&scene.to_json());
+    assert!(again.is_ok_and(|again| again == scene), "a scene is not read as it was written");
+    // modes in thousands are sound, but no work for a fuzzer
+    if scene.modes.count().is_some_and(|modes| modes > 50) {
+        return;
+    }
+    let Ok(impact) = scene.impact() else { return };
+    let settings = Settings { max_steps: 500, max_sub_impacts: 50, ..impact.settings };
+    let solved = Solver::new(&impact.structure)
+        .and_then(|mut solver| solver.solve(&impact.striker, &impact.law, None, &settings));
+    if let Ok(solution) = solved {
+        sound(&solution);
+    }
+}
+
+/// A table of measured restitutions.
+pub fn data_table(bytes: &[u8]) {
+    if let Ok(table) = net::parse(bytes) {
+        for datum in table {
+            let values = [datum.mass_kg, datum.location_m, datum.restitution];
+            assert!(datum.line > 1 && values.iter().all(|value| value.is_finite()), "{datum:?}");
+        }
+    }
+}
+
+/// An impact of a few modes and any numbers whatever, solved within limits.
+pub fn impact(bytes: &[u8]) {
+    let mut unstructured = Unstructured::new(bytes);
+    if let Ok((structure, striker, law, start, settings)) = posed(&mut unstructured) {
+        let solved =
+            Solver::new(&structure).and_then(|mut solver| solver.solve(&striker, &law, start.as_ref(), &settings));
+        if let Ok(solution) = solved {
+            sound(&solution);
+        }
+    }
+}
+
+type Posed = (Structure, Striker, Law, Option<Start>, Settings);
+
+fn posed(from: &mut Unstructured) -> Result<Posed> {
+    let count = from.int_in_range(0..=6)?;
+    let mut modes = Vec::with_capacity(count);
+    for _ in 0..count {
+        modes.push(Mode { omega_rad_s: number(from)?, damping_ratio: number(from)?, shape: number(from)? });
+    }
+    let structure = Structure { modes, residual_compliance_m_n: number(from)? };
+    let striker = Striker { mass_kg: number(from)?, speed_m_s: number(from)? };
+    let law = law(from)?;
+    let start = if bool::arbitrary(from)? {
+        let amplitude = (0..count).map(|_| number(from)).collect::<Result<_>>()?;
+        let rate = (0..count).map(|_| number(from)).collect::<Result<_>>()?;
+        Some(Start { amplitude, rate, gap_m: number(from)? })
+    } else {
+        None
+    };
+    let tolerance = 10f64.powi(-from.int_in_range(1..=13)?);
+    Ok((
+        structure,
+        striker,
+        law,
+        start,
+        Settings { tolerance, max_steps: 500, max_sub_impacts: 50, ..Settings::default() },
+    ))
+}
+
+/// Mostly a number of moderate size, with few digits; now and then any bits at all.
+fn number(from: &mut Unstructured) -> Result<f64> {
+    Ok(match from.int_in_range(0..=9u8)? {
+        0 => f64::arbitrary(from)?,
+        1 => 0.0,
+        _ => f64::from(u8::arbitrary(from)?) / 16.0 * 10f64.powi(from.int_in_range(-12..=12)?),
+    })
+}
+
+fn law(from: &mut Unstructured) -> Result<Law> {
+    let k = number(from)?;
+    let law = match from.int_in_range(0..=8u8)? {
+        0 => Hertz::new(k).map(Law::from),
+        1 => Viscous::new(k, number(from)?).map(Law::from),
+        2 => Hysteretic::new(k, number(from)?, number(from)?, number(from)?, number(from)?).map(Law::from),
+        3 => LinearSpring::new(k).map(Law::from),
+        4 => KelvinVoigt::new(k, number(from)?).map(Law::from),
+        5 => HuntCrossley::new(k, number(from)?, number(from)?).map(Law::from),
+        6 => LankaraniNikravesh::new(k, number(from)?).map(Law::from),
+        7 => Flores::new(k, number(from)?).map(Law::from),
+        _ => Thornton::new(k, number(from)?, number(from)?).map(Law::from),
+    };
+    law.map_err(|_| arbitrary::Error::IncorrectFormat)
+}
+
+fn sound(solution: &Solution) {
+    let state = solution.amplitude.iter().chain(&solution.rate).chain([&solution.striker_velocity_m_s]);
+    assert!(state.into_iter().all(|value| value.is_finite()), "{solution:?}");
+    assert!(solution.restitution.is_none_or(f64::is_finite), "{solution:?}");
+    let mut now = 0.0;
+    for contact in &solution.sub_impacts {
+        assert!(contact.start_s >= now && contact.end_s >= contact.start_s, "{solution:?}");
+        assert!(contact.impulse_n_s.is_finite() && contact.peak_force_n.is_finite(), "{solution:?}");
+        now = contact.end_s;
+    }
+}

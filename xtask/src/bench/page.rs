@@ -1,0 +1,74 @@
+//! The page of the record.
+
+use super::history::{Row, group, groups, recordings};
+use super::record::{COST_COUNTS, COST_MARGIN, ERROR_FACTOR, Entry, INSTRUCTION_MARGIN, Record};
+use std::fmt::Write;
+
+/// `docs/benchmarks.md`.
+pub fn page(record: &Record, history: &[Row]) -> String {
+    let mut text = format!(
+        "# What the solvers cost, and how far off they are
+
+A fixed list of problems is solved; steps, iterations, evaluations and instructions are counted, and results are compared
+with references. No clock is read, so that the figures are the same on a busy machine and on an idle one.
+`cargo xtask bench-check`, a part of `cargo xtask ci`, fails if
+
+- a count has grown by more than {cost:.0} % and by more than {counts},
+- instructions have grown by more than {instructions:.0} % (compared where compiler, target, profile and valgrind are those
+  of the record),
+- an error has grown to more than {factor} times the recorded one, or {factor} times rounding if that is more,
+- a problem has come or gone, or this page does not show the record.
+
+After a change that is meant, `cargo xtask bench-record` writes the record (`benchmarks/record.json`), adds the values that
+changed to `benchmarks/history.csv`, and makes this page and its figure. Times, which differ from machine to machine, are
+measured by criterion (`cargo bench`) and compared for every pull request as information.
+
+The error of a problem is the largest of its results', relative where the reference is above one in size and absolute
+below. References are closed forms, multiple precision, or tighter runs kept in `benchmarks/references.json`. An impact on
+modes stands for five impacts at speeds from 0.8 to 1.25 m/s, at the tolerance that ends its name.
+
+Instructions: {conditions}.
+
+",
+        cost = 100.0 * COST_MARGIN,
+        counts = COST_COUNTS,
+        instructions = 100.0 * INSTRUCTION_MARGIN,
+        factor = ERROR_FACTOR,
+        conditions = record.conditions,
+    );
+    for name in groups(record) {
+        let entries: Vec<(&str, &Entry)> = record
+            .problems
+            .iter()
+            .filter(|(problem, _)| group(problem) == name)
+            .map(|(problem, entry)| (problem.get(name.len() + 1..).unwrap_or(problem), entry))
+            .collect();
+        table(&mut text, &name, &entries);
+    }
+    text.push_str("## History\n\n![Course of cost and error](benchmarks/history.svg)\n\n");
+    text.push_str("| recording | date | commit | version | compiler |\n|---|---|---|---|---|\n");
+    for row in recordings(history) {
+        let _ =
+            writeln!(text, "| {} | {} | `{}` | {} | {} |", row.recording, row.date, row.commit, row.version, row.rustc);
+    }
+    text
+}
+
+fn table(text: &mut String, name: &str, entries: &[(&str, &Entry)]) {
+    let costs: std::collections::BTreeSet<&str> =
+        entries.iter().flat_map(|(_, entry)| entry.costs.keys().map(String::as_str)).collect();
+    let _ = write!(text, "## {name}\n\n| problem | error | instructions |");
+    for cost in &costs {
+        let _ = write!(text, " {} |", cost.replace('_', " "));
+    }
+    let _ = writeln!(text, "\n|---|---|---|{}", "---|".repeat(costs.len()));
+    for (problem, entry) in entries {
+        let instructions = entry.instructions.map_or_else(|| "-".into(), |n| format!("{:.3} M", n as f64 / 1e6));
+        let _ = write!(text, "| {problem} | {:.1e} | {instructions} |", entry.error);
+        for cost in &costs {
+            let _ = write!(text, " {} |", entry.costs.get(*cost).map_or_else(|| "-".into(), u64::to_string));
+        }
+        text.push('\n');
+    }
+    text.push('\n');
+}

@@ -1,0 +1,191 @@
+//! The book's own check: every link leads somewhere, every command in a `sh` fence runs and exits as the page says,
+//! every scene in a `json scene` or `toml scene` fence is one.
+//!
+//! Commands run in a folder of their own that holds a copy of `datasets`, so that a page may write files. A line may
+//! end in `# exits with 2`. (Rust snippets are documentation tests of the package `book-snippets`.)
+
+use crate::chapters::Failure;
+use pulldown_cmark::{CodeBlockKind, CowStr, Event, Options, Parser, Tag, TagEnd};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use vibroimpact::Scene;
+
+/// What a page asks to be checked.
+#[derive(Debug, PartialEq)]
+enum Item {
+    Command { line: String, exit: i32 },
+    JsonScene(String),
+    TomlScene(String),
+    Link(String),
+}
+
+/// Checks all pages under `docs`, the README and those of the crates.
+pub fn run(root: &Path) -> Result<(), Failure> {
+    let mut pages = vec![root.join("README.md")];
+    for folder in ["docs", "crates", "datasets"] {
+        collect(&root.join(folder), &mut pages)?;
+    }
+    pages.sort();
+    let workplace = tempfile::tempdir()?;
+    copy(&root.join("datasets"), &workplace.path().join("datasets"))?;
+    let program = program(root)?;
+    let mut faults = Vec::new();
+    let mut counts = [0; 3];
+    for page in &pages {
+        let name = page.strip_prefix(root).unwrap_or(page).display().to_string();
+        for item in items(&fs::read_to_string(page)?) {
+            let (kind, result) = match &item {
+                Item::Command { line, exit } => (0, execute(line, *exit, &program, workplace.path())),
+                Item::JsonScene(text) => (1, scene(Scene::from_json(text))),
+                Item::TomlScene(text) => (1, scene(Scene::from_toml(text))),
+                Item::Link(target) => (2, follow(page, target)),
+            };
+            counts[kind] += 1;
+            if let Err(fault) = result {
+                faults.push(format!("{name}: {fault}"));
+            }
+        }
+    }
+    let [commands, scenes, links] = counts;
+    eprintln!("{} pages: {commands} commands run, {scenes} scenes read, {links} links followed", pages.len());
+    if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
+}
+
+/// The items of a page in their order.
+fn items(page: &str) -> Vec<Item> {
+    let mut found = Vec::new();
+    let mut fence: Option<(String, String)> = None;
+    for event in Parser::new_ext(page, Options::ENABLE_TABLES) {
+        match event {
+            Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(kind))) => {
+                fence = Some((kind.to_string(), String::new()))
+            }
+            Event::Text(text) => {
+                if let Some((_, inside)) = &mut fence {
+                    inside.push_str(&text);
+                }
+            }
+            Event::End(TagEnd::CodeBlock) => match fence.take() {
+                Some((kind, text)) if kind == "sh" => found.extend(commands(&text)),
+                Some((kind, text)) if kind == "json scene" => found.push(Item::JsonScene(text)),
+                Some((kind, text)) if kind == "toml scene" => found.push(Item::TomlScene(text)),
+                _ => {}
+            },
+            Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => found.extend(link(&dest_url)),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// One command a line; a backslash at the end continues it.
+fn commands(text: &str) -> Vec<Item> {
+    let joined = text.replace("\\\n", " ");
+    let lines = joined.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let command = |line: &str| {
+        let (line, exit) =
+            line.split_once("# exits with ").map_or((line, 0), |(line, code)| (line, code.parse().unwrap_or(-1)));
+        Item::Command { line: line.trim().to_owned(), exit }
+    };
+    lines.map(command).collect()
+}
+
+/// A link to a file of ours, without its anchor.
+fn link(target: &CowStr) -> Option<Item> {
+    let file = target.split('#').next().unwrap_or_default();
+    (!file.is_empty() && !file.contains("://") && !file.starts_with("mailto:")).then(|| Item::Link(file.to_owned()))
+}
+
+fn follow(page: &Path, target: &str) -> Result<(), Failure> {
+    let place = page.parent().unwrap_or(Path::new("")).join(target);
+    if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
+}
+
+fn scene(read: Result<Scene, vibroimpact::SceneError>) -> Result<(), Failure> {
+    Ok(read.map(drop)?)
+}
+
+/// Runs a line of the shell in which `vibroimpact` and `cargo xtask` are those of this workspace.
+fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<(), Failure> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths(std::iter::once(programs.to_owned()).chain(std::env::split_paths(&path)))?;
+    let xtask = std::env::current_exe()?;
+    let line = line.replace("cargo xtask", &format!("'{}'", xtask.display()));
+    let output = Command::new("sh").args(["-c", &line]).current_dir(folder).env("PATH", path).output()?;
+    if output.status.code() == Some(exit) {
+        return Ok(());
+    }
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(format!("`{line}` ended with {}, not with exit code {exit}\n{told}", output.status).into())
+}
+
+/// The folder of the built program.
+fn program(root: &Path) -> Result<PathBuf, Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let build = ["build", "-p", "vibroimpact", "--locked", "--message-format", "json-render-diagnostics"];
+    let output = Command::new(cargo).current_dir(root).args(build).stderr(std::process::Stdio::inherit()).output()?;
+    let messages = String::from_utf8_lossy(&output.stdout);
+    let executable =
+        messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok()).find_map(|message| {
+            let target = message.get("target")?.get("name")?.as_str()? == "vibroimpact";
+            message.get("executable")?.as_str().filter(|_| target).map(PathBuf::from)
+        });
+    let executable = executable.ok_or("cargo built no program named vibroimpact")?;
+    Ok(executable.parent().unwrap_or(Path::new("")).to_owned())
+}
+
+fn collect(folder: &Path, pages: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(&path, pages)?;
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            pages.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy(&entry.path(), &target)?;
+        } else {
+            fs::copy(entry.path(), target)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_is_taken_apart() {
+        let page = "[a](b.md#c) [d](https://e.f)\n\n```sh\n# said only\nvibroimpact --help\nvibroimpact x \\\n  --y  # exits with 2\n```\n\n```json scene\n{}\n```\n";
+        let command = |line: &str, exit| Item::Command { line: line.to_owned(), exit };
+        assert_eq!(
+            items(page),
+            [
+                Item::Link("b.md".to_owned()),
+                command("vibroimpact --help", 0),
+                command("vibroimpact x    --y", 2),
+                Item::JsonScene("{}\n".to_owned())
+            ]
+        );
+    }
+
+    #[test]
+    fn what_does_not_hold_is_found() {
+        let here = tempfile::tempdir().unwrap();
+        assert!(execute("exit 2", 2, here.path(), here.path()).is_ok());
+        assert!(execute("exit 2", 0, here.path(), here.path()).is_err());
+        assert!(follow(&here.path().join("page.md"), "absent.md").is_err());
+        assert!(scene(Scene::from_json("{}")).is_err());
+    }
+}

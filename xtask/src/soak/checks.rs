@@ -1,0 +1,238 @@
+//! Solves one case and checks what must hold for any impact whatever.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
+
+use emoc::Solver as NetSolver;
+use vibroimpact::Scene;
+use vibroimpact_sim::infinite;
+use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Start};
+
+use super::cases::{Case, Modal};
+
+/// Seconds after which an impact counts as hung, on a machine that is busy with others.
+const HANG_S: f64 = 60.0;
+/// Rounding that the sum of the energies carries, relative to their sum.
+const ROUNDING: f64 = 1e-11;
+
+/// What one case came to.
+#[derive(Debug, Clone)]
+pub struct Verdict {
+    pub kind: &'static str,
+    pub outcome: &'static str,
+    pub contacts: usize,
+    /// Steps or panels tried, as a deterministic cost.
+    pub steps: u64,
+    /// Energy gained over energy there was; below zero: lost.
+    pub energy_gain: f64,
+    /// The same over what the tolerance allows.
+    pub gain_over_allowed: f64,
+    pub seconds: f64,
+    /// What does not hold.
+    pub fault: Option<String>,
+}
+
+/// Solves and judges a case.
+pub fn judge(case: &Case) -> Verdict {
+    let start = Instant::now();
+    let kind = match case {
+        Case::Modal(_) => "modal",
+        Case::Scene(_) => "scene",
+        Case::Infinite(..) => "infinite",
+        Case::Net(_) => "net",
+    };
+    let empty = Verdict {
+        kind,
+        outcome: "failed",
+        contacts: 0,
+        steps: 0,
+        energy_gain: f64::NEG_INFINITY,
+        gain_over_allowed: f64::NEG_INFINITY,
+        seconds: 0.0,
+        fault: None,
+    };
+    let solved = catch_unwind(AssertUnwindSafe(|| {
+        let mut verdict = empty.clone();
+        verdict.fault = match case {
+            Case::Modal(modal) => modal_impact(modal, &mut verdict),
+            Case::Scene(tree) => scene(tree, &mut verdict),
+            Case::Infinite(structure, s) => infinite_impact(*structure, *s, &mut verdict),
+            Case::Net(problem) => net(problem, &mut verdict),
+        }
+        .err();
+        verdict
+    }));
+    let mut verdict = solved.unwrap_or_else(|payload| {
+        let text = payload.downcast_ref::<String>().map(String::as_str).or(payload.downcast_ref::<&str>().copied());
+        Verdict { fault: Some(format!("panic: {}", text.unwrap_or("without a message"))), ..empty }
+    });
+    verdict.seconds = start.elapsed().as_secs_f64();
+    if verdict.seconds > HANG_S && verdict.fault.is_none() {
+        verdict.fault = Some(format!("took {:.0} s", verdict.seconds));
+    }
+    verdict
+}
+
+/// Passes when `holds`, and tells what does not otherwise.
+fn check(holds: bool, fault: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(fault()) }
+}
+
+fn finite(name: &str, values: impl IntoIterator<Item = f64>) -> Result<(), String> {
+    values.into_iter().try_for_each(|value| check(value.is_finite(), || format!("{name} = {value}")))
+}
+
+fn scene(tree: &serde_json::Value, verdict: &mut Verdict) -> Result<(), String> {
+    verdict.outcome = "refused";
+    let scene = Scene::from_json(&tree.to_string()).map_err(|fault| format!("a sound scene was refused: {fault}"))?;
+    // values may be out of range in combination (contrasts of segments, a striker on an immovable point)
+    let Ok(impact) = scene.impact() else { return Ok(()) };
+    let settings = Settings { max_steps: 2_000, max_sub_impacts: 500, ..impact.settings };
+    let modal = Modal { structure: impact.structure, striker: impact.striker, law: impact.law, start: None, settings };
+    modal_impact(&modal, verdict)
+}
+
+fn modal_impact(case: &Modal, verdict: &mut Verdict) -> Result<(), String> {
+    let Modal { structure, striker, law, start, settings } = case;
+    verdict.outcome = "refused";
+    let solved = Solver::new(structure).and_then(|mut solver| solver.solve(striker, law, start.as_ref(), settings));
+    let solution = solved.map_err(|fault| format!("a sound impact was refused: {fault}"))?;
+    verdict.outcome = solution.outcome.as_str();
+    verdict.contacts = solution.sub_impacts.len();
+    let counts = solution.counts;
+    verdict.steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
+    // two runs share the count, and each stops at the limit
+    check(verdict.steps <= 2 * settings.max_steps + 4, || format!("{} steps", verdict.steps))?;
+    sound_numbers(&solution)?;
+    contacts_in_order(&solution)?;
+    energy(case, &solution, verdict)
+}
+
+fn sound_numbers(solution: &Solution) -> Result<(), String> {
+    finite("amplitude", solution.amplitude.iter().copied())?;
+    finite("rate", solution.rate.iter().copied())?;
+    finite("striker_velocity_m_s", [solution.striker_velocity_m_s])?;
+    finite("end_s", [solution.end_s])?;
+    finite("restitution", solution.restitution)?;
+    finite("restitution_uncertainty", solution.restitution_uncertainty)?;
+    check(solution.restitution_uncertainty.is_none_or(|value| value >= 0.0), || "a negative uncertainty".into())?;
+    let touched = solution.outcome != Outcome::NoContact || solution.sub_impacts.is_empty();
+    check(touched, || "contacts without contact".into())
+}
+
+fn contacts_in_order(solution: &Solution) -> Result<(), String> {
+    let mut now = 0.0;
+    for (i, contact) in solution.sub_impacts.iter().enumerate() {
+        let told = [contact.impulse_n_s, contact.peak_force_n, contact.peak_compression_m];
+        finite(&format!("contact {i}"), told)?;
+        let ordered = contact.start_s >= now && contact.end_s >= contact.start_s && contact.end_s <= solution.end_s;
+        check(ordered, || format!("contact {i} from {} to {} after {now}", contact.start_s, contact.end_s))?;
+        now = contact.end_s;
+    }
+    Ok(())
+}
+
+fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<(), String> {
+    let Modal { structure, striker, start, settings, .. } = case;
+    let at_rest = Start::at_rest(structure.modes.len());
+    let start = start.as_ref().unwrap_or(&at_rest);
+    let modes = |amplitude: &[f64], rate: &[f64]| -> f64 {
+        let each = structure.modes.iter().zip(amplitude).zip(rate);
+        each.map(|((mode, a), b)| 0.5 * (mode.omega_rad_s * a).powi(2) + 0.5 * b * b).sum()
+    };
+    let before = 0.5 * striker.mass_kg * striker.speed_m_s.powi(2) + modes(&start.amplitude, &start.rate);
+    let after =
+        0.5 * striker.mass_kg * solution.striker_velocity_m_s.powi(2) + modes(&solution.amplitude, &solution.rate);
+    // Impulses are asked for to `tolerance` of the momentum P of the approach, a contact. An impulse wrong by d does work
+    // on surfaces that move with v, and moves them by d sum phi^2 itself.
+    let excited = structure.modes.iter().zip(&start.rate).zip(&start.amplitude);
+    let surface: f64 = excited.map(|((mode, b), a)| (mode.shape * (b.abs() + mode.omega_rad_s * a.abs())).abs()).sum();
+    let mobility = |rigid_only: bool| -> f64 {
+        let modes = structure.modes.iter().filter(|mode| mode.omega_rad_s == 0.0 || !rigid_only);
+        striker.mass_kg.recip() + modes.map(|mode| mode.shape * mode.shape).sum::<f64>()
+    };
+    let speed = striker.speed_m_s.abs() + surface;
+    let wrong = settings.tolerance * speed / mobility(true) * (1.0 + solution.sub_impacts.len() as f64);
+    let allowed = 10.0 * wrong * (speed + wrong * mobility(false)) + ROUNDING * before;
+    verdict.energy_gain = if before > 0.0 { after / before - 1.0 } else { 0.0 };
+    verdict.gain_over_allowed = if allowed > 0.0 { (after - before) / allowed } else { 0.0 };
+    check(after - before <= allowed, || format!("energy from {before:e} J to {after:e} J"))?;
+    for (i, contact) in solution.sub_impacts.iter().enumerate() {
+        // a force is never negative, but an impulse below the tolerance has no sign
+        let impulse = contact.impulse_n_s;
+        check(impulse >= -wrong, || format!("contact {i} pulls with {impulse:e} N s"))?;
+    }
+    if let (Some(e), true) = (solution.restitution, start == &at_rest) {
+        // of the relative motion, whose energy may be a small part of the whole
+        let excess = 1.0 + 10.0 * settings.tolerance * (1.0 + solution.sub_impacts.len() as f64) + ROUNDING;
+        check(e.abs() <= excess, || format!("restitution {e}"))?;
+    }
+    Ok(())
+}
+
+fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict) -> Result<(), String> {
+    verdict.outcome = "refused";
+    let settings = infinite::Settings { max_panels: 500, ..infinite::Settings::default() };
+    let solved = infinite::solve(structure, s.clamp(1e-12, 1e8), &settings);
+    let solution = solved.map_err(|fault| format!("a sound S was refused: {fault}"))?;
+    verdict.outcome = match solution.outcome {
+        infinite::Outcome::Rebound => "rebound",
+        infinite::Outcome::Sustained => "sustained",
+        infinite::Outcome::LimitReached => "limit reached",
+    };
+    verdict.contacts = solution.contacts.len();
+    verdict.steps = solution.panels_tried as u64;
+    check(solution.panels_tried <= settings.max_panels + 1_000, || format!("{} panels", solution.panels_tried))?;
+    let (mut now, mut speed) = (0.0, 1.0);
+    for (i, contact) in solution.contacts.iter().enumerate() {
+        finite(&format!("contact {i}"), [contact.start, contact.closing_speed, contact.body_speed_at_start])?;
+        finite(
+            &format!("contact {i}"),
+            contact.end.into_iter().chain(contact.duration).chain(contact.body_speed_at_end),
+        )?;
+        let ordered = contact.start >= now && contact.closing_speed > 0.0 && contact.duration.is_none_or(|d| d > 0.0);
+        check(ordered, || format!("{contact:?} after {now}"))?;
+        // a force that presses only slows the body down
+        let slower = contact.body_speed_at_end.unwrap_or(speed);
+        check(slower <= speed && slower >= -1.0, || format!("body speed from {speed} to {slower}"))?;
+        (now, speed) = (contact.end.unwrap_or(now), slower);
+    }
+    verdict.energy_gain = speed * speed - 1.0;
+    check(solution.rebound_ratio().is_none_or(|e| (0.0..=1.0).contains(&e)), || "rebound beyond 0 to 1".into())?;
+    check(solution.error.is_none_or(|error| error >= 0.0), || format!("error {:?}", solution.error))
+}
+
+fn net(problem: &emoc::Problem, verdict: &mut Verdict) -> Result<(), String> {
+    let mut solver = NetSolver::new();
+    verdict.outcome = "refused";
+    let solution = match solver.solve(problem) {
+        Ok(solution) => solution,
+        Err(emoc::SolveError::Stopped(_)) => {
+            verdict.outcome = "stopped";
+            return Ok(());
+        }
+        Err(fault) => return Err(format!("a sound problem was refused: {fault}")),
+    };
+    verdict.outcome = match solution.outcome {
+        emoc::Outcome::NoImpact => "no contact",
+        emoc::Outcome::Solved => "solved",
+        _ => "relaxed",
+    };
+    verdict.contacts = problem.contacts.len();
+    finite("impulse", solution.impulse_n_s.iter().copied())?;
+    finite("modal rate", solution.modal_rate.iter().copied())?;
+    // wedged bodies are pressed with impulses that cancel each other, and rounding grows with those
+    let weight = problem.inverse_inertia_per_kg.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
+    let pressing = weight * solution.impulse_n_s.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+    let vibration: f64 = problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
+    let allowed = (1e-8 + 1e-10 * pressing) * (vibration + 1.0 / weight.max(1e-300));
+    verdict.energy_gain = solution.energy_change_j * weight;
+    verdict.gain_over_allowed = solution.energy_change_j / allowed;
+    check(solution.energy_change_j <= allowed, || format!("energy grows by {:e} J", solution.energy_change_j))?;
+    for &i in &problem.normals() {
+        let opening = solution.opening_m_s[i];
+        let closes = solution.outcome != emoc::Outcome::NoImpact && opening < -1e-7 - 1e-9 * pressing;
+        check(!closes, || format!("contact coordinate {i} closes at {opening:e} m/s"))?;
+    }
+    Ok(())
+}
