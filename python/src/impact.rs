@@ -3,10 +3,10 @@
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use vibroimpact::{InvalidInput, export};
 use vibroimpact::infinite::{self, Summary, TurningPoints};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
+use vibroimpact::{InvalidInput, export};
 
 use crate::errors::Fault;
 use crate::input::Source;
