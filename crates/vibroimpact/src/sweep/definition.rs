@@ -10,7 +10,7 @@ use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Random};
-use crate::scene::json::quote;
+use crate::scene::json::{self, quote};
 use crate::scene::{InvalidInput, Scene};
 
 /// Changed whenever the same sweep gives other rows or other columns.
@@ -47,6 +47,14 @@ impl Sweep {
     /// A file that cannot be read, a fault in the sweep or in its base scene, or too many points.
     pub fn read(path: &Path) -> Result<Sweep, SweepError> {
         Ok(Sweep::new(file::read(path)?)?)
+    }
+
+    /// Reads a sweep from JSON text with the scene in it.
+    ///
+    /// # Errors
+    /// Text that is not JSON, otherwise as [`Sweep::read`].
+    pub fn from_json(text: &str) -> Result<Sweep, SweepError> {
+        Ok(Sweep::from_value(&json::parse(text)?)?)
     }
 
     /// Reads a sweep from a JSON tree with the scene in it.
