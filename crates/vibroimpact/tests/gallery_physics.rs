@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use gallery::{assert_checked_in, gallery, named, restitution};
-use vibroimpact::model::Modes;
 use vibroimpact::beam_modes;
+use vibroimpact::model::Modes;
 use vibroimpact::scene::{Beam, End, Segment, Structure};
 use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::Outcome;
