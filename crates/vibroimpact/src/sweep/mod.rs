@@ -45,6 +45,7 @@ mod path;
 mod pictures;
 mod report;
 mod row;
+mod schema;
 mod table;
 mod tally;
 mod threads;
@@ -56,9 +57,11 @@ use std::thread::available_parallelism;
 
 pub use definition::Sweep;
 pub use error::SweepError;
+pub use file::FORMAT_VERSION;
 pub use folder::Part;
 pub use merge::merge;
 pub use path::FieldPath;
+pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
 pub use values::{Axis, AxisValues, Interval, Random, Scale};
 
