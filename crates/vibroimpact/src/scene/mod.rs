@@ -7,6 +7,7 @@
 //! A scene can as well be put together in Rust:
 //!
 //! ```
+//! use vibroimpact::model::Modes;
 //! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, Scene, Segment, Striker};
 //!
 //! let beam = Beam {
@@ -16,8 +17,8 @@
 //! };
 //! let scene = Scene {
 //!     location_m: Some(0.6180339887498949),
-//!     modes: Some(100),
-//!     residual_compliance: true,
+//!     modes: Modes::Count(100),
+//!     residual_compliance: Some(true),
 //!     ..Scene::new(beam, Striker::sphere(7800.0, 0.015, 1.0), Contact::Hertz(HertzStiffness::of_material(2e11, 0.3)))
 //! };
 //! let solution = scene.impact()?.solve()?;
@@ -254,9 +255,9 @@ impl Scene {
 
 /// The tree of a file, which should hold `what`: TOML if its name ends in `.toml`, JSON otherwise.
 pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
-    let fault = |fault| SceneError::Read {
+    let fault = |fault: std::string::FromUtf8Error| SceneError::Read {
         path: path.to_owned(),
-        source: std::io::Error::new(std::io::ErrorKind::InvalidData, fault),
+        source: std::io::Error::new(std::io::ErrorKind::InvalidData, format!("the text is not UTF-8: {fault}")),
     };
     let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));

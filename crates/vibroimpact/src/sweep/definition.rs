@@ -11,7 +11,7 @@ use super::file::{self, Contents, MAX_POINTS, canonical_text};
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Random};
 use crate::scene::json::{self, quote};
-use crate::scene::{InvalidInput, Scene, SceneError, toml};
+use crate::scene::{InvalidInput, Scene, toml};
 
 /// Changed whenever the same sweep gives other rows or other columns.
 const FORMAT: u32 = 2;
@@ -53,7 +53,7 @@ impl Sweep {
     ///
     /// # Errors
     /// As [`Sweep::read`], files aside.
-    pub fn from_json(text: &str) -> Result<Sweep, SceneError> {
+    pub fn from_json(text: &str) -> Result<Sweep, SweepError> {
         Ok(Sweep::from_value(&json::parse(text, file::A_SWEEP)?)?)
     }
 
@@ -61,7 +61,7 @@ impl Sweep {
     ///
     /// # Errors
     /// As [`Sweep::read`], files aside.
-    pub fn from_toml(text: &str) -> Result<Sweep, SceneError> {
+    pub fn from_toml(text: &str) -> Result<Sweep, SweepError> {
         Ok(Sweep::from_value(&toml::parse(text)?)?)
     }
 
