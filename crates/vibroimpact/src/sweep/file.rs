@@ -78,17 +78,16 @@ pub(super) struct SweepFile {
     #[schemars(skip)]
     _version: Option<u64>,
     /// The scene; it may leave out the varied fields.
-    #[schemars(with = "Map<String, Value>")]
+    #[schemars(with = "Option<Map<String, Value>>")]
     scene: Option<Value>,
     /// The name of a scene file in place of the scene, relative to the folder of the sweep file.
-    #[schemars(with = "String")]
     scene_file: Option<String>,
     /// The axes of a grid, whose last axis runs fastest.
     #[serde(default, deserialize_with = "json::objects")]
     #[schemars(length(min = 1))]
     vary: Vec<AxisEntry>,
     /// What is drawn at random at each point of the grid.
-    #[schemars(with = "RandomEntry")]
+    #[schemars(with = "Option<RandomEntry>")]
     random: Option<Value>,
 }
 
@@ -101,22 +100,18 @@ struct AxisEntry {
     /// The path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m.
     field: String,
     /// The first value.
-    #[schemars(with = "f64")]
     from: Option<f64>,
     /// The last value.
-    #[schemars(with = "f64")]
     to: Option<f64>,
     /// How many values, both ends included.
-    #[schemars(with = "u64", range(min = 2, max = 1_000_000_000_000u64))]
+    #[schemars(range(min = 2, max = 1_000_000_000_000u64))]
     count: Option<u64>,
     /// Equal differences (linear, when left out) or equal ratios (log).
-    #[schemars(with = "Scale")]
     scale: Option<Scale>,
     /// Whether values are rounded to whole numbers.
-    #[schemars(with = "bool")]
     whole_numbers: Option<bool>,
     /// The values themselves: numbers, texts, or whole objects.
-    #[schemars(with = "Vec<Value>", length(min = 1))]
+    #[schemars(length(min = 1))]
     values: Option<Vec<Value>>,
 }
 
