@@ -95,7 +95,7 @@ pub(super) struct SweepFile {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Axis",
-           extend("oneOf" = [{ "required": ["values"], "maxProperties": 2 }, { "required": ["from", "to", "count"] }]))]
+           extend("oneOf" = [{ "required": ["values"], "maxProperties": 2 }, { "required": ["from", "to", "count"], "not": { "required": ["values"] } }]))]
 struct AxisEntry {
     /// The path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m.
     field: String,
