@@ -110,8 +110,9 @@ const COMPLETIONS_EXAMPLES: &str = "Examples:
 const MANUAL_EXAMPLES: &str = "Example:
   vibroimpact manual > ~/.local/share/man/man1/vibroimpact.1";
 
-const SCHEMA_EXAMPLES: &str = "Example:
+const SCHEMA_EXAMPLES: &str = "Examples:
   vibroimpact schema scene > scene.schema.json
+  vibroimpact schema sweep > sweep.schema.json
 
 A scene that says { \"$schema\": \"scene.schema.json\", ... } is then completed and checked by editors that know JSON
 Schema.";
@@ -241,6 +242,8 @@ enum Command {
 enum InputFile {
     /// A scene
     Scene,
+    /// A sweep
+    Sweep,
 }
 
 /// Exit code of a sweep that was asked to stop.
@@ -355,6 +358,7 @@ fn run(command: Command) -> Result<(), Failure> {
             String::from_utf8(page)?
         }
         Command::Schema { of: InputFile::Scene } => schema::text(&schema::of_scenes()),
+        Command::Schema { of: InputFile::Sweep } => schema::text(&vibroimpact::sweep::schema()),
         Command::Sweep(arguments) => sweep_command::sweep(arguments)?,
         Command::Merge(arguments) => sweep_command::merge(arguments)?,
     };

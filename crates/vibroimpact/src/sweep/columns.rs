@@ -19,7 +19,7 @@ pub const MOST_IN_MEMORY: u64 = 10_000_000;
 pub enum Column {
     /// Numbers, not-a-number where there is none.
     Numbers(Vec<f64>),
-    /// Texts, empty where there is none.
+    /// Texts, empty where there is none; `true` and `false` are texts too.
     Texts(Vec<String>),
 }
 
@@ -57,7 +57,7 @@ pub fn run_in_memory(
     }
     let column = |(name, kind)| match kind {
         Kind::Whole | Kind::Number => (name, Column::Numbers(Vec::new())),
-        Kind::Text => (name, Column::Texts(Vec::new())),
+        Kind::Truth | Kind::Text => (name, Column::Texts(Vec::new())),
     };
     let mut table = Table { sweep, columns: columns(sweep).into_iter().map(column).collect(), chunks: 0, points: 0 };
     let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads };
