@@ -23,7 +23,7 @@ use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
 use super::choose::Choice;
 use super::pose::{Pose, Source, chooses_modes, compliance};
 use super::text::small;
-use super::{Answer, Cost, Model, Modes};
+use super::{Answer, Cost, DEFAULT_TOLERANCE, Model, Modes};
 use crate::impact::{Impact, in_scene};
 use crate::scene::{InvalidInput, Scene};
 
@@ -45,7 +45,7 @@ const CAUTION: f64 = 2.0;
 const FLIGHTS: f64 = 0.5;
 /// Weight of the difference before the last.
 const EARLIER: f64 = 0.1;
-/// The same once three numbers of modes have not settled: of many pairs one may agree by accident.
+/// The same from the third number of modes on: of many pairs one may agree by accident.
 const EARLIER_LATE: f64 = 0.5;
 /// Tolerance of the solver with the first two numbers of modes, as a share of the tolerance wanted; and its range. Below
 /// it, rounding is all that steps can show.
@@ -173,7 +173,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         let pair = last.solution.restitution.zip(next.solution.restitution);
         let flights = distance(&last.flights(momentum), &next.flights(momentum));
         let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
-        let weight = if rungs.len() < 3 { EARLIER } else { EARLIER_LATE };
+        let weight = if rungs.len() < 2 { EARLIER } else { EARLIER_LATE };
         let change = step.max(FLIGHTS * flights);
         let mut uncertainty = CAUTION * change.max(weight * before) + 0.5 * next.settings.tolerance;
         before = change;
@@ -261,7 +261,8 @@ pub(super) fn stated(scene: &Scene, cost: &mut Cost) -> Result<Choice, InvalidIn
     };
     let tolerance = impact.settings.tolerance;
     let uncertainty = solution.restitution_uncertainty;
-    let settled = uncertainty.is_some_and(|u| u <= 10.0 * tolerance);
+    let wanted = scene.tolerance.map_or(DEFAULT_TOLERANCE, |tolerance| 10.0 * tolerance);
+    let settled = uncertainty.is_some_and(|u| u <= wanted);
     let known = Known { uncertainty, settled, spread: uncertainty.filter(|_| !settled) };
     Ok(Choice::modal(tolerance, impact, solution, known, reason))
 }
