@@ -5,15 +5,20 @@ use arbitrary::{Arbitrary, Result, Unstructured};
 use vibroimpact::contact_models::{
     Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
 };
+use vibroimpact::sweep::Sweep;
 use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
 use vibroimpact::{Scene, net};
 
-/// A scene file: read, written and read again, posed, and solved within limits.
+/// A scene file, JSON or TOML: read, written and read again, posed, and solved within limits.
 pub fn scene(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let Ok(scene) = Scene::from_json(text) else { return };
+    let Ok(scene) = Scene::from_json(text).or_else(|_| Scene::from_toml(text)) else { return };
     let again = Scene::from_json(&scene.to_json());
     assert!(again.is_ok_and(|again| again == scene), "a scene is not read as it was written");
+    if let Ok(toml) = scene.to_toml() {
+        let again = Scene::from_toml(&toml);
+        assert!(again.is_ok_and(|again| again == scene), "a scene is not read as it was written in TOML");
+    }
     // modes in thousands are sound, but no work for a fuzzer
     if scene.modes.count().is_some_and(|modes| modes > 50) {
         return;
@@ -24,6 +29,20 @@ pub fn scene(bytes: &[u8]) {
         .and_then(|mut solver| solver.solve(&impact.striker, &impact.law, None, &settings));
     if let Ok(solution) = solved {
         sound(&solution);
+    }
+}
+
+/// A sweep file, JSON or TOML, with its scene in it: read, and scenes of its points posed.
+pub fn sweep(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(sweep) = Sweep::from_json(text).or_else(|_| Sweep::from_toml(text)) else { return };
+    let last = sweep.points() - 1;
+    for point in [0, last / 3, last] {
+        let values = sweep.values(point);
+        assert_eq!(values.len(), sweep.fields().count());
+        assert_eq!(values, sweep.values(point), "a point is not a function of its number");
+        // values that make no scene are a row with its error
+        let _ = sweep.scene(point);
     }
 }
 

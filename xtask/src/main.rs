@@ -5,6 +5,7 @@ mod book;
 mod chapters;
 mod ci;
 mod examples;
+mod fuzz;
 mod soak;
 
 use std::io::{ErrorKind, Write};
@@ -59,6 +60,12 @@ enum Task {
         /// Chapter 8: measured points to fit as well (CSV: length_m, angle_deg, restitution)
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
+    },
+    /// Run every fuzz target; needs a nightly compiler and cargo-fuzz
+    Fuzz {
+        /// How long each (s)
+        #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
+        seconds: u32,
     },
     /// Solve random impacts, wide of anything ordinary: no panic, no NaN, no energy gained, no hang
     Soak {
@@ -146,6 +153,7 @@ fn run(task: Task) -> Result<(), Failure> {
             });
             reproduce(chapter, &out, quick, data.as_deref())
         }
+        Task::Fuzz { seconds } => fuzz::run(root, seconds),
         Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
         Task::Soak { impacts, seed, minutes, only: None, out } => {
             let limit = minutes.map(|minutes| Duration::from_secs(minutes.saturating_mul(60)));

@@ -31,13 +31,10 @@ impl Files {
     /// # Errors
     /// None that an impact could cause; those of the writers are passed on.
     pub fn new(title: &str, summary: &Summary, history: &History<Law>) -> Result<Files, Failure> {
-        let until_s = history.duration_s() * (1.0 + AFTERMATH);
-        let samples: Vec<Sample> =
-            history.times(until_s, HISTORY_INTERVALS).into_iter().map(|time_s| history.at(time_s)).collect();
         Ok(Files(vec![
             ("result.json", json(summary)?.into_bytes()),
-            ("history.csv", history_csv(&samples)?),
-            ("modal_energies.csv", energies_csv(history, until_s, summary.modes)?),
+            ("history.csv", self::history(history).csv()?),
+            ("modal_energies.csv", modal_energies(history).csv()?),
             ("sub_impacts.csv", sub_impacts_csv(summary)?),
             ("impact.svg", pictures::impact(title, summary, history).svg()?.into_bytes()),
         ]))
@@ -80,40 +77,66 @@ pub fn json(summary: &impl serde::Serialize) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(summary)? + "\n")
 }
 
-fn history_csv(samples: &[Sample]) -> Result<Vec<u8>, Failure> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record([
-        "time_s",
-        "structure_displacement_m",
-        "striker_displacement_m",
-        "structure_velocity_m_s",
-        "striker_velocity_m_s",
-        "compression_m",
-        "force_n",
-    ])?;
-    for sample in samples {
-        table.serialize((
-            sample.time_s,
-            sample.structure_displacement_m,
-            sample.striker_displacement_m,
-            sample.structure_velocity_m_s,
-            sample.striker_velocity_m_s,
-            sample.compression_m,
-            sample.force_n,
-        ))?;
-    }
-    Ok(table.into_inner()?)
+/// Columns of numbers, each under its name; all of one length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Names, which carry the units, and values.
+    pub columns: Vec<(String, Vec<f64>)>,
 }
 
-fn energies_csv(history: &History<Law>, until_s: f64, modes: usize) -> Result<Vec<u8>, Failure> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table
-        .write_record(std::iter::once("time_s".to_owned()).chain((1..=modes).map(|k| format!("mode_{k}_energy_j"))))?;
-    for i in 0..=ENERGY_INTERVALS {
-        let time_s = until_s * i as f64 / ENERGY_INTERVALS as f64;
-        table.serialize((time_s, history.modal_energies_j(time_s)))?;
+impl Table {
+    /// The table as comma-separated values under a line of names.
+    ///
+    /// # Errors
+    /// None that an impact could cause.
+    pub fn csv(&self) -> Result<Vec<u8>, Failure> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(self.columns.iter().map(|(name, _)| name))?;
+        let mut columns: Vec<_> = self.columns.iter().map(|(_, values)| values.iter()).collect();
+        let mut row: Vec<f64> = columns.iter_mut().map_while(Iterator::next).copied().collect();
+        while !row.is_empty() {
+            table.serialize(&row)?;
+            row.clear();
+            row.extend(columns.iter_mut().map_while(Iterator::next));
+        }
+        Ok(table.into_inner()?)
     }
-    Ok(table.into_inner()?)
+}
+
+/// How far the histories go (s).
+fn until_s(history: &History<Law>) -> f64 {
+    history.duration_s() * (1.0 + AFTERMATH)
+}
+
+/// Motion and force over time: what `history.csv` holds.
+pub fn history(history: &History<Law>) -> Table {
+    let times = history.times(until_s(history), HISTORY_INTERVALS);
+    let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
+    let column = |name: &str, of: fn(&Sample) -> f64| (name.to_owned(), samples.iter().map(of).collect());
+    Table {
+        columns: vec![
+            column("time_s", |sample| sample.time_s),
+            column("structure_displacement_m", |sample| sample.structure_displacement_m),
+            column("striker_displacement_m", |sample| sample.striker_displacement_m),
+            column("structure_velocity_m_s", |sample| sample.structure_velocity_m_s),
+            column("striker_velocity_m_s", |sample| sample.striker_velocity_m_s),
+            column("compression_m", |sample| sample.compression_m),
+            column("force_n", |sample| sample.force_n),
+        ],
+    }
+}
+
+/// The energy of each mode over time: what `modal_energies.csv` holds.
+pub fn modal_energies(history: &History<Law>) -> Table {
+    let until_s = until_s(history);
+    let times: Vec<f64> = (0..=ENERGY_INTERVALS).map(|i| until_s * i as f64 / ENERGY_INTERVALS as f64).collect();
+    let rows: Vec<Vec<f64>> = times.iter().map(|time_s| history.modal_energies_j(*time_s)).collect();
+    let modes = rows.first().map_or(0, Vec::len);
+    let mode = |k: usize| {
+        let energies = rows.iter().filter_map(|row| row.get(k)).copied().collect();
+        (format!("mode_{}_energy_j", k + 1), energies)
+    };
+    Table { columns: std::iter::once(("time_s".to_owned(), times)).chain((0..modes).map(mode)).collect() }
 }
 
 fn sub_impacts_csv(summary: &Summary) -> Result<Vec<u8>, Failure> {

@@ -6,9 +6,7 @@ use clap::{Args, Subcommand};
 use vibroimpact::export::{self, Failure};
 use vibroimpact::infinite::{Summary, TurningPoints, files, picture, text, turning_points_text};
 use vibroimpact::report;
-use vibroimpact::vibroimpact_sim::infinite::{
-    Groups, MOST_TURNING_POINTS, Settings, Solution, Structure, critical_s, solve, turning_points,
-};
+use vibroimpact::vibroimpact_sim::infinite::{Groups, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
 use crate::products::Products;
@@ -72,7 +70,8 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
                 let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
                 return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
             }
-            of_scene(&scene, json, out, &products)
+            let (groups, solution) = scene.solve_infinite()?;
+            of_scene(&scene, &groups, &solution, json, out, &products)
         }
         Arguments { s, json, out, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
@@ -83,13 +82,17 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     }
 }
 
-/// Solves a scene with an infinite structure and returns what is to be printed.
-pub fn of_scene(scene: &Scene, json: bool, out: Option<PathBuf>, products: &Products) -> Result<String, Failure> {
-    let impact = scene.infinite_impact()?;
-    let groups = impact.groups().map_err(InvalidInput::from)?;
-    let headline = vibroimpact::text::infinite_headline(scene, &impact);
-    let solution = solve(impact.structure, groups.s, &Settings::default()).map_err(InvalidInput::from)?;
-    result(&headline, &solution, Some((scene, &groups)), json, out, products)
+/// Returns what is to be printed of a scene with an infinite structure.
+pub fn of_scene(
+    scene: &Scene,
+    groups: &Groups,
+    solution: &Solution,
+    json: bool,
+    out: Option<PathBuf>,
+    products: &Products,
+) -> Result<String, Failure> {
+    let headline = vibroimpact::text::infinite_headline(scene, &scene.infinite_impact()?);
+    result(&headline, solution, Some((scene, groups)), json, out, products)
 }
 
 fn result(
@@ -119,10 +122,6 @@ fn result(
 }
 
 fn list(count: usize, json: bool) -> Result<String, Failure> {
-    if !(1..=MOST_TURNING_POINTS).contains(&count) {
-        let allowed = format!("a whole number from 1 to {MOST_TURNING_POINTS}");
-        return Err(InvalidInput { field: "count".into(), value: Some(count.to_string()), allowed }.into());
-    }
-    let points = TurningPoints::new(critical_s(), &turning_points(count).map_err(InvalidInput::from)?);
+    let points = TurningPoints::first(count)?;
     if json { export::json(&points) } else { Ok(turning_points_text(&points)) }
 }

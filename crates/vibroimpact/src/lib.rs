@@ -28,6 +28,7 @@
 //! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
 //! | [`scene::schema`] | its JSON Schema |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
@@ -50,6 +51,7 @@ pub mod pictures;
 pub mod plot;
 pub mod report;
 pub mod scene;
+pub mod simulate;
 pub mod summary;
 pub mod sweep;
 pub mod text;

@@ -14,13 +14,13 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use products::Products;
-use serde_json::json;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::model::{self, Answer};
 use vibroimpact::net::{self, FitSummary};
 use vibroimpact::scene::{self, schema};
-use vibroimpact::summary::Summary;
+use vibroimpact::simulate::{Resolved, Simulation};
+use vibroimpact::summary::ModeTable;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::vibroimpact_sim::modal::Striker;
 use vibroimpact::{InvalidInput, Scene, SceneError, pictures, report, text};
@@ -112,8 +112,9 @@ const COMPLETIONS_EXAMPLES: &str = "Examples:
 const MANUAL_EXAMPLES: &str = "Example:
   vibroimpact manual > ~/.local/share/man/man1/vibroimpact.1";
 
-const SCHEMA_EXAMPLES: &str = "Example:
+const SCHEMA_EXAMPLES: &str = "Examples:
   vibroimpact schema scene > scene.schema.json
+  vibroimpact schema sweep > sweep.schema.json
 
 A scene that says { \"$schema\": \"scene.schema.json\", ... } is then completed and checked by editors that know JSON
 Schema.";
@@ -246,6 +247,8 @@ enum Command {
 enum InputFile {
     /// A scene
     Scene,
+    /// A sweep
+    Sweep,
 }
 
 /// Exit code of a sweep that was asked to stop.
@@ -281,27 +284,36 @@ fn run(command: Command) -> Result<(), Failure> {
     let printed = match command {
         Command::Simulate { scene, json, out, products } => {
             let scene = Scene::read(&scene)?;
-            if scene.is_infinite() {
-                return print(&infinite_beam::of_scene(&scene, json, out, &products)?);
-            }
-            let choice = scene.choose()?;
-            let Some(impact) = choice.impact else {
-                products.refuse(choice.answer.model)?;
-                return print(&without_course(&scene, &choice.answer, json, out)?);
+            let found = scene.simulate()?;
+            let Resolved { impact, summary, history } = match &found {
+                Simulation::Modal(resolved) => resolved.as_ref(),
+                Simulation::Infinite { groups, solution } => {
+                    return print(&infinite_beam::of_scene(&scene, groups, solution, json, out, &products)?);
+                }
+                Simulation::Net(answer) => {
+                    products.refuse(answer.model)?;
+                    return print(&without_course(&scene, answer, json, out)?);
+                }
             };
-            let (solution, history) = impact.record()?;
-            let residual = impact.structure.residual_compliance_m_n;
-            let modelled = report::modelled(&scene, &impact, &choice.answer.reason);
-            let summary = Summary::new(&solution, history.energy_ledger(), residual).chosen(choice.answer);
             let headline = text::headline(&scene, &impact.striker);
-            let mut printed =
-                if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text::result(&summary)) };
+            let mut printed = if json {
+                found.json()?
+            } else {
+                format!(
+                    "{headline}
+
+{}",
+                    text::result(summary)
+                )
+            };
+            let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
+            let modelled = report::modelled(&scene, impact, reason);
             let prepared = products.prepare(
-                || pictures::impact(&headline, &summary, &history),
-                |figure| report::of_impact(&headline, &scene, &modelled, &summary, figure),
+                || pictures::impact(&headline, summary, history),
+                |figure| report::of_impact(&headline, &scene, &modelled, summary, figure),
             )?;
             if let Some(folder) = out {
-                let files = Files::new(&headline, &summary, &history)?;
+                let files = Files::new(&headline, summary, history)?;
                 files.write(&folder)?;
                 if !json {
                     let names: Vec<&str> = files.names().collect();
@@ -335,14 +347,7 @@ fn run(command: Command) -> Result<(), Failure> {
                 Some(path) => products::Prepared::picture(&path, &pictures::modes(&scene, count)?)?.write(json)?,
                 None => String::new(),
             };
-            let printed = if json {
-                let omega: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s).collect();
-                let frequency: Vec<f64> = omega.iter().map(|omega| omega / std::f64::consts::TAU).collect();
-                let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
-                export::json(&json!({ "omega_rad_s": omega, "frequency_hz": frequency, "shape_at_location": shape }))?
-            } else {
-                text::modes(&modes)
-            };
+            let printed = if json { export::json(&ModeTable::new(&modes))? } else { text::modes(&modes) };
             printed + &told
         }
         Command::Emoc { scene, mu0, alpha0, alpha1, emoc_modes, json } => {
@@ -369,6 +374,7 @@ fn run(command: Command) -> Result<(), Failure> {
             String::from_utf8(page)?
         }
         Command::Schema { of: InputFile::Scene } => schema::text(&schema::of_scenes()),
+        Command::Schema { of: InputFile::Sweep } => schema::text(&vibroimpact::sweep::schema()),
         Command::Sweep(arguments) => sweep_command::sweep(arguments)?,
         Command::Merge(arguments) => sweep_command::merge(arguments)?,
     };

@@ -2,7 +2,7 @@
 
 use crate::model::Answer;
 use serde::Serialize;
-use vibroimpact_sim::modal::{Counts, EnergyLedger, Solution, SubImpact};
+use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
 /// What `simulate --json` prints: one object, every name with its unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -117,5 +117,27 @@ impl Summary {
     /// The same with the choice that led to it, whose uncertainty counts.
     pub fn chosen(self, choice: Answer) -> Summary {
         Summary { restitution_uncertainty: choice.restitution_uncertainty, choice: Some(choice), ..self }
+    }
+}
+
+/// What `modes --json` prints: modes from the lowest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeTable {
+    /// Natural frequencies (rad/s).
+    pub omega_rad_s: Vec<f64>,
+    /// The same (Hz).
+    pub frequency_hz: Vec<f64>,
+    /// Mass-normalised shapes at the point of impact (kg^-1/2).
+    pub shape_at_location: Vec<f64>,
+}
+
+impl ModeTable {
+    /// Gathers modes for printing.
+    pub fn new(modes: &[Mode]) -> ModeTable {
+        ModeTable {
+            omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
+            frequency_hz: modes.iter().map(|mode| mode.omega_rad_s / std::f64::consts::TAU).collect(),
+            shape_at_location: modes.iter().map(|mode| mode.shape).collect(),
+        }
     }
 }

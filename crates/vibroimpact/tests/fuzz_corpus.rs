@@ -20,7 +20,12 @@ fn feed(target: &str, function: fn(&[u8])) -> usize {
 
 #[test]
 fn scenes() {
-    assert!(feed("scene", targets::scene) >= 14);
+    assert!(feed("scene", targets::scene) >= 16);
+}
+
+#[test]
+fn sweeps() {
+    assert!(feed("sweep", targets::sweep) >= 8);
 }
 
 #[test]

@@ -255,7 +255,10 @@ fn scenes_that_do_not_fit_are_refused_by_field() {
         }
     }
     let message = refusal(&["modes", "scene.json", "--count", "3"], Some(scene().to_string()));
-    assert!(message.contains("structure.kind = \"infinite-beam\" is not allowed: beam or modal"), "{message}");
+    assert!(
+        message.contains("structure.kind = \"infinite-beam\" is not allowed: beam, modal or dropped-rod"),
+        "{message}"
+    );
 }
 
 /// The section may be given by rigidity and mass, by a rectangle, or by a diameter.

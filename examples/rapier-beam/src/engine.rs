@@ -7,6 +7,12 @@ use rapier2d::prelude::*;
 const HALF_THICKNESS_M: f64 = 0.0057;
 /// The engine's time step (s).
 const STEP_S: f32 = 1.0 / 2000.0;
+/// Of a physics world by default (m/s^2).
+const GRAVITY_M_S2: f32 = 9.81;
+/// Steps after which the engine is done with a bounce.
+const SETTLE: u32 = 4;
+/// Longer than any fall here.
+const MOST_STEPS: u32 = 10_000;
 
 /// Asks for the restitution at the place of each contact.
 struct ByPlace<F>(F);
@@ -40,14 +46,20 @@ pub fn drop(beam: &Beam, x_m: f64, height_m: f64, restitution: impl Fn(f64) -> f
             .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS),
     );
     let hook = ByPlace(restitution);
-    let mut before = 0.0_f32;
-    for _ in 0..10_000 {
+    let (mut lowest, mut steps_since) = (0.0_f32, 0);
+    for _ in 0..MOST_STEPS {
         world.step_with_events(&hook, &());
         let velocity = world.bodies[ball].linvel().y;
-        if velocity > before + 0.5 * before.abs() * 1e-3 && before < 0.0 && velocity > -STEP_S * 9.81 {
-            return f64::from(velocity.max(0.0) / -before);
+        if velocity < lowest {
+            (lowest, steps_since) = (velocity, 0);
+            continue;
         }
-        before = velocity;
+        steps_since += 1;
+        if steps_since == SETTLE {
+            // what gravity has taken since, given back
+            let lost = if velocity > 0.0 { GRAVITY_M_S2 * STEP_S * SETTLE as f32 } else { 0.0 };
+            return f64::from((velocity.max(0.0) + lost) / -lowest);
+        }
     }
     f64::NAN
 }

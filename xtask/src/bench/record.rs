@@ -131,8 +131,7 @@ fn compare_entries(name: &str, then: &Entry, now: &Entry, found: &mut Comparison
     }
     let allowed = ERROR_FACTOR * then.error_above_rounding();
     let line = || format!("{name}: error {:.1e} -> {:.1e}", then.error, now.error);
-    // written so that a NaN is worse
-    if !(now.error <= allowed) {
+    if now.error.is_nan() || now.error > allowed {
         found.worse.push(format!("{}; allowed: {allowed:.1e}", line()));
     } else if ERROR_FACTOR * now.error_above_rounding() < then.error_above_rounding() {
         found.better.push(line());

@@ -1,6 +1,6 @@
 //! One interval of contact: from first touch to separation.
 
-use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s, terms};
+use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s};
 use super::landing::{self, Approach, Landed, REACH};
 use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
@@ -34,15 +34,12 @@ pub(crate) struct Setting<'a, L> {
 
 /// Energy is looked at once in this many steps.
 const REST_CHECK: u64 = 8;
-/// By how much the error of a smooth force is taken to grow when the step is doubled: less than it does in the limit,
-/// `2^9`, because a step that is tried in vain costs as much as one that is made.
-const GROWTH: f64 = 250.0;
+/// A step is doubled when its error is this many times below the tolerance.
+const GROWTH: f64 = 10.0;
 /// Part of the tolerated error that the nodal forces may have.
 const NEWTON_SHARE: f64 = 1e-2;
 /// By how much the law may be missed at the end of a step, where the polynomial is extrapolated: in tolerances.
 const DEFECT: f64 = 1.0;
-/// A polynomial through `Q` nodes follows `t^1.5` to about this fraction of its size.
-const SINGULAR: f64 = 1e-4;
 /// Part of the way to the expected end of a branch that one step may take.
 const SHARE: f64 = 0.7;
 
@@ -64,8 +61,6 @@ pub(crate) struct Contact<'a, L> {
     rate: f64,
     /// Where the branch is expected to end: which boundary, and when.
     horizon: Option<(usize, f64)>,
-    /// A landing from farther than this was found too long (s).
-    too_far: f64,
     peak_force: Peak,
     peak_compression: Peak,
 }
@@ -98,7 +93,6 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             compression: memory.touch_m,
             rate,
             horizon: None,
-            too_far: f64::INFINITY,
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
         };
@@ -117,7 +111,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     fn enter(&mut self, branch: Branch) {
         self.branch = branch;
-        (self.horizon, self.too_far) = (None, f64::INFINITY);
+        self.horizon = None;
         self.needs_rate = self.setting.law.depends_on_rate()
             || self.setting.law.boundaries(&branch).iter().any(|b| b.per_rate != 0.0);
     }
@@ -129,6 +123,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         for ((mode, a), b) in self.ladder.modes.iter().zip(&state.alpha).zip(&state.beta) {
             acceleration -= mode.omega_rad_s * (2.0 * mode.damping_ratio * b + mode.omega_rad_s * a);
         }
+        // a polynomial through Q nodes follows t^1.5 to about this fraction of its size
+        const SINGULAR: f64 = 1e-4;
         let small = |j: i32| {
             let h = step_s(j);
             let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
@@ -174,7 +170,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     /// One try: a step forward, a return to a finer level, or the end of the contact.
     fn advance(&mut self) -> Option<ContactEnd> {
         if let Some((which, at)) = self.horizon
-            && self.is_near(which, at - self.motion.time)
+            && at - self.motion.time <= self.reach()
         {
             self.horizon = None;
             return self.approach(which, (at - self.motion.time).max(0.0), self.reach());
@@ -192,12 +188,12 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         let tolerance = self.setting.impulse_tolerance;
         let error = truncation(&force) * h;
         if error > tolerance {
-            let finer = ((error / tolerance).ln() / GROWTH.ln()) as i32 + 1;
-            return self.refine(self.level + finer.min(4));
+            // the error falls at least like h^3
+            let finer = ((error / tolerance).log2() / 3.0) as i32;
+            return self.refine(self.level + finer.clamp(1, 4));
         }
-        std::mem::swap(self.motion, &mut self.before);
-        self.motion.carry_on_from(&self.before);
-        self.ladder.advance(self.level, &self.before.vibration, &mut self.motion.vibration, &force);
+        self.before.clone_from(self.motion);
+        self.ladder.advance(self.level, &mut self.motion.vibration, &force);
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
@@ -213,12 +209,11 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + 1);
         }
         self.note(h, &step, &force);
-        let begins = self.previous.is_none();
         (self.compression, self.rate) = end;
         self.previous = Some((force, h));
-        // what the first step misses is the beginning itself
-        let coarser = if begins { 1 } else { ((tolerance / error).ln() / GROWTH.ln()).clamp(0.0, 2.0) as i32 };
-        self.level = (self.level - coarser).max(J_MIN);
+        if error * GROWTH < tolerance {
+            self.level = (self.level - 1).max(J_MIN);
+        }
         if let Some((_, at)) = self.horizon {
             self.level = self.level.max(level_within(SHARE * (at - self.motion.time)));
         }
@@ -227,18 +222,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Longest step for a landing (s).
     fn reach(&self) -> f64 {
-        if self.ladder.fastest_rad_s > 0.0 { REACH / self.ladder.fastest_rad_s } else { f64::INFINITY }
-    }
-
-    /// Whether one step may lead to the end of the branch, expected after `expected` seconds: within the reach of the
-    /// series and short enough for the force, which near a separation falls like `t^1.5`.
-    fn is_near(&self, which: usize, expected: f64) -> bool {
-        let boundary = &self.setting.law.boundaries(&self.branch)[which];
-        let fades = boundary.per_rate == 0.0 && boundary.per_compression > 0.0;
-        let force = || self.setting.law.force(&self.branch, self.compression, self.rate).force_n;
-        expected <= self.reach().min(self.too_far)
-            && (expected <= 2.0 * step_s(self.level)
-                || fades && SINGULAR * force() * expected <= 0.3 * self.setting.impulse_tolerance)
+        let slowest = if self.level < J_MIN { step_s(J_MIN) } else { step_s(self.level) * 2.0 };
+        if self.ladder.fastest_rad_s > 0.0 { (REACH / self.ladder.fastest_rad_s).min(slowest) } else { slowest }
     }
 
     fn refine(&mut self, level: i32) -> Option<ContactEnd> {
@@ -250,11 +235,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     /// Goes towards the end of the branch, expected after `expected` seconds of a step of `h`: lands there if it is
     /// near, or takes shorter steps.
     fn approach(&mut self, which: usize, expected: f64, h: f64) -> Option<ContactEnd> {
+        let reach = self.reach().min(h);
         let mut expected = expected;
-        if self.is_near(which, expected) {
-            let reach = self.reach().min(h).min(2.0 * expected.max(0.5 * step_s(self.level)));
-            let terms = terms(self.ladder.fastest_rad_s * reach);
-            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration, reach);
+        if expected <= reach {
+            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration);
             let mut approach = Approach {
                 law: self.setting.law,
                 branch: &self.branch,
@@ -263,25 +247,17 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 accuracy: NEWTON_SHARE * self.setting.impulse_tolerance,
                 start_compression: self.compression,
                 gap: series,
-                terms,
                 kernel: self.ladder.kernel,
                 residual_compliance: self.setting.residual_compliance,
-                noise: f64::EPSILON * self.motion.drift.abs(),
             };
             approach.gap[0] += self.motion.drift;
             approach.gap[1] += self.motion.drift_rate;
             approach.kernel[1] += self.setting.mu;
-            let now = self.setting.law.force(&self.branch, self.compression, self.rate).force_n.abs();
-            let previous = self.previous;
-            let foreseen = |t: f64| foresee(&previous, t).clamp(0.0, 2.0 * now);
-            match approach.land(expected, reach, foreseen, self.counts) {
+            match approach.land(expected, reach, self.counts) {
                 Some(landed) if truncation(&landed.force) * landed.length <= self.setting.impulse_tolerance => {
                     return self.cross(which, landed);
                 }
-                Some(landed) => {
-                    expected = landed.length;
-                    self.too_far = SHARE * landed.length;
-                }
+                Some(landed) => expected = landed.length,
                 // not so near after all: go on, until a step meets the boundary again
                 None => return self.refine((self.level + 1).max(level_within(reach))),
             }
@@ -292,10 +268,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Commits a landing and asks the law what follows.
     fn cross(&mut self, which: usize, landed: Landed) -> Option<ContactEnd> {
-        std::mem::swap(self.motion, &mut self.before);
-        self.motion.carry_on_from(&self.before);
-        let (from, to) = (&self.before.vibration, &mut self.motion.vibration);
-        landing::advance(self.ladder, from, to, landed.length, &landed.step.force);
+        self.before.clone_from(self.motion);
+        landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);
         (self.compression, self.rate) = (self.behind_compliance(landed.compression, landed.rate), landed.rate);
@@ -321,7 +295,12 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 response[i][j] -= inertia * basis.power[1][i][j];
             }
         }
-        let guess = basis.nodes.map(|c| foresee(&self.previous, c * h).max(0.0));
+        let mut guess = [0.0; Q];
+        if let Some((coefficients, length)) = &self.previous {
+            for i in 0..Q {
+                guess[i] = evaluate(coefficients, 1.0 + basis.nodes[i] * h / length).max(0.0);
+            }
+        }
         let given = Given {
             h,
             start_compression: self.compression,
@@ -380,11 +359,6 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     }
 }
 
-/// The force after `t` seconds, as the last step's polynomial and length have it (N).
-fn foresee(previous: &Option<(Nodal, f64)>, t: f64) -> f64 {
-    previous.as_ref().map_or(0.0, |(coefficients, length)| evaluate(coefficients, 1.0 + t / length))
-}
-
 /// What the polynomial may be missing: its next two coefficients, if they fall as the last two do against the two
 /// before. Pairs, because a single coefficient vanishes by accident.
 fn truncation(force: &Nodal) -> f64 {
@@ -414,21 +388,30 @@ impl Peak {
     fn value(&self) -> f64 {
         let coefficients = BASIS.coefficients(&self.nodal);
         let value = |at: f64| evaluate(&coefficients, at);
-        // from the largest node, a few times to the vertex of the parabola through it and its neighbours
-        let node = (0..Q).max_by(|&i, &j| self.nodal[i].total_cmp(&self.nodal[j])).unwrap_or(0);
-        let (mut at, mut best) = (BASIS.nodes[node], self.nodal[node]);
-        let mut spacing = 0.5 / Q as f64;
-        for _ in 0..3 {
+        // the best of a grid, then twice the vertex of the parabola through it and its neighbours
+        let grid = 2 * Q;
+        let (mut at, mut best) = (0.0, value(0.0));
+        for i in 1..=grid {
+            let place = i as f64 / grid as f64;
+            let here = value(place);
+            if here > best {
+                (at, best) = (place, here);
+            }
+        }
+        let mut spacing = 1.0 / grid as f64;
+        for _ in 0..2 {
             let (before, after) = (value(at - spacing), value(at + spacing));
             let bend = before - 2.0 * best + after;
-            let vertex = (at + 0.5 * spacing * (before - after) / bend).clamp(0.0, 1.0);
-            // not larger is also what not-a-number is
+            let vertex = at + 0.5 * spacing * (before - after) / bend;
+            if !(bend < 0.0 && (0.0..=1.0).contains(&vertex)) {
+                break;
+            }
             let here = value(vertex);
-            if bend < 0.0 && here > best {
+            if here > best {
                 (at, best) = (vertex, here);
             }
-            spacing *= 0.2;
+            spacing *= 0.1;
         }
-        best
+        self.largest.max(best)
     }
 }

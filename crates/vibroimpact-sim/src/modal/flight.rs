@@ -1,36 +1,20 @@
 //! Free flight: the time of the next contact, found without stepping through what cannot matter.
 //!
-//! The separation is `u(t) = touch - g(t)`. A mode of energy amplitude `A_k` never moves the surface by more than
-//! `A_k`, and its fourth derivative never exceeds `D_k = |row 1 of M^4| omega_k^4 A_k`, where `M` is the matrix of the
-//! mode's equation in units of its own frequency. On a window of length `h` the modes below a cut `K`, with the drift,
-//! are known at both ends; the cubic `p` through the two displacements and velocities departs from them by at most
-//! `t^2 (h-t)^2/24 sum D_k`, so that
-//!
-//! ```text
-//! u(t) >= p(t) - h^4/384 sum_{k<K} D_k - sum_{k>=K} A_k .
-//! ```
-//!
-//! Where the right side is positive the window holds no contact. For a separation that starts from nothing, with all
-//! modes below the cut, `u(t)/t >= p(t)/t - h^3/162 sum D_k` serves. Windows are steps of the ladder: longer after an
-//! easy proof, half as long after none, and where the bodies overlap at the end of one, such that they lead up to the
-//! root of the cubic. What cannot be proven on a window as short as the power series of the
-//! gap reaches is decided by the series. Once the drift alone outruns all amplitudes, the bodies never meet again.
+//! The separation is `u(t) = touch - g(t)`. With the modes' amplitude bounds `A_k` (a free mode never exceeds the one
+//! its energy allows), the modes above any `K` move the surface by at most `H = sum_{k>K} A_k`, and the rest has
+//! `|u''| <= B = sum_{k<=K} (1 + 2 zeta_k) omega_k^2 A_k`. So `u(t) >= u_K - H + u_K' t - B t^2 / 2`, and no contact
+//! can come before the root of the best of these parabolas. With `K = 0` it is a straight line: where that rises, the
+//! bodies never meet again.
 
-use super::ladder::{J_MIN, Ladder, Vibration, level_within, step_s, sum};
-use super::landing::{coast, taylor_of_free_motion};
-use super::legendre::TAYLOR;
+use super::ladder::{Ladder, level_within, step_s};
+use super::landing::{REACH, advance, taylor_of_free_motion};
+use super::legendre::{Q, TAYLOR};
 use super::motion::Motion;
 use super::solution::Counts;
 
-/// Amplitudes are computed anew once in this many steps: damping makes them fall.
-const REFRESH: u64 = 8;
-/// A window twice as long leaves 16 times the doubt, one four times as long 256 times.
-const EASY: f64 = 16.0;
-const VERY_EASY: f64 = 256.0;
-/// In the shortest window the fastest motion turns by at most this many radians.
-const REACH: f64 = 1.0;
-/// How many levels above the power series' reach the search for a contact begins.
-const FIRST: i32 = 2;
+/// The gap is expanded in a power series once the next safe step is this many levels finer than the series reaches;
+/// until then a few more plain steps cost less.
+const WINDOW: i32 = 2;
 
 /// What free flight came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,115 +27,60 @@ pub(crate) enum FlightEnd {
     Limit,
 }
 
-/// How far and how abruptly the free modes can move the surface.
+/// Bounds of one flight.
 struct Bounds {
-    /// Energy amplitudes `A_k` (m) and all together.
-    amplitude: Vec<f64>,
-    total: f64,
+    /// Truncations `K` looked at, and for each `H` and `B`.
+    cuts: Vec<(usize, f64, f64)>,
+    /// Size of the numbers whose difference the gap is: their rounding is the gap's.
+    size: f64,
 }
 
 impl Bounds {
-    fn refresh(&mut self, ladder: &Ladder, state: &Vibration) {
-        let n = self.amplitude.len();
-        let (alpha, beta, square) = (&state.alpha[..n], &state.beta[..n], &ladder.square[..n]);
-        for k in 0..n {
-            self.amplitude[k] = (alpha[k] * alpha[k] + beta[k] * beta[k] / square[k]).sqrt();
+    fn new(ladder: &Ladder, motion: &Motion) -> Bounds {
+        let n = ladder.modes.len();
+        let state = &motion.vibration;
+        let amplitude: Vec<f64> = (0..n)
+            .map(|k| (state.alpha[k].powi(2) + (state.beta[k] / ladder.modes[k].omega_rad_s).powi(2)).sqrt())
+            .collect();
+        let total: f64 = amplitude.iter().sum();
+        let (mut cuts, mut below, mut curvature) = (vec![], 0.0, 0.0);
+        for k in 0..=n {
+            // every count up to 4, then in ratios of about 4/3
+            if k <= 4 || k == n || k.leading_zeros() != (k - 1).leading_zeros() || k % (k.ilog2() as usize * 2) == 0 {
+                let above = if k == n { 0.0 } else { (total - below).max(0.0) * (1.0 + 1e-12) };
+                cuts.push((k, above, curvature));
+            }
+            if k < n {
+                let mode = &ladder.modes[k];
+                below += amplitude[k];
+                curvature += (1.0 + 2.0 * mode.damping_ratio) * mode.omega_rad_s.powi(2) * amplitude[k];
+            }
         }
-        self.total = sum(&self.amplitude) * (1.0 + 1e-12);
+        Bounds { cuts, size: total + motion.drift.abs() }
     }
 
-    /// `sum D_k` of the modes below the cut (m/s^4).
-    fn fourth_derivative(&self, ladder: &Ladder, cut: usize) -> f64 {
-        self.amplitude[..cut].iter().zip(&ladder.fourth).map(|(a, d)| a * d).sum()
-    }
-
-    /// Rounding of the gap, the difference of numbers of this size (m).
-    fn noise(&self, motion: &Motion) -> f64 {
-        4.0 * f64::EPSILON * (self.total + motion.drift.abs())
-    }
-
-    /// The largest curvature that the modes can give the gap (m/s^2).
-    fn curvature(&self, ladder: &Ladder) -> f64 {
-        let curvature = |(k, a): (usize, &f64)| (1.0 + 2.0 * ladder.modes[k].damping_ratio) * ladder.square[k] * a;
-        self.amplitude.iter().enumerate().map(curvature).sum()
-    }
-}
-
-/// A window of free flight, seen from the modes below a cut.
-struct Window {
-    h: f64,
-    /// Separation and its rate at both ends.
-    start: (f64, f64),
-    end: (f64, f64),
-}
-
-impl Window {
-    /// Bernstein coefficients of the cubic through both ends: it lies within their range.
-    fn cubic(&self) -> [f64; 4] {
-        let third = self.h / 3.0;
-        [self.start.0, self.start.0 + third * self.start.1, self.end.0 - third * self.end.1, self.end.0]
+    /// A time before which no contact can come, infinite if none can come at all.
+    fn safe_time(&self, motion: &Motion, touch: f64) -> f64 {
+        let (mut gap, mut rate, mut next, mut best) = (motion.drift, motion.drift_rate, 0, 0.0f64);
+        for &(cut, above, curvature) in &self.cuts {
+            while next < cut {
+                gap += motion.vibration.alpha[next];
+                rate += motion.vibration.beta[next];
+                next += 1;
+            }
+            let separation = touch - gap - above;
+            if separation > 0.0 || (separation == 0.0 && rate < 0.0) {
+                best = best.max(first_root_of_parabola(separation, -rate, curvature));
+            }
+        }
+        best
     }
 }
 
-/// A number below the cubic with these Bernstein coefficients, on its whole interval.
-fn below(cubic: [f64; 4]) -> f64 {
-    // one halving (de Casteljau) brings the coefficients four times nearer to the curve
-    let [a, b, c, d] = cubic;
-    let (ab, bc, cd) = (0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + d));
-    let (abc, bcd) = (0.5 * (ab + bc), 0.5 * (bc + cd));
-    a.min(ab).min(abc).min(bcd).min(cd).min(d)
-}
-
-/// What a window's bound came to.
-enum Proof {
-    /// No contact; the next window may be longer by so many levels.
-    Clear(i32),
-    /// None; contact is near this time into the window if the bodies overlap at its end.
-    Failed(Option<f64>),
-}
-
-impl Proof {
-    /// Of a separation of `least` at least, but for `doubt`.
-    fn of(least: f64, doubt: f64) -> Option<Proof> {
-        (least > doubt).then(|| Proof::Clear(i32::from(least > EASY * doubt) + i32::from(least > VERY_EASY * doubt)))
-    }
-}
-
-/// Tries to prove that no contact comes within the window that leads from `motion` to `end`.
-fn prove(ladder: &Ladder, bounds: &Bounds, motion: &Motion, end: &Motion, h: f64, touch: f64) -> Proof {
-    let n = ladder.modes.len();
-    let power = (h * h) * (h * h);
-    // below the cut the derivative tells more than the amplitude
-    let cut = ladder.fourth.partition_point(|fourth| fourth * power < 384.0);
-    let above = sum(&bounds.amplitude[cut..]);
-    let seen = |motion: &Motion| {
-        let gap = motion.drift + sum(&motion.vibration.alpha[..cut]);
-        (touch - gap, -motion.drift_rate - sum(&motion.vibration.beta[..cut]))
-    };
-    let window = Window { h, start: seen(motion), end: seen(end) };
-    let fourth = power * bounds.fourth_derivative(ladder, cut);
-    let noise = bounds.noise(motion);
-    let cubic = window.cubic();
-    // p(s)/s is a quadratic with the Bernstein coefficients 3 b1, 3/2 b2, b3, and more
-    let from_touch = || {
-        let least = (3.0 * cubic[1]).min(1.5 * cubic[2]).min(cubic[3] - noise);
-        if cut == n && cubic[0] >= 0.0 { Proof::of(least, fourth / 162.0) } else { None }
-    };
-    Proof::of(below(cubic), above + fourth / 384.0 + noise)
-        .or_else(from_touch)
-        .unwrap_or_else(|| Proof::Failed((end.gap() > touch).then(|| h * root(cubic))))
-}
-
-/// Where the cubic with these Bernstein coefficients on [0, 1] falls through zero, roughly.
-fn root([a, b, c, d]: [f64; 4]) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..8 {
-        let s: f64 = 0.5 * (low + high);
-        let r = 1.0 - s;
-        let value = r * r * (r * a + 3.0 * s * b) + s * s * (3.0 * r * c + s * d);
-        (low, high) = if value > 0.0 { (s, high) } else { (low, s) };
-    }
-    low
+/// First positive root of `u + u' t - b t^2/2` with `u >= 0`, `b >= 0`; infinite if there is none.
+fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
+    let root = (slope * slope + 2.0 * b * u).sqrt();
+    if slope >= 0.0 { if b == 0.0 { f64::INFINITY } else { (slope + root) / b } } else { 2.0 * u / (root - slope) }
 }
 
 /// Flies from a separation to the next contact, if there is one.
@@ -162,6 +91,7 @@ pub(crate) fn fly(
     max_steps: u64,
     counts: &mut Counts,
 ) -> FlightEnd {
+    let bounds = Bounds::new(ladder, motion);
     let reach = if ladder.fastest_rad_s > 0.0 { REACH / ladder.fastest_rad_s } else { f64::INFINITY };
     // the surfaces have just parted: an overlap of rounding is none
     let overlap = motion.gap() - touch;
@@ -170,58 +100,32 @@ pub(crate) fn fly(
     }
     // the power series of the gap serves for one ladder step
     let near = level_within(reach);
-    let mut bounds = Bounds { amplitude: vec![0.0; ladder.modes.len()], total: 0.0 };
-    let mut end = motion.clone();
-    // the window tried first, and when the bodies are expected to meet
-    let (mut level, mut ahead) = (near - FIRST, f64::INFINITY);
-    for step in 0.. {
+    loop {
         counts.flight_steps += 1;
         if counts.flight_steps > max_steps {
             return FlightEnd::Limit;
         }
-        if step % REFRESH == 0 {
-            bounds.refresh(ladder, &motion.vibration);
-        }
-        let separation = touch - motion.drift - bounds.total;
-        if (separation > 0.0 && motion.drift_rate <= 0.0) || (separation == 0.0 && motion.drift_rate < 0.0) {
+        let safe = bounds.safe_time(motion, touch);
+        if safe == f64::INFINITY {
             return FlightEnd::Never;
         }
-        level = level.clamp(J_MIN, near);
-        ladder.rotate(level, &motion.vibration, &mut end.vibration);
-        end.carry_on_from(motion);
-        end.coast(step_s(level));
-        match prove(ladder, &bounds, motion, &end, step_s(level), touch) {
-            Proof::Failed(meeting) if level < near => {
-                ahead = meeting.map_or(ahead, |after| motion.time + after);
-                level = (level + 1).max(level_within(ahead - motion.time));
-                continue;
+        let mut level = level_within(safe);
+        if level >= near + WINDOW {
+            let mut series = taylor_of_free_motion(ladder, &motion.vibration);
+            series[0] += motion.drift - touch;
+            series[1] += motion.drift_rate;
+            let curvature = bounds.cuts.last().map_or(0.0, |cut| cut.2);
+            let noise = 4.0 * f64::EPSILON * bounds.size;
+            if let Some(time) = first_root(&series, curvature, step_s(near), noise) {
+                advance(ladder, &mut motion.vibration, time, &[0.0; Q]);
+                motion.coast(time);
+                return FlightEnd::Contact;
             }
-            Proof::Failed(_) => {
-                let mut series = taylor_of_free_motion(ladder, &motion.vibration, step_s(near));
-                series[0] += motion.drift - touch;
-                series[1] += motion.drift_rate;
-                if let Some(time) = first_root(&series, bounds.curvature(ladder), step_s(near), bounds.noise(motion)) {
-                    coast(ladder, &motion.vibration, &mut end.vibration, time);
-                    motion.coast(time);
-                    std::mem::swap(&mut motion.vibration, &mut end.vibration);
-                    return FlightEnd::Contact;
-                }
-                (level, ahead) = (level - 1, f64::INFINITY);
-            }
-            Proof::Clear(longer) => {
-                let left = ahead - end.time;
-                level = if left > 0.0 { (level - longer).max(level_within(left)) } else { level - longer };
-            }
+            level = near;
         }
-        std::mem::swap(motion, &mut end);
+        ladder.rotate(level, &mut motion.vibration);
+        motion.coast(step_s(level));
     }
-    FlightEnd::Limit
-}
-
-/// First positive root of `u + u' t - b t^2/2` with `u >= 0`, `b >= 0`; infinite if there is none.
-fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
-    let root = (slope * slope + 2.0 * b * u).sqrt();
-    if slope >= 0.0 { if b == 0.0 { f64::INFINITY } else { (slope + root) / b } } else { 2.0 * u / (root - slope) }
 }
 
 /// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below.

@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 
 /// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
 pub(crate) const Q: usize = 8;
-/// Powers of time kept in a Taylor series, at most.
-pub(crate) const TAYLOR: usize = 28;
-/// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly: these, to degree `TAYLOR + Q - 2`.
+/// Powers of time kept in a Taylor series over a landing step.
+pub(crate) const TAYLOR: usize = 14;
+/// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
 const FINE: usize = 20;
 
 pub(crate) type Nodal = [f64; Q];
@@ -30,8 +30,6 @@ pub(crate) struct Basis {
     pub power_legendre: Vec<Nodal>,
     /// `node_powers[p][i]`: `c_i^p / p!`.
     pub node_powers: Vec<Nodal>,
-    /// The angle (rad) from which on a motion needs term `p` of its power series: `angle^p / p!` is no longer rounding.
-    pub least_angle: [f64; TAYLOR],
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
@@ -71,22 +69,13 @@ pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
     dot(coefficients, &legendre(s))
 }
 
-/// Inner product of two short vectors, on four adders at a time.
+/// Inner product of two short vectors.
 pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
-    let mut lanes = [0.0; 4];
-    for i in 0..4 {
-        lanes[i] = a[i] * b[i] + a[i + 4] * b[i + 4];
+    let mut sum = 0.0;
+    for i in 0..Q {
+        sum += a[i] * b[i];
     }
-    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
-}
-
-/// `matrix += factor * other`.
-pub(crate) fn add_multiple(matrix: &mut Matrix, factor: f64, other: &Matrix) {
-    for (row, other) in matrix.iter_mut().zip(other) {
-        for j in 0..Q {
-            row[j] += factor * other[j];
-        }
-    }
+    sum
 }
 
 /// A Gauss-Legendre rule on (0, 1).
@@ -168,11 +157,6 @@ impl Basis {
             }
         }
 
-        let mut factorial = 1.0;
-        let least_angle = std::array::from_fn(|p| {
-            factorial *= p.max(1) as f64;
-            if p < 2 { 0.0 } else { (1e-17 * factorial).powf(1.0 / p as f64) }
-        });
         let slopes = |at: f64| derivative_weights(&nodes, at);
         let mut slope_from_start = [0.0; Q];
         let mut slope_from_nodes = [[0.0; Q]; Q];
@@ -188,7 +172,6 @@ impl Basis {
             power_end,
             power_legendre,
             node_powers,
-            least_angle,
             slope_from_start,
             slope_from_nodes,
             end_slope_from_start,

@@ -1,6 +1,6 @@
 //! The state of an impact, and the record of how it came about.
 
-use super::ladder::{Vibration, sum};
+use super::ladder::Vibration;
 use super::legendre::Nodal;
 use contact_models::Branch;
 
@@ -20,12 +20,12 @@ pub(crate) struct Motion {
 impl Motion {
     /// Overlap of the surfaces (m).
     pub fn gap(&self) -> f64 {
-        self.drift + sum(&self.vibration.alpha)
+        self.drift + self.vibration.alpha.iter().sum::<f64>()
     }
 
     /// Its rate (m/s).
     pub fn gap_rate(&self) -> f64 {
-        self.drift_rate + sum(&self.vibration.beta)
+        self.drift_rate + self.vibration.beta.iter().sum::<f64>()
     }
 
     /// Takes over everything but the vibration, which is about to be overwritten.

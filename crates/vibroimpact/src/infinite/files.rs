@@ -3,7 +3,7 @@
 use vibroimpact_sim::infinite::{Groups, Solution};
 
 use super::{Sample, Summary, samples, telling_time};
-use crate::export::{Failure, Files, json};
+use crate::export::{Failure, Files, Table, json};
 use crate::pictures::{Peak, force_panel};
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 
@@ -19,11 +19,10 @@ const WIDE: f64 = 30.0;
 /// None that an impact could cause; those of the writers are passed on.
 pub fn files(title: &str, solution: &Solution, groups: Option<&Groups>) -> Result<Files, Failure> {
     let summary = Summary::new(solution, groups);
-    let samples = samples(solution, telling_time(solution), SAMPLES);
     let units = Units::new(groups);
     Ok(Files(vec![
         ("result.json", json(&summary)?.into_bytes()),
-        ("history.csv", history_csv(&samples, &units)?),
+        ("history.csv", history(solution, groups).csv()?),
         ("contacts.csv", contacts_csv(&summary, &units)?),
         ("impact.svg", picture(title, solution, groups).svg()?.into_bytes()),
     ]))
@@ -64,32 +63,29 @@ impl Units {
     }
 }
 
-/// As elsewhere in this crate, displacements and velocities are positive away from the structure. (Subtracted from zero,
-/// so that zero keeps its sign.)
-fn history_csv(samples: &[Sample], units: &Units) -> Result<Vec<u8>, Failure> {
-    let mut table = csv::Writer::from_writer(Vec::new());
+/// Motion and force over time: what `history.csv` holds, in SI units with `groups`, otherwise in units of the solution.
+/// As elsewhere in this crate, displacements and velocities are positive away from the structure.
+pub fn history(solution: &Solution, groups: Option<&Groups>) -> Table {
+    let samples = samples(solution, telling_time(solution), SAMPLES);
+    let units = Units::new(groups);
     let [time, force, displacement, speed] = units.suffixes;
-    table.write_record([
-        format!("time{time}"),
-        format!("structure_displacement{displacement}"),
-        format!("striker_displacement{displacement}"),
-        format!("structure_velocity{speed}"),
-        format!("striker_velocity{speed}"),
-        format!("compression{displacement}"),
-        format!("force{force}"),
-    ])?;
-    for Sample { time, state } in samples {
-        table.serialize((
-            units.time * time,
-            0.0 - units.displacement * state.structure_displacement,
-            0.0 - units.displacement * state.body_displacement,
-            0.0 - units.speed * state.structure_speed,
-            0.0 - units.speed * state.body_speed,
-            units.displacement * state.compression,
-            units.force * state.force,
-        ))?;
+    let column = |name: String, of: &dyn Fn(&Sample) -> f64| (name, samples.iter().map(of).collect());
+    // subtracted from zero, so that zero keeps its sign
+    Table {
+        columns: vec![
+            column(format!("time{time}"), &|s| units.time * s.time),
+            column(format!("structure_displacement{displacement}"), &|s| {
+                0.0 - units.displacement * s.state.structure_displacement
+            }),
+            column(format!("striker_displacement{displacement}"), &|s| {
+                0.0 - units.displacement * s.state.body_displacement
+            }),
+            column(format!("structure_velocity{speed}"), &|s| 0.0 - units.speed * s.state.structure_speed),
+            column(format!("striker_velocity{speed}"), &|s| 0.0 - units.speed * s.state.body_speed),
+            column(format!("compression{displacement}"), &|s| units.displacement * s.state.compression),
+            column(format!("force{force}"), &|s| units.force * s.state.force),
+        ],
     }
-    Ok(table.into_inner()?)
 }
 
 fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {

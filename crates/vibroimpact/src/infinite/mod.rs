@@ -5,9 +5,13 @@ mod files;
 mod text;
 
 use serde::Serialize;
-use vibroimpact_sim::infinite::{CriticalS, Groups, Outcome, Solution, State, TurningPoint};
+use vibroimpact_sim::infinite::{
+    CriticalS, Groups, MOST_TURNING_POINTS, Outcome, Solution, State, TurningPoint, critical_s, turning_points,
+};
 
-pub use files::{files, picture};
+use crate::scene::InvalidInput;
+
+pub use files::{files, history, picture};
 pub use text::{text, turning_points_text};
 
 /// What `infinite-beam --json` prints: one object. Times are in units of `T`, speeds of `v`, forces of `F` (thesis
@@ -170,6 +174,18 @@ pub struct Turning {
 }
 
 impl TurningPoints {
+    /// The critical `S` and the first `count` turning points, computed.
+    ///
+    /// # Errors
+    /// A count that is not from 1 to [`MOST_TURNING_POINTS`].
+    pub fn first(count: usize) -> Result<TurningPoints, InvalidInput> {
+        if !(1..=MOST_TURNING_POINTS).contains(&count) {
+            let allowed = format!("a whole number from 1 to {MOST_TURNING_POINTS}");
+            return Err(InvalidInput::new("count", count.to_string(), allowed));
+        }
+        Ok(TurningPoints::new(critical_s(), &turning_points(count)?))
+    }
+
     /// Gathers turning points for printing.
     pub fn new(critical: CriticalS, points: &[TurningPoint]) -> TurningPoints {
         let turning = |&TurningPoint { n, s, uncertainty }: &TurningPoint| Turning { n, s, uncertainty };

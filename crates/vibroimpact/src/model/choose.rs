@@ -73,6 +73,21 @@ pub(super) fn refused(model: Model, reason: String) -> InvalidInput {
     InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason)
 }
 
+impl Scene {
+    /// Finds what [`Scene::answer`] would refuse, as far as that shows without solving a modal impact; other models
+    /// cost little, and are solved.
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) {
+            return self.answer().map(drop);
+        }
+        if modal_only(self).is_none() {
+            Pose::new(self)?;
+        }
+        // where the program chooses the modes there are enough of them
+        self.impact_of(if chooses_modes(self) { Some(0) } else { self.modes.count() }).map(drop)
+    }
+}
+
 /// The cheapest tier that is certain to reach the tolerance.
 fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {

@@ -79,28 +79,31 @@ impl<'de> Visitor<'de> for TreeVisitor {
     }
 }
 
-/// Parses JSON text. Numbers that are not finite (`NaN`, `1e999`) are reported as values of their field.
-pub(crate) fn parse(text: &str) -> Result<Value, SceneError> {
+/// Parses JSON text, which should hold `what`. Numbers that are not finite (`NaN`, `1e999`) are reported as values of
+/// their field.
+pub(crate) fn parse(text: &str, what: &str) -> Result<Value, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut source = serde_json::Deserializer::from_str(text);
     match serde_path_to_error::deserialize::<_, Tree>(&mut source) {
-        Ok(Tree(value)) => source.end().map(|()| value).map_err(|fault| syntax_error(text, String::new(), &fault)),
-        Err(fault) => Err(syntax_error(text, render(fault.path()), fault.inner())),
+        Ok(Tree(value)) => {
+            source.end().map(|()| value).map_err(|fault| syntax_error(text, what, String::new(), &fault))
+        }
+        Err(fault) => Err(syntax_error(text, what, render(fault.path()), fault.inner())),
     }
 }
 
-fn syntax_error(text: &str, field: String, fault: &serde_json::Error) -> SceneError {
+fn syntax_error(text: &str, what: &str, field: String, fault: &serde_json::Error) -> SceneError {
     let word = word_at(text, fault.line(), fault.column());
     if !field.is_empty() && word.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
         let allowed = fields::allowed(&field).unwrap_or("a finite number").to_owned();
         return InvalidInput { field, value: Some(word.to_owned()), allowed }.into();
     }
     let told = fault.to_string();
-    let what = told.split(" at line ").next().unwrap_or(&told);
+    let fault_text = told.split(" at line ").next().unwrap_or(&told);
     let reason = if fault.is_eof() {
-        format!("the text ends too early ({what}); a scene is one complete JSON object")
+        format!("the text ends too early ({fault_text}); {what} is one complete JSON object")
     } else {
-        what.to_owned()
+        fault_text.to_owned()
     };
     SceneError::Syntax { line: fault.line(), column: fault.column(), field: shorten(field), reason }
 }

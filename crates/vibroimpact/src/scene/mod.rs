@@ -7,6 +7,7 @@
 //! A scene can as well be put together in Rust:
 //!
 //! ```
+//! use vibroimpact::model::Modes;
 //! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, Scene, Segment, Striker};
 //!
 //! let beam = Beam {
@@ -16,8 +17,8 @@
 //! };
 //! let scene = Scene {
 //!     location_m: Some(0.6180339887498949),
-//!     modes: Some(100),
-//!     residual_compliance: true,
+//!     modes: Modes::Count(100),
+//!     residual_compliance: Some(true),
 //!     ..Scene::new(beam, Striker::sphere(7800.0, 0.015, 1.0), Contact::Hertz(HertzStiffness::of_material(2e11, 0.3)))
 //! };
 //! let solution = scene.impact()?.solve()?;
@@ -40,7 +41,7 @@ mod sets;
 mod start;
 mod striker;
 mod structure;
-mod toml;
+pub(crate) mod toml;
 
 use std::path::Path;
 
@@ -67,6 +68,9 @@ use structure::Place;
 
 /// The newest version of the scene format that is understood; a file without a version has version 1.
 pub const FORMAT_VERSION: u64 = 1;
+
+/// What a scene file holds, in messages.
+pub(crate) const A_SCENE: &str = "a scene";
 
 /// One impact: what is struck, by what, how they touch, where.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -153,7 +157,7 @@ impl Scene {
     /// assert!(fault.to_string().contains("striker is missing"));
     /// ```
     pub fn from_json(text: &str) -> Result<Scene, SceneError> {
-        Ok(Scene::from_value(&json::parse(text)?)?)
+        Ok(Scene::from_value(&json::parse(text, A_SCENE)?)?)
     }
 
     /// Reads a scene from TOML text, which holds the same fields.
@@ -179,7 +183,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_json`], text aside.
     pub fn from_value(value: &Value) -> Result<Scene, InvalidInput> {
-        check_version(value)?;
+        check_version(value, FORMAT_VERSION, "scene")?;
         let outline: Outline = json::read(value)?;
         let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Scene {
@@ -203,13 +207,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::from_json`], a file that cannot be read, or a table of modes that cannot be used.
     pub fn read(path: &Path) -> Result<Scene, SceneError> {
-        let fault = |fault| SceneError::Read {
-            path: path.to_owned(),
-            source: std::io::Error::new(std::io::ErrorKind::InvalidData, fault),
-        };
-        let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
-        let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let mut scene = if is_toml { Scene::from_toml(&text)? } else { Scene::from_json(&text)? };
+        let mut scene = Scene::from_value(&read_tree(path, A_SCENE)?)?;
         scene.read_modes_file(path.parent().unwrap_or(Path::new("")))?;
         Ok(scene)
     }
@@ -255,17 +253,42 @@ impl Scene {
     }
 }
 
+/// The tree of a file, which should hold `what`: TOML if its name ends in `.toml`, JSON otherwise.
+pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
+    let fault = |fault: std::string::FromUtf8Error| SceneError::Read {
+        path: path.to_owned(),
+        source: std::io::Error::new(std::io::ErrorKind::InvalidData, format!("the text is not UTF-8: {fault}")),
+    };
+    let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
+    let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if is_toml { toml::parse(&text) } else { json::parse(&text, what) }
+}
+
+/// Puts the numbers of a `modes-file` into the tree of a scene that stands in `folder`. The tree need not be a whole
+/// scene.
+pub(crate) fn read_modes_into(tree: &mut Value, folder: &Path) -> Result<(), SceneError> {
+    let Some(structure) = tree.get_mut("structure") else { return Ok(()) };
+    if structure.get("kind").is_some_and(|kind| kind == "modes-file")
+        && let Structure::ModesFile(named) =
+            Structure::from_value(structure).map_err(|fault| fault.within("structure"))?
+    {
+        *structure = serde_json::to_value(Structure::Modal(named.load(folder)?)).unwrap_or_default();
+        drop_nulls(structure);
+    }
+    Ok(())
+}
+
 /// A file of a newer format is told as that, before any field that only the newer format knows.
-fn check_version(value: &Value) -> Result<(), InvalidInput> {
+pub(crate) fn check_version(value: &Value, newest: u64, what: &str) -> Result<(), InvalidInput> {
     match value.get("version") {
-        Some(version) if version.as_u64().is_some_and(|version| version > FORMAT_VERSION) => {
+        Some(version) if version.as_u64().is_some_and(|version| version > newest) => {
             let allowed = format!(
-                "this program understands versions of the scene format up to {FORMAT_VERSION}; the file was written \
-                 for a newer vibroimpact, which can read it"
+                "this program understands versions of the {what} format up to {newest}; the file was written for a \
+                 newer vibroimpact, which can read it"
             );
             Err(InvalidInput::new("version", json::quote(version), allowed))
         }
-        Some(version) if version.as_u64() != Some(FORMAT_VERSION) => {
+        Some(version) if version.as_u64() != Some(newest) => {
             Err(InvalidInput::new("version", json::quote(version), fields::allowed("version").unwrap_or_default()))
         }
         _ => Ok(()),

@@ -70,7 +70,7 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
         }
     };
     let (damping, mass) = (column("damping_ratio")?, column("modal_mass_kg")?);
-    for row in table.rows.iter().filter(|row| row.len() != table.header.len()) {
+    if let Some(row) = table.rows.iter().find(|row| row.len() != table.header.len()) {
         let allowed = format!("as many as the line of names has, which is {}", table.header.len());
         return Err(InvalidInput::new(format!("line {}", row.line), format!("{} cells", row.len()), allowed));
     }

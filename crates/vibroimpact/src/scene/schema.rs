@@ -22,7 +22,7 @@ pub fn of_scenes() -> Value {
 }
 
 /// The schema of a type that is read from a whole file of this format version.
-fn of<T: JsonSchema>(version: u64) -> Value {
+pub(crate) fn of<T: JsonSchema>(version: u64) -> Value {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(refine));
     let mut schema = settings.into_generator().into_root_schema_for::<T>();
     if let Some(properties) = schema.get_mut("properties").and_then(Value::as_object_mut) {

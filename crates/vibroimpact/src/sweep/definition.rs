@@ -10,11 +10,11 @@ use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Random};
-use crate::scene::json::quote;
-use crate::scene::{InvalidInput, Scene};
+use crate::scene::json::{self, quote};
+use crate::scene::{InvalidInput, Scene, toml};
 
 /// Changed whenever the same sweep gives other rows or other columns.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Points by which it is judged whether the scene can be used at all, spread over the sweep.
 const PROBES: u64 = 5;
 /// Chunks into which a sweep is divided, unless it is so large that they would hold too many points.
@@ -41,12 +41,28 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Reads a sweep file, and the scene file that it names.
+    /// Reads a sweep file, and the scene file that it names: TOML if the name ends in `.toml`, JSON otherwise.
     ///
     /// # Errors
     /// A file that cannot be read, a fault in the sweep or in its base scene, or too many points.
     pub fn read(path: &Path) -> Result<Sweep, SweepError> {
         Ok(Sweep::new(file::read(path)?)?)
+    }
+
+    /// Reads a sweep with the scene in it from JSON text.
+    ///
+    /// # Errors
+    /// As [`Sweep::read`], files aside.
+    pub fn from_json(text: &str) -> Result<Sweep, SweepError> {
+        Ok(Sweep::from_value(&json::parse(text, file::A_SWEEP)?)?)
+    }
+
+    /// Reads a sweep with the scene in it from TOML text.
+    ///
+    /// # Errors
+    /// As [`Sweep::read`], files aside.
+    pub fn from_toml(text: &str) -> Result<Sweep, SweepError> {
+        Ok(Sweep::from_value(&toml::parse(text)?)?)
     }
 
     /// Reads a sweep from a JSON tree with the scene in it.

@@ -1,9 +1,8 @@
 //! The sweep file, field by field, and its reading.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
@@ -11,10 +10,12 @@ use super::error::SweepError;
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
 use crate::scene::json::{self, number, quote};
-use crate::scene::{InvalidInput, SceneError};
+use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};
 
-/// Largest sweep file, or file of a base scene, that is read (bytes).
-const MAX_FILE_BYTES: u64 = 64 << 20;
+/// The newest version of the sweep format that is understood; a file without a version has version 1.
+pub const FORMAT_VERSION: u64 = 1;
+/// What a sweep file holds, in messages.
+pub(super) const A_SWEEP: &str = "a sweep";
 /// Most points of a sweep: indices and byte counts stay exact in every format that is written.
 pub(super) const MAX_POINTS: u64 = 1_000_000_000_000;
 
@@ -22,7 +23,9 @@ const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or 
 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
-    ("", "a sweep is a JSON object with scene or scene_file, and vary or random or both"),
+    ("", "a sweep is an object with scene or scene_file, and vary or random or both"),
+    ("$schema", "a text: where the schema of sweeps stands"),
+    ("version", "a whole number, the version of the format: 1"),
     ("description", "a text"),
     ("scene", "a scene as an object, or scene_file in its place"),
     ("scene_file", "the name of a scene file, relative to the folder of the sweep file"),
@@ -60,46 +63,90 @@ fn missing(field: impl Into<String>) -> InvalidInput {
     InvalidInput::missing(field, allowed)
 }
 
-#[derive(Deserialize)]
+/// Many scenes that differ in some fields.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct SweepFile {
+#[schemars(rename = "Sweep", extend("oneOf" = [{ "required": ["scene"] }, { "required": ["scene_file"] }],
+           "anyOf" = [{ "required": ["vary"] }, { "required": ["random"] }]))]
+pub(super) struct SweepFile {
+    /// A text for the reader, the title of report and pictures; may be left out.
     description: Option<String>,
+    #[serde(rename = "$schema")]
+    #[schemars(skip)]
+    _schema: Option<String>,
+    #[serde(rename = "version")]
+    #[schemars(skip)]
+    _version: Option<u64>,
+    /// The scene; it may leave out the varied fields.
+    #[schemars(with = "Option<Map<String, Value>>")]
     scene: Option<Value>,
+    /// The name of a scene file in place of the scene, relative to the folder of the sweep file.
     scene_file: Option<String>,
+    /// The axes of a grid, whose last axis runs fastest.
     #[serde(default, deserialize_with = "json::objects")]
+    #[schemars(length(min = 1))]
     vary: Vec<AxisEntry>,
+    /// What is drawn at random at each point of the grid.
+    #[schemars(with = "Option<RandomEntry>")]
     random: Option<Value>,
 }
 
-#[derive(Deserialize)]
+/// A field that runs through values: `values`, or `from`, `to` and `count`.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Axis",
+           extend("oneOf" = [{ "required": ["values"], "maxProperties": 2 }, { "required": ["from", "to", "count"], "not": { "required": ["values"] } }]))]
 struct AxisEntry {
+    /// The path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m.
     field: String,
+    /// The first value.
     from: Option<f64>,
+    /// The last value.
     to: Option<f64>,
+    /// How many values, both ends included.
+    #[schemars(range(min = 2, max = 1_000_000_000_000u64))]
     count: Option<u64>,
+    /// Equal differences (linear, when left out) or equal ratios (log).
     scale: Option<Scale>,
+    /// Whether values are rounded to whole numbers.
     whole_numbers: Option<bool>,
+    /// The values themselves: numbers, texts, or whole objects.
+    #[schemars(length(min = 1))]
     values: Option<Vec<Value>>,
 }
 
-#[derive(Deserialize)]
+/// Fields that are drawn at random; the same draws meet every point of the grid.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Random")]
 struct RandomEntry {
+    /// What the draws depend on, beside their number.
+    #[schemars(range(min = 0))]
     seed: u64,
+    /// How many draws.
+    #[schemars(range(min = 1, max = 1_000_000_000_000u64))]
     draws: u64,
+    /// The fields, each with the interval it is drawn from.
     #[serde(deserialize_with = "json::objects")]
+    #[schemars(length(min = 1))]
     fields: Vec<IntervalEntry>,
 }
 
-#[derive(Deserialize)]
+/// A field and the interval it is drawn from.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Interval")]
 struct IntervalEntry {
+    /// The path of a field of the scene.
     field: String,
+    /// One end.
     from: f64,
+    /// The other end.
     to: f64,
+    /// Uniform in the value (linear, when left out) or in its logarithm (log).
     #[serde(default)]
     scale: Scale,
+    /// Whether values are rounded to whole numbers.
     #[serde(default)]
     whole_numbers: bool,
 }
@@ -114,27 +161,25 @@ pub(super) struct Contents {
     pub canonical: Value,
 }
 
-/// Reads a sweep file and the scene file that it names.
+/// Reads a sweep file, the scene file that it names, and the table of modes that the scene names.
 pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
-    let mut tree = json::parse(&text(path)?)?;
+    let mut tree = read_tree(path, A_SWEEP)?;
+    check_version(&tree, FORMAT_VERSION, "sweep")?;
+    let folder = path.parent().unwrap_or(Path::new(""));
     let name = tree.get("scene_file").and_then(Value::as_str).map(str::to_owned);
     if let (Some(name), Some(map)) = (name, tree.as_object_mut()) {
         if let Some(scene) = map.get("scene") {
             return Err(InvalidInput::new("scene", quote(scene), "left out beside scene_file").into());
         }
-        let file = path.parent().unwrap_or(Path::new("")).join(name);
-        let scene = json::parse(&text(&file)?).map_err(|found| in_file(&file, found))?;
+        let file = folder.join(name);
+        let mut scene = read_tree(&file, A_SCENE).map_err(|found| in_file(&file, found))?;
+        read_modes_into(&mut scene, file.parent().unwrap_or(Path::new(""))).map_err(within_scene)?;
         map.remove("scene_file");
         map.insert("scene".to_owned(), scene);
+    } else if let Some(scene) = tree.get_mut("scene") {
+        read_modes_into(scene, folder).map_err(within_scene)?;
     }
     Ok(from_tree(tree)?)
-}
-
-fn text(path: &Path) -> Result<String, SceneError> {
-    let fault = |source| SceneError::Read { path: path.to_owned(), source };
-    let mut text = String::new();
-    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES).read_to_string(&mut text).map_err(fault)?;
-    Ok(text)
 }
 
 /// A fault of the scene file, told apart from those of the sweep file.
@@ -147,9 +192,21 @@ fn in_file(path: &Path, found: SceneError) -> SceneError {
     }
 }
 
+fn within_scene(found: SceneError) -> SceneError {
+    match found {
+        SceneError::Invalid(fault) if fault.field.starts_with("structure") => fault.within("scene").into(),
+        other => other,
+    }
+}
+
 /// Reads a sweep whose scene is in it.
-pub(super) fn from_tree(canonical: Value) -> Result<Contents, InvalidInput> {
+pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> {
+    check_version(&canonical, FORMAT_VERSION, "sweep")?;
     let file: SweepFile = typed(&canonical)?;
+    // neither is part of what is computed
+    for key in ["$schema", "version"] {
+        canonical.as_object_mut().and_then(|map| map.remove(key));
+    }
     if let Some(name) = file.scene_file {
         let allowed = "a name in a sweep file; a sweep without a file has its scene in it";
         return Err(InvalidInput::new("scene_file", quote(&name.into()), allowed));

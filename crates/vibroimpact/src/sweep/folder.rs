@@ -15,6 +15,7 @@ use serde_json::Value;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::row;
+use super::threads::Sink;
 
 /// One of the parts into which a sweep is divided: neighbouring chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -148,18 +149,6 @@ impl Folder {
         &self.progress
     }
 
-    /// Adds the rows of the next chunks; they are safe when this returns.
-    pub(super) fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError> {
-        let written = self.results.write_all(rows).and_then(|()| self.results.sync_data());
-        written.map_err(SweepError::io(&self.path.join(RESULTS)))?;
-        let mut sum = crc32fast::Hasher::new_with_initial_len(self.progress.crc32, self.progress.bytes);
-        sum.update(rows);
-        self.progress.chunks += chunks;
-        self.progress.bytes += rows.len() as u64;
-        self.progress.crc32 = sum.finalize();
-        self.save()
-    }
-
     /// Notes that nothing is left to do.
     pub(super) fn finish(&mut self) -> Result<(), SweepError> {
         self.progress.finished = true;
@@ -186,6 +175,24 @@ impl Folder {
         let bytes = self.progress.bytes;
         let cut = self.results.set_len(bytes).and_then(|()| self.results.seek(SeekFrom::Start(bytes)));
         cut.map(drop).map_err(SweepError::io(&self.path.join(RESULTS)))
+    }
+}
+
+impl Sink for Folder {
+    fn chunks(&self) -> u64 {
+        self.progress.chunks
+    }
+
+    /// Adds the rows of the next chunks; they are safe when this returns.
+    fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError> {
+        let written = self.results.write_all(rows).and_then(|()| self.results.sync_data());
+        written.map_err(SweepError::io(&self.path.join(RESULTS)))?;
+        let mut sum = crc32fast::Hasher::new_with_initial_len(self.progress.crc32, self.progress.bytes);
+        sum.update(rows);
+        self.progress.chunks += chunks;
+        self.progress.bytes += rows.len() as u64;
+        self.progress.crc32 = sum.finalize();
+        self.save()
     }
 }
 

@@ -11,6 +11,7 @@ use super::finish;
 use super::folder::{Finished, Folder, Part, RESULTS, look_into};
 use super::row;
 use super::tally::Tally;
+use super::threads::Sink;
 
 /// Rows are copied in pieces of about this size.
 const PIECE: usize = 4 << 20;

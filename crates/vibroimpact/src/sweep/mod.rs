@@ -32,6 +32,7 @@
 //! ```
 
 mod assembly;
+mod columns;
 mod definition;
 mod error;
 mod evaluate;
@@ -45,6 +46,7 @@ mod path;
 mod pictures;
 mod report;
 mod row;
+mod schema;
 mod table;
 mod tally;
 mod threads;
@@ -54,15 +56,19 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
 
+pub use columns::{Column, MOST_IN_MEMORY, run_in_memory};
 pub use definition::Sweep;
 pub use error::SweepError;
+pub use file::FORMAT_VERSION;
 pub use folder::Part;
 pub use merge::merge;
 pub use path::FieldPath;
+pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
 pub use values::{Axis, AxisValues, Interval, Random, Scale};
 
 use folder::Folder;
+use threads::Sink;
 
 /// How far a sweep, or a part of one, has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,9 +80,9 @@ pub struct Status {
 }
 
 impl Status {
-    fn of(sweep: &Sweep, part: Part, folder: &Folder) -> Status {
+    fn of(sweep: &Sweep, part: Part, sink: &impl Sink) -> Status {
         let all = part.points(sweep);
-        let done = sweep.first_of_chunk(part.chunks(sweep).start + folder.progress().chunks);
+        let done = sweep.first_of_chunk(part.chunks(sweep).start + sink.chunks());
         Status { done: done - all.start, points: all.end - all.start }
     }
 

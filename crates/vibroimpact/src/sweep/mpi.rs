@@ -19,7 +19,7 @@ use super::finish;
 use super::folder::{Folder, Part};
 use super::row;
 use super::tally::Tally;
-use super::threads::BETWEEN_WRITES;
+use super::threads::{BETWEEN_WRITES, Sink};
 use super::{Status, run as run_on_threads};
 
 /// How long rank 0 rests when no message is there. Waiting inside MPI would take a whole core.

@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use super::definition::Sweep;
 use super::error::SweepError;
-use super::evaluate::{Answer, evaluate};
+use super::evaluate::evaluate;
+use crate::model::Answer;
 use crate::scene::json::number;
 
 /// The kind of what a column holds.
@@ -14,23 +15,32 @@ pub(super) enum Kind {
     Whole,
     /// A number, or nothing.
     Number,
+    /// `true` or `false`, or nothing.
+    Truth,
     /// A text.
     Text,
 }
 
 /// The columns after the varied fields.
-const RESULTS: [(&str, Kind); 12] = [
+const RESULTS: [(&str, Kind); 19] = [
     ("outcome", Kind::Text),
     ("restitution", Kind::Number),
     ("restitution_uncertainty", Kind::Number),
+    ("settled", Kind::Truth),
+    ("spread", Kind::Number),
     ("sub_impact_count", Kind::Whole),
     ("model", Kind::Text),
     ("mode_count", Kind::Whole),
+    ("residual_compliance_m_n", Kind::Number),
+    ("solves", Kind::Whole),
+    ("modes_computed", Kind::Whole),
     ("contact_steps", Kind::Whole),
     ("rejected_steps", Kind::Whole),
     ("newton_iterations", Kind::Whole),
     ("law_evaluations", Kind::Whole),
     ("flight_steps", Kind::Whole),
+    ("mode_steps", Kind::Whole),
+    ("panels", Kind::Whole),
     ("error", Kind::Text),
 ];
 
@@ -60,26 +70,43 @@ pub(super) fn rows(sweep: &Sweep, chunk: u64, stop: impl Fn() -> bool) -> Option
     Some(lines)
 }
 
-fn row(point: u64, values: &[Value], answer: &Answer) -> Vec<u8> {
-    fn known<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
-        value.map_or_else(String::new, text)
-    }
-    let counts = answer.counts;
-    let results = [
-        answer.outcome.to_owned(),
-        known(answer.restitution, number),
-        known(answer.restitution_uncertainty, number),
-        known(answer.sub_impact_count, |count| count.to_string()),
-        answer.model.to_owned(),
-        known(answer.modes, |count| count.to_string()),
-        counts.contact_steps.to_string(),
-        counts.rejected_steps.to_string(),
-        counts.newton_iterations.to_string(),
-        counts.law_evaluations.to_string(),
-        counts.flight_steps.to_string(),
-        answer.error.clone(),
-    ];
+fn row(point: u64, values: &[Value], solved: &Result<Answer, String>) -> Vec<u8> {
+    let results = match solved {
+        Ok(answer) => cells(answer),
+        Err(error) => {
+            let mut empty: [String; RESULTS.len()] = Default::default();
+            empty[RESULTS.len() - 1].clone_from(error);
+            empty
+        }
+    };
     line(std::iter::once(point.to_string()).chain(values.iter().map(cell)).chain(results))
+}
+
+/// An answer in the columns of [`RESULTS`].
+fn cells(answer: &Answer) -> [String; RESULTS.len()] {
+    let known = |value: Option<f64>| value.map_or_else(String::new, number);
+    let cost = answer.cost;
+    [
+        answer.outcome.to_owned(),
+        known(answer.restitution),
+        known(answer.restitution_uncertainty),
+        answer.settled.to_string(),
+        known(answer.spread),
+        answer.sub_impact_count.map_or_else(String::new, |count| count.to_string()),
+        answer.model.as_str().to_owned(),
+        answer.modes.to_string(),
+        number(answer.residual_compliance_m_n),
+        cost.solves.to_string(),
+        cost.modes_computed.to_string(),
+        cost.contact_steps.to_string(),
+        cost.rejected_steps.to_string(),
+        cost.newton_iterations.to_string(),
+        cost.law_evaluations.to_string(),
+        cost.flight_steps.to_string(),
+        cost.mode_steps.to_string(),
+        cost.panels.to_string(),
+        String::new(),
+    ]
 }
 
 /// A value of a varied field: numbers and texts as they are, anything else as JSON.

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
@@ -23,6 +23,7 @@ const GROUP: usize = 1 << 18;
 enum Column {
     Whole(Vec<i64>, Vec<i16>),
     Number(Vec<f64>, Vec<i16>),
+    Truth(Vec<bool>, Vec<i16>),
     Text(Vec<ByteArray>),
 }
 
@@ -31,11 +32,12 @@ impl Column {
         match kind {
             Kind::Whole => Column::Whole(Vec::new(), Vec::new()),
             Kind::Number => Column::Number(Vec::new(), Vec::new()),
+            Kind::Truth => Column::Truth(Vec::new(), Vec::new()),
             Kind::Text => Column::Text(Vec::new()),
         }
     }
 
-    /// Adds a cell; what is no number becomes a cell without value.
+    /// Adds a cell; what is not of the column's kind becomes a cell without value.
     fn push(&mut self, cell: &str) {
         fn optional<T: std::str::FromStr>(cell: &str, values: &mut Vec<T>, levels: &mut Vec<i16>) {
             let value = cell.parse().ok();
@@ -45,6 +47,7 @@ impl Column {
         match self {
             Column::Whole(values, levels) => optional(cell, values, levels),
             Column::Number(values, levels) => optional(cell, values, levels),
+            Column::Truth(values, levels) => optional(cell, values, levels),
             Column::Text(values) => values.push(ByteArray::from(cell)),
         }
     }
@@ -53,6 +56,7 @@ impl Column {
         let (physical, repetition, logical) = match kind {
             Kind::Whole => (Physical::INT64, Repetition::OPTIONAL, None),
             Kind::Number => (Physical::DOUBLE, Repetition::OPTIONAL, None),
+            Kind::Truth => (Physical::BOOLEAN, Repetition::OPTIONAL, None),
             Kind::Text => (Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String)),
         };
         let field = Type::primitive_type_builder(name, physical).with_repetition(repetition);
@@ -103,6 +107,9 @@ impl Table {
                 }
                 Column::Number(values, levels) => {
                     writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?
+                }
+                Column::Truth(values, levels) => {
+                    writer.typed::<BoolType>().write_batch(&values, Some(&levels), None)?
                 }
                 Column::Text(values) => writer.typed::<ByteArrayType>().write_batch(&values, None, None)?,
             };

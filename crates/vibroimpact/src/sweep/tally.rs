@@ -20,6 +20,8 @@ pub struct Tally {
     pub outcomes: BTreeMap<String, u64>,
     /// Points by the model that was solved.
     pub models: BTreeMap<String, u64>,
+    /// Points whose restitution is not known as well as was asked.
+    pub unsettled: u64,
     /// Points whose scene could not be solved.
     pub failures: u64,
     /// The first of them.
@@ -34,6 +36,8 @@ pub struct Tally {
     pub contact_steps: u64,
     /// Evaluations of the contact law, over all points.
     pub law_evaluations: u64,
+    /// Steps times modes, over all points.
+    pub mode_steps: u64,
 }
 
 /// A point whose scene could not be solved.
@@ -79,6 +83,7 @@ impl Tally {
         let error = row.text("error");
         if error.is_empty() {
             *self.outcomes.entry(row.text("outcome").to_owned()).or_default() += 1;
+            self.unsettled += u64::from(row.text("settled") != "true");
             *self.models.entry(row.text("model").to_owned()).or_default() += 1;
         } else {
             self.failures += 1;
@@ -98,6 +103,7 @@ impl Tally {
         let count = |name: &str| row.text(name).parse().unwrap_or(0u64);
         self.contact_steps = self.contact_steps.saturating_add(count("contact_steps"));
         self.law_evaluations = self.law_evaluations.saturating_add(count("law_evaluations"));
+        self.mode_steps = self.mode_steps.saturating_add(count("mode_steps"));
     }
 
     /// The lines that a person reads.
@@ -113,6 +119,9 @@ impl Tally {
         line("points", &self.points.to_string());
         line("outcomes", &counts(&self.outcomes));
         line("models", &counts(&self.models));
+        if self.unsettled > 0 {
+            line("not settled", &format!("{} (column settled)", self.unsettled));
+        }
         if self.failures > 0 {
             line("failed", &self.failures.to_string());
             for FailedPoint { index, error } in &self.first_failures {
@@ -134,8 +143,14 @@ impl Tally {
         ] {
             line(name, &found.as_ref().map_or_else(|| "none".to_owned(), range));
         }
-        let (steps, evaluations) = (self.contact_steps, self.law_evaluations);
-        line("cost", &format!("{steps} steps in contact, {evaluations} evaluations of the law"));
+        let Tally { contact_steps, law_evaluations, mode_steps, .. } = self;
+        line(
+            "cost",
+            &format!(
+                "{contact_steps} steps in contact, {law_evaluations} evaluations of the law, {mode_steps} steps \
+                 times modes"
+            ),
+        );
         lines
     }
 }

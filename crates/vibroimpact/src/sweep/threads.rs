@@ -10,7 +10,7 @@ use super::Status;
 use super::assembly::{Assembly, Order};
 use super::definition::Sweep;
 use super::error::SweepError;
-use super::folder::{Folder, Part};
+use super::folder::Part;
 use super::row;
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
@@ -31,24 +31,32 @@ impl Desk {
     }
 }
 
-/// Computes what is missing in the folder, and writes it there in order.
+/// Takes rows in order.
+pub(super) trait Sink {
+    /// How many chunks it has, from the first of the part.
+    fn chunks(&self) -> u64;
+    /// Takes the rows of the next chunks.
+    fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
+}
+
+/// Computes what is missing in the sink, a folder for example, and puts it there in order.
 pub(super) fn compute(
     sweep: &Sweep,
     part: Part,
-    folder: &mut Folder,
+    sink: &mut impl Sink,
     threads: usize,
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
     let chunks = part.chunks(sweep);
-    let begun = (chunks.start + folder.progress().chunks)..chunks.end;
+    let begun = (chunks.start + sink.chunks())..chunks.end;
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
     // a writer that fails ends the workers too
     let ended = AtomicBool::new(false);
     let give_up = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(|| work(sweep, &desk, give_up))).collect();
-        let written = write(sweep, part, folder, &desk, stop, tell);
+        let written = write(sweep, part, sink, &desk, stop, tell);
         ended.store(true, Ordering::Relaxed);
         desk.changed.notify_all();
         for worker in workers {
@@ -79,7 +87,7 @@ fn work(sweep: &Sweep, desk: &Desk, give_up: impl Fn() -> bool) {
 fn write(
     sweep: &Sweep,
     part: Part,
-    folder: &mut Folder,
+    sink: &mut impl Sink,
     desk: &Desk,
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
@@ -98,10 +106,10 @@ fn write(
         if let Some((chunks, rows)) = rows {
             last = Instant::now();
             if chunks > 0 {
-                folder.append(chunks, &rows)?;
+                sink.append(chunks, &rows)?;
             }
         }
-        let status = Status::of(sweep, part, folder);
+        let status = Status::of(sweep, part, sink);
         tell(status);
         if complete {
             return Ok(());

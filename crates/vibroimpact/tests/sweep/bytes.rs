@@ -36,7 +36,9 @@ fn rows_hold_the_results_of_their_scenes() {
     let header = String::from_utf8(bench.read("out/results.csv")).unwrap();
     assert!(header.starts_with(
         "index,striker.mass_kg,modes,striker.speed_m_s,structure.shape_at_location[1],outcome,restitution,\
-         restitution_uncertainty,sub_impact_count,model,mode_count,contact_steps,"
+         restitution_uncertainty,settled,spread,sub_impact_count,model,mode_count,residual_compliance_m_n,solves,\
+         modes_computed,contact_steps,rejected_steps,newton_iterations,law_evaluations,flight_steps,mode_steps,panels,\
+         error\n"
     ));
     let mut failed = 0;
     for (point, row) in rows.iter().enumerate() {
@@ -46,7 +48,7 @@ fn rows_hold_the_results_of_their_scenes() {
         if modes > 3 {
             failed += 1;
             assert_eq!(error, "modes = 4 is not allowed: at most 3, the number of modes listed");
-            assert_eq!((&row[5], &row[6]), ("", ""));
+            assert!(row.iter().skip(5).take(row.len() - 6).all(str::is_empty), "{row:?}");
             continue;
         }
         assert_eq!(error, "");
@@ -57,11 +59,28 @@ fn rows_hold_the_results_of_their_scenes() {
             scene["striker"] = json!({ "mass_kg": number(1), "speed_m_s": number(3) });
             scene["modes"] = json!(modes);
             scene["structure"]["shape_at_location"][1] = number(4);
-            let solution = Scene::from_value(&scene).unwrap().impact().unwrap().solve().unwrap();
-            assert_eq!(&row[5], solution.outcome.as_str());
-            assert_eq!(row[6].parse::<f64>().ok(), solution.restitution);
-            assert_eq!(row[7].parse::<f64>().ok(), solution.restitution_uncertainty);
-            assert_eq!(row[8], solution.sub_impacts.len().to_string());
+            let answer = Scene::from_value(&scene).unwrap().answer().unwrap();
+            assert_eq!(&row[5], answer.outcome);
+            assert_eq!(row[6].parse::<f64>().ok(), answer.restitution);
+            assert_eq!(row[7].parse::<f64>().ok(), answer.restitution_uncertainty);
+            assert_eq!(row[8], answer.settled.to_string());
+            assert_eq!(row[9].parse::<f64>().ok(), answer.spread);
+            assert_eq!(row[10].parse::<usize>().ok(), answer.sub_impact_count);
+            assert_eq!((&row[11], &row[12]), ("modal", &*modes.to_string()));
+            let counts = [14, 15, 16, 17, 18, 19, 20, 21, 22].map(|column| row[column].parse::<u64>().unwrap());
+            let cost = answer.cost;
+            let expected = [
+                cost.solves,
+                cost.modes_computed,
+                cost.contact_steps,
+                cost.rejected_steps,
+                cost.newton_iterations,
+                cost.law_evaluations,
+                cost.flight_steps,
+                cost.mode_steps,
+                cost.panels,
+            ];
+            assert_eq!(counts, expected);
         }
     }
     assert_eq!(failed, 200);
@@ -71,6 +90,10 @@ fn rows_hold_the_results_of_their_scenes() {
     assert_eq!(summary["outcomes"]["rebound"], 400);
     assert_eq!(summary["first_failures"][0]["index"], 40);
     assert_eq!(summary["computed_points"], 600);
+    let unsettled = rows.iter().filter(|row| &row[8] == "false").count();
+    assert_eq!(summary["unsettled"], unsettled);
+    let mode_steps: u64 = rows.iter().filter_map(|row| row[21].parse::<u64>().ok()).sum();
+    assert_eq!(summary["mode_steps"], mode_steps);
     let restitutions = || rows.iter().filter_map(|row| row[6].parse::<f64>().ok());
     assert_eq!(summary["restitution"]["least"].as_f64().unwrap(), restitutions().fold(f64::INFINITY, f64::min));
     assert_eq!(summary["restitution"]["greatest"].as_f64().unwrap(), restitutions().fold(0.0, f64::max));
@@ -92,6 +115,7 @@ fn parquet_read_back_equals_csv() {
                 Field::Null => assert_eq!(cell, ""),
                 Field::Long(value) => assert_eq!(cell, value.to_string()),
                 Field::Double(value) => assert_eq!(cell.parse::<f64>().unwrap().to_bits(), value.to_bits()),
+                Field::Bool(value) => assert_eq!(cell, value.to_string()),
                 Field::Str(value) => assert_eq!(cell, value),
                 other => panic!("{other:?}"),
             }
@@ -114,7 +138,7 @@ fn infinite_structures_can_be_swept() {
     }));
     bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
     let rows = bench.rows("out");
-    assert!(rows.iter().all(|row| &row[6] == "infinite-beam"));
+    assert!(rows.iter().all(|row| &row[8] == "infinite-beam" && row[19].parse::<u64>().unwrap() > 0));
     // a small ball rebounds, that of S = 15 stays
     assert_eq!((&rows[0][2], &rows[5][2]), ("rebound", "sustained"));
     assert!(rows[0][4].parse::<f64>().unwrap() < 1e-6);
@@ -130,4 +154,34 @@ fn the_report_stands_alone_and_text_is_for_readers() {
     let report = String::from_utf8(bench.read("out/report.html")).unwrap();
     assert!(report.contains("<svg") && !report.contains("<img"));
     assert!(report.contains("striker.mass_kg") && report.contains("0.01 to 1, logarithmic"));
+}
+
+#[test]
+fn the_model_is_the_programs_choice_unless_the_scene_says_which() {
+    let beam = json!({
+        "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+                       "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 }
+    });
+    let bench = Bench::new(&json!({
+        "scene": beam,
+        "vary": [{ "field": "model", "values": ["auto", "rigid", "emoc"] },
+                 { "field": "location_m", "values": [0, 0.4] }]
+    }));
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let rows = bench.rows("out");
+    let models: Vec<&str> = rows.iter().map(|row| &row[9]).collect();
+    assert_eq!(models, ["rigid", "modal", "rigid", "rigid", "emoc", "emoc"]);
+    // on the support: exact; between them: as well as the default tolerance asks, or as the wall is bounded
+    assert_eq!((&rows[0][4], &rows[0][6]), ("1.0", "true"));
+    assert_eq!(&rows[1][6], "true");
+    assert!(rows[1][5].parse::<f64>().unwrap() <= vibroimpact::model::DEFAULT_TOLERANCE);
+    assert_eq!(&rows[3][6], "false");
+    let mut scene = beam;
+    scene["location_m"] = json!(0.4);
+    let answer = Scene::from_value(&scene).unwrap().answer().unwrap();
+    assert_eq!(rows[1][4].parse::<f64>().ok(), answer.restitution);
+    assert_eq!(rows[1][10], answer.modes.to_string());
+    assert_eq!(rows[1][11].parse::<f64>().unwrap(), answer.residual_compliance_m_n);
 }

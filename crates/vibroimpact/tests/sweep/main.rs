@@ -2,6 +2,7 @@
 
 mod bytes;
 mod definition;
+mod files;
 mod parts;
 mod resume;
 

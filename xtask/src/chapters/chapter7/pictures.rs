@@ -65,7 +65,7 @@ pub(super) struct Curve<'a> {
 pub(super) fn by_ball(title: &str, data: &Dataset, curves: &[Curve]) -> Figure {
     let balls = &data.table.balls;
     // full rows, so that panels stand under each other
-    let per_row = [3, 4, 2].into_iter().find(|n| balls.len() % n == 0).unwrap_or(3);
+    let per_row = [3, 4, 2].into_iter().find(|n| balls.len().is_multiple_of(*n)).unwrap_or(3);
     let panel = |(j, ball): (usize, &crate::chapters::impact::Ball)| {
         let of_ball: Vec<usize> = (0..data.rows.len()).filter(|&i| data.rows[i].mass_kg == ball.mass_kg).collect();
         let b: Vec<f64> = of_ball.iter().map(|&i| data.rows[i].location_m).collect();

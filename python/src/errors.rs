@@ -1,0 +1,64 @@
+//! Errors of the library as exceptions, in the same words.
+
+use std::io;
+
+use pyo3::PyErr;
+use pyo3::exceptions::PyRuntimeError;
+use vibroimpact::export::Failure;
+use vibroimpact::sweep::SweepError;
+use vibroimpact::{InvalidInput, SceneError};
+
+mod python {
+    pyo3::import_exception!(vibroimpact._errors, InvalidInput);
+}
+
+/// An exception to be raised.
+pub struct Fault(pub PyErr);
+
+impl From<Fault> for PyErr {
+    fn from(fault: Fault) -> PyErr {
+        fault.0
+    }
+}
+
+impl From<InvalidInput> for Fault {
+    fn from(fault: InvalidInput) -> Fault {
+        Fault(python::InvalidInput::new_err((fault.to_string(), fault.field, fault.value, fault.allowed)))
+    }
+}
+
+impl From<SceneError> for Fault {
+    fn from(fault: SceneError) -> Fault {
+        let said = fault.to_string();
+        match fault {
+            SceneError::Invalid(fault) => fault.into(),
+            SceneError::Syntax { field, reason, .. } => {
+                Fault(python::InvalidInput::new_err((said, field, None::<String>, reason)))
+            }
+            SceneError::Read { source, .. } => of_system(source, said),
+        }
+    }
+}
+
+impl From<SweepError> for Fault {
+    fn from(fault: SweepError) -> Fault {
+        let said = fault.to_string();
+        match fault {
+            SweepError::File(fault) => fault.into(),
+            SweepError::Invalid(fault) => fault.into(),
+            SweepError::Io { source, .. } => of_system(source, said),
+            SweepError::Refused(_) | SweepError::Stopped { .. } => Fault(PyRuntimeError::new_err(said)),
+        }
+    }
+}
+
+impl From<Failure> for Fault {
+    fn from(fault: Failure) -> Fault {
+        Fault(PyRuntimeError::new_err(fault.to_string()))
+    }
+}
+
+/// `FileNotFoundError` and its kin.
+fn of_system(source: io::Error, said: String) -> Fault {
+    Fault(io::Error::new(source.kind(), said).into())
+}

@@ -1,0 +1,101 @@
+//! Impacts resolved in time, and modes.
+
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vibroimpact::infinite::{self, Summary, TurningPoints};
+use vibroimpact::summary::ModeTable;
+use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
+use vibroimpact::{InvalidInput, export};
+
+use crate::errors::Fault;
+use crate::input::Source;
+use crate::output;
+
+/// Resolve one impact: every contact, the rebound, where the energy went.
+///
+/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (on infinite structures, `contacts`) as a
+/// structured array and energies of modes as an array. With `history=True` two entries more: `history`, motion and
+/// force over time as a dictionary of arrays; and `modal_energies`, a dictionary of `time_s` and `energy_j`, the
+/// latter with a row for each time and a column for each mode. Either is `None` where the model has no such course.
+///
+/// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact,
+/// and a limit reached, are results: see `outcome`.
+#[pyfunction]
+#[pyo3(signature = (scene, *, history = false))]
+pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {
+    let (json, course, energies) = py.detach(|| {
+        let found = scene.scene()?.simulate()?;
+        let (course, energies) = if history { (found.history(), found.modal_energies()) } else { (None, None) };
+        Ok::<_, Fault>((found.json()?, course, energies))
+    })?;
+    let result = output::result(py, &json)?;
+    if history {
+        result.set_item("history", course.map(|table| output::columns(py, table)).transpose()?)?;
+        result.set_item("modal_energies", energies.map(|table| output::modal_energies(py, table)).transpose()?)?;
+    }
+    Ok(result)
+}
+
+/// Say which model would be used for a scene and why, and what each would cost; nothing costly is solved.
+///
+/// Returns what `vibroimpact plan --json` prints.
+#[pyfunction]
+pub fn plan(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.plan()?)?))?;
+    output::result(py, &json)
+}
+
+/// Answer a scene by every model, side by side.
+///
+/// Returns what `vibroimpact compare --json` prints: differences are from the model that is known best.
+#[pyfunction]
+pub fn compare(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.compare()?)?))?;
+    output::result(py, &json)
+}
+
+/// Natural frequencies, and mode shapes at the point of impact.
+///
+/// Returns a dictionary of arrays of length `count`, from the lowest mode: `omega_rad_s`, `frequency_hz`, and
+/// `shape_at_location`, mass-normalised (kg^-1/2). Rigid-body modes come first, with frequency 0.
+#[pyfunction]
+pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, PyDict>> {
+    let ModeTable { omega_rad_s, frequency_hz, shape_at_location } =
+        py.detach(|| Ok::<_, Fault>(ModeTable::new(&scene.scene()?.mode_shapes(count)?)))?;
+    let table = PyDict::new(py);
+    table.set_item("omega_rad_s", omega_rad_s.into_pyarray(py))?;
+    table.set_item("frequency_hz", frequency_hz.into_pyarray(py))?;
+    table.set_item("shape_at_location", shape_at_location.into_pyarray(py))?;
+    Ok(table)
+}
+
+/// Solve the impact on an infinite beam, posed by its one number S = C^10 k_H^2 m^8 v.
+///
+/// Returns what `vibroimpact infinite-beam --json` prints, with `contacts` as a structured array. Times are in units
+/// of T, speeds of v, forces of F (thesis Eqs. 2.9 and 2.10). With `history=True` an entry more, `history`: motion and
+/// force over time as a dictionary of arrays.
+#[pyfunction]
+#[pyo3(signature = (s, *, history = false))]
+pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_, PyDict>> {
+    let (json, course) = py.detach(|| {
+        let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
+        let course = history.then(|| infinite::history(&solution, None));
+        Ok::<_, Fault>((export::json(&Summary::new(&solution, None))?, course))
+    })?;
+    let result = output::result(py, &json)?;
+    if let Some(table) = course {
+        result.set_item("history", output::columns(py, table)?)?;
+    }
+    Ok(result)
+}
+
+/// The critical S of the infinite beam, and the turning points, at which the n-th separation disappears.
+///
+/// Returns what `vibroimpact infinite-beam turning-points --json` prints, with `turning_points` as a structured array
+/// of `n`, `s` and `uncertainty`; `count` is from 1 to 60.
+#[pyfunction]
+pub fn turning_points(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyDict>> {
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&TurningPoints::first(count)?)?))?;
+    output::result(py, &json)
+}

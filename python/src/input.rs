@@ -1,0 +1,56 @@
+//! What Python gives: mappings, and names of files.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyMapping;
+use vibroimpact::Scene;
+use vibroimpact::sweep::Sweep;
+
+use crate::errors::Fault;
+
+/// A mapping, as JSON text, or the name of a file.
+pub enum Source {
+    /// JSON text.
+    Text(String),
+    /// A file.
+    File(PathBuf),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Source {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Source> {
+        if given.cast::<PyMapping>().is_ok() {
+            let convert = given.py().import("vibroimpact._convert")?;
+            return Ok(Source::Text(convert.call_method1("to_json", (given,))?.extract()?));
+        }
+        given.extract().map(Source::File).map_err(|_| {
+            let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
+            PyTypeError::new_err(format!("expected a mapping or the path of a file{kind}"))
+        })
+    }
+}
+
+impl Source {
+    /// The scene.
+    pub fn scene(&self) -> Result<Scene, Fault> {
+        match self {
+            Source::Text(text) => {
+                let mut scene = Scene::from_json(text)?;
+                scene.read_modes_file(Path::new(""))?;
+                Ok(scene)
+            }
+            Source::File(path) => Ok(Scene::read(path)?),
+        }
+    }
+
+    /// The sweep.
+    pub fn sweep(&self) -> Result<Sweep, Fault> {
+        match self {
+            Source::Text(text) => Ok(Sweep::from_json(text)?),
+            Source::File(path) => Ok(Sweep::read(path)?),
+        }
+    }
+}

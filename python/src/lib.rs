@@ -1,0 +1,30 @@
+//! The Python package `vibroimpact`.
+//!
+//! Input comes as JSON text or the name of a file, and is read by the library, so that its errors are those of the
+//! command line. Results leave as the JSON that the command line prints, and as columns of numbers.
+
+mod emoc;
+mod errors;
+mod impact;
+mod input;
+mod output;
+mod sweep;
+
+use pyo3::prelude::*;
+
+/// The part of the package that is compiled.
+#[pymodule]
+mod _vibroimpact {
+    #[pymodule_export]
+    use super::emoc::{emoc, emoc_restitution, fit};
+    #[pymodule_export]
+    use super::impact::{compare, infinite_beam, modes, plan, simulate, turning_points};
+    #[pymodule_export]
+    use super::sweep::sweep;
+    use super::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,36 @@
+"""What is written about the package runs."""
+
+import doctest
+import os
+import re
+
+import pytest
+from conftest import REPOSITORY
+
+
+def test_readme():
+    found = doctest.testfile(str(REPOSITORY / "python" / "README.md"), module_relative=False)
+    assert found.attempted > 5 and found.failed == 0
+
+
+def test_how_to(monkeypatch, capsys):
+    monkeypatch.chdir(REPOSITORY)
+    text = (REPOSITORY / "docs" / "how-to" / "python.md").read_text()
+    snippets = re.findall(r"^```python\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    assert len(snippets) > 5
+    names = {}
+    for snippet in snippets:
+        exec(compile(snippet, "python.md", "exec"), names)
+    printed = re.findall(r"^```text\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    assert capsys.readouterr().out == "".join(printed)
+
+
+def test_notebook(monkeypatch):
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    monkeypatch.setenv("VIBROIMPACT_QUICK", "1")
+    notebook = nbformat.read(REPOSITORY / "python" / "notebooks" / "thesis.ipynb", as_version=4)
+    environment = os.environ | {"JUPYTER_PLATFORM_DIRS": "1"}
+    nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute(env=environment)
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 6

@@ -1,0 +1,24 @@
+"""The exception for input that cannot be used."""
+
+from __future__ import annotations
+
+
+class InvalidInput(ValueError):
+    """Input that cannot be used; its text is that of the command line.
+
+    ``field`` is the path of the field, as in ``structure.segments[0].length_m``; ``value`` what was found there, as
+    JSON text, ``None`` where the field is missing; ``allowed`` what would be allowed.
+    """
+
+    field: str
+    value: str | None
+    allowed: str
+
+    def __init__(self, message: str, field: str, value: str | None, allowed: str) -> None:
+        super().__init__(message)
+        self.field = field
+        self.value = value
+        self.allowed = allowed
+
+    def __reduce__(self) -> tuple[type[InvalidInput], tuple[str, str, str | None, str]]:
+        return type(self), (str(self), self.field, self.value, self.allowed)
