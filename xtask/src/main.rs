@@ -102,6 +102,9 @@ enum Task {
         /// Fewer scenes through the same code
         #[arg(long)]
         quick: bool,
+        /// The first scene of the row; another begins another sample
+        #[arg(long, value_name = "NUMBER", default_value_t = 0)]
+        first: u64,
         /// The folder to write to
         #[arg(long, value_name = "DIR", default_value = "out/study-auto")]
         out: PathBuf,
@@ -160,7 +163,7 @@ fn run(task: Task) -> Result<(), Failure> {
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }
         Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
-        Task::StudyAuto { quick, out } => say(&chapters::study_auto(&out, quick)?),
+        Task::StudyAuto { quick, first, out } => say(&chapters::study_auto(&out, quick, first)?),
     }
 }
 

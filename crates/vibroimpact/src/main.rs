@@ -18,7 +18,7 @@ use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::model::{self, Answer};
 use vibroimpact::net::{self, FitSummary};
-use vibroimpact::scene::schema;
+use vibroimpact::scene::{self, schema};
 use vibroimpact::simulate::{Resolved, Simulation};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::sweep::SweepError;
@@ -62,6 +62,8 @@ Nothing costly is solved. A scene chooses with these fields, each of which may b
 const COMPARE_EXAMPLES: &str = "Examples:
   vibroimpact compare ball.json                  restitution, uncertainty, cost of every model
   vibroimpact compare ball.json --json           the same as one JSON object
+  vibroimpact compare ball.json --plot models.svg
+                                                 restitutions with their uncertainties; .svg or .png
 
 Models that do not apply are listed with the reason. Differences are from the model that is known best.";
 
@@ -158,6 +160,9 @@ enum Command {
         /// Print one JSON object in place of the table
         #[arg(long)]
         json: bool,
+        /// Draw restitutions and uncertainties into this file, .svg or .png
+        #[arg(long, value_name = "FILE", value_parser = products::picture_file)]
+        plot: Option<PathBuf>,
     },
     /// List natural frequencies, and mode shapes at the point of impact
     #[command(after_help = MODES_EXAMPLES)]
@@ -285,7 +290,10 @@ fn run(command: Command) -> Result<(), Failure> {
                 Simulation::Infinite { groups, solution } => {
                     return print(&infinite_beam::of_scene(&scene, groups, solution, json, out, &products)?);
                 }
-                Simulation::Net(answer) => return print(&without_course(&scene, answer, json, out)?),
+                Simulation::Net(answer) => {
+                    products.refuse(answer.model)?;
+                    return print(&without_course(&scene, answer, json, out)?);
+                }
             };
             let headline = text::headline(&scene, &impact.striker);
             let mut printed = if json {
@@ -319,10 +327,18 @@ fn run(command: Command) -> Result<(), Failure> {
             let plan = scene.plan()?;
             if json { export::json(&plan)? } else { model::plan_text(&plan) }
         }
-        Command::Compare { scene, json } => {
+        Command::Compare { scene, json, plot } => {
             let scene = Scene::read(&scene)?;
             let comparison = scene.compare()?;
-            if json { export::json(&comparison)? } else { model::comparison_text(&comparison) }
+            let told = match plot {
+                Some(path) => {
+                    let figure = pictures::of_comparison(&headline(&scene)?, &comparison);
+                    products::Prepared::picture(&path, &figure)?.write(json)?
+                }
+                None => String::new(),
+            };
+            let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) };
+            printed + &told
         }
         Command::Modes { scene, count, json, plot } => {
             let scene = Scene::read(&scene)?;
@@ -365,10 +381,20 @@ fn run(command: Command) -> Result<(), Failure> {
     print(&printed)
 }
 
+/// A scene in a line.
+fn headline(scene: &Scene) -> Result<String, Failure> {
+    if scene.is_infinite() {
+        return Ok(text::infinite_headline(scene, &scene.infinite_impact()?));
+    }
+    // that of a dropped rod is not the striker's
+    let rod = matches!(scene.structure, scene::Structure::DroppedRod(_));
+    let mass_kg = if rod { f64::NAN } else { scene.striker.mass_kg()? };
+    Ok(text::headline(scene, &Striker { mass_kg, speed_m_s: scene.striker.speed_m_s }))
+}
+
 /// What `simulate` prints, and writes, for a model that has no modal history.
 fn without_course(scene: &Scene, answer: &Answer, json: bool, out: Option<PathBuf>) -> Result<String, Failure> {
-    let striker = Striker { mass_kg: scene.striker.mass_kg()?, speed_m_s: scene.striker.speed_m_s };
-    let headline = text::headline(scene, &striker);
+    let headline = headline(scene)?;
     let result = export::json(answer)?;
     let mut printed = if json { result.clone() } else { format!("{headline}\n\n{}", model::net_text(answer)) };
     if let Some(folder) = out {

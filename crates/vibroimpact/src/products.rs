@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use vibroimpact::InvalidInput;
 use vibroimpact::export::Failure;
+use vibroimpact::model::Model;
 use vibroimpact::plot::{Figure, Format};
 use vibroimpact::report::{Report, write_whole};
 
@@ -31,6 +33,23 @@ fn page_file(name: &str) -> Result<PathBuf, String> {
 }
 
 impl Products {
+    /// Says that this model has no course in time to draw, if a picture or a report is asked for.
+    pub fn refuse(&self, model: Model) -> Result<(), InvalidInput> {
+        for (option, path) in [("--plot", &self.plot), ("--report", &self.report)] {
+            if let Some(path) = path {
+                let name = model.as_str();
+                return Err(InvalidInput {
+                    field: option.to_owned(),
+                    value: Some(path.display().to_string()),
+                    allowed: format!(
+                        "none for the model {name}, which has no course in time; \"model\": \"modal\" has"
+                    ),
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Makes the files in memory; figure and report only if they are asked for.
     pub fn prepare(
         &self,

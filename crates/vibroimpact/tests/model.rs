@@ -299,6 +299,8 @@ fn finite_beam(ends: [End; 2], length: f64, place: f64, stiffness: f64, damping_
         .zip(shapes)
         .map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape })
         .collect();
+    // in the middle, every second mode does not move
+    let modes: Vec<Mode> = modes.into_iter().filter(|mode| mode.shape.abs() > 1e-9).collect();
     let kept: f64 = modes.iter().filter(|m| m.omega_rad_s > 0.0).map(|m| (m.shape / m.omega_rad_s).powi(2)).sum();
     let residual_compliance_m_n = (beam.static_compliance(place).unwrap() - kept).max(0.0);
     let settings = Settings { tolerance: 1e-9, estimate_uncertainty: false, max_sub_impacts: 4, ..Settings::default() };
@@ -339,17 +341,19 @@ fn the_bound_on_reflections_holds() {
     }
 }
 
-/// `S = 15`: four separations on an infinite beam. A beam so long that nothing comes back while they last has the same.
+/// `S = 15`: four separations on an infinite beam. A beam so long that nothing comes back while they last has the same:
+/// starts, ends and impulses within 1e-4.
 #[test]
 fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
     let (stiffness, solution, unit_s) = infinite_beam(15.0, 0.0);
     assert_eq!(solution.separations(), 4);
     let ends: Vec<f64> = solution.contacts.iter().filter_map(|contact| contact.end).map(|end| end * unit_s).collect();
-    // waves of 25 rad in the first contact are back from the ends after the second: d = c_g t / 2
-    let length = 2.0 * ends[1] * (25.0 / ends[0]).sqrt();
+    // waves of 40 rad in the first contact are back from the ends after the fourth: d = c_g t / 2
+    let length = 2.0 * ends[3] * (40.0 / ends[0]).sqrt();
     let count = (5.0 / ends[0].sqrt() * length) as usize;
     let found = finite_beam([End::Pinned, End::Pinned], length, 0.5 * length, stiffness, 0.0, count);
-    for (finite, endless) in found.sub_impacts.iter().zip(&solution.contacts).take(2) {
+    assert_eq!(found.sub_impacts.len(), 4);
+    for (finite, endless) in found.sub_impacts.iter().zip(&solution.contacts) {
         let (start, end) = (endless.start * unit_s, endless.end.unwrap() * unit_s);
         let impulse = endless.body_speed_at_start - endless.body_speed_at_end.unwrap();
         assert!((finite.start_s - start).abs() < 1e-4 * end, "{start} {finite:?}");

@@ -67,11 +67,11 @@ pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result
     study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
 }
 
-/// Puts the automatic choice of the model to the test and writes the folder of that study.
-pub fn study_auto(out: &Path, quick: bool) -> Result<String, Failure> {
+/// Puts the automatic choice of the model to the test, from a scene of the row on, and writes the folder of that study.
+pub fn study_auto(out: &Path, quick: bool, first: u64) -> Result<String, Failure> {
     let mut study = Study::new(out, quick)?;
     study.claims("Targets, and what was found");
-    let introduction = choice::run(&mut study)?;
+    let introduction = choice::run(&mut study, first)?;
     Ok(study.finish("The automatic choice of the model", introduction)?.summary)
 }
 

@@ -55,19 +55,22 @@ impl Scene {
             return infinite::of_infinite_structure(self);
         }
         let mut cost = Cost::default();
-        let refuse =
-            |model: Model, reason: String| InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason);
         let mut choice = match (self.model, modal_only(self)) {
             (Model::Auto | Model::Modal, Some(_)) => settle::stated(self, &mut cost)?,
-            (forced, Some(why)) => return Err(refuse(forced, format!("auto or modal: {why}"))),
+            (forced, Some(why)) => return Err(refused(forced, format!("auto or modal: {why}"))),
             (Model::Auto, None) => auto(&mut Pose::new(self)?, &mut cost)?,
             (forced, None) => {
-                forced_tier(forced, &mut Pose::new(self)?, &mut cost)?.map_err(|reason| refuse(forced, reason))?
+                forced_tier(forced, &mut Pose::new(self)?, &mut cost)?.map_err(|reason| refused(forced, reason))?
             }
         };
         choice.answer.cost = cost;
         Ok(choice)
     }
+}
+
+/// A model that was asked for and cannot be had.
+pub(super) fn refused(model: Model, reason: String) -> InvalidInput {
+    InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason)
 }
 
 impl Scene {

@@ -16,7 +16,8 @@
 //! z = d^2 / (sqrt(EI/m') tau).
 //! ```
 //!
-//! A beam of Euler and Bernoulli has no greatest speed, so what comes back in time is small but not nothing. Everything
+//! A beam of Euler and Bernoulli has no greatest speed, so what comes back in time is small but not nothing: what a
+//! tolerance lets matter are waves up to the frequency `z/tau` whose `z` makes the bound below equal to it. Everything
 //! is similar in `z`, the damping and the number `S` of thesis Eq. 2.8; [`reflection_bound`] holds for every `S`.
 //!
 //! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the place moves away
@@ -35,6 +36,8 @@ use crate::scene::{End, InvalidInput, Scene};
 
 /// Times and distances from which [`reflection_bound`] holds.
 const LEAST_Z: f64 = 2.0;
+/// What waves that come back change at `z = 1`; see [`reflection_bound`].
+const WAVES: f64 = 10.0;
 /// Above this `S` the striker does not leave an infinite beam after one contact (thesis 2.2.6: 1.559).
 const CRITICAL_S: f64 = 1.560;
 /// Modes summed one by one for the reach of the place.
@@ -67,7 +70,7 @@ pub fn reflection_bound(end: Reflection, z: f64, damping_ratio: f64) -> f64 {
     if !(z >= LEAST_Z && damping_ratio <= 0.1) {
         return f64::INFINITY;
     }
-    let waves = 10.0 / z.powi(4);
+    let waves = WAVES / z.powi(4);
     match end {
         Reflection::Image => waves,
         Reflection::NearField => waves + 0.8 * damping_ratio / z.powf(1.5),
@@ -135,9 +138,37 @@ impl Uniform {
         (bound(0) + bound(1), z[0].min(z[1]))
     }
 
+    /// The fastest waves that matter to a contact of this duration, and when they are back from the nearer end.
+    fn first_return(&self, duration_s: f64, tolerance: f64) -> FirstReturn {
+        let omega_rad_s = (WAVES / tolerance).powf(0.25).max(LEAST_Z) / duration_s;
+        let group_velocity_m_s = 2.0 * (omega_rad_s * self.spread()).sqrt();
+        let distance_m = self.distances[0].min(self.distances[1]);
+        FirstReturn { omega_rad_s, group_velocity_m_s, after_s: 2.0 * distance_m / group_velocity_m_s }
+    }
+
     /// How long the place answers as that of an infinite beam (s).
     fn undisturbed_s(&self) -> f64 {
         self.distances[0].min(self.distances[1]).powi(2) / (LEAST_Z * self.spread())
+    }
+}
+
+/// The fastest waves that matter at a tolerance.
+struct FirstReturn {
+    omega_rad_s: f64,
+    group_velocity_m_s: f64,
+    after_s: f64,
+}
+
+impl FirstReturn {
+    fn text(&self, duration_s: f64) -> String {
+        format!(
+            "waves that matter, up to {} rad/s, travel at {} m/s at most and are back from an end after {} s, the last \
+             contact ends after {} s",
+            small(self.omega_rad_s),
+            small(self.group_velocity_m_s),
+            small(self.after_s),
+            small(duration_s)
+        )
     }
 }
 
@@ -225,13 +256,11 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     const SOLVER: f64 = 1e-7;
     let uncertainty = restitution.filter(|_| free).map(|_| relative * (bound + SOLVER)).filter(|u| u.is_finite());
     let settled = uncertainty.is_some_and(|u| u <= pose.tolerance);
-    let speed_of_waves = 2.0 * beam.distances[0].min(beam.distances[1]) / duration_s;
     let evidence = format!(
-        "one contact of {} s, S = {}; within it only waves faster than {} m/s come back from an end (z = {}), which \
-         changes the restitution by {} at most",
-        small(duration_s),
+        "one contact, S = {}; {}; faster ones are back within it from an end (z = {}), which changes the restitution by \
+         {} at most",
         small(groups.s),
-        small(speed_of_waves),
+        beam.first_return(duration_s, pose.tolerance).text(duration_s),
         small(z),
         small(bound)
     );
@@ -244,14 +273,13 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
             format!("infinite-beam: {evidence}; the striker is then out of reach for ever")
         }
         (_, true) => format!(
-            "infinite-beam: the last contact ends after {} s, when waves have long come back from an end (z = {})",
-            small(duration_s),
+            "infinite-beam: {}: waves have come back from an end (z = {})",
+            beam.first_return(duration_s, pose.tolerance).text(duration_s),
             small(z)
         ),
         (_, false) => format!(
-            "infinite-beam: the last contact ends after {} s (z = {}), and that the beam's ends cause no further \
-             contact is not certain",
-            small(duration_s),
+            "infinite-beam: {} (z = {}), and that the beam's ends cause no further contact is not certain",
+            beam.first_return(duration_s, pose.tolerance).text(duration_s),
             small(z)
         ),
     };

@@ -160,8 +160,8 @@ pub struct Answer {
     pub modes: usize,
     /// Static compliance of all other modes, in series with the contact (m/N); 0 where they were left out.
     pub residual_compliance_m_n: f64,
-    /// Whether the tolerance was reached (for stated modes: whether the solver's own estimate is within ten times its
-    /// tolerance).
+    /// Whether the tolerance was reached (for stated modes: whether the solver's own estimate is within ten times the
+    /// tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
     pub settled: bool,
     /// If it was not: largest less smallest restitution over the last numbers of modes tried.
     pub spread: Option<f64>,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::choose::{Choice, Tried};
+use super::choose::{Choice, Tried, forced_tier, refused};
 use super::pose::{Pose, chooses_modes, modal_only};
 use super::text::small;
 use super::{Cost, Model, emoc, infinite, rigid, settle};
@@ -123,7 +123,10 @@ impl Scene {
                 tiers.iter().find(|tier| tier.applies).map_or(Model::Modal, |tier| tier.model)
             }
             Model::Auto => Model::Modal,
-            forced => forced,
+            forced => {
+                forced_tier_applies(forced, &mut pose, cost)?;
+                forced
+            }
         };
         let contact_duration_s = Some(pose.wall.duration_s).filter(|duration| duration.is_finite());
         Ok(Plan { model, tolerance: pose.tolerance, contact_duration_s, tiers })
@@ -132,15 +135,22 @@ impl Scene {
     /// The plan where there is nothing to choose.
     fn plan_of_modes(&self, why: &str) -> Result<Plan, InvalidInput> {
         if !matches!(self.model, Model::Auto | Model::Modal) {
-            let allowed = format!("auto or modal: {why}");
-            return Err(InvalidInput::new("model", format!("\"{}\"", self.model.as_str()), allowed));
+            return Err(refused(self.model, format!("auto or modal: {why}")));
         }
         let impact = self.impact_of(self.modes.count())?;
-        let refused = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
-        let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(refused).into();
+        let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
+        let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(without).into();
         tiers.push(Estimate::of_stated(impact.structure.modes.len(), impact.settings.tolerance));
         Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
     }
+}
+
+/// Refuses a tier that was asked for and cannot be had, as [`Scene::answer`] does.
+fn forced_tier_applies(model: Model, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
+    if model != Model::Modal {
+        forced_tier(model, pose, cost)?.map_err(|reason| refused(model, reason))?;
+    }
+    Ok(())
 }
 
 fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {

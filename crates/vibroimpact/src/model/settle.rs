@@ -12,14 +12,18 @@
 //! guess is the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
 //! Then `N` is raised by steps of a factor of about 1.4. Restitutions alone may agree by accident while the courses
 //! of two impacts do not, and then differ again at the next `N`; so the striker's speed in every flight between two
-//! contacts is compared as well, and after more than one contact a third number of modes is asked. Solver errors, made anew at every `N`, are part of the differences.
+//! contacts is compared as well, and after more than one contact a third number of modes is asked.
+//!
+//! Every contact amplifies what came before it, the solver's error too, and a solver too coarse for an impact may find the
+//! same wrong course at every `N`. So from the third number of modes on, the solver is asked for an accuracy that rises
+//! from one to the next: its errors are part of the differences, and restitutions agree when both have become small.
 
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
 
 use super::choose::Choice;
 use super::pose::{Pose, Source, chooses_modes, compliance};
 use super::text::small;
-use super::{Answer, Cost, Model, Modes};
+use super::{Answer, Cost, DEFAULT_TOLERANCE, Model, Modes};
 use crate::impact::{Impact, in_scene};
 use crate::scene::{InvalidInput, Scene};
 
@@ -41,18 +45,22 @@ const CAUTION: f64 = 2.0;
 const FLIGHTS: f64 = 0.5;
 /// Weight of the difference before the last.
 const EARLIER: f64 = 0.1;
-/// The same once three numbers of modes have not settled: of many pairs one may agree by accident.
+/// The same from the third number of modes on: of many pairs one may agree by accident.
 const EARLIER_LATE: f64 = 0.5;
-/// Tolerance of the solver, as a share of the tolerance wanted; and its range.
+/// Tolerance of the solver with the first two numbers of modes, as a share of the tolerance wanted; and its range. Below
+/// it, rounding is all that steps can show.
 const SOLVER_SHARE: f64 = 0.1;
-const SOLVER_RANGE: (f64, f64) = (1e-12, 1e-3);
+const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
+/// From the third on: as a share of the tolerance with the number before.
+const TIGHTER: f64 = 1.0 / 30.0;
 /// How many of the last results make up the spread where they do not settle.
 const SPREAD: usize = 4;
 
-/// The solver's settings for a tolerance wanted.
-pub(super) fn settings(tolerance: f64) -> Settings {
+/// The solver's settings for a tolerance wanted, after so many numbers of modes.
+fn settings(tolerance: f64, rungs: usize) -> Settings {
+    let tightened = (1..rungs).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
     Settings {
-        tolerance: (SOLVER_SHARE * tolerance).clamp(SOLVER_RANGE.0, SOLVER_RANGE.1),
+        tolerance: tightened.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1),
         estimate_uncertainty: false,
         ..Settings::default()
     }
@@ -63,16 +71,17 @@ struct Rung {
     /// From the lowest; those not excited among them.
     count: usize,
     structure: Structure,
+    settings: Settings,
     solution: Solution,
 }
 
 impl Rung {
-    fn new(pose: &mut Pose, count: usize, cost: &mut Cost) -> Result<Rung, InvalidInput> {
+    fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let structure = pose.structure(count, cost)?;
         let mut solver = Solver::new(&structure).map_err(in_scene)?;
-        let solution = solver.solve(&pose.striker, &pose.law, None, &settings(pose.tolerance)).map_err(in_scene)?;
+        let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
         cost.add(&solution.counts, structure.modes.len());
-        Ok(Rung { count, structure, solution })
+        Ok(Rung { count, structure, settings, solution })
     }
 
     /// Impulse up to each separation, over the striker's momentum.
@@ -156,26 +165,28 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     let momentum = pose.striker.mass_kg * pose.striker.speed_m_s;
     let most = pose.source.most();
     let (first, mut count) = guess(pose, cost)?;
-    let mut rungs = vec![Rung::new(pose, first, cost)?];
+    let mut rungs = vec![Rung::new(pose, first, settings(pose.tolerance, 0), cost)?];
     let mut before = 0.0;
-    let floor = 0.5 * settings(pose.tolerance).tolerance;
     loop {
-        let next = Rung::new(pose, count, cost)?;
+        let next = Rung::new(pose, count, settings(pose.tolerance, rungs.len()), cost)?;
         let last = &rungs[rungs.len() - 1];
         let pair = last.solution.restitution.zip(next.solution.restitution);
         let flights = distance(&last.flights(momentum), &next.flights(momentum));
         let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
-        let weight = if rungs.len() < 3 { EARLIER } else { EARLIER_LATE };
+        let weight = if rungs.len() < 2 { EARLIER } else { EARLIER_LATE };
         let change = step.max(FLIGHTS * flights);
-        let mut uncertainty = CAUTION * change.max(weight * before) + floor;
+        let mut uncertainty = CAUTION * change.max(weight * before) + 0.5 * next.settings.tolerance;
         before = change;
         // after several contacts, two impacts may agree and lack the same further contact: ask a third
         let several = next.solution.sub_impacts.len() > 1 && rungs.len() < 2;
         let settled = uncertainty <= pose.tolerance && pair.is_some() && !several;
         let limit = next.solution.outcome == Outcome::LimitReached;
+        let tolerance = next.settings.tolerance;
         rungs.push(next);
         let raised = ((count as f64 * RAISE).round() as usize).min(most);
-        if !settled && !limit && raised as f64 >= LEAST_RAISE * count as f64 {
+        // with all modes of a list, the solver alone is in doubt
+        let solver_left = matches!(pose.source, Source::Listed { .. }) && tolerance > SOLVER_RANGE.0;
+        if !settled && !limit && (raised as f64 >= LEAST_RAISE * count as f64 || solver_left) {
             count = raised;
             continue;
         }
@@ -209,7 +220,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             striker: pose.striker,
             law: pose.law,
             start: None,
-            settings: settings(pose.tolerance),
+            settings: last.settings,
         };
         let known = Known { uncertainty: Some(uncertainty.min(1.0)), settled, spread };
         return Ok(Choice::modal(pose.tolerance, impact, last.solution, known, reason));
@@ -250,7 +261,8 @@ pub(super) fn stated(scene: &Scene, cost: &mut Cost) -> Result<Choice, InvalidIn
     };
     let tolerance = impact.settings.tolerance;
     let uncertainty = solution.restitution_uncertainty;
-    let settled = uncertainty.is_some_and(|u| u <= 10.0 * tolerance);
+    let wanted = scene.tolerance.map_or(DEFAULT_TOLERANCE, |tolerance| 10.0 * tolerance);
+    let settled = uncertainty.is_some_and(|u| u <= wanted);
     let known = Known { uncertainty, settled, spread: uncertainty.filter(|_| !settled) };
     Ok(Choice::modal(tolerance, impact, solution, known, reason))
 }

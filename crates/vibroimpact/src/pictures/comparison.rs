@@ -1,10 +1,12 @@
 //! Results of several models beside each other.
 
+use crate::model::Comparison;
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use crate::text::restitution as with_uncertainty;
 
 /// The restitution of each model with its uncertainty, and what it cost. A value that is not finite (no result, no
-/// uncertainty known, no cost measured) is left out; lists that are too short count as such values.
+/// uncertainty known, no cost measured) is left out; lists that are too short count as such values. Without any cost
+/// there is no axis for it.
 ///
 /// ```
 /// use vibroimpact::pictures::comparison;
@@ -44,8 +46,29 @@ pub fn comparison(
         .height(height_px)
         .with(Series::level_error_bars(&restitution, &line, &half, Marker::Dot).colour(Colour::Blue))
         .with(Series::labels(&restitution, &line, texts));
+    if cost.iter().all(|cost| cost.is_nan()) {
+        return Figure::new(title).row([results]);
+    }
     let costs = Panel::new(Axis::new("time to compute").unit("s").log(), y().unlabelled())
         .height(height_px)
         .with(Series::points(&cost, &line, Marker::Square).colour(Colour::Vermilion));
     Figure::new(title).row([results, costs])
+}
+
+/// The models that answer a scene, the one chosen marked.
+pub fn of_comparison(title: &str, comparison: &Comparison) -> Figure {
+    let answers: Vec<_> = comparison.tiers.iter().filter_map(|tier| tier.answer.as_ref()).collect();
+    let names: Vec<String> = answers
+        .iter()
+        .map(|answer| {
+            let chosen = if answer.model == comparison.chosen.model { " (chosen)" } else { "" };
+            match answer.modes {
+                0 => format!("{}{chosen}", answer.model.as_str()),
+                modes => format!("{}, {modes} modes{chosen}", answer.model.as_str()),
+            }
+        })
+        .collect();
+    let restitution: Vec<f64> = answers.iter().map(|answer| answer.restitution.unwrap_or(f64::NAN)).collect();
+    let uncertainty: Vec<f64> = answers.iter().map(|a| a.restitution_uncertainty.unwrap_or(f64::NAN)).collect();
+    self::comparison(title, &names, &restitution, &uncertainty, &[])
 }

@@ -1,5 +1,6 @@
 //! The pictures of the commands: an impact ([`impact`], and [`crate::infinite::picture`] for infinite structures), the
-//! modes of a structure ([`modes`]), results of several models beside each other ([`comparison`]).
+//! modes of a structure ([`modes`]), results of several models beside each other ([`comparison`],
+//! [`of_comparison`]).
 //!
 //! Axes are in SI units with prefixes, whatever the scale of the impact.
 
@@ -7,7 +8,7 @@ mod comparison;
 mod impact;
 mod modes;
 
-pub use comparison::comparison;
+pub use comparison::{comparison, of_comparison};
 pub use impact::impact;
 pub use modes::modes;
 

@@ -139,10 +139,10 @@ fn geometric(values: &[f64]) -> f64 {
     mean(&values.iter().map(|v| v.ln()).collect::<Vec<f64>>()).exp()
 }
 
-pub fn run(study: &mut Study) -> Result<&'static str, Failure> {
+pub fn run(study: &mut Study, first: u64) -> Result<&'static str, Failure> {
     study.section("Random scenes");
     let count = if study.quick { SCENES.1 } else { SCENES.0 };
-    let numbers: Vec<u64> = (0..count).collect();
+    let numbers: Vec<u64> = (0..count).map(|i| first.saturating_add(i)).collect();
     let rows = study.sweep(&numbers, 1, |&number| Row::new(number))?;
     study.csv("scenes.csv", &rows)?;
     outcome(study, &rows);
@@ -223,15 +223,40 @@ fn outcome(study: &mut Study, rows: &[Row]) {
         study.text("Scenes beyond their tolerance:");
         study.table(&["scene", "damping ratio", "model", "tolerance", "error", "uncertainty", "said"], &misses);
     }
+    costs(study, rows);
+}
+
+/// Mode-steps of the fixed number of modes over those of the choice; a choice that integrates no mode counts as one step.
+fn costs(study: &mut Study, rows: &[Row]) {
     let ratios: Vec<f64> = rows.iter().map(|row| row.fixed_mode_steps as f64 / row.mode_steps.max(1) as f64).collect();
     let modal: Vec<f64> = rows.iter().zip(&ratios).filter(|(row, _)| row.mode_steps > 0).map(|(_, r)| *r).collect();
-    let sums = rows.iter().fold((0, 0), |(a, b), row| (a + row.fixed_mode_steps, b + row.mode_steps));
+    let of = |rows: &[&Row]| {
+        let sums = rows.iter().fold((0, 0), |(a, b), row| (a + row.fixed_mode_steps, b + row.mode_steps));
+        significant(sums.0 as f64 / sums.1.max(1) as f64, 3)
+    };
+    let cheaper = modal.iter().filter(|ratio| **ratio > 1.0).count();
+    study.state(Comparison::range(
+        format!(
+            "mode-steps of {FIXED} fixed modes over those of the choice, arithmetic mean where modes are integrated"
+        ),
+        "target",
+        "at least 10",
+        (10.0, f64::INFINITY),
+        mean(&modal),
+    ));
     study.text(&format!(
-        "Mode-steps of {FIXED} fixed modes over those of the choice, where modes were integrated at all: geometric mean \
-         {}, arithmetic mean {}; over the sum of all scenes {}.",
-        significant(geometric(&modal), 3),
+        "Mode-steps of {FIXED} fixed modes over those of the choice, where modes were integrated at all ({} scenes, \
+         {cheaper} of them cheaper): arithmetic mean {}, geometric mean {}. Of the sums over all scenes {}, over those \
+         that settle {}, over those of them for which the fixed number is enough {}.",
+        modal.len(),
         significant(mean(&modal), 3),
-        significant(sums.0 as f64 / sums.1 as f64, 3)
+        significant(geometric(&modal), 3),
+        of(&rows.iter().collect::<Vec<&Row>>()),
+        of(&rows.iter().filter(|row| row.settled).collect::<Vec<&Row>>()),
+        of(&rows
+            .iter()
+            .filter(|row| row.settled && row.fixed_error.is_some_and(|error| error <= row.tolerance))
+            .collect::<Vec<&Row>>()),
     ));
 }
 

@@ -71,7 +71,7 @@ pub(super) fn hertz() -> Value {
 
 /// Scene number `seed`: modes and model left to the program, a tolerance from 1e-5 to 1e-1.
 pub(super) fn scene(seed: u64) -> Result<Scene, Failure> {
-    let random = &mut Random::new(seed + 1);
+    let random = &mut Random::new(seed.wrapping_add(1));
     let special = random.share() < SPECIAL;
     let ends = [0, 1].map(|_| random.of(&["clamped", "pinned", "free", "guided"]));
     let damping_ratio = if random.share() < UNDAMPED { 0.0 } else { random.log(1e-3, 0.1) };
