@@ -123,7 +123,9 @@ fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<(), 
 /// The folder of the built program.
 fn program(root: &Path) -> Result<PathBuf, Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let build = ["build", "-p", "vibroimpact", "--locked", "--message-format", "json-render-diagnostics"];
+    // as `cargo test --workspace` has built it
+    let build = "build --workspace --bins --profile test --locked --message-format json-render-diagnostics";
+    let build = build.split(' ');
     let output = Command::new(cargo).current_dir(root).args(build).stderr(std::process::Stdio::inherit()).output()?;
     let messages = String::from_utf8_lossy(&output.stdout);
     let executable =
