@@ -1,7 +1,7 @@
 //! From the fields of a scene to the terms of the solver, and back again in its errors.
 
 use contact_models::Law;
-use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{History, Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::model;
 use crate::scene::{self, InvalidInput, Scene};
@@ -80,16 +80,7 @@ impl Scene {
         let modes = self.structure.modes(self.place(), count)?;
         let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
             let whole = self.structure.static_compliance_m_n(self.place())?;
-            let kept: f64 = modes
-                .iter()
-                .filter(|mode| mode.omega_rad_s > 0.0)
-                .map(|mode| (mode.shape / mode.omega_rad_s).powi(2))
-                .sum();
-            match self.structure {
-                // exact on both sides, so that less than nothing is rounding: on a support, of nothing
-                scene::Structure::Beam(_) => (whole - kept).max(0.0),
-                _ => residual(whole, kept)?,
-            }
+            residual(&self.structure, whole, compliance(&modes))?
         } else {
             0.0
         };
@@ -100,7 +91,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::structure`].
-    pub fn mode_shapes(&self, count: usize) -> Result<Vec<vibroimpact_sim::modal::Mode>, InvalidInput> {
+    pub fn mode_shapes(&self, count: usize) -> Result<Vec<Mode>, InvalidInput> {
         self.structure.modes(self.place(), Some(count))
     }
 
@@ -153,10 +144,17 @@ impl Scene {
     }
 }
 
-/// Compliance of the whole less that of the modes kept. Rounding may put a complete set of modes below zero.
-pub(crate) fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
+/// Static compliance of the elastic ones of these modes (m/N).
+pub(crate) fn compliance(modes: &[Mode]) -> f64 {
+    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
+}
+
+/// Static compliance of the whole less that of the modes kept (m/N). Rounding may put a complete set of modes below
+/// zero.
+pub(crate) fn residual(structure: &scene::Structure, whole: f64, kept: f64) -> Result<f64, InvalidInput> {
     const ROUNDING: f64 = 1e-9;
-    if whole >= kept * (1.0 - ROUNDING) {
+    // a beam's are exact on both sides, so that less than nothing is rounding: on a support, of nothing
+    if matches!(structure, scene::Structure::Beam(_)) || whole >= kept * (1.0 - ROUNDING) {
         Ok((whole - kept).max(0.0))
     } else {
         let allowed = format!("not less than that of the modes kept, {kept:e}");

@@ -4,7 +4,7 @@ use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
 
 use super::{Cost, DEFAULT_TOLERANCE, Modes};
-use crate::impact::{in_scene, residual};
+use crate::impact::{compliance, in_scene, residual};
 use crate::scene::json::number;
 use crate::scene::{self, InvalidInput, Scene};
 
@@ -163,21 +163,12 @@ impl<'a> Pose<'a> {
         let residual_wanted = self.scene.residual_compliance != Some(false);
         let modes = self.source.first(count, cost)?;
         let kept: Vec<Mode> = modes.iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
-        let static_part = compliance(&kept);
-        let residual_compliance_m_n = match &self.source {
-            _ if !residual_wanted => 0.0,
-            // rounding may leave a trace of either sign where nothing is left
-            Source::Beam { whole_m_n, .. } => (whole_m_n - static_part).max(0.0),
-            Source::Listed { whole_m_n: Some(whole), .. } => residual(*whole, static_part)?,
-            Source::Listed { whole_m_n: None, .. } => 0.0,
+        let residual_compliance_m_n = match self.source.whole_m_n() {
+            Some(whole_m_n) if residual_wanted => residual(&self.scene.structure, whole_m_n, compliance(&kept))?,
+            _ => 0.0,
         };
         Ok(Structure { modes: kept, residual_compliance_m_n })
     }
-}
-
-/// Static compliance of modes (m/N).
-pub(super) fn compliance(modes: &[Mode]) -> f64 {
-    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
 }
 
 impl Source<'_> {

@@ -21,9 +21,10 @@
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
 
 use super::choose::Choice;
-use super::pose::{Pose, Source, chooses_modes, compliance};
+use super::pose::{Pose, Source, chooses_modes};
 use super::text::small;
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Model, Modes};
+use crate::impact::compliance;
 use crate::impact::{Impact, in_scene};
 use crate::scene::{InvalidInput, Scene};
 

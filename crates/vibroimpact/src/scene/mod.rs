@@ -30,7 +30,7 @@ mod beam;
 mod contact;
 mod dropped_rod;
 mod error;
-mod fields;
+pub(crate) mod fields;
 mod infinite;
 pub(crate) mod json;
 mod materials;

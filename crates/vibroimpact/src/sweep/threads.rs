@@ -39,7 +39,8 @@ pub(super) trait Sink {
     fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
 }
 
-/// Computes what is missing in the sink, a folder for example, and puts it there in order.
+/// Computes what is missing in the sink, a folder for example, and puts it there in order. `threads` of 0 stands for
+/// as many as the machine has cores.
 pub(super) fn compute(
     sweep: &Sweep,
     part: Part,
@@ -48,6 +49,7 @@ pub(super) fn compute(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
+    let threads = if threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { threads };
     let chunks = part.chunks(sweep);
     let begun = (chunks.start + sink.chunks())..chunks.end;
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
