@@ -3,7 +3,7 @@
 use contact_models::Law;
 use vibroimpact_sim::modal::{History, Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
-use crate::model;
+use crate::model::{self, Kept};
 use crate::scene::{self, InvalidInput, Scene};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
@@ -72,12 +72,16 @@ impl Scene {
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return Ok(self.drop(rod, Settings::default())?.structure);
         }
-        if model::chooses_modes(self) { Ok(self.impact()?.structure) } else { self.structure_of(self.modes.count()) }
+        if model::chooses_modes(self) {
+            Ok(self.impact()?.structure)
+        } else {
+            self.structure_of(self.modes.count(), &mut Kept::default())
+        }
     }
 
     /// The structure with its first `count` modes, or all that are listed.
-    fn structure_of(&self, count: Option<usize>) -> Result<Structure, InvalidInput> {
-        let modes = self.structure.modes(self.place(), count)?;
+    fn structure_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Structure, InvalidInput> {
+        let modes = self.structure.modes_with(self.place(), count, &mut kept.modes)?;
         let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
             let whole = self.structure.static_compliance_m_n(self.place())?;
             residual(&self.structure, whole, compliance(&modes))?
@@ -119,17 +123,21 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn impact(&self) -> Result<Impact, InvalidInput> {
-        if model::chooses_modes(self) { model::settled_impact(self) } else { self.impact_of(self.modes.count()) }
+        if model::chooses_modes(self) {
+            model::settled_impact(self)
+        } else {
+            self.impact_of(self.modes.count(), &mut Kept::default())
+        }
     }
 
     /// The impact with the first `count` modes, or all that are listed.
-    pub(crate) fn impact_of(&self, count: Option<usize>) -> Result<Impact, InvalidInput> {
+    pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return self.drop(rod, settings);
         }
-        let structure = self.structure_of(count)?;
+        let structure = self.structure_of(count, kept)?;
         let start = self.start(&structure.modes)?;
         Ok(Impact {
             structure,

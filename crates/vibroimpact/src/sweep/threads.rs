@@ -12,6 +12,7 @@ use super::definition::Sweep;
 use super::error::SweepError;
 use super::folder::Part;
 use super::row;
+use crate::model::Kept;
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
 pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
@@ -69,11 +70,12 @@ pub(super) fn compute(
 }
 
 fn work(sweep: &Sweep, desk: &Desk, give_up: impl Fn() -> bool) {
+    let mut kept = Kept::default();
     while !give_up() {
         let order = desk.assembly().hand_out();
         match order {
             Order::Chunk(chunk) => {
-                let Some(rows) = row::rows(sweep, chunk, &give_up) else { return };
+                let Some(rows) = row::rows(sweep, chunk, &mut kept, &give_up) else { return };
                 desk.assembly().take_in(chunk, rows);
                 desk.changed.notify_all();
             }
