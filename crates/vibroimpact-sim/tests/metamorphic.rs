@@ -142,6 +142,8 @@ proptest! {
         // recipe for the round trip, five tolerances and three times the difference to 32 times the tolerance
         let (.., coarse) = round_trip(3.2e-11);
         let allowed = 5e-12 * striker.speed_m_s + 3.0 * (coarse - returned).abs();
+        // of an impact that amplifies errors by 1e9 nothing comes back, and the recipe, a difference of two, may err
+        prop_assume!(allowed < 1e-3 * striker.speed_m_s);
         let error = (returned - striker.speed_m_s).abs();
         prop_assert!(error <= allowed, "{:e} m/s, allowed {:e}", error, allowed);
     }

@@ -5,7 +5,7 @@ use super::landing::{self, Approach, Landed, REACH};
 use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::solution::{Counts, SubImpact};
-use super::step::{Collocated, Given, collocate, first_crossing};
+use super::step::{BLUR, Collocated, Given, collocate, first_crossing};
 use contact_models::{After, Branch, ContactLaw, Memory};
 
 /// How a contact ended.
@@ -180,9 +180,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + 1);
         };
         let boundaries = self.setting.law.boundaries(&self.branch);
-        let compliance = self.setting.residual_compliance;
-        let start = (self.compression, self.rate);
-        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, compliance) {
+        let (start, noise) = ((self.compression, self.rate), self.noise(&step));
+        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, noise) {
             return self.approach(which, place * h, h);
         }
         let tolerance = self.setting.impulse_tolerance;
@@ -197,7 +196,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
-        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h, compliance) {
+        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h, noise) {
             std::mem::swap(self.motion, &mut self.before);
             return self.approach(which, place * h, h);
         }
@@ -304,6 +303,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         let given = Given {
             h,
             start_compression: self.compression,
+            start_gap: self.motion.gap(),
             free,
             response: &response,
             residual_compliance: self.setting.residual_compliance,
@@ -314,15 +314,29 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         Some((step, basis.coefficients(&step.force)))
     }
 
+    /// How exact the compression of a step is (m): it is the small difference of a drift and many modes, and behind a
+    /// compliance that of a force as well.
+    fn noise(&self, step: &Collocated) -> f64 {
+        let structure: f64 = self.motion.vibration.alpha.iter().map(|a| a.abs()).sum();
+        let gap = 4.0 * f64::EPSILON * (structure + self.motion.drift.abs() + self.compression.abs());
+        let pressed = step.force.iter().fold(0.0f64, |a, b| a.max(b.abs())) * self.setting.residual_compliance;
+        gap + BLUR * pressed
+    }
+
     /// Compression and rate at the end of a step that the motion has just made.
     fn end_of_step(&self, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
-        let gap = self.motion.gap();
-        if self.setting.residual_compliance == 0.0 {
-            return (gap, self.motion.gap_rate());
+        let (gap, gap_rate) = (self.motion.gap(), self.motion.gap_rate());
+        let (law, c) = (self.setting.law, self.setting.residual_compliance);
+        if c == 0.0 {
+            return (gap, gap_rate);
         }
-        let slope = BASIS.end_slope_from_start * self.compression + dot(&BASIS.end_slope_from_nodes, &step.compression);
-        let rate = slope / h;
-        (self.behind_compliance(gap - self.setting.residual_compliance * evaluate(force, 1.0), rate), rate)
+        let estimate = gap - c * evaluate(force, 1.0);
+        if law.depends_on_rate() {
+            let rate = landing::end_slope(self.compression, &step.compression, h);
+            return (self.behind_compliance(estimate, rate), rate);
+        }
+        let compression = self.behind_compliance(estimate, 0.0);
+        (compression, gap_rate / (1.0 + c * law.force(&self.branch, compression, 0.0).per_compression_n_m))
     }
 
     /// The compression at which the law itself holds behind the residual compliance, `xi + c F(xi, xi') = g`, near an

@@ -71,6 +71,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         let given = Given {
             h: length,
             start_compression: self.start_compression,
+            start_gap: self.gap[0],
             free,
             response: &response,
             residual_compliance: self.residual_compliance,
@@ -82,12 +83,14 @@ impl<L: ContactLaw> Approach<'_, L> {
         let (free_gap, free_rate) = self.free(length);
         let (gap, gap_rate) =
             (free_gap + dot(&end_response, &step.force), free_rate + dot(&end_rate_response, &step.force));
-        let (compression, rate) = if self.residual_compliance == 0.0 {
-            (gap, gap_rate)
+        let compression = gap - self.residual_compliance * evaluate(&force, 1.0);
+        let rate = if self.residual_compliance == 0.0 {
+            gap_rate
+        } else if self.law.depends_on_rate() {
+            end_slope(self.start_compression, &step.compression, length)
         } else {
-            let slope = basis.end_slope_from_start * self.start_compression
-                + dot(&basis.end_slope_from_nodes, &step.compression);
-            (gap - self.residual_compliance * evaluate(&force, 1.0), slope / length)
+            let stiffness = self.law.force(self.branch, compression, 0.0).per_compression_n_m;
+            gap_rate / (1.0 + self.residual_compliance * stiffness)
         };
         let margin = self.boundary().margin(compression, rate);
         Some((Landed { length, step, force, compression, rate }, margin))
@@ -172,6 +175,11 @@ impl<L: ContactLaw> Approach<'_, L> {
         }
         Some(best)
     }
+}
+
+/// Rate at the end of a step of `h` of the polynomial with these values at its start and at the nodes.
+pub(crate) fn end_slope(start: f64, nodal: &Nodal, h: f64) -> f64 {
+    (BASIS.end_slope_from_start * start + dot(&BASIS.end_slope_from_nodes, nodal)) / h
 }
 
 /// How many terms of the series a motion that turns by `angle` (rad) needs to be exact to rounding.

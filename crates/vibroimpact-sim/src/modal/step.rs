@@ -2,6 +2,10 @@
 //!
 //! On a step the force is a polynomial. At each Gauss node the law must hold,
 //! `F_i = law(xi_i, xi_dot_i)` with `xi = xi_free + (R - c) F`, `R` the structure's and the striker's exact response.
+//!
+//! The gap `g = xi + c F` is twice smoother than the force, where `xi` behind a compliance that is soft against the
+//! contact is as rough as the force itself (`t^(2/3)` at first touch). A law that does not depend on the rate gives it
+//! by `xi' = g' / (1 + c F_xi)`, which has the sign of `g'`: a polynomial through `xi` would see reversals that are none.
 
 use super::legendre::{BASIS, Matrix, Nodal, Q, dot};
 use super::solution::Counts;
@@ -14,21 +18,22 @@ const SLOW: f64 = 0.1;
 
 /// How exact the compression behind a residual compliance is, relative to the gap: the force that it is computed from
 /// is iterated so far, and its rate, a quotient of small differences, is trusted no further.
-const BLUR: f64 = 1e-13;
+pub(crate) const BLUR: f64 = 1e-13;
 
 /// What is known before a step's force is.
 pub(crate) struct Given<'a> {
     /// Length of the step (s).
     pub h: f64,
-    /// Compression at the start (m).
+    /// Compression at the start (m), and the gap `xi + c F` there (m).
     pub start_compression: f64,
+    pub start_gap: f64,
     /// Compression at the nodes if there were no force (m).
     pub free: Nodal,
     /// Compression at the nodes to unit nodal forces (m/N), without the residual compliance.
     pub response: &'a Matrix,
     /// Residual compliance (m/N).
     pub residual_compliance: f64,
-    /// Whether the branch asks for the rate of compression.
+    /// Whether the law, or an end of its branch, asks for the rate of compression.
     pub needs_rate: bool,
     /// How well the force is wanted (N).
     pub accuracy: f64,
@@ -53,8 +58,9 @@ pub(crate) fn collocate<L: ContactLaw>(
     counts: &mut Counts,
 ) -> Option<Collocated> {
     let basis = &*BASIS;
+    let rate_in_law = law.depends_on_rate();
     let mut accuracy = given.accuracy;
-    if given.needs_rate && given.residual_compliance > 0.0 {
+    if rate_in_law && given.residual_compliance > 0.0 {
         let gap = given.free.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         accuracy = accuracy.min(BLUR * gap / given.residual_compliance);
     }
@@ -67,12 +73,8 @@ pub(crate) fn collocate<L: ContactLaw>(
         for i in 0..Q {
             compression[i] += dot(&given.response[i], &force) - given.residual_compliance * force[i];
         }
-        if given.needs_rate {
-            for i in 0..Q {
-                rate[i] = (basis.slope_from_start[i] * given.start_compression
-                    + dot(&basis.slope_from_nodes[i], &compression))
-                    / given.h;
-            }
+        if rate_in_law {
+            rate = slopes(given.start_compression, &compression, given.h);
         }
         let values: [Force; Q] = std::array::from_fn(|i| law.force(branch, compression[i], rate[i]));
         counts.newton_iterations += 1;
@@ -92,6 +94,13 @@ pub(crate) fn collocate<L: ContactLaw>(
         // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
         let ratio = if last_change.is_finite() { largest / last_change } else { 1.0 };
         if ratio * largest <= accuracy || largest <= 1e-15 * size {
+            if given.needs_rate && !rate_in_law {
+                let gap = std::array::from_fn(|i| compression[i] + given.residual_compliance * values[i].force_n);
+                rate = slopes(given.start_gap, &gap, given.h);
+                for i in 0..Q {
+                    rate[i] /= 1.0 + given.residual_compliance * values[i].per_compression_n_m;
+                }
+            }
             return Some(Collocated { force, compression, rate });
         }
         let first = !last_change.is_finite();
@@ -101,6 +110,12 @@ pub(crate) fn collocate<L: ContactLaw>(
         }
     }
     None
+}
+
+/// Rates at the nodes of a polynomial on a step of `h`, by its values at the start and at the nodes.
+fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
+    let basis = &*BASIS;
+    std::array::from_fn(|i| (basis.slope_from_start[i] * start + dot(&basis.slope_from_nodes[i], nodal)) / h)
 }
 
 /// Newton's matrix `1 - F_xi (R - c) - F_rate D (R - c)`, factored. Its off-diagonal part is of the order of
@@ -164,14 +179,14 @@ impl Newton {
 
 /// The first place on a step where a branch ends: which of its boundaries, and the fraction of the step at which a
 /// straight line through the neighbouring points puts it. Compression and rate are looked at at the nodes, and at the
-/// end of the step where that is given.
+/// end of the step where that is given. Compressions are known to `noise_m`, and what lies within is no crossing.
 pub(crate) fn first_crossing(
     boundaries: &[Boundary; 2],
     step: &Collocated,
     start: (f64, f64),
     end: Option<(f64, f64)>,
     h: f64,
-    residual_compliance: f64,
+    noise_m: f64,
 ) -> Option<(usize, f64)> {
     let nodes = &BASIS.nodes;
     let mut first: Option<(usize, f64)> = None;
@@ -180,10 +195,7 @@ pub(crate) fn first_crossing(
             continue;
         }
         // rounding of the interpolated rate must not look like a crossing where a branch begins on its boundary
-        let size = step.compression.iter().fold(start.0.abs(), |a, b| a.max(b.abs()));
-        let pressed = step.force.iter().fold(0.0f64, |a, b| a.max(b.abs())) * residual_compliance;
-        let noise =
-            (1e-15 * size + BLUR * pressed) * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
+        let noise = noise_m * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
         let (mut before, mut inside) = (0.0, boundary.margin(start.0, start.1).max(0.0));
         let at_nodes = (0..Q).map(|i| (nodes[i], step.compression[i], step.rate[i]));
         for (at, xi, rate) in at_nodes.chain(end.map(|(xi, rate)| (1.0, xi, rate))) {
