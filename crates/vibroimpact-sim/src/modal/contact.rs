@@ -2,11 +2,11 @@
 
 use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s};
 use super::landing::{self, Approach, Landed, REACH};
-use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
+use super::legendre::{BASIS, Nodal, Q, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::solution::{Counts, SubImpact};
-use super::step::{BLUR, Collocated, Given, collocate, first_crossing};
-use contact_models::{After, Branch, ContactLaw, Memory};
+use super::step::{BLUR, Collocated, Given, collocate, first_crossing, truncation};
+use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
 
 /// How a contact ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +40,8 @@ const GROWTH: f64 = 10.0;
 const NEWTON_SHARE: f64 = 1e-2;
 /// By how much the law may be missed at the end of a step, where the polynomial is extrapolated: in tolerances.
 const DEFECT: f64 = 1.0;
+/// A mode that turns by no more than this (rad) in a step is followed by the polynomial through the nodes.
+const RESOLVED: f64 = 2.0;
 /// Part of the way to the expected end of a branch that one step may take.
 const SHARE: f64 = 0.7;
 
@@ -184,6 +186,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, noise) {
             return self.approach(which, place * h, h);
         }
+        if step.force == [0.0; Q] && !self.resolves(&boundaries, &step, h) {
+            return self.refine(self.level + 1);
+        }
         let tolerance = self.setting.impulse_tolerance;
         let error = truncation(&force) * h;
         if error > tolerance {
@@ -233,9 +238,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Goes towards the end of the branch, expected after `expected` seconds of a step of `h`: lands there if it is
     /// near, or takes shorter steps.
-    fn approach(&mut self, which: usize, expected: f64, h: f64) -> Option<ContactEnd> {
+    fn approach(&mut self, mut which: usize, mut expected: f64, h: f64) -> Option<ContactEnd> {
         let reach = self.reach().min(h);
-        let mut expected = expected;
         if expected <= reach {
             let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration);
             let mut approach = Approach {
@@ -254,7 +258,13 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             approach.kernel[1] += self.setting.mu;
             match approach.land(expected, reach, self.counts) {
                 Some(landed) if truncation(&landed.force) * landed.length <= self.setting.impulse_tolerance => {
-                    return self.cross(which, landed);
+                    // the branch may have ended before, in a dip that this landing passed over
+                    let boundaries = self.setting.law.boundaries(&self.branch);
+                    let (start, noise) = ((self.compression, self.rate), self.noise(&landed.step));
+                    match first_crossing(&boundaries, &landed.step, start, None, landed.length, noise) {
+                        None => return self.cross(which, landed),
+                        Some((earlier, place)) => (which, expected) = (earlier, place * landed.length),
+                    }
                 }
                 Some(landed) => expected = landed.length,
                 // not so near after all: go on, until a step meets the boundary again
@@ -314,6 +324,29 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         Some((step, basis.coefficients(&step.force)))
     }
 
+    /// Whether a step in a pause of the law ([`contact_models::Stage::Slack`]), in which there is no force to be resolved,
+    /// resolves the modes that could bring about the pause's end: all but the fastest, as far as these together move no
+    /// boundary by half its distance. A free mode exceeds neither the displacement nor the velocity of its energy.
+    fn resolves(&self, boundaries: &[Boundary; 2], step: &Collocated, h: f64) -> bool {
+        let state = &self.motion.vibration;
+        boundaries.iter().filter(|boundary| **boundary != Boundary::NEVER).all(|boundary| {
+            let margins = step.compression.iter().zip(&step.rate).map(|(xi, rate)| boundary.margin(*xi, *rate));
+            let least = margins.fold(f64::INFINITY, f64::min);
+            let mut moved = 0.0;
+            for (k, mode) in self.ladder.modes.iter().enumerate().rev() {
+                if mode.omega_rad_s * h <= RESOLVED {
+                    break;
+                }
+                let speed = state.beta[k].hypot(mode.omega_rad_s * state.alpha[k]);
+                moved += speed * (boundary.per_compression.abs() / mode.omega_rad_s + boundary.per_rate.abs());
+                if moved > 0.5 * least {
+                    return false;
+                }
+            }
+            true
+        })
+    }
+
     /// How exact the compression of a step is (m): it is the small difference of a drift and many modes, and behind a
     /// compliance that of a force as well.
     fn noise(&self, step: &Collocated) -> f64 {
@@ -371,14 +404,6 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             pieces.push(Piece { start: self.before.clone(), contact: Some(contact) });
         }
     }
-}
-
-/// What the polynomial may be missing: its next two coefficients, if they fall as the last two do against the two
-/// before. Pairs, because a single coefficient vanishes by accident.
-fn truncation(force: &Nodal) -> f64 {
-    let last = force[Q - 1].abs().max(force[Q - 2].abs());
-    let before = force[Q - 3].abs().max(force[Q - 4].abs());
-    if last < before { last * (last / before) } else { last }
 }
 
 /// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its

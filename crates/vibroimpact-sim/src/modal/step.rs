@@ -7,7 +7,7 @@
 //! contact is as rough as the force itself (`t^(2/3)` at first touch). A law that does not depend on the rate gives it
 //! by `xi' = g' / (1 + c F_xi)`, which has the sign of `g'`: a polynomial through `xi` would see reversals that are none.
 
-use super::legendre::{BASIS, Matrix, Nodal, Q, dot};
+use super::legendre::{BASIS, Matrix, Nodal, Q, dot, evaluate};
 use super::solution::Counts;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
 
@@ -57,10 +57,9 @@ pub(crate) fn collocate<L: ContactLaw>(
     guess: Nodal,
     counts: &mut Counts,
 ) -> Option<Collocated> {
-    let basis = &*BASIS;
     let rate_in_law = law.depends_on_rate();
     let mut accuracy = given.accuracy;
-    if rate_in_law && given.residual_compliance > 0.0 {
+    if given.needs_rate && given.residual_compliance > 0.0 {
         let gap = given.free.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         accuracy = accuracy.min(BLUR * gap / given.residual_compliance);
     }
@@ -177,9 +176,9 @@ impl Newton {
     }
 }
 
-/// The first place on a step where a branch ends: which of its boundaries, and the fraction of the step at which a
-/// straight line through the neighbouring points puts it. Compression and rate are looked at at the nodes, and at the
-/// end of the step where that is given. Compressions are known to `noise_m`, and what lies within is no crossing.
+/// The first place on a step where a branch ends, by a straight line through the neighbouring points. Compression and
+/// rate are looked at at the nodes, between them, and at the end of the step where that is given. Compressions are known
+/// to `noise_m`, and what lies within is no crossing.
 pub(crate) fn first_crossing(
     boundaries: &[Boundary; 2],
     step: &Collocated,
@@ -188,7 +187,7 @@ pub(crate) fn first_crossing(
     h: f64,
     noise_m: f64,
 ) -> Option<(usize, f64)> {
-    let nodes = &BASIS.nodes;
+    let basis = &*BASIS;
     let mut first: Option<(usize, f64)> = None;
     for (which, boundary) in boundaries.iter().enumerate() {
         if *boundary == Boundary::NEVER {
@@ -197,18 +196,83 @@ pub(crate) fn first_crossing(
         // rounding of the interpolated rate must not look like a crossing where a branch begins on its boundary
         let noise = noise_m * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
         let (mut before, mut inside) = (0.0, boundary.margin(start.0, start.1).max(0.0));
-        let at_nodes = (0..Q).map(|i| (nodes[i], step.compression[i], step.rate[i]));
-        for (at, xi, rate) in at_nodes.chain(end.map(|(xi, rate)| (1.0, xi, rate))) {
-            let margin = boundary.margin(xi, rate);
-            if margin < -noise {
-                let place = before + (at - before) * inside / (inside - margin);
-                if first.is_none_or(|(_, earlier)| place < earlier) {
-                    first = Some((which, place));
-                }
-                break;
-            }
+        let margins: Nodal = std::array::from_fn(|i| boundary.margin(step.compression[i], step.rate[i]));
+        let at_nodes = (0..Q).map(|i| (basis.nodes[i], margins[i]));
+        let at_end = end.map(|(xi, rate)| (1.0, boundary.margin(xi, rate)));
+        let met = at_nodes.chain(at_end).find_map(|(at, margin)| {
+            let place = before + (at - before) * inside / (inside - margin);
             (before, inside) = (at, margin.max(0.0));
+            (margin < -noise).then_some(place)
+        });
+        if let Some(place) = met.or_else(|| dip(&margins, noise))
+            && first.is_none_or(|(_, earlier)| place < earlier)
+        {
+            first = Some((which, place));
         }
     }
     first
+}
+
+/// What a polynomial may be missing: its next two coefficients, if they fall as the last two do against the two before.
+/// Pairs, because a single coefficient vanishes by accident.
+pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
+    let last = coefficients[Q - 1].abs().max(coefficients[Q - 2].abs());
+    let before = coefficients[Q - 3].abs().max(coefficients[Q - 4].abs());
+    if last < before { last * (last / before) } else { last }
+}
+
+/// Where a polynomial that is positive at the nodes falls below `-noise` between them, if it does: the place of the first
+/// such dip's least value, by the parabola through three neighbours among nodes and middles.
+fn dip(margins: &Nodal, noise: f64) -> Option<f64> {
+    let coefficients = BASIS.coefficients(margins);
+    // a Legendre polynomial is 1 at most
+    if coefficients[0] > coefficients[1..].iter().map(|c| c.abs()).sum() {
+        return None;
+    }
+    let (nodes, value) = (&BASIS.nodes, |s: f64| (s, evaluate(&coefficients, s)));
+    // the ends of the step, the nodes, and the middles between all of them
+    let points: [(f64, f64); 2 * Q + 3] = std::array::from_fn(|i| match i {
+        0 => value(0.0),
+        1 => value(0.5 * nodes[0]),
+        i if i == 2 * Q + 1 => value(0.5 * (1.0 + nodes[Q - 1])),
+        i if i == 2 * Q + 2 => value(1.0),
+        i if i % 2 == 0 => (nodes[i / 2 - 1], margins[i / 2 - 1]),
+        i => value(0.5 * (nodes[i / 2 - 1] + nodes[i / 2])),
+    });
+    points.windows(3).find_map(|three| {
+        let [(a, left), (b, middle), (c, right)] = [three[0], three[1], three[2]];
+        if !(middle <= left && middle < right) {
+            return None;
+        }
+        // divided differences, and the vertex of the parabola
+        let (fall, rise) = ((middle - left) / (b - a), (right - middle) / (c - b));
+        let bend = (rise - fall) / (c - a);
+        let slope = fall + bend * (b - a);
+        let place = b - slope / (2.0 * bend);
+        (middle - slope * slope / (4.0 * bend) < -noise).then_some(place)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dip_between_the_nodes_is_seen() {
+        // a parabola times a factor that varies, a little above or below zero
+        for lowest in [0.3, 0.47, 0.71] {
+            let polynomial = |s: f64, at: f64| ((s - lowest) * (s - lowest) + at) * (1.0 + s);
+            let above = BASIS.nodes.map(|s| polynomial(s, 3e-4));
+            assert_eq!(dip(&above, 0.0), None);
+            let below = BASIS.nodes.map(|s| polynomial(s, -3e-4));
+            if below.iter().all(|margin| *margin > 0.0) {
+                let place = dip(&below, 0.0).unwrap();
+                assert!((place - lowest).abs() < 0.02, "{place}");
+                assert_eq!(dip(&below, 1e-2), None);
+            }
+        }
+        // falling to the end and rising from the start are no dips
+        assert_eq!(dip(&BASIS.nodes, 0.0), None);
+        assert_eq!(dip(&BASIS.nodes.map(|s| 1.0 - s), 0.0), None);
+    }
 }
