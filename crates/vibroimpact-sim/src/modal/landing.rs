@@ -174,16 +174,6 @@ impl<L: ContactLaw> Approach<'_, L> {
     }
 }
 
-/// How many terms of the series a motion that turns by `angle` (rad) needs to be exact to rounding.
-fn terms(angle: f64) -> usize {
-    let (mut terms, mut size) = (2, angle);
-    while terms < TAYLOR && size > 1e-17 {
-        size *= angle / terms as f64;
-        terms += 1;
-    }
-    terms
-}
-
 /// `g^(p)/p!` of the structure's free motion at the contact.
 pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration) -> [f64; TAYLOR] {
     let mut here = state.alpha.clone();
@@ -208,7 +198,7 @@ pub(crate) fn advance(ladder: &Ladder, state: &mut Vibration, length: f64, force
     // free motion and impulse response both follow the derivatives of the mode's own equation
     let (mut moments, mut powers) = ([0.0; TAYLOR], [0.0; TAYLOR]);
     let (mut undivided, mut divided) = (length, 1.0);
-    let terms = terms(ladder.fastest_rad_s * length);
+    let terms = BASIS.terms::<TAYLOR>(ladder.fastest_rad_s * length, 2);
     for p in 0..terms {
         (moments[p], powers[p]) = (undivided * dot(&BASIS.power_end[p], force), divided);
         undivided *= length;

@@ -26,7 +26,7 @@
 //! the nodal forces, which the law fixes; Newton's method finds them. Steps come from a ladder `2^-j` s whose
 //! propagators and responses are tabulated, so a step costs `O(N)` multiplications and no transcendental function.
 //! A branch of the law ends (separation, reversal, yield) on its boundary, landed on by a step of unknown length.
-//! In free flight nothing is integrated: bounds on the gap prove whole windows free of contact
+//! In free flight nothing is integrated: a bound on the gap's motion gives a time before which no contact can come
 //! (see `flight.rs`), and a proof that none will come ends the impact.
 //!
 //! The uncertainty of the restitution is five times the tolerance and three times the difference to a second solution,
@@ -35,6 +35,7 @@
 
 mod contact;
 mod flight;
+mod forcing;
 mod history;
 mod ladder;
 mod landing;
