@@ -87,7 +87,7 @@ struct Compliance {
     terms: usize,
     /// Fast modes: `sum h^2 w Im(z^-(k+1)) / (omega_d h)`, what multiplies the derivatives of the force at the node.
     by_parts: [f64; Q],
-    /// Displacement at the nodes to unit Legendre forces, of all that is neither of these.
+    /// `[n][i]`: displacement at node `i` to unit Legendre force `n`, of all that is neither of these.
     legendre: Matrix,
 }
 
@@ -100,25 +100,25 @@ impl Compliance {
         let basis = &*BASIS;
         if self.by_parts[0] != 0.0 {
             for (s, derivatives) in self.by_parts.iter().zip(&basis.derivatives) {
-                for i in 0..Q {
-                    for n in 0..Q {
-                        self.legendre[i][n] += s * derivatives[i][n];
+                for n in 0..Q {
+                    for i in 0..Q {
+                        self.legendre[n][i] += s * derivatives[n][i];
                     }
                 }
             }
         }
         let mut compliance = [[0.0; Q]; Q];
         for (kernel, power) in self.impulse[..self.terms].iter().zip(&basis.power) {
-            for i in 0..Q {
-                for j in 0..Q {
-                    compliance[i][j] -= h * kernel * power[i][j];
+            for j in 0..Q {
+                for i in 0..Q {
+                    compliance[j][i] -= h * kernel * power[j][i];
                 }
             }
         }
-        for i in 0..Q {
-            for n in 0..Q {
-                for j in 0..Q {
-                    compliance[i][j] += self.legendre[i][n] * basis.to_coefficients[n][j];
+        for n in 0..Q {
+            for j in 0..Q {
+                for i in 0..Q {
+                    compliance[j][i] += self.legendre[n][i] * basis.to_coefficients[n][j];
                 }
             }
         }
@@ -204,11 +204,10 @@ fn fast(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
         *value += w * scale * power.im;
         power *= inverse;
     }
-    let (real, imaginary) = (at_start.map(|x| x.re), at_start.map(|x| x.im));
-    for i in 0..Q {
-        let (re, im) = (w * scale * to_nodes.0[i], w * scale * to_nodes.1[i]);
-        for n in 0..Q {
-            compliance.legendre[i][n] -= im * real[n] + re * imaginary[n];
+    for (column, start) in compliance.legendre.iter_mut().zip(&at_start) {
+        let (re, im) = (w * scale * start.re, w * scale * start.im);
+        for i in 0..Q {
+            column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
         }
     }
     let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
@@ -249,7 +248,7 @@ fn by_quadrature(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Pa
         let (to_node, _) = response(mode, part);
         for n in 0..Q {
             for m in 0..=n {
-                compliance.legendre[i][n] -= w * basis.restricted[i][n][m] * to_node[m];
+                compliance.legendre[n][i] -= w * basis.restricted[i][n][m] * to_node[m];
             }
         }
     }

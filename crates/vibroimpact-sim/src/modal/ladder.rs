@@ -48,8 +48,12 @@ struct Level {
 pub(crate) struct Ladder {
     /// The modes, by rising frequency.
     pub modes: Vec<Mode>,
-    /// `phi_k^2` (1/kg).
+    /// `phi_k^2` (1/kg), `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2).
     pub weight: Vec<f64>,
+    pub drag: Vec<f64>,
+    pub square: Vec<f64>,
+    /// No motion of the modes up to this one is faster (rad/s).
+    pub turning: Vec<f64>,
     /// Derivatives at zero of the impulse response at the contact, `sum_k phi_k^2 k_k^(p)(0)`.
     pub kernel: [f64; TAYLOR],
     /// No motion is faster than this (rad/s).
@@ -62,11 +66,15 @@ impl Ladder {
     pub fn new(mut modes: Vec<Mode>) -> Ladder {
         modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
         let weight: Vec<f64> = modes.iter().map(|mode| mode.shape * mode.shape).collect();
+        let drag: Vec<f64> = modes.iter().map(|mode| 2.0 * mode.damping_ratio * mode.omega_rad_s).collect();
+        let square: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s * mode.omega_rad_s).collect();
         let mut kernel = [0.0; TAYLOR];
         let mut fastest_rad_s: f64 = 0.0;
-        for (mode, w) in modes.iter().zip(&weight) {
-            let (square, drag) = (mode.omega_rad_s * mode.omega_rad_s, 2.0 * mode.damping_ratio * mode.omega_rad_s);
-            fastest_rad_s = fastest_rad_s.max(mode.omega_rad_s + drag);
+        let mut turning = Vec::with_capacity(modes.len());
+        for (k, w) in weight.iter().enumerate() {
+            let (square, drag) = (square[k], drag[k]);
+            fastest_rad_s = fastest_rad_s.max(modes[k].omega_rad_s + drag);
+            turning.push(fastest_rad_s);
             let (mut here, mut next) = (0.0, *w);
             for value in kernel.iter_mut() {
                 *value += here;
@@ -74,7 +82,7 @@ impl Ladder {
             }
         }
         let levels = std::iter::repeat_with(Level::default).take((J_MAX - J_MIN + 2) as usize).collect();
-        Ladder { modes, weight, kernel, fastest_rad_s, levels }
+        Ladder { modes, weight, drag, square, turning, kernel, fastest_rad_s, levels }
     }
 
     /// Free motion over one step of level `j`.

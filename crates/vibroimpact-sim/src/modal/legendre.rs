@@ -17,6 +17,7 @@ pub(crate) const SLOW: f64 = 6.0;
 const FINE: usize = 20;
 
 pub(crate) type Nodal = [f64; Q];
+/// A matrix that acts on nodal values is kept by columns: `matrix[j][i]` is what value `j` does to value `i`.
 pub(crate) type Matrix = [[f64; Q]; Q];
 
 /// Constant matrices of the basis, computed once.
@@ -27,7 +28,7 @@ pub(crate) struct Basis {
     pub to_coefficients: Matrix,
     /// `restricted[i][n][m]`: `P_n` on [0, 1], seen on [0, c_i], in Legendre polynomials of that part.
     pub restricted: [Matrix; Q],
-    /// `power[p][i][j]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
+    /// `power[p][j][i]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
     pub power: Vec<Matrix>,
     /// `power_end[p][j]`: the same over [0, 1].
     pub power_end: Vec<Nodal>,
@@ -36,7 +37,7 @@ pub(crate) struct Basis {
     pub about_middle: Vec<[[f64; Q / 2]; 2]>,
     /// `within[t]`: a motion that turns by at most so much (rad) needs `t` terms of its power series.
     within: [f64; SERIES],
-    /// `derivatives[k][i][n]`: `d^k/ds^k P_n(2s-1)` at node `i`.
+    /// `derivatives[k][n][i]`: `d^k/ds^k P_n(2s-1)` at node `i`.
     pub derivatives: [Matrix; Q],
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
@@ -109,6 +110,17 @@ pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
     sum
 }
 
+/// A matrix, kept by columns, times a vector.
+pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
+    let mut product = [0.0; Q];
+    for j in 0..Q {
+        for i in 0..Q {
+            product[i] += matrix[j][i] * vector[j];
+        }
+    }
+    product
+}
+
 /// A Gauss-Legendre rule on (0, 1).
 fn rule(n: NonZeroUsize) -> Vec<(f64, f64)> {
     let mut rule: Vec<(f64, f64)> = GaussLegendre::new(n).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
@@ -171,7 +183,9 @@ impl Basis {
         let mut power = vec![[[0.0; Q]; Q]; SERIES];
         for i in 0..Q {
             for (p, row) in moments(nodes[i]).into_iter().enumerate() {
-                power[p][i] = row;
+                for j in 0..Q {
+                    power[p][j][i] = row[j];
+                }
             }
         }
         let mut power_end = moments(1.0);
@@ -198,7 +212,7 @@ impl Basis {
             polynomial[n] = 1.0;
             for k in 0..Q {
                 for i in 0..Q {
-                    derivatives[k][i][n] = evaluate(&polynomial, nodes[i]);
+                    derivatives[k][n][i] = evaluate(&polynomial, nodes[i]);
                 }
                 polynomial = derivative(&polynomial);
             }
@@ -291,7 +305,7 @@ mod tests {
             let slope = dot(&basis.slope_from_nodes[i], &cube);
             assert!((slope - 3.0 * basis.nodes[i].powi(2)).abs() < 1e-11);
             // int_0^c (c-s)^2/2 s^3 ds = c^6/120
-            let integral = dot(&basis.power[2][i], &cube);
+            let integral = apply(&basis.power[2], &cube)[i];
             assert!((integral - basis.nodes[i].powi(6) / 120.0).abs() < 1e-15);
             // P_3 on [0, c_i] in polynomials of the part
             let (at, mut sum) = (0.3, 0.0);

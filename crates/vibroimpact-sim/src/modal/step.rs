@@ -3,9 +3,10 @@
 //! On a step the force is a polynomial. At each Gauss node the law must hold,
 //! `F_i = law(xi_i, xi_dot_i)` with `xi = xi_free + (R - c) F`, `R` the structure's and the striker's exact response.
 
-use super::legendre::{BASIS, Matrix, Nodal, Q, dot};
+use super::legendre::{BASIS, Matrix, Nodal, Q, apply, dot};
 use super::solution::Counts;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
+use std::array;
 
 /// More iterations than this mean that the step is too long.
 const ITERATIONS_MAX: u32 = 16;
@@ -63,9 +64,9 @@ pub(crate) fn collocate<L: ContactLaw>(
     let mut newton: Option<Newton> = None;
     let mut last_change = f64::INFINITY;
     for _ in 0..ITERATIONS_MAX {
-        let mut compression = given.free;
+        let mut compression = apply(given.response, &force);
         for i in 0..Q {
-            compression[i] += dot(&given.response[i], &force) - given.residual_compliance * force[i];
+            compression[i] += given.free[i] - given.residual_compliance * force[i];
         }
         if given.needs_rate {
             for i in 0..Q {
@@ -106,59 +107,65 @@ pub(crate) fn collocate<L: ContactLaw>(
 /// Newton's matrix `1 - F_xi (R - c) - F_rate D (R - c)`, factored. Its off-diagonal part is of the order of
 /// `(h omega)^2` with `omega` the contact's own frequency, so that elimination needs no pivoting.
 struct Newton {
-    /// Unit lower and upper triangle in one, the diagonal inverted.
+    /// Unit lower and upper triangle in one, by columns, the diagonal inverted.
     triangles: Matrix,
 }
 
 impl Newton {
     fn new(given: &Given, values: &[Force; Q]) -> Newton {
-        let mut a = [[0.0; Q]; Q];
+        let stiffness = values.map(|value| value.per_compression_n_m);
+        let mut a = given.response.map(|column| array::from_fn(|i| -stiffness[i] * column[i]));
         for i in 0..Q {
-            let stiffness = values[i].per_compression_n_m;
+            a[i][i] += 1.0 + stiffness[i] * given.residual_compliance;
+        }
+        if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
+            let drag = values.map(|value| value.per_rate_n_s_m / given.h);
             for j in 0..Q {
-                a[i][j] = -stiffness * given.response[i][j];
-            }
-            a[i][i] += 1.0 + stiffness * given.residual_compliance;
-            if values[i].per_rate_n_s_m != 0.0 {
-                let drag = values[i].per_rate_n_s_m / given.h;
-                for l in 0..Q {
-                    let factor = drag * BASIS.slope_from_nodes[i][l];
-                    for j in 0..Q {
-                        a[i][j] -= factor * given.response[l][j];
-                    }
-                    a[i][l] += factor * given.residual_compliance;
+                for i in 0..Q {
+                    a[j][i] -= drag[i] * dot(&BASIS.slope_from_nodes[i], &given.response[j]);
+                    a[j][i] += drag[i] * BASIS.slope_from_nodes[i][j] * given.residual_compliance;
                 }
             }
         }
-        for column in 0..Q {
-            let inverse = 1.0 / a[column][column];
-            let top = a[column];
-            for row in column + 1..Q {
-                let factor = a[row][column] * inverse;
-                for j in column + 1..Q {
-                    a[row][j] -= factor * top[j];
-                }
-                a[row][column] = factor;
-            }
-            a[column][column] = inverse;
-        }
+        eliminate::<0>(&mut a);
+        eliminate::<{ Q / 2 }>(&mut a);
         Newton { triangles: a }
     }
 
     fn solve(&self, mut b: Nodal) -> Nodal {
         let a = &self.triangles;
-        for row in 1..Q {
-            for j in 0..row {
-                b[row] -= a[row][j] * b[j];
+        for j in 0..Q {
+            for i in j + 1..Q {
+                b[i] -= a[j][i] * b[j];
             }
         }
-        for row in (0..Q).rev() {
-            for j in row + 1..Q {
-                b[row] -= a[row][j] * b[j];
+        for j in (0..Q).rev() {
+            b[j] *= a[j][j];
+            for i in 0..j {
+                b[i] -= a[j][i] * b[j];
             }
-            b[row] *= a[row][row];
         }
         b
+    }
+}
+
+/// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
+/// units.
+fn eliminate<const FROM: usize>(a: &mut Matrix) {
+    for pivot in FROM..FROM + Q / 2 {
+        let inverse = 1.0 / a[pivot][pivot];
+        let mut below = [0.0; Q];
+        for i in pivot + 1..Q {
+            below[i] = a[pivot][i] * inverse;
+            a[pivot][i] = below[i];
+        }
+        for column in &mut a[pivot + 1..] {
+            let factor = column[pivot];
+            for i in FROM..Q {
+                column[i] -= factor * below[i];
+            }
+        }
+        a[pivot][pivot] = inverse;
     }
 }
 
@@ -176,7 +183,9 @@ pub(crate) fn first_crossing(
     let nodes = &BASIS.nodes;
     let mut first: Option<(usize, f64)> = None;
     for (which, boundary) in boundaries.iter().enumerate() {
-        if *boundary == Boundary::NEVER {
+        let at_nodes = || (0..Q).map(|i| (nodes[i], step.compression[i], step.rate[i]));
+        let places = || at_nodes().chain(end.map(|(xi, rate)| (1.0, xi, rate)));
+        if *boundary == Boundary::NEVER || places().all(|(_, xi, rate)| boundary.margin(xi, rate) >= 0.0) {
             continue;
         }
         // rounding of the interpolated rate must not look like a crossing where a branch begins on its boundary
@@ -185,8 +194,7 @@ pub(crate) fn first_crossing(
         let noise =
             (1e-15 * size + BLUR * pressed) * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
         let (mut before, mut inside) = (0.0, boundary.margin(start.0, start.1).max(0.0));
-        let at_nodes = (0..Q).map(|i| (nodes[i], step.compression[i], step.rate[i]));
-        for (at, xi, rate) in at_nodes.chain(end.map(|(xi, rate)| (1.0, xi, rate))) {
+        for (at, xi, rate) in places() {
             let margin = boundary.margin(xi, rate);
             if margin < -noise {
                 let place = before + (at - before) * inside / (inside - margin);
@@ -199,4 +207,39 @@ pub(crate) fn first_crossing(
         }
     }
     first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn newtons_matrix_is_solved() {
+        let response: Matrix = array::from_fn(|j| array::from_fn(|i| -0.3 / (1.0 + (2 * i + 3 * j) as f64)));
+        let given = Given {
+            h: 0.5,
+            start_compression: 0.0,
+            free: [0.0; Q],
+            response: &response,
+            residual_compliance: 0.01,
+            needs_rate: true,
+            accuracy: 0.0,
+        };
+        for drag in [0.0, 1e-3] {
+            let value = |i| Force { force_n: 0.0, per_compression_n_m: 1.0 + i as f64, per_rate_n_s_m: drag };
+            let values: [Force; Q] = array::from_fn(value);
+            let b: Nodal = array::from_fn(|i| 1.0 / (1.0 + i as f64));
+            let x = Newton::new(&given, &values).solve(b);
+            // x - F_xi y - F_rate D y with y = (R - c) x
+            let mut y = apply(&response, &x);
+            for i in 0..Q {
+                y[i] -= given.residual_compliance * x[i];
+            }
+            for i in 0..Q {
+                let slope = dot(&BASIS.slope_from_nodes[i], &y) / given.h;
+                let left = x[i] - values[i].per_compression_n_m * y[i] - drag * slope;
+                assert!((left - b[i]).abs() < 1e-13, "{drag} {i}: {left} {}", b[i]);
+            }
+        }
+    }
 }
