@@ -44,7 +44,8 @@ impl Forcing {
             let turned = rate(mode) * h;
             let part = if turned <= SLOW {
                 terms.start = BASIS.terms::<SERIES>(turned, terms.start);
-                terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle);
+                // as many even as odd ones
+                terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
                 slow(mode, w, h, (half.p12[k], half.p22[k]), &terms, &mut compliance)
             } else if mode.damping_ratio < NEARLY_CRITICAL {
                 fast(mode, w, h, &mut compliance)
@@ -168,8 +169,8 @@ fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, complian
 /// Even or odd terms of `S` and `h S'`: at the nodes of the second half, and integrated with the Legendre polynomials.
 fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
     let (mut s_nodes, mut v_nodes, mut s_end, mut v_end) = ([0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2]);
-    let weights = BASIS.about_middle[parity..].iter().step_by(2);
-    for ((s, v), [powers, integrals]) in series[parity..].iter().step_by(2).zip(weights) {
+    for (terms, weights) in series.chunks_exact(2).zip(BASIS.about_middle.chunks_exact(2)) {
+        let ((s, v), [powers, integrals]) = (terms[parity], &weights[parity]);
         for m in 0..Q / 2 {
             s_nodes[m] += s * powers[m];
             v_nodes[m] += v * powers[m];
@@ -300,7 +301,7 @@ mod tests {
                     let p = propagate(&mode, 0.5 * h);
                     let terms = Terms {
                         start: BASIS.terms::<SERIES>(turned, 2),
-                        middle: BASIS.terms::<HALF_SERIES>(0.5 * turned, 2),
+                        middle: BASIS.terms::<HALF_SERIES>(0.5 * turned, 2).next_multiple_of(2),
                     };
                     let (one, other) = each_way(&mode, h, |c| slow(&mode, 1.0, h, (p.p12, p.p22), &terms, c));
                     assert_close(one, other, h, 2e-14, &format!("{turned} {zeta} {h}"));
