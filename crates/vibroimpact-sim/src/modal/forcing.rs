@@ -148,7 +148,7 @@ fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, complian
         (s, v) = (v * reciprocal, (-damping * v - square * s) * reciprocal);
     }
     let series = &series[..terms.middle];
-    let [even, odd] = [0, 1].map(|parity| weighted_sums(series, parity));
+    let sums @ [even, odd] = &[0, 1].map(|parity| weighted_sums(series, parity));
     let per_second = 1.0 / h;
     // the even part is the same in both halves, the odd part changes its sign
     let at = |i: usize, of: usize| {
@@ -158,7 +158,7 @@ fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, complian
             even[of][i - Q / 2] + odd[of][i - Q / 2]
         }
     };
-    let end = |n: usize, of: usize| if n % 2 == 0 { even[of][n / 2] } else { odd[of][n / 2] };
+    let end = |n: usize, of: usize| sums[n % 2][of][n / 2];
     Part {
         // from unit displacement: S' + 2 zeta omega S
         at_nodes: (array::from_fn(|i| (at(i, 1) + damping * at(i, 0)) * per_second), array::from_fn(|i| at(i, 0))),
