@@ -6,7 +6,6 @@
 use super::legendre::{BASIS, Matrix, Nodal, Q, apply, dot};
 use super::solution::Counts;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
-use std::array;
 
 /// More iterations than this mean that the step is too long.
 const ITERATIONS_MAX: u32 = 16;
@@ -61,7 +60,7 @@ pub(crate) fn collocate<L: ContactLaw>(
     }
     let mut force = guess;
     let mut rate = [0.0; Q];
-    let mut newton: Option<Newton> = None;
+    let (mut newton, mut current) = (Newton { triangles: [[0.0; Q]; Q] }, false);
     let mut last_change = f64::INFINITY;
     for _ in 0..ITERATIONS_MAX {
         let mut compression = apply(given.response, &force);
@@ -79,7 +78,11 @@ pub(crate) fn collocate<L: ContactLaw>(
         counts.newton_iterations += 1;
         counts.law_evaluations += Q as u64;
         let defect: Nodal = std::array::from_fn(|i| values[i].force_n - force[i]);
-        let change = newton.get_or_insert_with(|| Newton::new(given, &values)).solve(defect);
+        if !current {
+            newton.factor(given, &values);
+            current = true;
+        }
+        let change = newton.solve(defect);
         let (mut largest, mut size) = (0.0f64, 0.0f64);
         for i in 0..Q {
             force[i] += change[i];
@@ -98,7 +101,7 @@ pub(crate) fn collocate<L: ContactLaw>(
         let first = !last_change.is_finite();
         last_change = largest;
         if ratio > SLOW && !first {
-            newton = None;
+            current = false;
         }
     }
     None
@@ -112,11 +115,14 @@ struct Newton {
 }
 
 impl Newton {
-    fn new(given: &Given, values: &[Force; Q]) -> Newton {
+    fn factor(&mut self, given: &Given, values: &[Force; Q]) {
+        let a = &mut self.triangles;
         let stiffness = values.map(|value| value.per_compression_n_m);
-        let mut a = given.response.map(|column| array::from_fn(|i| -stiffness[i] * column[i]));
-        for i in 0..Q {
-            a[i][i] += 1.0 + stiffness[i] * given.residual_compliance;
+        for j in 0..Q {
+            for i in 0..Q {
+                a[j][i] = -stiffness[i] * given.response[j][i];
+            }
+            a[j][j] += 1.0 + stiffness[j] * given.residual_compliance;
         }
         if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
             let drag = values.map(|value| value.per_rate_n_s_m / given.h);
@@ -127,9 +133,8 @@ impl Newton {
                 }
             }
         }
-        eliminate::<0>(&mut a);
-        eliminate::<{ Q / 2 }>(&mut a);
-        Newton { triangles: a }
+        eliminate::<0>(a);
+        eliminate::<{ Q / 2 }>(a);
     }
 
     fn solve(&self, mut b: Nodal) -> Nodal {
@@ -212,6 +217,7 @@ pub(crate) fn first_crossing(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::array;
 
     #[test]
     fn newtons_matrix_is_solved() {
@@ -229,7 +235,9 @@ mod tests {
             let value = |i| Force { force_n: 0.0, per_compression_n_m: 1.0 + i as f64, per_rate_n_s_m: drag };
             let values: [Force; Q] = array::from_fn(value);
             let b: Nodal = array::from_fn(|i| 1.0 / (1.0 + i as f64));
-            let x = Newton::new(&given, &values).solve(b);
+            let mut newton = Newton { triangles: [[0.0; Q]; Q] };
+            newton.factor(&given, &values);
+            let x = newton.solve(b);
             // x - F_xi y - F_rate D y with y = (R - c) x
             let mut y = apply(&response, &x);
             for i in 0..Q {
