@@ -196,7 +196,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             let finer = ((error / tolerance).log2() / 3.0) as i32;
             return self.refine(self.level + finer.clamp(1, 4));
         }
-        self.before.clone_from(self.motion);
+        self.before.copy_from(self.motion);
         self.ladder.advance(self.level, &mut self.motion.vibration, &force);
         self.motion.advance_drift(h, &force, self.setting.mu);
         let end = self.end_of_step(&step, &force, h);
@@ -241,7 +241,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn approach(&mut self, mut which: usize, mut expected: f64, h: f64) -> Option<ContactEnd> {
         let reach = self.reach().min(h);
         if expected <= reach {
-            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration);
+            let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration, reach);
             let mut approach = Approach {
                 law: self.setting.law,
                 branch: &self.branch,
@@ -277,7 +277,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Commits a landing and asks the law what follows.
     fn cross(&mut self, which: usize, landed: Landed) -> Option<ContactEnd> {
-        self.before.clone_from(self.motion);
+        self.before.copy_from(self.motion);
         landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);

@@ -63,14 +63,20 @@ impl Bounds {
     fn safe_time(&self, motion: &Motion, touch: f64) -> f64 {
         let (mut gap, mut rate, mut next, mut best) = (motion.drift, motion.drift_rate, 0, 0.0f64);
         for &(cut, above, curvature) in &self.cuts {
-            while next < cut {
-                gap += motion.vibration.alpha[next];
-                rate += motion.vibration.beta[next];
-                next += 1;
+            let state = &motion.vibration;
+            for (alpha, beta) in state.alpha[next..cut].iter().zip(&state.beta[next..cut]) {
+                gap += alpha;
+                rate += beta;
             }
+            next = cut;
             let separation = touch - gap - above;
-            if separation > 0.0 || (separation == 0.0 && rate < 0.0) {
-                best = best.max(first_root_of_parabola(separation, -rate, curvature));
+            // a parabola that is still above zero at the best time yet has its root beyond it
+            let at_best = separation - best * (rate + 0.5 * curvature * best);
+            if at_best > 0.0 && separation >= 0.0 || (separation == 0.0 && rate < 0.0 && best == 0.0) {
+                best = first_root_of_parabola(separation, -rate, curvature);
+                if best == f64::INFINITY {
+                    break;
+                }
             }
         }
         best
@@ -111,7 +117,7 @@ pub(crate) fn fly(
         }
         let mut level = level_within(safe);
         if level >= near + WINDOW {
-            let mut series = taylor_of_free_motion(ladder, &motion.vibration);
+            let mut series = taylor_of_free_motion(ladder, &motion.vibration, step_s(near));
             series[0] += motion.drift - touch;
             series[1] += motion.drift_rate;
             let curvature = bounds.cuts.last().map_or(0.0, |cut| cut.2);

@@ -1,6 +1,6 @@
 //! The whole motion of an impact, at any time, and where its energy went.
 
-use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
+use super::legendre::{BASIS, Nodal, derivative, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::oscillator::{Propagator, propagate, response};
 use super::problem::{Mode, Start, Striker};
@@ -299,13 +299,6 @@ impl Panel {
 impl ContactPiece {
     /// Rate of the force (N/s) at this part of the step.
     fn force_rate(&self, part: f64) -> f64 {
-        // d/ds P_n(2s-1) = 2 (2m+1) P_m summed over m = n-1, n-3, ..
-        let mut slope = [0.0; Q];
-        for n in 0..Q {
-            for m in (0..n).rev().step_by(2) {
-                slope[m] += 2.0 * (2 * m + 1) as f64 * self.force[n];
-            }
-        }
-        evaluate(&slope, part) / self.length
+        evaluate(&derivative(&self.force), part) / self.length
     }
 }

@@ -4,10 +4,11 @@
 //! at the contact are the same few numbers whatever the length tried.
 
 use super::ladder::{Ladder, Vibration};
-use super::legendre::{BASIS, Nodal, Q, TAYLOR, dot, evaluate};
+use super::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
 use contact_models::{Boundary, Branch, ContactLaw};
+use std::array;
 
 /// The series is used while the fastest motion turns by at most this many radians.
 pub(crate) const REACH: f64 = 0.7;
@@ -44,28 +45,30 @@ impl<L: ContactLaw> Approach<'_, L> {
     /// The step of this length: its force, its end, and the margin of the boundary there.
     fn attempt(&self, length: f64, guess: Nodal, counts: &mut Counts) -> Option<(Landed, f64)> {
         let basis = &*BASIS;
-        let mut response = [[0.0; Q]; Q];
-        let (mut end_response, mut end_rate_response) = ([0.0; Q], [0.0; Q]);
-        let mut power = length;
         // the series of the kernel begins with p = 1; its terms fall, and the small ones are left out
-        let least = 1e-18 * (self.kernel[1] * length * length).abs();
-        for p in 0..TAYLOR {
-            let kernel = self.kernel[p] * power;
-            if kernel.abs() > least {
-                for i in 0..Q {
-                    for j in 0..Q {
-                        response[i][j] -= kernel * basis.power[p][i][j];
-                    }
-                    end_response[i] -= kernel * basis.power_end[p][i];
-                }
-            }
-            if p > 0 {
-                let kernel = self.kernel[p] * power / length;
-                for i in 0..Q {
-                    end_rate_response[i] -= kernel * basis.power_end[p - 1][i];
-                }
-            }
+        let mut kernel = self.kernel;
+        let least = 1e-18 * (kernel[1] * length * length).abs();
+        let mut power = 1.0;
+        for value in &mut kernel {
+            *value *= power;
             power *= length;
+        }
+        let terms = 1 + kernel.iter().rposition(|value| (value * length).abs() > least).unwrap_or(0);
+        let response: Matrix = array::from_fn(|j| {
+            let mut column = [0.0; Q];
+            for (kernel, power) in kernel[..terms].iter().zip(&basis.power) {
+                for i in 0..Q {
+                    column[i] -= kernel * length * power[j][i];
+                }
+            }
+            column
+        });
+        let (mut end_response, mut end_rate_response) = ([0.0; Q], [0.0; Q]);
+        for p in 1..terms {
+            for j in 0..Q {
+                end_response[j] -= kernel[p] * length * basis.power_end[p][j];
+                end_rate_response[j] -= kernel[p] * basis.power_end[p - 1][j];
+            }
         }
         let free = basis.nodes.map(|c| self.free(c * length).0);
         let given = Given {
@@ -182,57 +185,130 @@ pub(crate) fn end_slope(start: f64, nodal: &Nodal, h: f64) -> f64 {
     (BASIS.end_slope_from_start * start + dot(&BASIS.end_slope_from_nodes, nodal)) / h
 }
 
-/// How many terms of the series a motion that turns by `angle` (rad) needs to be exact to rounding.
-fn terms(angle: f64) -> usize {
-    let (mut terms, mut size) = (2, angle);
-    while terms < TAYLOR && size > 1e-17 {
-        size *= angle / terms as f64;
-        terms += 1;
+/// `g^(p)/p!` of the structure's free motion at the contact, to be used up to `reach` (s).
+pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration, reach: f64) -> [f64; TAYLOR] {
+    let mut sums = [[0.0; LANES]; TAYLOR];
+    let mut terms = 2;
+    for k in (0..ladder.modes.len()).step_by(LANES) {
+        terms = BASIS.terms::<TAYLOR>(turning(ladder, k) * reach, terms);
+        let (drag, square) = (lanes(&ladder.drag, k), lanes(&ladder.square, k));
+        let (mut here, mut next) = (lanes(&state.alpha, k), lanes(&state.beta, k));
+        for sum in &mut sums[..terms] {
+            for l in 0..LANES {
+                sum[l] += here[l];
+                (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+            }
+        }
     }
-    terms
+    let mut divided = 1.0;
+    array::from_fn(|p| {
+        divided *= if p > 1 { RECIPROCAL[p] } else { 1.0 };
+        divided * sums[p].iter().sum::<f64>()
+    })
 }
 
-/// `g^(p)/p!` of the structure's free motion at the contact.
-pub(crate) fn taylor_of_free_motion(ladder: &Ladder, state: &Vibration) -> [f64; TAYLOR] {
-    let mut here = state.alpha.clone();
-    let mut next = state.beta.clone();
-    let mut series = [0.0; TAYLOR];
-    let mut factorial = 1.0;
-    for (p, value) in series.iter_mut().enumerate() {
-        if p > 1 {
-            factorial *= p as f64;
-        }
-        *value = here.iter().sum::<f64>() / factorial;
-        for ((mode, a), b) in ladder.modes.iter().zip(&mut here).zip(&mut next) {
-            let after = -mode.omega_rad_s * (2.0 * mode.damping_ratio * *b + mode.omega_rad_s * *a);
-            (*a, *b) = (*b, after);
-        }
-    }
-    series
+/// Modes taken at a time, for the vector units.
+const LANES: usize = 2;
+
+/// One value of each of the modes from `k` on; zeros beyond the last.
+fn lanes(values: &[f64], k: usize) -> [f64; LANES] {
+    array::from_fn(|l| values.get(k + l).copied().unwrap_or(0.0))
+}
+
+/// The fastest motion (rad/s) of the modes up to those taken from `k` on.
+fn turning(ladder: &Ladder, k: usize) -> f64 {
+    ladder.turning[(k + LANES).min(ladder.turning.len()) - 1]
 }
 
 /// Advances the modes over a landing of this length under these nodal forces.
 pub(crate) fn advance(ladder: &Ladder, state: &mut Vibration, length: f64, force: &Nodal) {
-    // free motion and impulse response both follow the derivatives of the mode's own equation
-    let (mut moments, mut powers) = ([0.0; TAYLOR], [0.0; TAYLOR]);
-    let (mut undivided, mut divided) = (length, 1.0);
-    let terms = terms(ladder.fastest_rad_s * length);
-    for p in 0..terms {
-        (moments[p], powers[p]) = (undivided * dot(&BASIS.power_end[p], force), divided);
+    // with `S` the motion after a unit velocity, its derivatives at the start are to be summed with `length^p/p!`, which
+    // gives `S` at the end, and with the moments of the force, which give the response to it
+    let mut weights = [(0.0, 0.0); TAYLOR];
+    let (mut divided, mut undivided) = (1.0, length);
+    for (p, weight) in weights.iter_mut().enumerate() {
+        *weight = (divided, undivided * dot(&BASIS.power_end[p], force));
+        divided *= length * RECIPROCAL[p + 1];
         undivided *= length;
-        divided *= length / (p + 1) as f64;
     }
-    for (k, mode) in ladder.modes.iter().enumerate() {
-        let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s * mode.omega_rad_s);
-        let (mut free, mut free_next) = (state.alpha[k], state.beta[k]);
-        let (mut forced, mut forced_next) = (0.0, -ladder.weight[k]);
-        let (mut alpha, mut beta) = (0.0, 0.0);
-        for p in 0..terms {
-            alpha += free * powers[p] + forced * moments[p];
-            beta += free_next * powers[p] + forced_next * moments[p];
-            (free, free_next) = (free_next, -drag * free_next - square * free);
-            (forced, forced_next) = (forced_next, -drag * forced_next - square * forced);
+    let mut terms = 2;
+    for k in (0..ladder.modes.len()).step_by(LANES) {
+        terms = BASIS.terms::<TAYLOR>(turning(ladder, k) * length, terms);
+        let (drag, square) = (lanes(&ladder.drag, k), lanes(&ladder.square, k));
+        let (mut here, mut next) = ([0.0; LANES], [1.0; LANES]);
+        // `S` and the displacement forced; their rates
+        let [mut s, mut forced, mut s_rate, mut forced_rate] = [[0.0; LANES]; 4];
+        for (power, moment) in &weights[..terms] {
+            for l in 0..LANES {
+                s[l] += here[l] * power;
+                forced[l] += here[l] * moment;
+                s_rate[l] += next[l] * power;
+                forced_rate[l] += next[l] * moment;
+                (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+            }
         }
-        (state.alpha[k], state.beta[k]) = (alpha, beta);
+        let modes = state.alpha.iter_mut().zip(&mut state.beta).zip(&ladder.weight).skip(k).take(LANES);
+        for (l, ((alpha, beta), weight)) in modes.enumerate() {
+            let (a, b) = (*alpha, *beta);
+            *alpha = (s_rate[l] + drag[l] * s[l]) * a + s[l] * b - weight * forced[l];
+            *beta = s_rate[l] * b - square[l] * s[l] * a - weight * forced_rate[l];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::oscillator::{propagate, response};
+    use super::super::problem::Mode;
+    use super::*;
+
+    /// Five modes, so that the last lane stays empty, of very different dampings.
+    fn ladder() -> Ladder {
+        let mode = |(omega_rad_s, damping_ratio)| Mode { omega_rad_s, damping_ratio, shape: 0.8 };
+        Ladder::new([(1.0, 0.0), (30.0, 3.0), (90.0, 0.02), (150.0, 1.0), (280.0, 0.0)].map(mode).to_vec())
+    }
+
+    fn vibration() -> Vibration {
+        Vibration { alpha: vec![1.0, -0.3, 0.2, 0.1, -0.05], beta: vec![0.5, 3.0, -7.0, 2.0, 11.0] }
+    }
+
+    #[test]
+    fn a_landing_moves_each_mode_as_its_closed_form_does() {
+        let (ladder, force) = (ladder(), [3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0, 6.0]);
+        for length in [0.0, 1e-6, 5e-4, REACH / ladder.fastest_rad_s] {
+            let (before, mut after) = (vibration(), vibration());
+            advance(&ladder, &mut after, length, &force);
+            let coefficients = BASIS.coefficients(&force);
+            for (k, mode) in ladder.modes.iter().enumerate() {
+                let p = propagate(mode, length);
+                let (a, b, w) = (before.alpha[k], before.beta[k], ladder.weight[k]);
+                let (mut alpha, mut beta) = (p.p11 * a + p.p12 * b, p.p21 * a + p.p22 * b);
+                if length > 0.0 {
+                    let (displacement, velocity) = response(mode, length);
+                    alpha -= w * dot(&displacement, &coefficients);
+                    beta -= w * dot(&velocity, &coefficients);
+                }
+                assert!((after.alpha[k] - alpha).abs() < 1e-13, "{length} {k}: {} {alpha}", after.alpha[k]);
+                assert!((after.beta[k] - beta).abs() < 1e-12 * (1.0 + mode.omega_rad_s), "{length} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_series_of_the_gap_follows_free_motion() {
+        let ladder = ladder();
+        let reach = REACH / ladder.fastest_rad_s;
+        let series = taylor_of_free_motion(&ladder, &vibration(), reach);
+        for t in [0.0, 0.3 * reach, reach] {
+            let sum = series.iter().rev().fold(0.0, |sum, term| sum * t + term);
+            let state = vibration();
+            let exact: f64 = (0..5)
+                .map(|k| {
+                    let p = propagate(&ladder.modes[k], t);
+                    p.p11 * state.alpha[k] + p.p12 * state.beta[k]
+                })
+                .sum();
+            assert!((sum - exact).abs() < 1e-13, "{t}: {sum} {exact}");
+        }
     }
 }

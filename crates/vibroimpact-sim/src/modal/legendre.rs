@@ -8,10 +8,16 @@ use std::sync::LazyLock;
 pub(crate) const Q: usize = 8;
 /// Powers of time kept in a Taylor series over a landing step.
 pub(crate) const TAYLOR: usize = 14;
+/// Powers kept in a Taylor series over a step of the ladder, and about its middle: enough for [`SLOW`] rad.
+pub(crate) const SERIES: usize = 42;
+pub(crate) const HALF_SERIES: usize = 30;
+/// A mode that turns by at most this much (rad) in a step is expanded in power series.
+pub(crate) const SLOW: f64 = 6.0;
 /// Nodes of the finer rule for integrals that `Q` nodes do not integrate exactly.
 const FINE: usize = 20;
 
 pub(crate) type Nodal = [f64; Q];
+/// A matrix that acts on nodal values is kept by columns: `matrix[j][i]` is what value `j` does to value `i`.
 pub(crate) type Matrix = [[f64; Q]; Q];
 
 /// Constant matrices of the basis, computed once.
@@ -22,14 +28,17 @@ pub(crate) struct Basis {
     pub to_coefficients: Matrix,
     /// `restricted[i][n][m]`: `P_n` on [0, 1], seen on [0, c_i], in Legendre polynomials of that part.
     pub restricted: [Matrix; Q],
-    /// `power[p][i][j]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
+    /// `power[p][j][i]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
     pub power: Vec<Matrix>,
     /// `power_end[p][j]`: the same over [0, 1].
     pub power_end: Vec<Nodal>,
-    /// `power_legendre[p][n]`: the same over [0, 1] with `P_n` for the nodal polynomial.
-    pub power_legendre: Vec<Nodal>,
-    /// `node_powers[p][i]`: `c_i^p / p!`.
-    pub node_powers: Vec<Nodal>,
+    /// `about_middle[p]`: first `(c - 1/2)^p` for the nodes `c` of the second half; then the integrals over [0, 1] of
+    /// `P_n(2s-1) (1/2 - s)^p` for the `n` of the parity of `p` (the others vanish).
+    pub about_middle: Vec<[[f64; Q / 2]; 2]>,
+    /// `within[t]`: a motion that turns by at most so much (rad) needs `t` terms of its power series.
+    within: [f64; SERIES],
+    /// `derivatives[k][n][i]`: `d^k/ds^k P_n(2s-1)` at node `i`.
+    pub derivatives: [Matrix; Q],
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
@@ -69,6 +78,29 @@ pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
     dot(coefficients, &legendre(s))
 }
 
+/// Legendre coefficients of the derivative of the polynomial with these coefficients, both on [0, 1].
+pub(crate) fn derivative(coefficients: &Nodal) -> Nodal {
+    // d/ds P_n(2s-1) = 2 (2m+1) P_m summed over m = n-1, n-3, ..
+    let mut slope = [0.0; Q];
+    for n in 0..Q {
+        for m in (0..n).rev().step_by(2) {
+            slope[m] += 2.0 * (2 * m + 1) as f64 * coefficients[n];
+        }
+    }
+    slope
+}
+
+/// `1/n`.
+pub(crate) const RECIPROCAL: [f64; SERIES + 2] = {
+    let mut table = [f64::INFINITY; SERIES + 2];
+    let mut n = 1;
+    while n < SERIES + 2 {
+        table[n] = 1.0 / n as f64;
+        n += 1;
+    }
+    table
+};
+
 /// Inner product of two short vectors.
 pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
     let mut sum = 0.0;
@@ -76,6 +108,17 @@ pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
         sum += a[i] * b[i];
     }
     sum
+}
+
+/// A matrix, kept by columns, times a vector.
+pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
+    let mut product = [0.0; Q];
+    for j in 0..Q {
+        for i in 0..Q {
+            product[i] += matrix[j][i] * vector[j];
+        }
+    }
+    product
 }
 
 /// A Gauss-Legendre rule on (0, 1).
@@ -122,7 +165,7 @@ impl Basis {
             values
         };
         let moments = |end: f64| {
-            let mut table = vec![[0.0; Q]; TAYLOR];
+            let mut table = vec![[0.0; Q]; SERIES];
             for &(x, w) in &fine {
                 let values = nodal(end * x);
                 let mut kernel = w * end;
@@ -137,23 +180,41 @@ impl Basis {
             }
             table
         };
-        let mut power = vec![[[0.0; Q]; Q]; TAYLOR];
+        let mut power = vec![[[0.0; Q]; Q]; SERIES];
         for i in 0..Q {
             for (p, row) in moments(nodes[i]).into_iter().enumerate() {
-                power[p][i] = row;
+                for j in 0..Q {
+                    power[p][j][i] = row[j];
+                }
             }
         }
-        let power_end = moments(1.0);
-        // P_n takes the value P_n(c_j) at the nodes
-        let at_nodes = nodes.map(legendre);
-        let power_legendre = power_end
-            .iter()
-            .map(|row| std::array::from_fn(|n| (0..Q).map(|j| row[j] * at_nodes[j][n]).sum()))
-            .collect();
-        let mut node_powers = vec![[1.0; Q]; TAYLOR];
-        for p in 1..TAYLOR {
-            for i in 0..Q {
-                node_powers[p][i] = node_powers[p - 1][i] * nodes[i] / p as f64;
+        let mut power_end = moments(1.0);
+        power_end.truncate(TAYLOR);
+
+        let mut about_middle = vec![[[0.0; Q / 2]; 2]; HALF_SERIES];
+        for (p, [powers, integrals]) in about_middle.iter_mut().enumerate() {
+            for m in 0..Q / 2 {
+                powers[m] = (nodes[Q / 2 + m] - 0.5).powi(p as i32);
+                integrals[m] =
+                    fine.iter().map(|(x, w)| w * (0.5 - x).powi(p as i32) * legendre(*x)[2 * m + p % 2]).sum();
+            }
+        }
+        // the response to a unit velocity goes as angle^(p-1) / p!
+        let mut within = [0.0; SERIES];
+        let mut factorial = 1.0;
+        for t in 2..SERIES {
+            factorial *= t as f64;
+            within[t] = (1e-17 * factorial).powf(1.0 / (t - 1) as f64);
+        }
+        let mut derivatives = [[[0.0; Q]; Q]; Q];
+        for n in 0..Q {
+            let mut polynomial = [0.0; Q];
+            polynomial[n] = 1.0;
+            for k in 0..Q {
+                for i in 0..Q {
+                    derivatives[k][n][i] = evaluate(&polynomial, nodes[i]);
+                }
+                polynomial = derivative(&polynomial);
             }
         }
 
@@ -170,14 +231,25 @@ impl Basis {
             restricted,
             power,
             power_end,
-            power_legendre,
-            node_powers,
+            about_middle,
+            within,
+            derivatives,
             slope_from_start,
             slope_from_nodes,
             end_slope_from_start,
             end_slope_from_nodes,
             fine,
         }
+    }
+
+    /// How many terms of its power series, of `MOST`, a motion that turns by `angle` (rad) needs to be exact to
+    /// rounding. `known` is a number that is not enough or just enough, as it is for a slower motion.
+    pub fn terms<const MOST: usize>(&self, angle: f64, known: usize) -> usize {
+        let mut terms = known;
+        while terms < MOST.min(SERIES) && self.within[terms] < angle {
+            terms += 1;
+        }
+        terms
     }
 
     /// Nodal values on [0, part] of the polynomial with these nodal values on [0, 1].
@@ -233,7 +305,7 @@ mod tests {
             let slope = dot(&basis.slope_from_nodes[i], &cube);
             assert!((slope - 3.0 * basis.nodes[i].powi(2)).abs() < 1e-11);
             // int_0^c (c-s)^2/2 s^3 ds = c^6/120
-            let integral = dot(&basis.power[2][i], &cube);
+            let integral = apply(&basis.power[2], &cube)[i];
             assert!((integral - basis.nodes[i].powi(6) / 120.0).abs() < 1e-15);
             // P_3 on [0, c_i] in polynomials of the part
             let (at, mut sum) = (0.3, 0.0);

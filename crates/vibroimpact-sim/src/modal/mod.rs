@@ -34,6 +34,7 @@
 
 mod contact;
 mod flight;
+mod forcing;
 mod history;
 mod ladder;
 mod landing;

@@ -28,6 +28,13 @@ impl Motion {
         self.drift_rate + self.vibration.beta.iter().sum::<f64>()
     }
 
+    /// Takes over another motion of as many modes, without new memory.
+    pub fn copy_from(&mut self, other: &Motion) {
+        self.carry_on_from(other);
+        self.vibration.alpha.copy_from_slice(&other.vibration.alpha);
+        self.vibration.beta.copy_from_slice(&other.vibration.beta);
+    }
+
     /// Takes over everything but the vibration, which is about to be overwritten.
     pub fn carry_on_from(&mut self, other: &Motion) {
         (self.time, self.drift, self.drift_rate) = (other.time, other.drift, other.drift_rate);

@@ -14,7 +14,7 @@ pub(crate) struct Propagator {
 }
 
 /// Damping ratios in this band have nearly equal roots: the response is integrated by quadrature.
-const NEARLY_CRITICAL: f64 = 0.99;
+pub(crate) const NEARLY_CRITICAL: f64 = 0.99;
 
 /// Exact free motion of `a'' + 2 zeta omega a' + omega^2 a = 0` over `t` (s).
 pub(crate) fn propagate(mode: &Mode, t: f64) -> Propagator {
@@ -31,7 +31,7 @@ pub(crate) fn propagate(mode: &Mode, t: f64) -> Propagator {
         let slow = if omega == 0.0 { 0.0 } else { omega * omega / (sigma + split) };
         let decay = (-slow * t).exp();
         let fast = (-2.0 * split * t).exp();
-        let sine = if split * t < 1e-8 { t } else { -(-2.0 * split * t).exp_m1() / (2.0 * split) };
+        let sine = if split * t < 1e-17 { t } else { -(-2.0 * split * t).exp_m1() / (2.0 * split) };
         (decay * 0.5 * (1.0 + fast), decay * sine)
     };
     Propagator { p11: cosine + sigma * sine, p12: sine, p21: -omega * omega * sine, p22: cosine - sigma * sine }

@@ -46,24 +46,18 @@ pub struct Structure {
 impl Structure {
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
-            InvalidInput::unless(
-                (0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s),
-                format!("modes[{k}].omega_rad_s"),
-                mode.omega_rad_s,
-                "0 (rigid body) up to 1e15 rad/s",
-            )?;
-            InvalidInput::unless(
-                (0.0..=1e6).contains(&mode.damping_ratio),
-                format!("modes[{k}].damping_ratio"),
-                mode.damping_ratio,
-                "0 up to 1e6",
-            )?;
-            InvalidInput::unless(
-                mode.shape.abs() <= SCALE_MAX,
-                format!("modes[{k}].shape"),
-                mode.shape,
-                "a finite number, at most 1e30 in size",
-            )?;
+            let fault = |field: &str, value: f64, allowed| {
+                Err(InvalidInput { field: format!("modes[{k}].{field}"), value: value.to_string(), allowed })
+            };
+            if !(0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s) {
+                return fault("omega_rad_s", mode.omega_rad_s, "0 (rigid body) up to 1e15 rad/s");
+            }
+            if !(0.0..=1e6).contains(&mode.damping_ratio) {
+                return fault("damping_ratio", mode.damping_ratio, "0 up to 1e6");
+            }
+            if mode.shape.is_nan() || mode.shape.abs() > SCALE_MAX {
+                return fault("shape", mode.shape, "a finite number, at most 1e30 in size");
+            }
         }
         let c = self.residual_compliance_m_n;
         InvalidInput::unless(

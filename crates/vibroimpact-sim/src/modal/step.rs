@@ -7,7 +7,7 @@
 //! contact is as rough as the force itself (`t^(2/3)` at first touch). A law that does not depend on the rate gives it
 //! by `xi' = g' / (1 + c F_xi)`, which has the sign of `g'`: a polynomial through `xi` would see reversals that are none.
 
-use super::legendre::{BASIS, Matrix, Nodal, Q, dot, evaluate};
+use super::legendre::{BASIS, Matrix, Nodal, Q, apply, dot, evaluate};
 use super::solution::Counts;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
 
@@ -65,12 +65,12 @@ pub(crate) fn collocate<L: ContactLaw>(
     }
     let mut force = guess;
     let mut rate = [0.0; Q];
-    let mut newton: Option<Newton> = None;
+    let (mut newton, mut current) = (Newton { triangles: [[0.0; Q]; Q] }, false);
     let mut last_change = f64::INFINITY;
     for _ in 0..ITERATIONS_MAX {
-        let mut compression = given.free;
+        let mut compression = apply(given.response, &force);
         for i in 0..Q {
-            compression[i] += dot(&given.response[i], &force) - given.residual_compliance * force[i];
+            compression[i] += given.free[i] - given.residual_compliance * force[i];
         }
         if rate_in_law {
             rate = slopes(given.start_compression, &compression, given.h);
@@ -79,7 +79,11 @@ pub(crate) fn collocate<L: ContactLaw>(
         counts.newton_iterations += 1;
         counts.law_evaluations += Q as u64;
         let defect: Nodal = std::array::from_fn(|i| values[i].force_n - force[i]);
-        let change = newton.get_or_insert_with(|| Newton::new(given, &values)).solve(defect);
+        if !current {
+            newton.factor(given, &values);
+            current = true;
+        }
+        let change = newton.solve(defect);
         let (mut largest, mut size) = (0.0f64, 0.0f64);
         for i in 0..Q {
             force[i] += change[i];
@@ -105,7 +109,7 @@ pub(crate) fn collocate<L: ContactLaw>(
         let first = !last_change.is_finite();
         last_change = largest;
         if ratio > SLOW && !first {
-            newton = None;
+            current = false;
         }
     }
     None
@@ -120,59 +124,67 @@ fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
 /// Newton's matrix `1 - F_xi (R - c) - F_rate D (R - c)`, factored. Its off-diagonal part is of the order of
 /// `(h omega)^2` with `omega` the contact's own frequency, so that elimination needs no pivoting.
 struct Newton {
-    /// Unit lower and upper triangle in one, the diagonal inverted.
+    /// Unit lower and upper triangle in one, by columns, the diagonal inverted.
     triangles: Matrix,
 }
 
 impl Newton {
-    fn new(given: &Given, values: &[Force; Q]) -> Newton {
-        let mut a = [[0.0; Q]; Q];
-        for i in 0..Q {
-            let stiffness = values[i].per_compression_n_m;
+    fn factor(&mut self, given: &Given, values: &[Force; Q]) {
+        let a = &mut self.triangles;
+        let stiffness = values.map(|value| value.per_compression_n_m);
+        for j in 0..Q {
+            for i in 0..Q {
+                a[j][i] = -stiffness[i] * given.response[j][i];
+            }
+            a[j][j] += 1.0 + stiffness[j] * given.residual_compliance;
+        }
+        if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
+            let drag = values.map(|value| value.per_rate_n_s_m / given.h);
             for j in 0..Q {
-                a[i][j] = -stiffness * given.response[i][j];
-            }
-            a[i][i] += 1.0 + stiffness * given.residual_compliance;
-            if values[i].per_rate_n_s_m != 0.0 {
-                let drag = values[i].per_rate_n_s_m / given.h;
-                for l in 0..Q {
-                    let factor = drag * BASIS.slope_from_nodes[i][l];
-                    for j in 0..Q {
-                        a[i][j] -= factor * given.response[l][j];
-                    }
-                    a[i][l] += factor * given.residual_compliance;
+                for i in 0..Q {
+                    a[j][i] -= drag[i] * dot(&BASIS.slope_from_nodes[i], &given.response[j]);
+                    a[j][i] += drag[i] * BASIS.slope_from_nodes[i][j] * given.residual_compliance;
                 }
             }
         }
-        for column in 0..Q {
-            let inverse = 1.0 / a[column][column];
-            let top = a[column];
-            for row in column + 1..Q {
-                let factor = a[row][column] * inverse;
-                for j in column + 1..Q {
-                    a[row][j] -= factor * top[j];
-                }
-                a[row][column] = factor;
-            }
-            a[column][column] = inverse;
-        }
-        Newton { triangles: a }
+        eliminate::<0>(a);
+        eliminate::<{ Q / 2 }>(a);
     }
 
     fn solve(&self, mut b: Nodal) -> Nodal {
         let a = &self.triangles;
-        for row in 1..Q {
-            for j in 0..row {
-                b[row] -= a[row][j] * b[j];
+        for j in 0..Q {
+            for i in j + 1..Q {
+                b[i] -= a[j][i] * b[j];
             }
         }
-        for row in (0..Q).rev() {
-            for j in row + 1..Q {
-                b[row] -= a[row][j] * b[j];
+        for j in (0..Q).rev() {
+            b[j] *= a[j][j];
+            for i in 0..j {
+                b[i] -= a[j][i] * b[j];
             }
-            b[row] *= a[row][row];
         }
         b
+    }
+}
+
+/// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
+/// units.
+fn eliminate<const FROM: usize>(a: &mut Matrix) {
+    for pivot in FROM..FROM + Q / 2 {
+        let inverse = 1.0 / a[pivot][pivot];
+        let mut below = [0.0; Q];
+        for i in pivot + 1..Q {
+            below[i] = a[pivot][i] * inverse;
+            a[pivot][i] = below[i];
+        }
+        for column in &mut a[pivot + 1..] {
+            let factor = column[pivot];
+            for i in FROM..Q {
+                column[i] -= factor * below[i];
+            }
+        }
+        a[pivot][pivot] = inverse;
     }
 }
 
@@ -256,6 +268,7 @@ fn dip(margins: &Nodal, noise: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::array;
 
     #[test]
     fn a_dip_between_the_nodes_is_seen() {
@@ -274,5 +287,38 @@ mod tests {
         // falling to the end and rising from the start are no dips
         assert_eq!(dip(&BASIS.nodes, 0.0), None);
         assert_eq!(dip(&BASIS.nodes.map(|s| 1.0 - s), 0.0), None);
+    }
+
+    #[test]
+    fn newtons_matrix_is_solved() {
+        let response: Matrix = array::from_fn(|j| array::from_fn(|i| -0.3 / (1.0 + (2 * i + 3 * j) as f64)));
+        let given = Given {
+            h: 0.5,
+            start_compression: 0.0,
+            start_gap: 0.0,
+            free: [0.0; Q],
+            response: &response,
+            residual_compliance: 0.01,
+            needs_rate: true,
+            accuracy: 0.0,
+        };
+        for drag in [0.0, 1e-3] {
+            let value = |i| Force { force_n: 0.0, per_compression_n_m: 1.0 + i as f64, per_rate_n_s_m: drag };
+            let values: [Force; Q] = array::from_fn(value);
+            let b: Nodal = array::from_fn(|i| 1.0 / (1.0 + i as f64));
+            let mut newton = Newton { triangles: [[0.0; Q]; Q] };
+            newton.factor(&given, &values);
+            let x = newton.solve(b);
+            // x - F_xi y - F_rate D y with y = (R - c) x
+            let mut y = apply(&response, &x);
+            for i in 0..Q {
+                y[i] -= given.residual_compliance * x[i];
+            }
+            for i in 0..Q {
+                let slope = dot(&BASIS.slope_from_nodes[i], &y) / given.h;
+                let left = x[i] - values[i].per_compression_n_m * y[i] - drag * slope;
+                assert!((left - b[i]).abs() < 1e-13, "{drag} {i}: {left} {}", b[i]);
+            }
+        }
     }
 }

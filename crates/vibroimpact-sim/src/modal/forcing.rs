@@ -1,0 +1,342 @@
+//! What a step in contact needs to know about the structure: its free motion at the nodes, its compliance there to
+//! nodal forces, and the response of every mode at the end of the step.
+//!
+//! With `S(t)` the displacement of a mode `t` after a unit velocity, all of it is in `S`, `S'` and in
+//! `int_0^c S(h (c-s)) P_n(2s-1) ds`. How these are found depends on the angle `|z|`, `z = lambda h`, by which the
+//! mode turns in the step (`lambda = -zeta omega + i omega_d`):
+//!
+//! - up to [`SLOW`] rad by power series. About the middle of the step they need half the terms, and even and odd ones
+//!   serve the nodes of both halves;
+//! - beyond that by parts: `int_0^c e^{z(c-s)} f(s) ds = e^{zc} sum f^(k)(0)/z^{k+1} - sum f^(k)(c)/z^{k+1}`, which
+//!   ends after `Q` terms, `f` being a polynomial. The second sum of all modes together takes no more than `Q`
+//!   numbers; the first is one product of two short vectors a mode;
+//! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series serve.
+
+use super::ladder::Rotation;
+use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
+use super::oscillator::{NEARLY_CRITICAL, propagate, response};
+use super::problem::Mode;
+use num_complex::Complex64;
+use std::array;
+
+/// Tables of one step length.
+pub(crate) struct Forcing {
+    /// Free displacement at the nodes, per mode: from `alpha`, from `beta`.
+    pub at_nodes: Vec<(Nodal, Nodal)>,
+    /// Response at the nodes, summed over the modes, to nodal forces.
+    pub compliance: Matrix,
+    /// Response of each mode at the end of the step, `[n][k]` for Legendre force `n`.
+    pub displacement: [Vec<f64>; Q],
+    pub velocity: [Vec<f64>; Q],
+}
+
+impl Forcing {
+    /// The tables for steps of `h`; `half` is the free motion over `h/2`.
+    pub fn new(modes: &[Mode], weight: &[f64], h: f64, half: &Rotation) -> Forcing {
+        let n = modes.len();
+        let mut at_nodes = Vec::with_capacity(n);
+        let [mut displacement, mut velocity] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
+        let end = [displacement.each_mut().map(|row| &mut row[..n]), velocity.each_mut().map(|row| &mut row[..n])];
+        let mut compliance = Compliance::new();
+        // modes come by rising frequency: none needs fewer terms than those before it
+        let mut terms = Terms { start: 2, middle: 2 };
+        for (k, (mode, &w)) in modes.iter().zip(weight).enumerate() {
+            let turned = rate(mode) * h;
+            let part = if turned <= SLOW {
+                terms.start = BASIS.terms::<SERIES>(turned, terms.start);
+                // as many even as odd ones
+                terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
+                slow(mode, w, h, (half.p12[k], half.p22[k]), &terms, &mut compliance)
+            } else if mode.damping_ratio < NEARLY_CRITICAL {
+                fast(mode, w, h, &mut compliance)
+            } else {
+                by_quadrature(mode, w, h, &mut compliance)
+            };
+            at_nodes.push(part.at_nodes);
+            for n in 0..Q {
+                end[0][n][k] = -w * part.end.0[n];
+                end[1][n][k] = -w * part.end.1[n];
+            }
+        }
+        Forcing { at_nodes, compliance: compliance.at_nodes(h), displacement, velocity }
+    }
+}
+
+/// Terms of the power series about the start of a step and about its middle.
+struct Terms {
+    start: usize,
+    middle: usize,
+}
+
+/// `|lambda|`, of the faster root if there are two (rad/s).
+fn rate(mode: &Mode) -> f64 {
+    mode.omega_rad_s * if mode.damping_ratio < NEARLY_CRITICAL { 1.0 } else { 2.0 * mode.damping_ratio }
+}
+
+/// What one mode contributes to a level.
+struct Part {
+    /// Free displacement at the nodes, from displacement and from velocity.
+    at_nodes: (Nodal, Nodal),
+    /// Displacement and velocity at the end of the step to unit Legendre forces, for unit weight.
+    end: (Nodal, Nodal),
+}
+
+/// The compliance as it is gathered, mode by mode.
+struct Compliance {
+    /// Slow modes: derivatives of their common impulse response at zero, times `h^p`.
+    impulse: [f64; SERIES],
+    terms: usize,
+    /// Fast modes: `sum h^2 w Im(z^-(k+1)) / (omega_d h)`, what multiplies the derivatives of the force at the node.
+    by_parts: [f64; Q],
+    /// `[n][i]`: displacement at node `i` to unit Legendre force `n`, of all that is neither of these.
+    legendre: Matrix,
+}
+
+impl Compliance {
+    fn new() -> Compliance {
+        Compliance { impulse: [0.0; SERIES], terms: 0, by_parts: [0.0; Q], legendre: [[0.0; Q]; Q] }
+    }
+
+    fn at_nodes(mut self, h: f64) -> Matrix {
+        let basis = &*BASIS;
+        if self.by_parts[0] != 0.0 {
+            for (s, derivatives) in self.by_parts.iter().zip(&basis.derivatives) {
+                for n in 0..Q {
+                    for i in 0..Q {
+                        self.legendre[n][i] += s * derivatives[n][i];
+                    }
+                }
+            }
+        }
+        let mut compliance = [[0.0; Q]; Q];
+        for (kernel, power) in self.impulse[..self.terms].iter().zip(&basis.power) {
+            for j in 0..Q {
+                for i in 0..Q {
+                    compliance[j][i] -= h * kernel * power[j][i];
+                }
+            }
+        }
+        for n in 0..Q {
+            for j in 0..Q {
+                for i in 0..Q {
+                    compliance[j][i] += self.legendre[n][i] * basis.to_coefficients[n][j];
+                }
+            }
+        }
+        compliance
+    }
+}
+
+/// By power series, from `S` and `S'` in the middle of the step.
+fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, compliance: &mut Compliance) -> Part {
+    let angle = mode.omega_rad_s * h;
+    let (square, damping) = (angle * angle, 2.0 * mode.damping_ratio * angle);
+
+    // the impulse response from the start: S^(p)(0) h^p
+    compliance.terms = terms.start;
+    let (mut here, mut next) = (0.0, h * w);
+    for value in &mut compliance.impulse[..terms.start] {
+        *value += here;
+        (here, next) = (next, -damping * next - square * here);
+    }
+
+    // S^(p) h^p/p! in the middle, and the same of h S'
+    let mut series = [(0.0, 0.0); HALF_SERIES];
+    let (mut s, mut v) = (middle.0, middle.1 * h);
+    for (term, reciprocal) in series[..terms.middle].iter_mut().zip(&RECIPROCAL[1..]) {
+        *term = (s, v);
+        (s, v) = (v * reciprocal, (-damping * v - square * s) * reciprocal);
+    }
+    let series = &series[..terms.middle];
+    let sums @ [even, odd] = &[0, 1].map(|parity| weighted_sums(series, parity));
+    let per_second = 1.0 / h;
+    // the even part is the same in both halves, the odd part changes its sign
+    let at = |i: usize, of: usize| {
+        if i < Q / 2 {
+            even[of][Q / 2 - 1 - i] - odd[of][Q / 2 - 1 - i]
+        } else {
+            even[of][i - Q / 2] + odd[of][i - Q / 2]
+        }
+    };
+    let end = |n: usize, of: usize| sums[n % 2][of][n / 2];
+    Part {
+        // from unit displacement: S' + 2 zeta omega S
+        at_nodes: (array::from_fn(|i| (at(i, 1) + damping * at(i, 0)) * per_second), array::from_fn(|i| at(i, 0))),
+        end: (array::from_fn(|n| h * end(n, 2)), array::from_fn(|n| end(n, 3))),
+    }
+}
+
+/// Even or odd terms of `S` and `h S'`: at the nodes of the second half, and integrated with the Legendre polynomials.
+fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
+    let (mut s_nodes, mut v_nodes, mut s_end, mut v_end) = ([0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2]);
+    for (terms, weights) in series.chunks_exact(2).zip(BASIS.about_middle.chunks_exact(2)) {
+        let ((s, v), [powers, integrals]) = (terms[parity], &weights[parity]);
+        for m in 0..Q / 2 {
+            s_nodes[m] += s * powers[m];
+            v_nodes[m] += v * powers[m];
+            s_end[m] += s * integrals[m];
+            v_end[m] += v * integrals[m];
+        }
+    }
+    [s_nodes, v_nodes, s_end, v_end]
+}
+
+/// By parts; below critical damping.
+fn fast(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+    let sigma = mode.damping_ratio * mode.omega_rad_s;
+    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
+    let lambda = Complex64::new(-sigma, omega_d);
+    let (inverse, scale) = ((lambda * h).inv(), h / omega_d);
+    let (to_nodes, to_end) = exponentials(sigma * h, omega_d * h);
+
+    // sums of P_n^(k)/z^(k+1) at the end and at the start of the step: both obey the recurrence of the spherical
+    // Bessel functions, in the direction in which it is stable
+    let (mut at_end, mut at_start) = ([inverse; Q], [inverse; Q]);
+    let twice = 2.0 * inverse * inverse;
+    (at_end[1], at_start[1]) = (twice + inverse, twice - inverse);
+    for n in 1..Q - 1 {
+        let factor = (4 * n + 2) as f64 * inverse;
+        at_end[n + 1] = at_end[n - 1] + factor * at_end[n];
+        at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
+    }
+
+    let mut power = inverse;
+    for value in &mut compliance.by_parts {
+        *value += w * scale * power.im;
+        power *= inverse;
+    }
+    for (column, start) in compliance.legendre.iter_mut().zip(&at_start) {
+        let (re, im) = (w * scale * start.re, w * scale * start.im);
+        for i in 0..Q {
+            column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
+        }
+    }
+    let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
+    let sine = to_nodes.1.map(|im| im / omega_d);
+    Part {
+        at_nodes: (array::from_fn(|i| to_nodes.0[i] + sigma * sine[i]), sine),
+        end: (moments.map(|e| scale * e.im), moments.map(|e| scale * (lambda * e).im)),
+    }
+}
+
+/// `e^{(-decay + i turn) c}` at the nodes, real and imaginary parts, and at 1. Nodes `c` and `1 - c` share theirs.
+fn exponentials(decay: f64, turn: f64) -> ((Nodal, Nodal), Complex64) {
+    let polar = |c: f64| {
+        let (sine, cosine) = (turn * c).sin_cos();
+        (if decay == 0.0 { 1.0 } else { (-decay * c).exp() }, Complex64::new(cosine, sine))
+    };
+    let (all, whole) = polar(1.0);
+    let (mut re, mut im) = ([0.0; Q], [0.0; Q]);
+    for i in 0..Q / 2 {
+        let (size, turned) = polar(BASIS.nodes[i]);
+        // where all of it underflows, less than 1e-160 of the second half is left
+        let rest = if all > 0.0 { all / size } else { 0.0 };
+        let other = whole * turned.conj();
+        (re[i], im[i]) = (size * turned.re, size * turned.im);
+        (re[Q - 1 - i], im[Q - 1 - i]) = (rest * other.re, rest * other.im);
+    }
+    ((re, im), all * whole)
+}
+
+/// Any mode, one node after the other.
+fn by_quadrature(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+    let basis = &*BASIS;
+    let mut at_nodes = ([0.0; Q], [0.0; Q]);
+    for i in 0..Q {
+        let part = basis.nodes[i] * h;
+        let p = propagate(mode, part);
+        (at_nodes.0[i], at_nodes.1[i]) = (p.p11, p.p12);
+        let (to_node, _) = response(mode, part);
+        for n in 0..Q {
+            for m in 0..=n {
+                compliance.legendre[n][i] -= w * basis.restricted[i][n][m] * to_node[m];
+            }
+        }
+    }
+    Part { at_nodes, end: response(mode, h) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mode(omega_rad_s: f64, damping_ratio: f64) -> Mode {
+        Mode { omega_rad_s, damping_ratio, shape: 1.0 }
+    }
+
+    fn assert_close(one: (Part, Compliance), other: (Part, Compliance), h: f64, floor: f64, what: &str) {
+        let close = |a: &Nodal, b: &Nodal, unit: f64, part: &str| {
+            for i in 0..Q {
+                let error = (a[i] - b[i]).abs() / unit;
+                assert!(error < floor, "{what}, {part} {i}: {} and {}, {error:e}", a[i], b[i]);
+            }
+        };
+        close(&one.0.at_nodes.0, &other.0.at_nodes.0, 1.0, "from displacement");
+        close(&one.0.at_nodes.1, &other.0.at_nodes.1, h, "from velocity");
+        close(&one.0.end.0, &other.0.end.0, h * h, "displacement");
+        close(&one.0.end.1, &other.0.end.1, h, "velocity");
+        let (one, other) = (one.1.at_nodes(h), other.1.at_nodes(h));
+        for i in 0..Q {
+            close(&one[i], &other[i], h * h, "compliance");
+        }
+    }
+
+    fn each_way(
+        mode: &Mode,
+        h: f64,
+        way: impl Fn(&mut Compliance) -> Part,
+    ) -> ((Part, Compliance), (Part, Compliance)) {
+        let (mut one, mut other) = (Compliance::new(), Compliance::new());
+        let part = way(&mut one);
+        let reference = by_quadrature(mode, 1.0, h, &mut other);
+        ((part, one), (reference, other))
+    }
+
+    #[test]
+    fn the_series_of_slow_modes_meet_the_closed_forms() {
+        for h in [1e-6, 1.0] {
+            for zeta in [0.0, 0.02, 0.9, 0.9899, 0.995, 1.0, 1.2, 30.0] {
+                for turned in [SLOW, 0.99 * SLOW, 4.0, 2.0, 0.5, 1e-2, 1e-9] {
+                    let mode = mode(turned / h / rate(&mode(1.0, zeta)), zeta);
+                    let p = propagate(&mode, 0.5 * h);
+                    let terms = Terms {
+                        start: BASIS.terms::<SERIES>(turned, 2),
+                        middle: BASIS.terms::<HALF_SERIES>(0.5 * turned, 2).next_multiple_of(2),
+                    };
+                    let (one, other) = each_way(&mode, h, |c| slow(&mode, 1.0, h, (p.p12, p.p22), &terms, c));
+                    assert_close(one, other, h, 2e-14, &format!("{turned} {zeta} {h}"));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn integration_by_parts_meets_the_moments_one_by_one() {
+        for h in [1e-6, 1.0] {
+            for zeta in [0.0, 0.02, 0.5, 0.9, 0.9899] {
+                for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
+                    let mode = mode(turned / h, zeta);
+                    let (one, other) = each_way(&mode, h, |c| fast(&mode, 1.0, h, c));
+                    // an angle is no more exact than its last digit, and nearly equal roots cancel
+                    let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
+                    assert_close(one, other, h, floor, &format!("{turned} {zeta} {h}"));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn modes_of_any_speed_have_finite_tables() {
+        let modes: Vec<Mode> = [1e-15, 1e-3, 1e9, 1e15]
+            .iter()
+            .flat_map(|&omega| [0.0, 0.5, 1.0, 1e6].map(|zeta| mode(omega, zeta)))
+            .collect();
+        for h in [1e-50, 1.0, 1e30] {
+            let half = Rotation::new(&modes, 0.5 * h);
+            let forcing = Forcing::new(&modes, &vec![1.0; modes.len()], h, &half);
+            assert!(forcing.compliance.iter().flatten().all(|x| x.is_finite()), "{h}");
+            assert!(forcing.at_nodes.iter().all(|(a, b)| a.iter().chain(b).all(|x| x.is_finite())), "{h}");
+            assert!(forcing.displacement.iter().chain(&forcing.velocity).flatten().all(|x| x.is_finite()), "{h}");
+        }
+    }
+}
