@@ -5,7 +5,7 @@ use super::landing::{self, Approach, Landed, REACH};
 use super::legendre::{BASIS, Nodal, Q, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::solution::{Counts, SubImpact};
-use super::step::{Collocated, Given, behind_compliance, collocate, first_crossing};
+use super::step::{Collocated, Given, collocate, first_crossing};
 use contact_models::{After, Branch, ContactLaw, Memory};
 
 /// How a contact ended.
@@ -272,7 +272,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);
-        (self.compression, self.rate) = (landed.compression, landed.rate);
+        (self.compression, self.rate) = (self.behind_compliance(landed.compression, landed.rate), landed.rate);
         self.previous = Some((landed.force, landed.length));
         match self.setting.law.cross(&self.branch, which, landed.compression, landed.rate) {
             After::Release(memory) => Some(ContactEnd::Released(memory)),
@@ -321,9 +321,30 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return (gap, self.motion.gap_rate());
         }
         let slope = BASIS.end_slope_from_start * self.compression + dot(&BASIS.end_slope_from_nodes, &step.compression);
-        let (rate, compliance) = (slope / h, self.setting.residual_compliance);
-        let estimate = gap - compliance * evaluate(force, 1.0);
-        (behind_compliance(self.setting.law, &self.branch, compliance, gap, estimate, rate), rate)
+        let rate = slope / h;
+        (self.behind_compliance(gap - self.setting.residual_compliance * evaluate(force, 1.0), rate), rate)
+    }
+
+    /// The compression at which the law itself holds behind the residual compliance, `xi + c F(xi, xi') = g`, near an
+    /// estimate. The polynomial of the force misses it at the end of a step by as much as it misses the force; short
+    /// steps that begin there would see that as a rate.
+    fn behind_compliance(&self, estimate: f64, rate: f64) -> f64 {
+        let c = self.setting.residual_compliance;
+        if c == 0.0 {
+            return estimate;
+        }
+        let gap = self.motion.gap();
+        let mut compression = estimate;
+        for _ in 0..4 {
+            let force = self.setting.law.force(&self.branch, compression, rate);
+            let excess = compression + c * force.force_n - gap;
+            let next = compression - excess / (1.0 + c * force.per_compression_n_m);
+            if !next.is_finite() || next == compression {
+                break;
+            }
+            compression = next;
+        }
+        compression
     }
 
     /// Books a step that has been made: peaks, counts, record.

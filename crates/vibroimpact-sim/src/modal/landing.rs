@@ -6,7 +6,7 @@
 use super::ladder::{Ladder, Vibration};
 use super::legendre::{BASIS, Nodal, Q, TAYLOR, dot, evaluate};
 use super::solution::Counts;
-use super::step::{Collocated, Given, behind_compliance, collocate};
+use super::step::{Collocated, Given, collocate};
 use contact_models::{Boundary, Branch, ContactLaw};
 
 /// The series is used while the fastest motion turns by at most this many radians.
@@ -87,8 +87,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         } else {
             let slope = basis.end_slope_from_start * self.start_compression
                 + dot(&basis.end_slope_from_nodes, &step.compression);
-            let (rate, estimate) = (slope / length, gap - self.residual_compliance * evaluate(&force, 1.0));
-            (behind_compliance(self.law, self.branch, self.residual_compliance, gap, estimate, rate), rate)
+            (gap - self.residual_compliance * evaluate(&force, 1.0), slope / length)
         };
         let margin = self.boundary().margin(compression, rate);
         Some((Landed { length, step, force, compression, rate }, margin))

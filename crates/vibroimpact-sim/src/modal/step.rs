@@ -162,31 +162,6 @@ impl Newton {
     }
 }
 
-/// The compression at which the law itself holds behind the residual compliance `c`, `xi + c F(xi, xi') = g`, near an
-/// estimate. The polynomial of the force misses it at the end of a step by as much as it misses the force: short steps
-/// that begin there would see that as a rate, and where `c F` is most of the gap, as surfaces that have parted.
-pub(crate) fn behind_compliance<L: ContactLaw>(
-    law: &L,
-    branch: &Branch,
-    c: f64,
-    gap: f64,
-    estimate: f64,
-    rate: f64,
-) -> f64 {
-    let mut compression = estimate;
-    // a few from near by; more from an estimate below zero, where there is no force to tell the way
-    for _ in 0..12 {
-        let force = law.force(branch, compression, rate);
-        let excess = compression + c * force.force_n - gap;
-        let next = compression - excess / (1.0 + c * force.per_compression_n_m);
-        if !next.is_finite() || (next - compression).abs() <= f64::EPSILON * compression.abs() {
-            break;
-        }
-        compression = next;
-    }
-    compression
-}
-
 /// The first place on a step where a branch ends: which of its boundaries, and the fraction of the step at which a
 /// straight line through the neighbouring points puts it. Compression and rate are looked at at the nodes, and at the
 /// end of the step where that is given.
