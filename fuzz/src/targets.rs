@@ -6,6 +6,7 @@ use vibroimpact::contact_models::{
     Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
 };
 use vibroimpact::sweep::Sweep;
+use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
 use vibroimpact::{Scene, net};
 
@@ -19,6 +20,10 @@ pub fn scene(bytes: &[u8]) {
         let again = Scene::from_toml(&toml);
         assert!(again.is_ok_and(|again| again == scene), "a scene is not read as it was written in TOML");
     }
+    if let Ok(impact) = scene.infinite_impact() {
+        infinite_structure(&impact);
+        return;
+    }
     // modes in thousands are sound, but no work for a fuzzer
     if scene.modes.count().is_some_and(|modes| modes > 50) {
         return;
@@ -30,6 +35,21 @@ pub fn scene(bytes: &[u8]) {
     if let Ok(solution) = solved {
         sound(&solution);
     }
+}
+
+/// An impact on an infinite beam or plate: contacts in order, and a body that only slows down.
+fn infinite_structure(impact: &infinite::Impact) {
+    let settings = infinite::Settings { max_panels: 200, ..infinite::Settings::default() };
+    let Ok(groups) = impact.groups() else { return };
+    let Ok(solution) = infinite::solve(impact.structure, groups.s, &settings) else { return };
+    let (mut now, mut speed) = (0.0, 1.0);
+    for contact in &solution.contacts {
+        assert!(contact.start >= now && contact.closing_speed > 0.0, "{contact:?} after {now}");
+        let slower = contact.body_speed_at_end.unwrap_or(speed);
+        assert!(slower <= speed && slower >= -1.0, "{contact:?} at {speed}");
+        (now, speed) = (contact.end.unwrap_or(now), slower);
+    }
+    assert!(solution.rebound_ratio().is_none_or(|e| (0.0..=1.0).contains(&e)), "S = {}", groups.s);
 }
 
 /// A sweep file, JSON or TOML, with its scene in it: read, and scenes of its points posed.

@@ -81,7 +81,10 @@ enum Task {
         /// Solve this case of the row alone, and print it
         #[arg(long, value_name = "INDEX")]
         only: Option<u64>,
-        /// The file for the summary
+        /// Go on where the run that wrote the summary ended
+        #[arg(long)]
+        resume: bool,
+        /// The file for the summary, written after every 4,096
         #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
         out: PathBuf,
     },
@@ -144,10 +147,10 @@ fn run(task: Task) -> Result<(), Failure> {
         }
         Task::Fuzz { seconds } => fuzz::run(root, seconds),
         Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
-        Task::Soak { impacts, seed, minutes, only: None, out } => {
+        Task::Soak { impacts, seed, minutes, only: None, resume, out } => {
             let limit = minutes.map(|minutes| Duration::from_secs(minutes.saturating_mul(60)));
-            let summary = soak::run(impacts, seed, limit);
-            summary.write(&out)?;
+            let begun = if resume { soak::Summary::resume(&out, seed)? } else { soak::Summary::new(seed) };
+            let summary = begun.run(impacts, limit, |summary| summary.write(&out))?;
             say(&summary.to_string())?;
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }

@@ -1,15 +1,19 @@
-"""General solvers of Python on the impacts of the work-precision report; called by benchmarks/peers.sh.
+"""Solvers outside Rust on the problems of the work-precision report; called by benchmarks/peers.sh.
 
 Every impact is integrated phase by phase, as the Rust peers do it: free flight, and one smooth branch of the contact law,
 each ended by the solver's own event location. The equations are vectorised; a call of them costs a few microseconds,
-most of it Python's own. Times are therefore an upper bound for the methods; numbers of evaluations are not.
+most of it Python's own (in Octave, ten times as much). Times are therefore an upper bound for the methods; numbers of
+evaluations are not. Quadratic programs are in programs.py, Octave's part in ode15s.m.
 """
 
+import argparse
 import csv
 import math
 import os
 import platform
+import shutil
 import signal
+import subprocess
 import sys
 import time
 from importlib.metadata import version
@@ -18,7 +22,11 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from sksundae.cvode import CVODE
 
+from programs import Program
+
 TOLERANCES = {"flight": [1e-4, 1e-6, 1e-8, 1e-10, 1e-12], "whole": [1e-4, 1e-8, 1e-12]}
+# what Octave takes before it begins to solve, on a busy machine
+START_OF_OCTAVE_S = 5
 
 
 class TooSlow(Exception):
@@ -27,6 +35,7 @@ class TooSlow(Exception):
 
 class Impact:
     def __init__(self, path):
+        self.path = path
         words = open(path).read().split()
         value = lambda key: words[words.index(key) + 1]
         self.name = value("name")
@@ -218,6 +227,38 @@ def follow(impact, advance, exact_flight, end, tolerance):
     raise RuntimeError("more than 2000 events")
 
 
+def by_octave(impact, exact_flight, end, tolerance, limit):
+    """Octave's ode15s, in a process of its own; its clock runs from when it has read its files."""
+    script = os.path.join(os.path.dirname(__file__), "ode15s.m")
+    words = ["octave-cli", "--no-gui", "--quiet", "--norc", script, impact.path, repr(tolerance), repr(end),
+             str(int(exact_flight))]
+    try:
+        told = subprocess.run(words, capture_output=True, text=True, timeout=limit + START_OF_OCTAVE_S).stdout
+    except subprocess.TimeoutExpired:
+        raise TooSlow from None
+    found = dict(line.split(" ", 1) for line in told.splitlines() if " " in line)
+    if "restitution" not in found:
+        raise RuntimeError(found.get("failure", "ode15s ended without a result"))
+    numbers = lambda key: [float(word) for word in found[key].split()]
+    return (float(found["restitution"]), numbers("times"), numbers("impulses"), int(found["evaluations"]),
+            float(found["seconds"]))
+
+
+def in_python(advance):
+    """A solver that is stopped by an alarm."""
+
+    def solve(impact, exact_flight, end, tolerance, limit):
+        signal.setitimer(signal.ITIMER_REAL, limit)
+        try:
+            start = time.perf_counter()
+            found = follow(impact, advance, exact_flight, end, tolerance)
+            return (*found, time.perf_counter() - start)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+
+    return solve
+
+
 def references(path):
     found = {}
     for name, kind, a, b, c in list(csv.reader(open(path)))[1:]:
@@ -230,70 +271,103 @@ def references(path):
     return found
 
 
-def main(problems, package, cap):
-    known = references(os.path.join(package, "reference", "impacts.csv"))
-    solvers = {
-        "scipy DOP853": by_scipy("DOP853"),
-        "scipy LSODA": by_scipy("LSODA"),
-        "scipy Radau": by_scipy("Radau"),
-        "scipy BDF": by_scipy("BDF"),
-        "CVODE BDF": by_cvode("BDF"),
-        "CVODE Adams": by_cvode("Adams"),
-    }
+def errors(wanted, restitution, times, impulses):
+    """The norms of the report."""
+    alike = len(times) == len(wanted["times"])
+    worst = max(abs(a - b) for a, b in zip(times, wanted["times"])) / wanted["times"][-1]
+    contacts = abs((len(times) + 1) // 2 - len(wanted["times"]) // 2)
+    return {"restitution": abs(restitution - wanted["restitution"]),
+            "total impulse": abs(sum(impulses) / wanted["impulse"] - 1),
+            "contact times": worst if alike else 1.0,
+            "number of sub-impacts": float(contacts)}
+
+
+def sweep(impact, wanted, name, solve, exact, cap, allowance):
+    """Rows of one solver on one impact, from the loosest tolerance to the tightest, within an allowance of time."""
+    label, origin = (f"{name} + exact flight", "assisted") if exact else (name, "peer")
+    until, stopped = time.monotonic() + allowance, None
+    for tolerance in TOLERANCES["flight" if exact else "whole"]:
+        row = lambda norm, error, seconds, cost, status: [
+            impact.name, label, origin, repr(tolerance), norm, error, seconds, cost, "right-hand sides", status]
+        limit = min(cap, until - time.monotonic())
+        if stopped is None and limit < 0.1:
+            stopped = "not tried: out of time"
+        if stopped:
+            yield row("", "", "", "", stopped)
+            continue
+        try:
+            *found, cost, seconds = solve(impact, exact, 1.02 * wanted["times"][-1], tolerance, limit)
+            for norm, error in errors(wanted, *found).items():
+                yield row(norm, error, seconds, cost, "ok")
+        except TooSlow:
+            stopped = "not tried: a looser setting took too long"
+            yield row("", "", "", "", f"too slow: over {limit:.1f} s")
+        except Exception as error:
+            yield row("", "", "", "", " ".join(str(error).split())[:100] or type(error).__name__)
+
+
+def machine(options):
+    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if "model name" in line), "unknown")
+    packages = ", ".join(f"{name} {version(name)}" for name in ["numpy", "scipy", "scikit-sundae", "daqp"])
+    octave = "without Octave"
+    if shutil.which("octave-cli"):
+        told = subprocess.run(["octave-cli", "--version"], capture_output=True, text=True).stdout
+        octave = told.splitlines()[0].replace(", version", "")
+    return (f"{time.strftime('%Y-%m-%d')}; {processor}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the "
+            f"end; Python {platform.python_version()}, {packages}, {octave}; impacts one run each, at most "
+            f"{options.seconds:g} s and {options.minutes:g} min together.\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("exported", help="folder that `work-precision export` has written")
+    parser.add_argument("package", help="folder of the package work-precision")
+    parser.add_argument("--out", required=True, help="folder to write outside.csv and versions.txt to")
+    parser.add_argument("--problems", help="only these, with commas between their names")
+    parser.add_argument("--seconds", type=float, default=60, help="how long one solve may take")
+    parser.add_argument("--minutes", type=float, default=11, help="how long all may take")
+    options = parser.parse_args()
 
     def late(*_):
         raise TooSlow
 
     signal.signal(signal.SIGALRM, late)
-    folder = os.path.join(package, "outside")
-    only = os.environ.get("ONLY", "").split()
-    with open(os.path.join(folder, "outside.csv"), "w", newline="") as file:
+    solvers = {
+        "scipy DOP853": in_python(by_scipy("DOP853")),
+        "scipy LSODA": in_python(by_scipy("LSODA")),
+        "scipy Radau": in_python(by_scipy("Radau")),
+        "scipy BDF": in_python(by_scipy("BDF")),
+        "CVODE BDF": in_python(by_cvode("BDF")),
+        "CVODE Adams": in_python(by_cvode("Adams")),
+    }
+    if shutil.which("octave-cli"):
+        solvers["Octave ode15s"] = by_octave
+    only = options.problems.split(",") if options.problems else None
+    files = [os.path.join(options.exported, name) for name in sorted(os.listdir(options.exported))]
+    chosen = lambda found: [one for one in found if only is None or one.name in only]
+    impacts = chosen(Impact(path) for path in files if os.path.basename(path).startswith("impact-"))
+    programs = chosen(Program(path) for path in files if os.path.basename(path).startswith("program-"))
+    known = references(os.path.join(options.package, "reference", "impacts.csv"))
+    # with exact flight first, as it costs little: what one solver leaves of its share, the others may use
+    jobs = [(impact, exact, name) for exact in [True, False] for impact in impacts for name in solvers]
+    if not jobs and not programs:
+        sys.exit(f"error: no problem of the names {options.problems}")
+    os.makedirs(options.out, exist_ok=True)
+    until = time.monotonic() + 60 * options.minutes
+    with open(os.path.join(options.out, "outside.csv"), "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow("problem,solver,origin,setting,norm,error,time_s,cost,cost_unit,status".split(","))
-        for path in sorted(os.listdir(problems)):
-            impact = Impact(os.path.join(problems, path))
-            if only and impact.name not in only:
-                continue
-            wanted = known[impact.name]
-            end = 1.02 * wanted["times"][-1]
-            for exact in [True, False]:
-                for name, advance in solvers.items():
-                    label, origin = (f"{name} + exact flight", "assisted") if exact else (name, "peer")
-                    slow = False
-                    for tolerance in TOLERANCES["flight" if exact else "whole"]:
-                        write = lambda norm, error, seconds, cost, status: table.writerow(
-                            [impact.name, label, origin, repr(tolerance), norm, error, seconds, cost,
-                             "right-hand sides", status])
-                        if slow:
-                            write("", "", "", "", "not tried: a looser setting took too long")
-                            continue
-                        try:
-                            signal.setitimer(signal.ITIMER_REAL, cap)
-                            start = time.perf_counter()
-                            e, times, impulses, cost = follow(impact, advance, exact, end, tolerance)
-                            seconds = time.perf_counter() - start
-                            signal.setitimer(signal.ITIMER_REAL, 0)
-                            alike = len(times) == len(wanted["times"])
-                            worst = max(abs(a - b) for a, b in zip(times, wanted["times"])) / wanted["times"][-1]
-                            write("restitution", abs(e - wanted["restitution"]), seconds, cost, "ok")
-                            write("total impulse", abs(sum(impulses) / wanted["impulse"] - 1), seconds, cost, "ok")
-                            write("contact times", worst if alike else 1.0, seconds, cost, "ok")
-                            contacts = abs((len(times) + 1) // 2 - len(wanted["times"]) // 2)
-                            write("number of sub-impacts", float(contacts), seconds, cost, "ok")
-                        except TooSlow:
-                            slow = True
-                            write("", "", "", "", f"too slow: over {cap:g} s")
-                        except Exception as error:
-                            signal.setitimer(signal.ITIMER_REAL, 0)
-                            write("", "", "", "", " ".join(str(error).split())[:100])
-                        file.flush()
-                print(impact.name, "with exact flight" if exact else "whole", flush=True)
-    processor = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if "model name" in line), "unknown")
-    with open(os.path.join(folder, "versions.txt"), "w") as file:
-        file.write(f"{time.strftime('%Y-%m-%d')}; {processor}, {os.cpu_count()} cores, load "
-                   f"{os.getloadavg()[0]:.1f} at the end; Python {platform.python_version()}, numpy {version('numpy')}, "
-                   f"scipy {version('scipy')}, scikit-sundae {version('scikit-sundae')}; one run each, at most {cap:g} s.\n")
+        for program in programs:
+            table.writerow(program.row())
+        for done, (impact, exact, name) in enumerate(jobs):
+            allowance = (until - time.monotonic()) / (len(jobs) - done)
+            for row in sweep(impact, known[impact.name], name, solvers[name], exact, options.seconds, allowance):
+                table.writerow(row)
+            file.flush()
+            print(f"{done + 1}/{len(jobs)} {impact.name}, {name}{' + exact flight' * exact}", flush=True)
+    with open(os.path.join(options.out, "versions.txt"), "w") as file:
+        file.write(machine(options))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2], float(sys.argv[3]))
+    main()

@@ -1,6 +1,7 @@
-//! The impacts as plain text, for the solvers outside Rust and for the reference.
+//! The problems as plain text, for the solvers outside Rust and for the reference.
 
 use crate::impact::Impact;
+use crate::net;
 use contact_models::Law;
 use std::fmt::Write;
 use std::path::Path;
@@ -34,15 +35,18 @@ pub fn text(impact: &Impact) -> Result<String, String> {
     Ok(text)
 }
 
-/// Writes `impact-NAME.txt` for every impact into a folder.
+/// Writes `impact-NAME.txt` for every impact into a folder, and `program-NAME.txt` for every quadratic program.
 ///
 /// # Errors
 /// If a file cannot be written.
 pub fn write(impacts: &[Impact], folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let write = |name: String, text: String| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))
+    };
     for impact in impacts {
-        let path = folder.join(format!("impact-{}.txt", impact.name));
-        std::fs::write(&path, text(impact)?).map_err(|error| format!("{}: {error}", path.display()))?;
+        write(format!("impact-{}.txt", impact.name), text(impact)?)?;
     }
-    Ok(())
+    net::texts().into_iter().try_for_each(|(name, text)| write(format!("program-{name}.txt"), text))
 }

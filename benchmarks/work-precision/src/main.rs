@@ -25,7 +25,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Write the impacts as text files for solvers outside Rust
+    /// Write impacts and quadratic programs as text files for solvers outside Rust
     Export {
         /// The folder to write to
         folder: PathBuf,

@@ -82,6 +82,15 @@ impl Program {
         Program { diagonal, rows, bounds }
     }
 
+    /// As text for the solvers outside Rust: the diagonal, then a line for each row with its bound in front.
+    fn text(&self, case: &Case) -> String {
+        let words = |values: &[f64]| values.iter().map(|value| format!(" {value:e}")).collect::<String>();
+        let (numerator, denominator) = case.reference;
+        let head = format!("name {}\nreference {numerator:e} {denominator:e}\n", case.name);
+        let rows = self.rows.iter().zip(&self.bounds).map(|(row, bound)| format!("{bound:e}{}\n", words(row)));
+        format!("{head}diagonal{}\n{}", words(&self.diagonal), rows.collect::<String>())
+    }
+
     /// Clarabel's interior point at a tolerance; cost: iterations.
     fn interior_point(&self, tolerance: f64) -> Result<(f64, u64), String> {
         let n = self.diagonal.len();
@@ -132,6 +141,11 @@ impl Program {
             other => Err(format!("{other:?}")),
         }
     }
+}
+
+/// Names of the cases, and their quadratic programs as text.
+pub fn texts() -> Vec<(&'static str, String)> {
+    cases().iter().map(|case| (case.name, Program::new(case).text(case))).collect()
 }
 
 /// Every form on every case.

@@ -162,3 +162,33 @@ fn twelve_decades_of_mass() {
         assert!((solution.velocity_m_s[0] - expected).abs() < 1e-9, "1e{power} kg: {solution:?}");
     }
 }
+
+/// What must not change the net restitution: a mode written as two that share its shape squared, the signs and the order of
+/// the modes, and modes without part in it, each for one contact and for two of them on one structure.
+#[test]
+fn modes_written_otherwise() {
+    let mut solver = Solver::new();
+    let shapes = [[1.2, 0.3], [-0.4, 0.9], [0.7, -0.5]];
+    let problem = |contacts: usize, shapes: &[[f64; 2]]| Problem {
+        contacts: vec![Contact { friction: Friction::None, coefficients: coefficients(0.8, 0.2, 0.1) }; contacts],
+        inverse_inertia_per_kg: if contacts == 1 { vec![2.0] } else { vec![2.0, 0.0, 0.0, 0.5] },
+        velocity_m_s: [-1.0, -0.3][..contacts].to_vec(),
+        modes: shapes.iter().map(|shape| Mode { rate: 0.0, shape: shape[..contacts].to_vec() }).collect(),
+    };
+    for contacts in [1, 2] {
+        let plain = solver.solve(&problem(contacts, &shapes)).unwrap();
+        assert_eq!(plain.outcome, Outcome::Solved);
+        let (sine, cosine) = 0.7f64.sin_cos();
+        let [first, second, third] = shapes;
+        let split = vec![first.map(|phi| phi * sine), second, first.map(|phi| phi * cosine), third];
+        let turned = vec![third.map(|phi| -phi), first.map(|phi| -phi), second];
+        let idle = vec![first, [0.0; 2], second, third, [0.0; 2]];
+        for (name, shapes) in [("split", split), ("turned", turned), ("idle", idle)] {
+            let other = solver.solve(&problem(contacts, &shapes)).unwrap();
+            assert_eq!(other.outcome, Outcome::Solved, "{name}");
+            for (a, b) in plain.velocity_m_s.iter().zip(&other.velocity_m_s) {
+                assert!((a - b).abs() < 1e-7, "{name}, {contacts} contacts: {a} against {b}");
+            }
+        }
+    }
+}

@@ -120,6 +120,32 @@ fn the_sdnl111_benchmark_is_met() {
     assert!((solution.restitution.unwrap() - 1.0).abs() < 0.01);
 }
 
+/// Lying, upright and as near to either as numbers go; without elastic modes.
+#[test]
+fn rods_at_the_edge() {
+    let usual = rod(0.4, 0.8);
+    let rods = [
+        ("lying", DroppedRod { inclination_rad: 0.0, ..usual }),
+        ("almost lying", DroppedRod { inclination_rad: 1e-12, ..usual }),
+        ("upright", DroppedRod { inclination_rad: FRAC_PI_2, ..usual }),
+        ("almost upright", DroppedRod { inclination_rad: FRAC_PI_2 - 1e-12, ..usual }),
+        ("rigid but for its residual compliance", DroppedRod { bending_modes: 0, axial_modes: 0, ..usual }),
+        ("bending alone", DroppedRod { axial_modes: 0, ..usual }),
+    ];
+    for (name, rod) in rods {
+        let solution = solve(&rod, 1e-9);
+        assert_eq!(solution.outcome, Outcome::Rebound, "{name}");
+        let (e, stated) = (solution.restitution.unwrap(), solution.restitution_uncertainty.unwrap());
+        assert!((-1.0..=1.0 + 1e-9).contains(&e) && stated < 1e-3, "{name}: {e} +- {stated:e}");
+    }
+    // an angle that no number can tell from the right one changes nothing
+    for (angle, aside) in [(0.0, 1e-12), (FRAC_PI_2, -1e-12)] {
+        let (a, b) = (solve(&rod(0.4, angle), 1e-9), solve(&rod(0.4, angle + aside), 1e-9));
+        let stated = a.restitution_uncertainty.unwrap() + b.restitution_uncertainty.unwrap();
+        assert!((a.restitution.unwrap() - b.restitution.unwrap()).abs() <= stated, "at {angle}");
+    }
+}
+
 #[test]
 fn bad_rods_are_refused() {
     let good = rod(0.4, 0.6);

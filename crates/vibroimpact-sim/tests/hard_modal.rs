@@ -4,7 +4,7 @@ mod common;
 
 use beam_modes::{Beam, End, Segment};
 use common::random::{any_law, any_structure, config, decades};
-use common::{GOLDEN, ball, hertz, pinned, settings};
+use common::{GOLDEN, ball, hertz, pinned, pinned_with_residual, seen_from, settings};
 use contact_models::{Hertz, Hysteretic, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
@@ -76,14 +76,6 @@ fn hold(cases: &[Case]) {
     }
 }
 
-fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Structure {
-    let modes = beam.modes(count).unwrap();
-    let shapes = modes.shapes_at(x_m).unwrap();
-    let each = modes.omega_rad_s().iter().zip(&shapes);
-    let modes = each.map(|(&omega_rad_s, &shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Structure { modes, residual_compliance_m_n: 0.0 }
-}
-
 fn beam(ends: [End; 2]) -> Beam {
     let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 274.0, mass_per_length_kg_m: 1.0 };
     Beam { segments: vec![segment], ends }
@@ -119,6 +111,26 @@ fn places() {
         cases.push(case(format!("on a step and {aside:e} m aside"), on, ball(), hertz(), Expect::Same(beside)));
     }
     cases.push(case("N = 1000", pinned(1000, 0.02, 0.4), ball(), hertz(), Expect::Rebound(1e-4)));
+    hold(&cases);
+}
+
+/// From no mode to a thousand: a rebound known to many digits at every number, and one that settles where the static
+/// compliance of those left out is kept.
+#[test]
+fn numbers_of_modes() {
+    let mut cases = Vec::new();
+    let mut last: Option<f64> = None;
+    for n in [0u16, 1, 2, 3, 5, 10, 30, 100, 300, 1000] {
+        let structure = pinned_with_residual(n.into(), 0.02, 0.3);
+        if n >= 30 {
+            let e = run(&structure, &ball(), &hertz()).restitution.unwrap();
+            let change = last.map_or(f64::INFINITY, |last| (e - last).abs());
+            assert!(last.is_none() || change < 30.0 / f64::from(n).powi(2), "N = {n}: {e}, changed by {change:e}");
+            last = Some(e);
+        }
+        cases.push(case(format!("N = {n}"), pinned(n.into(), 0.02, 0.3), ball(), hertz(), Expect::Rebound(1e-4)));
+        cases.push(case(format!("N = {n}, residual"), structure, ball(), hertz(), Expect::Rebound(1e-4)));
+    }
     hold(&cases);
 }
 

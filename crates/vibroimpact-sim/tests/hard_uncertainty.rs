@@ -2,11 +2,14 @@
 
 mod common;
 
-use common::random::{Impact, cases, ordinary_damping, ordinary_impact, ordinary_striker};
+use common::random::{Impact, cases, decades, ordinary_damping, ordinary_impact, ordinary_striker};
 use common::{hertz, pinned, runge_kutta, settings};
+use contact_models::Law;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+use std::f64::consts::FRAC_PI_2;
+use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite;
 use vibroimpact_sim::modal::{Outcome, Settings, Solver};
 
@@ -84,6 +87,54 @@ fn the_modal_restitution_against_runge_kutta() {
         coverage.note(beyond, solution.restitution_uncertainty.unwrap(), what);
     }
     coverage.assert(24);
+}
+
+/// Impacts that begin in motion: tilted rods dropped on a surface that does not move.
+#[test]
+fn the_dropped_rod() {
+    let angle = prop_oneof![1 => Just(0.0), 1 => Just(FRAC_PI_2), 4 => 0.0..FRAC_PI_2];
+    let strategy = (
+        decades(-1.0, 0.0),
+        decades(-2.0, -1.0),
+        angle,
+        0usize..30,
+        0usize..30,
+        ordinary_damping(),
+        decades(-2.0, 1.0),
+    );
+    let mut coverage = Coverage::default();
+    for (length_m, slenderness, inclination_rad, bending_modes, axial_modes, damping_ratio, speed_m_s) in
+        draw(strategy, 80)
+    {
+        let rod = DroppedRod {
+            length_m,
+            diameter_m: length_m * slenderness,
+            youngs_modulus_pa: 2.1e11,
+            density_kg_m3: 7876.74,
+            poissons_ratio: 0.3,
+            inclination_rad,
+            bending_modes,
+            axial_modes,
+            damping_ratio,
+        };
+        let drop = rod.drop(speed_m_s).unwrap();
+        let (law, mut solver) = (Law::from(drop.law), Solver::new(&drop.structure).unwrap());
+        let mut at = |tolerance: f64| {
+            let settings = Settings { max_steps: 20_000, ..settings(tolerance) };
+            solver.solve(&drop.surface, &law, Some(&drop.start), &settings).unwrap()
+        };
+        let reference = [1e-13, 1e-12, 1e-11].into_iter().map(&mut at).find(|found| found.outcome == Outcome::Rebound);
+        let reference = reference.unwrap();
+        let rest = reference.restitution_uncertainty.unwrap();
+        for tolerance in [1e-8, 1e-6] {
+            let solution = at(tolerance);
+            assert_eq!(solution.outcome, Outcome::Rebound, "{rod:?}");
+            let error = (solution.restitution.unwrap() - reference.restitution.unwrap()).abs();
+            let stated = solution.restitution_uncertainty.unwrap();
+            coverage.note((error - rest).max(0.0), stated, || format!("{tolerance:e} {speed_m_s} m/s {rod:?}"));
+        }
+    }
+    coverage.assert(160);
 }
 
 /// On the infinite beam and plate: true errors of contact times, durations and speeds from the tightest settings.

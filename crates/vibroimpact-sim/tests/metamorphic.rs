@@ -9,7 +9,7 @@ use common::random::{
     Impact, config, conservative_law, decades, ordinary_damping, ordinary_impact, ordinary_law, ordinary_striker,
     ordinary_structure,
 };
-use common::settings;
+use common::{seen_from, settings};
 use contact_models::{Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -56,15 +56,6 @@ fn in_units(law: Law, mass: f64, length: f64, time: f64) -> Law {
         }
         other => unreachable!("{} is not among the laws drawn", other.name()),
     }
-}
-
-/// Modes of a beam at a place, all with one damping ratio.
-fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Structure {
-    let modes = beam.modes(count).unwrap();
-    let shapes = modes.shapes_at(x_m).unwrap();
-    let each = modes.omega_rad_s().iter().zip(&shapes);
-    let modes = each.map(|(&omega_rad_s, &shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Structure { modes, residual_compliance_m_n: 0.0 }
 }
 
 fn stepped() -> impl Strategy<Value = Beam> {

@@ -1,9 +1,10 @@
 //! The program as a user meets it: files in, text, JSON, files and exit codes out.
 
-use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
+mod program;
 
+use std::fs;
+
+use program::{run, stdout};
 use serde_json::{Value, json};
 
 /// The scene that the documentation shows; 40 damped modes of a stepped cantilever.
@@ -14,16 +15,6 @@ const SCENE: &str = r#"{ "structure": { "kind": "beam", "ends": ["clamped", "fre
   "striker": { "mass_kg": 0.11027, "radius_m": 0.015, "speed_m_s": 1.0 },
   "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
   "location_m": 0.4, "modes": 40 }"#;
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
 
 /// Runs `simulate` on a text, with `--out`, and returns the message; it must fail as input faults do, writing nothing.
 fn refusal(text: impl AsRef<[u8]>) -> String {

@@ -1,21 +1,13 @@
 //! The command `infinite-beam`, and scenes with infinite structures, as a user meets them.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod program;
 
+use std::fs;
+use std::path::PathBuf;
+
+use program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
 
 fn solved(arguments: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,11 @@
 //! `vibroimpact emoc` and `vibroimpact fit` as a user meets them.
 
+mod program;
+
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
+use program::{run, stdout};
 use serde_json::{Value, json};
 
 /// A pinned beam of 1 kg, whose shapes are sqrt(2) sin(k pi x) exactly.
@@ -13,15 +14,6 @@ const PINNED: &str = r#"{ "structure": { "kind": "beam", "ends": ["pinned", "pin
   "striker": { "mass_kg": 0.2, "speed_m_s": 1.0 },
   "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 },
   "location_m": 0.3, "modes": 40 }"#;
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
 
 /// Runs in a folder with the scene and, if given, a table; it must fail as faulty input does, writing nothing.
 fn refusal(scene: &str, table: Option<&[u8]>, arguments: &[&str]) -> String {

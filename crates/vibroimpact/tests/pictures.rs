@@ -1,19 +1,13 @@
 //! Pictures and reports as the program writes them.
 
+mod program;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+
+use program::{run, stdout};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes");
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn stdout(output: &Output) -> String {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout.clone()).unwrap()
-}
 
 fn scene(name: &str) -> String {
     format!("{SCENES}/{name}.json")

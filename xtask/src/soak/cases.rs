@@ -8,6 +8,8 @@ use emoc::{Coefficients, Contact, Friction, Problem};
 use fastrand::Rng;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use std::sync::LazyLock;
+use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite;
 use vibroimpact_sim::modal::{Mode, Settings, Start, Striker, Structure};
 
@@ -16,12 +18,18 @@ use vibroimpact_sim::modal::{Mode, Settings, Start, Striker, Structure};
 pub enum Case {
     /// A structure in modes.
     Modal(Box<Modal>),
+    /// A tilted rod dropped on a surface.
+    Rod(Box<Modal>),
+    /// An impact that was refused before it was posed, and why.
+    Refused(String),
     /// A scene, as its file would say it.
     Scene(Value),
     /// A beam or plate without ends.
     Infinite(infinite::Structure, f64),
     /// A net restitution without its course in time.
     Net(Problem),
+    /// A single striker's, at the ends of all ranges: shapes, for a mass of 1 kg.
+    Single(Vec<f64>, Coefficients<f64>),
 }
 
 /// An impact in the terms of the modal solver.
@@ -39,10 +47,12 @@ pub fn case(seed: u64, index: u64) -> Case {
     // the index is spread over all bits, so that neighbours have nothing in common
     let mut random = Rng::with_seed(seed ^ index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     match random.u32(0..100) {
-        0..70 => Case::Modal(Box::new(modal(&mut random))),
+        0..64 => Case::Modal(Box::new(modal(&mut random))),
+        64..70 => rod(&mut random),
         70..80 => Case::Scene(scene(&mut random)),
         80..88 => infinite(&mut random),
-        _ => Case::Net(net(&mut random)),
+        88..97 => Case::Net(net(&mut random)),
+        _ => single(&mut random),
     }
 }
 
@@ -96,7 +106,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
     };
     let damping = match random.u32(0..10) {
         0..3 => 0.0,
-        3 => decades(random, -1.0, 2.0),
+        3 => decades(random, -1.0, 6.0),
         _ => decades(random, -4.0, -1.0),
     };
     let (first, power) = (decades(random, 0.0, 5.0), random.i32(0..3));
@@ -119,6 +129,14 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
             }
         })
         .collect();
+    if once_in(random, 20) {
+        // stiff and light: the compression oscillates within a contact, and a hysteresis runs through many small loops
+        modes.push(Mode {
+            omega_rad_s: decades(random, 4.0, 7.0),
+            damping_ratio: 0.0,
+            shape: weight * decades(random, -2.0, 1.0),
+        });
+    }
     for _ in 0..random.u32(0..6).saturating_sub(3) {
         modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: decades(random, -2.0, 1.0) });
     }
@@ -158,6 +176,45 @@ fn law(random: &mut Rng, extreme: bool) -> Law {
         _ => Hertz::new(k).map(Law::from),
     };
     found.unwrap_or(Law::Hertz(Hertz { stiffness_n_m1_5: 1e10 }))
+}
+
+fn rod(random: &mut Rng) -> Case {
+    let length_m = decades(random, -2.0, 1.0);
+    let inclination_rad = match random.u32(0..6) {
+        0 => 0.0,
+        1 => 0.5 * PI,
+        2 => 0.5 * PI - decades(random, -12.0, -3.0),
+        _ => 0.5 * PI * random.f64(),
+    };
+    let rod = DroppedRod {
+        length_m,
+        diameter_m: length_m * decades(random, -3.0, -1.0),
+        youngs_modulus_pa: decades(random, 6.0, 12.0),
+        density_kg_m3: decades(random, 2.0, 4.3),
+        poissons_ratio: 0.5 * random.f64(),
+        inclination_rad,
+        bending_modes: random.usize(0..30),
+        axial_modes: random.usize(0..30),
+        damping_ratio: if once_in(random, 2) { 0.0 } else { decades(random, -4.0, 0.0) },
+    };
+    let speed_m_s = decades(random, -6.0, 3.0);
+    let settings = Settings {
+        tolerance: decades(random, -11.0, -4.0),
+        max_steps: 2_000,
+        max_sub_impacts: 500,
+        ..Settings::default()
+    };
+    match rod.drop(speed_m_s) {
+        Ok(drop) => Case::Rod(Box::new(Modal {
+            structure: drop.structure,
+            striker: drop.surface,
+            law: drop.law.into(),
+            start: Some(drop.start),
+            settings,
+        })),
+        // refused is not what a sound rod should be: said where cases are judged
+        Err(fault) => Case::Refused(fault.to_string()),
+    }
 }
 
 fn scene(random: &mut Rng) -> Value {
@@ -203,17 +260,31 @@ fn scene(random: &mut Rng) -> Value {
     })
 }
 
+/// The critical `S`, and the first turning points.
+static CHANGES: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let turning = infinite::turning_points(6).unwrap_or_default();
+    [infinite::critical_s().s].into_iter().chain(turning.iter().map(|point| point.s)).collect()
+});
+
 fn infinite(random: &mut Rng) -> Case {
     if once_in(random, 4) {
         return Case::Infinite(infinite::Structure::Plate, decades(random, -12.0, 8.0));
     }
-    // every fourth beam is close to the critical value 1.5593, from above or below
+    // every fourth beam is close to where its story changes, from above or below
     let s = if once_in(random, 4) {
-        1.5593 * (1.0 + signed(random) * decades(random, -2.0, -0.3))
+        CHANGES[random.usize(0..CHANGES.len())] * (1.0 + signed(random) * decades(random, -12.0, -0.3))
     } else {
         decades(random, -12.0, 8.0)
     };
     Case::Infinite(infinite::Structure::Beam, s)
+}
+
+fn single(random: &mut Rng) -> Case {
+    let n = random.usize(0..30);
+    let size = if once_in(random, 5) { 0.0 } else { decades(random, -6.0, 6.0) / (n.max(1) as f64).sqrt() };
+    let beta0 = if once_in(random, 5) { decades(random, -12.0, 12.0) } else { fraction(random) };
+    let coefficients = Coefficients { ebar: fraction(random), beta0, beta1: fraction(random) };
+    Case::Single((0..n).map(|_| size * signed(random)).collect(), coefficients)
 }
 
 fn net(random: &mut Rng) -> Problem {

@@ -5,24 +5,25 @@ mod checks;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
+use std::io::IsTerminal;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::chapters::Failure;
 use cases::case;
 use checks::{Verdict, judge};
 
 /// Impacts that are solved side by side before anything is counted; counting is in order, whatever the threads.
-const BATCH: u64 = 8192;
+const BATCH: u64 = 4096;
 /// Failures listed in full; the others are counted.
 const LISTED: usize = 100;
 
 /// What a soak came to.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// The seed of the row of cases.
     pub seed: u64,
@@ -33,12 +34,19 @@ pub struct Summary {
     /// Contacts over all impacts, and the most in one.
     pub contacts: u64,
     pub most_contacts: Extreme,
-    /// Steps tried: median, 999 of 1,000, and most.
-    pub steps_median: u64,
-    pub steps_999_of_1000: u64,
+    /// How many impacts took so many steps, and most.
+    pub steps: BTreeMap<u64, u64>,
     pub most_steps: Extreme,
     /// Largest energy gained over what the tolerance allows (1 is the limit).
     pub largest_gain_over_allowed: Extreme,
+    /// Largest change of energy where none can be lost, likewise, over so many impacts.
+    pub largest_residual_over_allowed: Extreme,
+    pub conservative: u64,
+    /// Impacts solved again at a thousandth of the tolerance, those of them within the uncertainties stated, and the
+    /// largest difference over what was stated.
+    pub repeated: u64,
+    pub covered: u64,
+    pub largest_error_over_stated: Extreme,
     /// Slowest impact (s).
     pub slowest_s: Extreme,
     pub elapsed_s: f64,
@@ -50,14 +58,14 @@ pub struct Summary {
 }
 
 /// A largest value, and the impact that has it.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Extreme {
     pub value: f64,
     pub index: u64,
 }
 
 impl Extreme {
-    const NONE: Extreme = Extreme { value: f64::NEG_INFINITY, index: 0 };
+    const NONE: Extreme = Extreme { value: f64::MIN, index: 0 }; // finite: JSON has no infinity
 
     fn note(&mut self, value: f64, index: u64) {
         if value > self.value {
@@ -67,61 +75,106 @@ impl Extreme {
 }
 
 /// An impact for which something does not hold.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Fault {
     pub index: u64,
-    pub kind: &'static str,
+    pub kind: String,
     pub fault: String,
 }
 
-/// Solves `impacts` random cases, or as many as `limit` allows.
-pub fn run(impacts: u64, seed: u64, limit: Option<Duration>) -> Summary {
-    let start = Instant::now();
-    let style = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} impacts, {msg}, {eta} left");
-    let bar = ProgressBar::new(impacts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.set_message("0 failed");
-    let mut summary = Summary {
-        seed,
-        impacts: 0,
-        outcomes: BTreeMap::new(),
-        contacts: 0,
-        most_contacts: Extreme::NONE,
-        steps_median: 0,
-        steps_999_of_1000: 0,
-        most_steps: Extreme::NONE,
-        largest_gain_over_allowed: Extreme::NONE,
-        slowest_s: Extreme::NONE,
-        elapsed_s: 0.0,
-        threads: rayon::current_num_threads(),
-        failed: 0,
-        failures: Vec::new(),
-    };
-    let mut steps = Vec::new();
-    while summary.impacts < impacts && limit.is_none_or(|limit| start.elapsed() < limit) {
-        let from = summary.impacts;
-        let to = impacts.min(from + BATCH);
-        let indices: Vec<u64> = (from..to).collect();
-        let verdicts: Vec<Verdict> = indices
-            .into_par_iter()
-            .with_max_len(16)
-            .map(|index| {
-                let verdict = judge(&case(seed, index));
-                bar.inc(1);
-                verdict
-            })
-            .collect();
-        for (index, verdict) in (from..to).zip(verdicts) {
-            steps.push(verdict.steps);
-            summary.note(index, verdict);
+impl Summary {
+    /// Of no impact yet.
+    pub fn new(seed: u64) -> Summary {
+        Summary {
+            seed,
+            impacts: 0,
+            outcomes: BTreeMap::new(),
+            contacts: 0,
+            most_contacts: Extreme::NONE,
+            steps: BTreeMap::new(),
+            most_steps: Extreme::NONE,
+            largest_gain_over_allowed: Extreme::NONE,
+            largest_residual_over_allowed: Extreme::NONE,
+            conservative: 0,
+            repeated: 0,
+            covered: 0,
+            largest_error_over_stated: Extreme::NONE,
+            slowest_s: Extreme::NONE,
+            elapsed_s: 0.0,
+            threads: rayon::current_num_threads(),
+            failed: 0,
+            failures: Vec::new(),
         }
-        bar.set_message(format!("{} failed", summary.failed));
     }
-    bar.finish_and_clear();
-    steps.sort_unstable();
-    let quantile = |share: f64| steps.get((share * steps.len() as f64) as usize).copied().unwrap_or(0);
-    (summary.steps_median, summary.steps_999_of_1000) = (quantile(0.5), quantile(0.999));
-    summary.elapsed_s = start.elapsed().as_secs_f64();
-    summary
+
+    /// What an earlier run of the same seed wrote, to go on from; a new one without such a file.
+    ///
+    /// # Errors
+    /// If the file is no summary, or one of another seed.
+    pub fn resume(path: &Path, seed: u64) -> Result<Summary, Failure> {
+        if !path.exists() {
+            return Ok(Summary::new(seed));
+        }
+        let summary: Summary = serde_json::from_str(&std::fs::read_to_string(path)?)?;
+        if summary.seed != seed {
+            return Err(format!("{} is of seed {}, not {seed}", path.display(), summary.seed).into());
+        }
+        Ok(summary)
+    }
+
+    /// Goes on until there are `impacts` of them, or time is up. After every batch `save` may put down what there is.
+    ///
+    /// # Errors
+    /// Those of `save`.
+    pub fn run(
+        mut self,
+        impacts: u64,
+        limit: Option<Duration>,
+        mut save: impl FnMut(&Summary) -> Result<(), Failure>,
+    ) -> Result<Summary, Failure> {
+        let (start, before_s) = (Instant::now(), self.elapsed_s);
+        let style = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} impacts, {msg}, {eta} left");
+        let bar = ProgressBar::new(impacts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_position(self.impacts);
+        bar.reset_eta();
+        bar.set_message("0 failed");
+        while self.impacts < impacts && limit.is_none_or(|limit| start.elapsed() < limit) {
+            let (from, seed) = (self.impacts, self.seed);
+            let to = impacts.min(from + BATCH);
+            let indices: Vec<u64> = (from..to).collect();
+            let verdicts: Vec<Verdict> = indices
+                .into_par_iter()
+                .with_max_len(16)
+                .map(|index| {
+                    let verdict = judge(&case(seed, index));
+                    bar.inc(1);
+                    verdict
+                })
+                .collect();
+            for (index, verdict) in (from..to).zip(verdicts) {
+                self.note(index, verdict);
+            }
+            self.elapsed_s = before_s + start.elapsed().as_secs_f64();
+            bar.set_message(format!("{} failed", self.failed));
+            if !std::io::stderr().is_terminal() {
+                eprintln!("{to} of {impacts} impacts in {:.0} s, {} failed", self.elapsed_s, self.failed);
+            }
+            save(&self)?;
+        }
+        bar.finish_and_clear();
+        Ok(self)
+    }
+
+    /// The number of steps that this share of the impacts does not exceed.
+    fn steps_quantile(&self, share: f64) -> u64 {
+        let wanted = (share * self.impacts as f64) as u64;
+        let mut counted = 0;
+        let reached = self.steps.iter().find(|(_, count)| {
+            counted += **count;
+            counted > wanted
+        });
+        reached.map_or(0, |(steps, _)| *steps)
+    }
 }
 
 /// Solves one case again and tells everything about it.
@@ -136,13 +189,23 @@ impl Summary {
         self.contacts += verdict.contacts as u64;
         *self.outcomes.entry(format!("{}: {}", verdict.kind, verdict.outcome)).or_default() += 1;
         self.most_contacts.note(verdict.contacts as f64, index);
+        *self.steps.entry(verdict.steps).or_default() += 1;
+        if verdict.residual_over_allowed >= 0.0 {
+            self.conservative += 1;
+        }
+        self.largest_residual_over_allowed.note(verdict.residual_over_allowed, index);
+        if verdict.error_over_stated >= 0.0 {
+            self.repeated += 1;
+            self.covered += u64::from(verdict.error_over_stated <= 1.0);
+        }
+        self.largest_error_over_stated.note(verdict.error_over_stated, index);
         self.most_steps.note(verdict.steps as f64, index);
         self.largest_gain_over_allowed.note(verdict.gain_over_allowed, index);
         self.slowest_s.note(verdict.seconds, index);
         if let Some(fault) = verdict.fault {
             self.failed += 1;
             if self.failures.len() < LISTED {
-                self.failures.push(Fault { index, kind: verdict.kind, fault });
+                self.failures.push(Fault { index, kind: verdict.kind.to_owned(), fault });
             }
         }
     }
@@ -165,13 +228,21 @@ impl Display for Summary {
         }
         let most = |extreme: &Extreme, digits: usize| format!("{:.digits$} (--only {})", extreme.value, extreme.index);
         writeln!(out, "most contacts in one impact  {}", most(&self.most_contacts, 0))?;
-        let (median, high) = (self.steps_median, self.steps_999_of_1000);
+        let (median, high) = (self.steps_quantile(0.5), self.steps_quantile(0.999));
         writeln!(
             out,
             "steps tried                  median {median}, 99.9 % {high}, most {}",
             most(&self.most_steps, 0)
         )?;
         writeln!(out, "largest energy gain          {} of what is allowed", most(&self.largest_gain_over_allowed, 3))?;
+        let residual = most(&self.largest_residual_over_allowed, 3);
+        writeln!(out, "largest energy residual      {residual} of it, over {} without losses", self.conservative)?;
+        let Summary { repeated, covered, .. } = self;
+        let error = most(&self.largest_error_over_stated, 2);
+        writeln!(
+            out,
+            "error of the restitution     within what is stated {covered} times of {repeated}, at most {error} of it"
+        )?;
         writeln!(out, "slowest impact               {} s", most(&self.slowest_s, 3))?;
         write!(out, "elapsed                      {elapsed_s:.0} s on {threads} threads")?;
         for Fault { index, kind, fault } in &self.failures {
@@ -183,13 +254,17 @@ impl Display for Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::run;
+    use super::Summary;
+
+    fn run(impacts: u64, seed: u64) -> Summary {
+        Summary::new(seed).run(impacts, None, |_| Ok(())).unwrap()
+    }
 
     #[test]
     fn two_thousand_random_impacts_hold_what_every_impact_must() {
-        let summary = run(2_000, 2019, None);
+        let summary = run(2_000, 2019);
         assert_eq!((summary.impacts, summary.failed), (2_000, 0), "{summary}");
-        for kind in ["infinite: ", "modal: ", "net: ", "scene: "] {
+        for kind in ["infinite: ", "modal: ", "net: ", "rod: ", "scene: "] {
             let ends = summary.outcomes.keys().filter(|outcome| outcome.starts_with(kind)).count();
             assert!(ends >= 2, "{kind}{summary}");
         }
@@ -197,9 +272,22 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_run_on_any_number_of_threads() {
-        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| run(100, 7, None));
-        let together = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap().install(|| run(100, 7, None));
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| run(100, 7));
+        let together = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap().install(|| run(100, 7));
         assert_eq!(alone.outcomes, together.outcomes);
-        assert_eq!((alone.contacts, alone.steps_median), (together.contacts, together.steps_median));
+        assert_eq!((alone.contacts, &alone.steps), (together.contacts, &together.steps));
+    }
+
+    #[test]
+    fn a_run_that_goes_on_ends_as_one_in_one_piece() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("soak.json");
+        Summary::resume(&path, 7).unwrap().run(60, None, |summary| summary.write(&path)).unwrap();
+        let pieces = Summary::resume(&path, 7).unwrap().run(100, None, |_| Ok(())).unwrap();
+        let whole = run(100, 7);
+        assert_eq!((pieces.impacts, &pieces.outcomes, &pieces.steps), (whole.impacts, &whole.outcomes, &whole.steps));
+        let extremes = |summary: &Summary| [summary.largest_gain_over_allowed, summary.most_steps].map(|at| at.index);
+        assert_eq!(extremes(&pieces), extremes(&whole));
+        assert!(Summary::resume(&path, 8).is_err());
     }
 }

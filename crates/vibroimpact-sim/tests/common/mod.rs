@@ -3,6 +3,7 @@
 
 pub mod random;
 
+use beam_modes::Beam;
 use contact_models::{ContactLaw, Hertz, Law, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
@@ -33,6 +34,15 @@ pub fn pinned_with_residual(n: usize, damping_ratio: f64, b: f64) -> Structure {
     structure.residual_compliance_m_n =
         whole - structure.modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum::<f64>();
     structure
+}
+
+/// Modes of a beam at a place, all with one damping ratio.
+pub fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Structure {
+    let modes = beam.modes(count).unwrap();
+    let shapes = modes.shapes_at(x_m).unwrap();
+    let each = modes.omega_rad_s().iter().zip(&shapes);
+    let modes = each.map(|(&omega_rad_s, &shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
+    Structure { modes, residual_compliance_m_n: 0.0 }
 }
 
 /// Hertz contact of the thesis's 3 cm ball.
