@@ -1,6 +1,6 @@
 //! One impact on an infinite beam, a hundred times over: for callgrind. See docs/performance.md.
 //!
-//! `infinite_cost S TOLERANCE NODES [estimate]`; 15, 1e-10 and 20 when left out.
+//! `infinite_cost S TOLERANCE NODES [estimate] [first]`; 15, 1e-10 and 20 when left out.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -14,8 +14,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [s, tolerance, nodes, options @ ..] = words.as_slice() else { return Ok(()) };
     let has = |word: &str| options.iter().any(|option| option == word);
     let (s, estimate_error) = (s.parse()?, has("estimate"));
-    let settings =
-        Settings { tolerance: tolerance.parse()?, nodes: nodes.parse()?, estimate_error, ..Settings::default() };
+    let settings = Settings {
+        tolerance: tolerance.parse()?,
+        nodes: nodes.parse()?,
+        estimate_error,
+        max_contacts: if has("first") { 1 } else { usize::MAX },
+        ..Settings::default()
+    };
     let mut solution = solve(Structure::Beam, s, &settings)?;
     let mut best = f64::INFINITY;
     for _ in 0..100 {
