@@ -1,7 +1,7 @@
 //! The equations of one panel, and Newton's method for them.
 
 use super::panel::hertz;
-use super::rule::dot;
+use super::rule::{NODES, dot};
 
 /// `x_i + sum_j m_ij f(x_j) = known_i` with `f = x_+^(3/2)`, and room for solving it: kept from one panel to the next.
 #[derive(Debug, Default)]
@@ -51,7 +51,7 @@ impl Equations {
                 return true;
             }
             // once close, the factors serve on
-            factors_serve = size < 1e-2 * scale && size < 0.1 * last;
+            factors_serve = size < 0.1 * scale && size < 0.2 * last;
             last = size;
         }
         false
@@ -68,25 +68,33 @@ impl Equations {
         let p = x.len();
         self.f.clear();
         self.f.extend(x.iter().map(|&x| 1.5 * x.max(0.0).sqrt()));
+        // rows in whole blocks, which the compiler can vectorise without a remainder
+        let width = p.next_multiple_of(BLOCK);
         self.lu.clear();
-        for row in self.matrix.chunks_exact(p).take(p) {
+        for (i, row) in self.matrix.chunks_exact(p).take(p).enumerate() {
             self.lu.extend(row.iter().zip(&self.f).map(|(m, slope)| m * slope));
+            self.lu[i * width + i] += 1.0;
+            self.lu.resize((i + 1) * width, 0.0);
         }
-        self.lu.iter_mut().step_by(p + 1).for_each(|d| *d += 1.0);
         self.pivots.clear();
         for k in 0..p {
-            let (head, tail) = self.lu.split_at_mut((k + 1) * p);
-            let pivot = head[k * p + k];
+            let (head, tail) = self.lu.split_at_mut((k + 1) * width);
+            let pivot = head[k * width + k];
             if pivot.abs() < 1e-8 || pivot.is_nan() {
                 return false;
             }
-            self.pivots.push(1.0 / pivot);
-            let row = &head[k * p + k + 1..];
-            for below in tail.chunks_exact_mut(p) {
-                let l = below[k] / pivot;
+            let inverse = 1.0 / pivot;
+            self.pivots.push(inverse);
+            // what is right of the pivot, behind zeros up to a whole block
+            let from = (k + 1) / BLOCK * BLOCK;
+            let mut row = [0.0; *NODES.end()];
+            row[k + 1..p].copy_from_slice(&head[k * width + k + 1..k * width + p]);
+            let row = &row[from..width];
+            for below in tail.chunks_exact_mut(width) {
+                let l = below[k] * inverse;
                 below[k] = l;
-                for (b, r) in below[k + 1..].iter_mut().zip(row) {
-                    *b -= l * r;
+                for (b, r) in below[from..].as_chunks_mut::<BLOCK>().0.iter_mut().zip(row.as_chunks::<BLOCK>().0) {
+                    *b = std::array::from_fn(|i| b[i] - l * r[i]);
                 }
             }
         }
@@ -95,11 +103,15 @@ impl Equations {
 
     fn substitute(&mut self) {
         let (b, p) = (&mut self.step, self.pivots.len());
-        for (i, row) in self.lu.chunks_exact(p).enumerate() {
+        let rows = self.lu.chunks_exact(p.next_multiple_of(BLOCK));
+        for (i, row) in rows.clone().enumerate() {
             b[i] -= dot(&row[..i], &b[..i]);
         }
-        for (i, row) in self.lu.chunks_exact(p).enumerate().rev() {
-            b[i] = (b[i] - dot(&row[i + 1..], &b[i + 1..])) * self.pivots[i];
+        for (i, row) in rows.enumerate().rev() {
+            b[i] = (b[i] - dot(&row[i + 1..p], &b[i + 1..])) * self.pivots[i];
         }
     }
 }
+
+/// Width of the pieces in which rows are treated.
+const BLOCK: usize = 4;
