@@ -13,10 +13,10 @@
 //! where the sum over earlier impulses (ages `d_j`) is `x` of free motion with its line removed,
 //! every term positive: no digits are lost however late the contact comes.
 
+use super::collocate::Equations;
 use super::flight::Departure;
 use super::free::{Forcing, Free};
 use super::history::{History, Impulse};
-use super::collocate::Equations;
 use super::panel::{Panel, curvature, end_acceleration, hertz, root, turns, variable};
 use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;

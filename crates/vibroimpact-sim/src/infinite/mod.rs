@@ -107,7 +107,14 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { nodes: 20, tolerance: 1e-10, horizon: 0.0, estimate_error: true, max_panels: 200_000, max_contacts: usize::MAX }
+        Settings {
+            nodes: 20,
+            tolerance: 1e-10,
+            horizon: 0.0,
+            estimate_error: true,
+            max_panels: 200_000,
+            max_contacts: usize::MAX,
+        }
     }
 }
 

@@ -166,7 +166,8 @@ impl RootSum {
             let r = y.map(|y| 1.0 / (1.0 + y + (y * (y + 2.0)).sqrt()));
             // powers beyond which nothing is left of any lane
             let nearest = r[..beyond.len()].iter().fold(0.0_f64, |a, &b| a.max(b));
-            let count = if nearest < 0.9 { (self.negligible / nearest.ln()).ceil() as usize } else { self.powers.len() };
+            let count =
+                if nearest < 0.9 { (self.negligible / nearest.ln()).ceil() as usize } else { self.powers.len() };
             let mut series = [0.0; LANES];
             for &c in self.powers[..count.min(self.powers.len())].iter().rev() {
                 for (series, r) in series.iter_mut().zip(r) {
