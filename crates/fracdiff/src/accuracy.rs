@@ -90,7 +90,7 @@ impl Volterra<'_> {
     ) -> Result<Estimated, InvalidInput> {
         let coarse = Collocation { tolerance, nodes, first_panel: first_panel(0.3), ..Collocation::default() };
         let fine = Collocation {
-            tolerance: (0.1 * tolerance).max(SMALLEST),
+            tolerance: (0.01 * tolerance).max(SMALLEST),
             nodes: nodes + 3,
             first_panel: first_panel(0.23),
             ..Collocation::default()
