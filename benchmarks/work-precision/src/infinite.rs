@@ -50,7 +50,11 @@ fn volterra<'a>(s: f64, terminal: bool) -> Volterra<'a> {
 
 fn own_settings(tolerance: f64) -> Settings {
     // the tolerance is that of a panel's last coefficients; what it leaves is far less than this many nodes can resolve
-    let nodes = if tolerance > 1e-5 { 12 } else { 20 };
+    let nodes = match tolerance {
+        5e-4.. => 8,
+        1e-7.. => 12,
+        _ => 20,
+    };
     Settings { nodes, tolerance, estimate_error: false, ..Settings::default() }
 }
 
@@ -78,7 +82,8 @@ type General = (&'static str, Vec<f64>, fn(f64) -> Method);
 
 /// The methods of `fracdiff` with their sweeps.
 fn general_methods(effort: &Effort) -> Vec<General> {
-    let steps: Vec<f64> = [125.0, 500.0, 2000.0, 8000.0].into_iter().take(if effort.quick { 2 } else { 4 }).collect();
+    let steps: Vec<f64> =
+        [16.0, 32.0, 125.0, 500.0, 2000.0, 8000.0].into_iter().take(if effort.quick { 3 } else { 6 }).collect();
     vec![
         ("fracdiff collocation", effort.tolerances(3, 13), |tolerance| {
             Method::Collocation(Collocation { tolerance, ..Collocation::default() })
@@ -136,7 +141,9 @@ pub fn rows(effort: &Effort) -> Result<Vec<Row>, String> {
         };
         let own = Solver { name: "vibroimpact infinite", origin: Origin::Own, cost_unit: "panels" };
         rows.extend(sweep(name, own, &effort.tolerances(3, 14), effort, |tolerance| {
-            let solution = solve(Structure::Beam, s, &own_settings(tolerance)).map_err(|error| error.to_string())?;
+            // no further than the others, which stop at the first separation
+            let settings = Settings { max_contacts: 1, ..own_settings(tolerance) };
+            let solution = solve(Structure::Beam, s, &settings).map_err(|error| error.to_string())?;
             let first = solution.contacts.first().and_then(|contact| contact.duration).ok_or("no separation")?;
             let ratio = solution.first_rebound_ratio().ok_or("no separation")?;
             Ok(Found { cost: solution.panels_tried as u64, errors: errors(first, ratio) })

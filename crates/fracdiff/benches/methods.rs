@@ -2,21 +2,12 @@
 //! whose cost grows with the length of the past.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fracdiff::{Collocation, Convolution, GalerkinStates, Method, SumOfExponentials, test_problems};
+use fracdiff::{Collocation, Convolution, Method, test_problems};
 use std::hint::black_box;
 
 fn methods(c: &mut Criterion) {
     let problem = test_problems::linear_beam().volterra;
-    let steps = 500;
-    let methods = [
-        Method::GrunwaldLetnikov(Convolution { steps }),
-        Method::L1(Convolution { steps }),
-        Method::Trapezoidal(Convolution { steps }),
-        Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
-        Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
-        Method::Collocation(Collocation::default()),
-    ];
-    for method in &methods {
+    for method in &test_problems::every_method(500) {
         c.bench_function(&format!("linear-beam/{}", method.name()), |b| {
             b.iter(|| black_box(problem.solve(black_box(method), 2.0)))
         });

@@ -43,6 +43,8 @@
 //! | [`L1`](Method::L1) | 1; `2 - a` if smooth | `O(n log^2 n)` | `O(n)` | comparison |
 //! | [`GrunwaldLetnikov`](Method::GrunwaldLetnikov) | 1 | `O(n log^2 n)` | `O(n)` | comparison |
 //!
+//! [`Volterra::solve_to`] chooses the settings for an accuracy asked for and estimates the error.
+//!
 //! *Convolution methods* replace the integral by `h^a sum_j w_(n-j) f_j` on equal steps. Gruenwald-Letnikov: `w` are the
 //! coefficients of `(1-z)^-a`. L1: those of the inverse of the L1 formula for the derivative of the fractional order,
 //! times trapezoidal rules for the whole part of `a`. Trapezoidal: exact integrals of the piecewise linear interpolant,
@@ -81,6 +83,7 @@
 //! (2004) for the product trapezoidal rule; Jiang, Zhang, Zhang & Zhang (2017) for sums of exponentials; Singh &
 //! Chatterjee (2006) and Das & Chatterjee (2013) for Galerkin states; Brunner (2004) for collocation.
 
+mod accuracy;
 mod collocation;
 mod convolution;
 mod dense;
@@ -98,6 +101,7 @@ mod solution;
 mod system;
 pub mod test_problems;
 
+pub use accuracy::Estimated;
 pub use collocation::Collocation;
 pub use convolution::Convolution;
 pub use error::InvalidInput;

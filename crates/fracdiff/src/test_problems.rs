@@ -5,6 +5,10 @@
 // The references keep the digits they were computed to.
 #![allow(clippy::excessive_precision)]
 
+use crate::collocation::Collocation;
+use crate::convolution::Convolution;
+use crate::exponential::{GalerkinStates, SumOfExponentials};
+use crate::method::Method;
 use crate::problem::{Term, Volterra};
 use libm::tgamma;
 use std::f64::consts::PI;
@@ -50,6 +54,18 @@ pub fn all() -> Vec<TestProblem> {
         linear_beam(),
         rigid_contact(),
         manufactured_contact(),
+    ]
+}
+
+/// Every method of the crate, those on steps with this many of them, in the order of [`Method`].
+pub fn every_method(steps: usize) -> Vec<Method> {
+    vec![
+        Method::GrunwaldLetnikov(Convolution { steps }),
+        Method::L1(Convolution { steps }),
+        Method::Trapezoidal(Convolution { steps }),
+        Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
+        Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
+        Method::Collocation(Collocation::default()),
     ]
 }
 

@@ -1,24 +1,13 @@
 //! Systems, several terms and mixed orders; discontinuous forcing; agreement of the methods.
 
+use fracdiff::test_problems::{self, every_method};
 use fracdiff::{
-    Collocation, Convolution, Equation, GalerkinStates, InitialValueProblem, Method, Solution, Stop, SumOfExponentials,
-    Term, Volterra, test_problems,
+    Collocation, Convolution, Equation, InitialValueProblem, Method, Solution, Stop, SumOfExponentials, Term, Volterra,
 };
 use libm::tgamma;
 
 fn collocation() -> Method {
     Method::Collocation(Collocation::default())
-}
-
-fn every_method(steps: usize) -> Vec<Method> {
-    vec![
-        Method::GrunwaldLetnikov(Convolution { steps }),
-        Method::L1(Convolution { steps }),
-        Method::Trapezoidal(Convolution { steps }),
-        Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
-        Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
-        collocation(),
-    ]
 }
 
 #[test]

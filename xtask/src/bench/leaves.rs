@@ -159,16 +159,7 @@ pub fn fits() -> Vec<Problem> {
 
 /// Every method on the linear analogue of the infinite beam, and collocation where the past is long.
 pub fn fractional() -> Vec<Problem> {
-    use fracdiff::{Collocation, Convolution, GalerkinStates, Method, SumOfExponentials, test_problems};
-    let steps = 500;
-    let methods = [
-        Method::GrunwaldLetnikov(Convolution { steps }),
-        Method::L1(Convolution { steps }),
-        Method::Trapezoidal(Convolution { steps }),
-        Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
-        Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
-        Method::Collocation(Collocation::default()),
-    ];
+    use fracdiff::{Collocation, Method, test_problems};
     let on = |test: fracdiff::test_problems::TestProblem, method: Method, end: f64| {
         let name = format!("fracdiff/{}/{}", test.name, method.name());
         let exact = test.reference.iter().filter(|(t, _)| *t == end).map(|r| r.1).collect();
@@ -185,8 +176,10 @@ pub fn fractional() -> Vec<Problem> {
             Ok(Found { values: solution.at(end)?, costs })
         })
     };
-    let mut problems: Vec<Problem> =
-        methods.into_iter().map(|method| on(test_problems::linear_beam(), method, 2.0)).collect();
+    let mut problems: Vec<Problem> = test_problems::every_method(500)
+        .into_iter()
+        .map(|method| on(test_problems::linear_beam(), method, 2.0))
+        .collect();
     let collocation = || Method::Collocation(Collocation::default());
     problems.push(on(test_problems::relaxation(), collocation(), 100.0));
     problems.push(on(test_problems::bagley_torvik(), collocation(), 20.0));

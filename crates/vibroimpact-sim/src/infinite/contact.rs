@@ -13,10 +13,11 @@
 //! where the sum over earlier impulses (ages `d_j`) is `x` of free motion with its line removed,
 //! every term positive: no digits are lost however late the contact comes.
 
+use super::collocate::Equations;
 use super::flight::Departure;
 use super::free::{Forcing, Free};
 use super::history::{History, Impulse};
-use super::panel::{Panel, collocate, curvature, turns};
+use super::panel::{Panel, curvature, end_acceleration, hertz, root, turns, variable};
 use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;
 use super::units::{Touch, Units};
@@ -100,11 +101,29 @@ pub(super) struct March<'a> {
     pub pieces: Vec<Piece>,
     pub turns: Vec<Turn>,
     pub trials: usize,
+    equations: Equations,
+    /// The last panel solved, taken or not.
+    hint: Option<Hint>,
+    /// Times of the nodes of the panel on trial after some earlier moment: room.
+    later: Vec<f64>,
+}
+
+/// A solution near which that of the next panel lies.
+struct Hint {
+    kind: Kind,
+    /// Start on the contact's current time origin.
+    start: f64,
+    h: f64,
+    x_series: Vec<f64>,
 }
 
 /// A panel on trial.
 struct Trial {
-    panel: Panel,
+    kind: Kind,
+    start: f64,
+    h: f64,
+    /// Compression at the nodes.
+    x: Vec<f64>,
     x_series: Vec<f64>,
     x_end: f64,
     /// Unresolved part of the force relative to the yardstick.
@@ -139,6 +158,9 @@ impl<'a> March<'a> {
             pieces: Vec::new(),
             turns: Vec::new(),
             trials: 0,
+            equations: Equations::default(),
+            hint: None,
+            later: Vec::new(),
         };
         march.free = march.free_motion();
         march
@@ -207,18 +229,45 @@ impl<'a> March<'a> {
         Ending::Limit(self.units.time * (self.origin + p))
     }
 
-    /// Free part of `xi` plus what earlier panels of this contact add, at `theta` from the origin;
-    /// `p` is the present, up to which `impulse` and `moment` count.
-    fn known(&self, theta: f64, p: f64) -> f64 {
-        let bend = self.free.bend(theta);
-        let memory: f64 = self
-            .near
-            .iter()
-            .map(|panel| panel.memory(self.structure, self.tables, (theta - panel.start - panel.h).max(0.0)))
-            .sum();
-        self.x_origin + self.slope * theta + theta * theta * bend
-            - self.units.linear * (self.moment + self.impulse * (theta - p))
-            - self.units.memory * (memory - self.near_at_origin)
+    /// Free part of `xi` plus what earlier panels of this contact add, at the nodes and the end of a panel from the
+    /// present `p`, up to which `impulse` and `moment` count: the right-hand sides of its equations.
+    fn know(&mut self, kind: Kind, p: f64, h: f64) {
+        let known = &mut self.equations.known;
+        let elapsed = &self.tables.rule(kind).elapsed;
+        known.clear();
+        known.resize(elapsed.len(), -self.near_at_origin);
+        for panel in &self.near {
+            let behind = (p - panel.start - panel.h).max(0.0);
+            self.later.clear();
+            self.later.extend(elapsed.iter().map(|e| behind + h * e));
+            panel.add_memory(self.structure, self.tables, &self.later, known);
+        }
+        for (known, e) in known.iter_mut().zip(elapsed) {
+            let theta = p + h * e;
+            *known = self.x_origin + self.slope * theta + theta * theta * self.free.bend(theta)
+                - self.units.linear * (self.moment + self.impulse * h * e)
+                - self.units.memory * *known;
+        }
+    }
+
+    /// A guess of the compression at the nodes of a panel from the present `p`: what the last panel solved says of
+    /// that time or, beyond it, a parabola.
+    fn guess(&self, kind: Kind, p: f64, h: f64) -> Vec<f64> {
+        let rule = self.tables.rule(kind);
+        let elapsed = &rule.elapsed[..self.tables.p];
+        let Some(hint) = &self.hint else {
+            return elapsed.iter().map(|e| self.x + self.rate * h * e).collect();
+        };
+        let offset = (p - hint.start) / hint.h;
+        let scale = h / hint.h;
+        if offset < 0.5 {
+            let at = |e: &f64| series(&hint.x_series, variable(hint.kind, offset + scale * e));
+            return elapsed.iter().map(at).collect();
+        }
+        let bend = 0.5 * end_acceleration(hint.kind, hint.h, &hint.x_series);
+        let bound = self.x + h * self.rate.abs();
+        let at = |e: &f64| (self.x + h * e * (self.rate + h * e * bend)).min(bound).max(0.0);
+        elapsed.iter().map(at).collect()
     }
 
     /// Solves one panel from the present `p`; `None` if Newton's method failed.
@@ -232,24 +281,27 @@ impl<'a> March<'a> {
                 Structure::Beam => h * h.sqrt(),
                 Structure::Plate => h,
             };
-        let matrix: Vec<f64> = rule.linear.iter().zip(&rule.memory).map(|(l, m)| linear * l + memory * m).collect();
-        let known: Vec<f64> = rule.elapsed.iter().map(|e| self.known(p + h * e, p)).collect();
-        let mut x: Vec<f64> = rule.elapsed[..n].iter().map(|e| self.x + self.rate * h * e).collect();
-        let bound = self.x + h * self.rate.abs();
-        x.iter_mut().for_each(|x| *x = x.min(bound).max(0.0));
-        if !collocate(&matrix[..n * n], &known[..n], &mut x) {
+        self.know(kind, p, h);
+        let matrix = &mut self.equations.matrix;
+        matrix.clear();
+        matrix.extend(rule.linear.iter().zip(&rule.memory).map(|(l, m)| linear * l + memory * m));
+        let mut x = self.guess(kind, p, h);
+        self.hint = None;
+        if !self.equations.solve(&mut x, 1e-6 * self.settings.tolerance) {
             return None;
         }
-        let panel = Panel::new(self.tables, kind, p, h, x);
-        let x_end = known[n] - dot(&matrix[n * n..], &panel.f);
-        let x_series = self.tables.coefficients(&panel.x);
-        let largest = panel.f.iter().fold(0.0_f64, |a, &b| a.max(b));
-        let scale = largest.max(self.f_scale * (-0.5 * h).exp());
-        let tail = panel.f_series[n - 2..].iter().fold(0.0_f64, |a, b| a.max(b.abs())) / scale.max(f64::MIN_POSITIVE);
+        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
+        let x_end = self.equations.end(&f);
+        let x_series = self.tables.coefficients(&x);
+        let largest = f.iter().fold(0.0_f64, |a, &b| a.max(b));
+        let scale = largest.max(self.f_scale * (-0.5 * h).exp()).max(f64::MIN_POSITIVE);
+        let last_rows = self.tables.to_legendre[(n - 2) * n..].chunks_exact(n);
+        let tail = last_rows.fold(0.0_f64, |a, row| a.max(dot(row, &f).abs())) / scale;
         let terms = self.x_origin + (self.slope.abs() + self.units.linear * self.impulse) * (p + h);
-        let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale.max(f64::MIN_POSITIVE);
+        let noise = 1e-15 * terms * 1.5 * largest.cbrt() / scale;
         let attainable = self.settings.tolerance.max(noise);
-        Some(Trial { attainable, panel, x_series, x_end, tail })
+        self.hint = Some(Hint { kind, start: p, h, x_series: x_series.clone() });
+        Some(Trial { kind, start: p, h, x, x_series, x_end, tail, attainable })
     }
 
     /// Tries a mapped end panel over the last stretch; `None` if it is not resolved, or if there
@@ -268,7 +320,8 @@ impl<'a> March<'a> {
                 return None;
             }
             // converged, or as far as rounding lets the steps shrink
-            let settled = step.abs() <= 4e-16 * (p + length) || (step.abs() < 1e-6 * length && step.abs() > 0.1 * last);
+            let enough = (4e-16 * (p + length)).max(1e-5 * self.settings.tolerance * length);
+            let settled = step.abs() <= enough || (step.abs() < 1e-6 * length && step.abs() > 0.1 * last);
             last = step.abs();
             if settled {
                 let (found, falling) = turns(self.tables, Kind::End, &trial.x_series, self.falling);
@@ -286,7 +339,7 @@ impl<'a> March<'a> {
 
     /// Takes a panel into the record; returns the first minimum in it.
     fn accept(&mut self, trial: Trial, found: &[(f64, f64, bool)], falling: bool) -> Option<f64> {
-        let panel = trial.panel;
+        let panel = Panel::new(self.tables, trial.kind, trial.start, trial.h, trial.x);
         let (impulse, moment) = (panel.impulse(self.tables), panel.moment(self.tables));
         for &(elapsed, x, minimum) in found {
             let after = self.units.time * (self.origin + panel.start + elapsed * panel.h);
@@ -342,6 +395,7 @@ impl<'a> March<'a> {
             self.history.condense();
         }
         self.near.iter_mut().for_each(|panel| panel.start -= p);
+        self.hint.iter_mut().for_each(|hint| hint.start -= p);
         self.origin += p;
         self.x_origin = self.x;
         (self.impulse, self.moment) = (0.0, 0.0);
@@ -405,7 +459,7 @@ impl<'a> March<'a> {
 
 /// Time from the start of a rejected panel to the separation that its solution foretells.
 fn separation_ahead(trial: &Trial, low: Option<f64>, found: &[(f64, f64, bool)]) -> Option<f64> {
-    let h = trial.panel.h;
+    let h = trial.h;
     let Some(low) = low else {
         let rate = series_slope(&trial.x_series, 1.0) / h;
         return (rate < 0.0 && trial.x_end < -0.5 * h * rate).then(|| h - trial.x_end / rate);
@@ -418,16 +472,7 @@ fn separation_ahead(trial: &Trial, low: Option<f64>, found: &[(f64, f64, bool)])
 /// Elapsed fraction of a middle panel at which a compression that is positive at `from` and not
 /// at `to` falls to zero.
 fn zero(x_series: &[f64], from: f64, to: f64) -> f64 {
-    let (mut a, mut b) = (from, to);
-    for _ in 0..40 {
-        let mid = 0.5 * (a + b);
-        if series(x_series, mid) > 0.0 {
-            a = mid;
-        } else {
-            b = mid;
-        }
-    }
-    0.5 * (a + b)
+    root(from, to, |s| series(x_series, s))
 }
 
 #[cfg(test)]

@@ -47,6 +47,7 @@
 //! ```
 
 mod asymptotic;
+mod collocate;
 mod contact;
 mod flight;
 mod free;
@@ -99,11 +100,21 @@ pub struct Settings {
     /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at
     /// a relative distance of 1e-3, 1,008 at 1e-5, 4,401 at 1e-6 and more than 16,000 at 1e-7.
     pub max_panels: usize,
+    /// Most contacts to follow: 1 for the first alone. Where the body would come back once more, the run ends with
+    /// [`Outcome::LimitReached`], known up to the next touch. Default: no limit.
+    pub max_contacts: usize,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { nodes: 20, tolerance: 1e-10, horizon: 0.0, estimate_error: true, max_panels: 200_000 }
+        Settings {
+            nodes: 20,
+            tolerance: 1e-10,
+            horizon: 0.0,
+            estimate_error: true,
+            max_panels: 200_000,
+            max_contacts: usize::MAX,
+        }
     }
 }
 
@@ -114,6 +125,7 @@ impl Settings {
         InvalidInput::unless(tolerance, "tolerance", self.tolerance, "1e-14 to 1e-3")?;
         let horizon = (0.0..=1e12).contains(&self.horizon);
         InvalidInput::unless(horizon, "horizon", self.horizon, "0 to 1e12 (units of T)")?;
-        InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")
+        InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")?;
+        InvalidInput::unless(self.max_contacts > 0, "max_contacts", self.max_contacts, "at least 1")
     }
 }

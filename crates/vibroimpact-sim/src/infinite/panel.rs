@@ -1,7 +1,7 @@
 //! One panel of a contact: its collocation solution, and what it does to later times.
 
 use super::Structure;
-use super::rule::{Kind, Tables, dot, series, series_slope};
+use super::rule::{Kind, NODES, Tables, dot, series, series_slope};
 
 /// A solved panel, in the scaled units of its contact (see [`super::contact`]).
 #[derive(Debug, Clone)]
@@ -44,27 +44,49 @@ impl Panel {
     /// `int K(t - s) f ds` over the panel for a time `t` not before its end, with
     /// `after = t - end`.
     pub fn memory(&self, structure: Structure, tables: &Tables, after: f64) -> f64 {
+        let mut sum = [0.0];
+        self.add_memory(structure, tables, &[after], &mut sum);
+        sum[0]
+    }
+
+    /// Adds [`memory`](Self::memory) for each time to its sum.
+    pub fn add_memory(&self, structure: Structure, tables: &Tables, after: &[f64], sums: &mut [f64]) {
         if structure == Structure::Plate {
-            return self.impulse(tables);
+            let impulse = self.impulse(tables);
+            sums.iter_mut().for_each(|sum| *sum += impulse);
+            return;
         }
-        let p = tables.p;
-        let later = after / self.h;
-        match self.kind {
-            Kind::Middle => (0.5 * self.h).powf(1.5) * self.root.at(2.0 * later),
-            Kind::Start if later < 1.0 => {
-                // sqrt(Z^2 - s^2) = sqrt(Z - s) sqrt(Z + s); the second factor is smooth
-                let z = (1.0 + later).sqrt();
-                let smooth: Vec<f64> =
-                    (0..p).map(|j| 2.0 * tables.sigma[j] * self.f[j] * (z + tables.sigma[j]).sqrt()).collect();
-                let beyond = later / (z + 1.0);
-                (self.h * self.h * self.h * 0.125).sqrt() * RootSum::new(&tables.coefficients(&smooth)).at(2.0 * beyond)
-            }
-            _ => {
+        if self.kind == Kind::Middle {
+            let half = 0.5 * self.h;
+            self.root.add(half * half.sqrt(), half.recip(), after, sums);
+            return;
+        }
+        for (sum, after) in sums.iter_mut().zip(after) {
+            let later = after / self.h;
+            *sum += if self.kind == Kind::Start && later < 1.0 {
+                self.memory_next_to_start(tables, later)
+            } else {
                 let rule = tables.rule(self.kind);
-                let sum: f64 = (0..p).map(|j| rule.mass[j] * self.f[j] * (rule.remaining[j] + later).sqrt()).sum();
-                self.h.powf(1.5) * sum
-            }
+                let points = rule.mass.iter().zip(&self.f).zip(&rule.remaining);
+                let part: f64 = points.map(|((m, f), remaining)| m * f * (remaining + later).sqrt()).sum();
+                self.h * self.h.sqrt() * part
+            };
         }
+    }
+
+    /// The memory of a start panel at a time that lies less than its length behind it.
+    fn memory_next_to_start(&self, tables: &Tables, later: f64) -> f64 {
+        // sqrt(Z^2 - s^2) = sqrt(Z - s) sqrt(Z + s); the second factor is smooth
+        let z = (1.0 + later).sqrt();
+        let mut smooth = [0.0; MOST_NODES];
+        for ((smooth, s), f) in smooth.iter_mut().zip(&tables.sigma).zip(&self.f) {
+            *smooth = 2.0 * s * f * (z + s).sqrt();
+        }
+        let beyond = later / (z + 1.0);
+        let root = RootSum::new(&tables.coefficients(&smooth[..tables.p]));
+        let mut sum = [0.0];
+        root.add((self.h * self.h * self.h * 0.125).sqrt(), 2.0, &[beyond], &mut sum);
+        sum[0]
     }
 
     /// Compression at fraction `elapsed` of the panel.
@@ -119,122 +141,94 @@ struct RootSum {
     mean: f64,
     /// Coefficients of the powers of `r`.
     powers: Vec<f64>,
+    /// Logarithm of what is negligible, relative to the largest of them.
+    negligible: f64,
 }
 
 impl RootSum {
     fn new(coefficients: &[f64]) -> RootSum {
         let mut powers = vec![0.0; coefficients.len() + 1];
-        for (k, c) in coefficients.iter().enumerate().skip(1) {
-            let n = (2 * k) as f64;
-            powers[k + 1] += c / ((n + 1.0) * (n + 3.0));
-            powers[k - 1] -= c / ((n + 1.0) * (n - 1.0));
+        for ((k, c), (raised, lowered)) in coefficients.iter().enumerate().zip(ROOT_FACTORS).skip(1) {
+            powers[k + 1] += c * raised;
+            powers[k - 1] -= c * lowered;
         }
-        RootSum { mean: coefficients[0], powers }
+        let mean = coefficients[0];
+        let largest = powers.iter().fold(0.0_f64, |a, c| a.max(c.abs()));
+        RootSum { mean, powers, negligible: (1e-18 * mean.abs() / largest).max(1e-300).ln() }
     }
 
-    /// At `z = 1 + beyond`.
-    fn at(&self, beyond: f64) -> f64 {
-        let r = 1.0 / (1.0 + beyond + (beyond * (beyond + 2.0)).sqrt());
-        let (far, near) = ((beyond + 2.0).sqrt(), beyond.sqrt());
-        // (2/3) (far^3 - near^3), as far^2 - near^2 = 2
-        let first = 4.0 / 3.0 * (far * far + far * near + near * near) / (far + near);
-        self.mean * first + (2.0 * r).sqrt() * self.powers.iter().rev().fold(0.0, |sum, c| sum * r + c)
-    }
-}
-
-/// Solves `x_i + sum_j m_ij f(x_j) = rhs_i`, `f = x_+^(3/2)`, at the nodes of a panel by Newton's
-/// method from the guess in `x`. Returns whether it settled.
-pub(super) fn collocate(matrix: &[f64], rhs: &[f64], x: &mut [f64]) -> bool {
-    let p = x.len();
-    let mut lu = vec![0.0; p * p];
-    let mut step = vec![0.0; p];
-    let mut last = f64::INFINITY;
-    let mut fresh = false;
-    for _ in 0..60 {
-        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
-        let mut scale = 0.0_f64;
-        for i in 0..p {
-            step[i] = rhs[i] - x[i] - dot(&matrix[i * p..(i + 1) * p], &f);
-            scale = scale.max(x[i].abs()).max(rhs[i].abs());
-        }
-        if !fresh {
-            for i in 0..p {
-                for j in 0..p {
-                    lu[i * p + j] = matrix[i * p + j] * 1.5 * x[j].max(0.0).sqrt();
+    /// Adds `factor` times the function at each `z = 1 + scale * beyond` to its sum.
+    fn add(&self, factor: f64, scale: f64, beyond: &[f64], sums: &mut [f64]) {
+        for (beyond, sums) in beyond.chunks(LANES).zip(sums.chunks_mut(LANES)) {
+            let mut y = [0.0; LANES];
+            y.iter_mut().zip(beyond).for_each(|(y, beyond)| *y = scale * beyond);
+            let y = y;
+            let r = y.map(|y| 1.0 / (1.0 + y + (y * (y + 2.0)).sqrt()));
+            // powers beyond which nothing is left of any lane
+            let nearest = r[..beyond.len()].iter().fold(0.0_f64, |a, &b| a.max(b));
+            let count =
+                if nearest < 0.9 { (self.negligible / nearest.ln()).ceil() as usize } else { self.powers.len() };
+            let mut series = [0.0; LANES];
+            for &c in self.powers[..count.min(self.powers.len())].iter().rev() {
+                for (series, r) in series.iter_mut().zip(r) {
+                    *series = *series * r + c;
                 }
-                lu[i * p + i] += 1.0;
             }
-            if !factor(&mut lu, p) {
-                return false;
+            for (i, sum) in sums.iter_mut().enumerate() {
+                let (far, near) = ((y[i] + 2.0).sqrt(), y[i].sqrt());
+                // (2/3) (far^3 - near^3), as far^2 - near^2 = 2
+                let first = 4.0 / 3.0 * (far * far + far * near + near * near) / (far + near);
+                *sum += factor * (self.mean * first + (2.0 * r[i]).sqrt() * series[i]);
             }
         }
-        substitute(&lu, p, &mut step);
-        let size = step.iter().fold(0.0_f64, |size, s| size.max(s.abs()));
-        if !size.is_finite() {
-            return false;
-        }
-        for i in 0..p {
-            x[i] += step[i];
-        }
-        if size <= 2e-16 * scale || (size < 1e-13 * scale && size > 0.3 * last) {
-            return true;
-        }
-        // once close, the factors serve on
-        fresh = size < 1e-3 * scale && size < 0.1 * last;
-        last = size;
     }
-    false
 }
+
+/// Times that are treated together, for the vector units.
+const LANES: usize = 8;
+
+const MOST_NODES: usize = *NODES.end();
+
+/// `1 / ((2k+1)(2k+3))` and `1 / ((2k+1)(2k-1))`.
+const ROOT_FACTORS: [(f64, f64); MOST_NODES] = {
+    let mut factors = [(0.0, 0.0); MOST_NODES];
+    let mut k = 1;
+    while k < MOST_NODES {
+        let n = (2 * k) as f64;
+        factors[k] = (1.0 / ((n + 1.0) * (n + 3.0)), 1.0 / ((n + 1.0) * (n - 1.0)));
+        k += 1;
+    }
+    factors
+};
 
 /// `x_ss` at `s = 0` of a Legendre series on `(0, 1)`.
 pub(super) fn curvature(x_series: &[f64]) -> f64 {
-    // P_k''(-1) = (-1)^k (k-1) k (k+1) (k+2) / 8, times 4 for the interval (0, 1)
-    x_series
-        .iter()
-        .enumerate()
-        .skip(2)
-        .map(|(k, c)| {
-            let n = k as f64;
-            let value = (n - 1.0) * n * (n + 1.0) * (n + 2.0) / 2.0;
-            if k % 2 == 0 { c * value } else { -c * value }
-        })
-        .sum()
+    x_series.iter().zip(END_CURVATURES).enumerate().map(|(k, (c, d))| if k % 2 == 0 { c * d } else { -c * d }).sum()
 }
+
+/// Second derivative in time at the end of a start or middle panel.
+pub(super) fn end_acceleration(kind: Kind, h: f64, x_series: &[f64]) -> f64 {
+    let x_ss: f64 = x_series.iter().zip(END_CURVATURES).map(|(c, d)| c * d).sum();
+    match kind {
+        Kind::Start => 0.25 * (x_ss - series_slope(x_series, 1.0)) / (h * h),
+        _ => x_ss / (h * h),
+    }
+}
+
+/// Second derivatives of the Legendre polynomials on `(0, 1)` at 1: `(k-1) k (k+1) (k+2) / 2`.
+const END_CURVATURES: [f64; MOST_NODES] = {
+    let mut values = [0.0; MOST_NODES];
+    let mut k = 1;
+    while k < MOST_NODES {
+        values[k] = ((k - 1) * k * (k + 1) * (k + 2)) as f64 / 2.0;
+        k += 1;
+    }
+    values
+};
 
 /// `x_+^(3/2)`.
 pub(super) fn hertz(x: f64) -> f64 {
     if x > 0.0 { x * x.sqrt() } else { 0.0 }
-}
-
-/// LU factors in place without exchange of rows: the matrices are the identity plus a Volterra
-/// operator with positive kernel, whose pivots stay away from zero.
-fn factor(a: &mut [f64], p: usize) -> bool {
-    for k in 0..p {
-        let pivot = a[k * p + k];
-        if pivot.abs() < 1e-8 || pivot.is_nan() {
-            return false;
-        }
-        let (head, tail) = a.split_at_mut((k + 1) * p);
-        let row = &head[k * p + k + 1..(k + 1) * p];
-        for below in tail.chunks_exact_mut(p) {
-            let l = below[k] / pivot;
-            below[k] = l;
-            for (b, r) in below[k + 1..].iter_mut().zip(row) {
-                *b -= l * r;
-            }
-        }
-    }
-    true
-}
-
-fn substitute(lu: &[f64], p: usize, b: &mut [f64]) {
-    for i in 0..p {
-        b[i] -= dot(&lu[i * p..i * p + i], &b[..i]);
-    }
-    for i in (0..p).rev() {
-        let sum = dot(&lu[i * p + i + 1..(i + 1) * p], &b[i + 1..]);
-        b[i] = (b[i] - sum) / lu[i * p + i];
-    }
 }
 
 /// Stationary points of a panel's compression, in time order: `(elapsed fraction, compression,
@@ -243,6 +237,11 @@ pub(super) fn turns(tables: &Tables, kind: Kind, x_series: &[f64], falling: bool
     let p = tables.p;
     let count = tables.sample.len();
     let mut found = Vec::new();
+    // no derivative of a Legendre polynomial exceeds k (k + 1), that of the first is 2
+    let bends: f64 = x_series.iter().enumerate().skip(2).map(|(k, c)| c.abs() * (k * (k + 1)) as f64).sum();
+    if kind == Kind::Middle && 2.0 * x_series[1].abs() > bends && falling == (x_series[1] < 0.0) {
+        return (found, falling);
+    }
     let mut falling = falling;
     let slope_at = |i: usize| {
         let slope = dot(&tables.slope[i * p..(i + 1) * p], x_series);
@@ -256,23 +255,33 @@ pub(super) fn turns(tables: &Tables, kind: Kind, x_series: &[f64], falling: bool
         // at the mapped end of a panel the slope in the panel variable is zero by nature
         let blind = (kind == Kind::Start && i == 0) || (kind == Kind::End && i + 1 == count);
         if !blind && slope != 0.0 && (slope < 0.0) != falling {
-            let (mut a, mut b) = (left, here);
-            for _ in 0..60 {
-                let mid = 0.5 * (a + b);
-                let slope = series_slope(x_series, mid) * if kind == Kind::End { -1.0 } else { 1.0 };
-                if (slope < 0.0) == falling {
-                    a = mid;
-                } else {
-                    b = mid;
-                }
-            }
-            let s = 0.5 * (a + b);
+            let s = root(left, here, |s| series_slope(x_series, s));
             found.push((elapsed(kind, s), series(x_series, s), falling));
             falling = !falling;
         }
         left = here;
     }
     (found, falling)
+}
+
+/// Root of `f` between two places where it has different signs, by secants of which one end is held back
+/// (Illinois).
+pub(super) fn root(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut a, mut b) = ((a, f(a)), (b, f(b)));
+    for _ in 0..60 {
+        let s = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
+        let here = (s, f(s));
+        if !s.is_finite() || (s - b.0).abs() <= 1e-16 || here.1 == 0.0 {
+            return if s.is_finite() { s } else { b.0 };
+        }
+        if (here.1 < 0.0) == (b.1 < 0.0) {
+            a.1 *= 0.5;
+        } else {
+            a = b;
+        }
+        b = here;
+    }
+    b.0
 }
 
 #[cfg(test)]

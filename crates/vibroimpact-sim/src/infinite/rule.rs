@@ -214,13 +214,24 @@ fn legendre_slopes(s: f64, p: usize) -> Vec<f64> {
 pub(super) fn series(coefficients: &[f64], s: f64) -> f64 {
     let u = 2.0 * s - 1.0;
     let (mut b1, mut b2) = (0.0, 0.0);
-    for (k, c) in coefficients.iter().enumerate().rev() {
-        let n = k as f64;
-        let b0 = c + (2.0 * n + 1.0) / (n + 1.0) * u * b1 - (n + 1.0) / (n + 2.0) * b2;
+    for (c, (a, b)) in coefficients.iter().zip(&RECURRENCE).rev() {
+        let b0 = c + a * u * b1 - b * b2;
         (b2, b1) = (b1, b0);
     }
     b1
 }
+
+/// `(2k+1)/(k+1)` and `(k+1)/(k+2)`.
+const RECURRENCE: [(f64, f64); *NODES.end()] = {
+    let mut factors = [(0.0, 0.0); *NODES.end()];
+    let mut k = 0;
+    while k < factors.len() {
+        let n = k as f64;
+        factors[k] = ((2.0 * n + 1.0) / (n + 1.0), (n + 1.0) / (n + 2.0));
+        k += 1;
+    }
+    factors
+};
 
 /// Slope of a Legendre series on `(0, 1)`.
 pub(super) fn series_slope(coefficients: &[f64], s: f64) -> f64 {
@@ -229,18 +240,27 @@ pub(super) fn series_slope(coefficients: &[f64], s: f64) -> f64 {
     let (mut p0, mut p1) = (1.0, u);
     let (mut d0, mut d1) = (0.0, 1.0);
     let mut sum = 0.0;
-    for (k, c) in coefficients.iter().enumerate().skip(1) {
+    for (k, (c, (rise, _))) in coefficients.iter().zip(&RECURRENCE).enumerate().skip(1) {
         sum += c * d1;
-        let n = k as f64;
-        (d0, d1) = (d1, d0 + (2.0 * n + 1.0) * p1);
-        (p0, p1) = (p1, ((2.0 * n + 1.0) * u * p1 - n * p0) / (n + 1.0));
+        (d0, d1) = (d1, d0 + (2 * k + 1) as f64 * p1);
+        // P_(k+1) = a u P_k - (a - 1) P_(k-1), a = (2k+1)/(k+1)
+        (p0, p1) = (p1, rise * (u * p1 - p0) + p0);
     }
     2.0 * sum
 }
 
-/// Scalar product.
+/// Scalar product, in four interleaved parts that the compiler can vectorise.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
+    let n = a.len().min(b.len());
+    let (a4, b4) = (a[..n].chunks_exact(4), b[..n].chunks_exact(4));
+    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
+    let mut parts = [0.0; 4];
+    for (x, y) in a4.zip(b4) {
+        for i in 0..4 {
+            parts[i] += x[i] * y[i];
+        }
+    }
+    (parts[0] + parts[2]) + (parts[1] + parts[3]) + rest
 }
 
 #[cfg(test)]

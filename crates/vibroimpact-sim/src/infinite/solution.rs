@@ -18,7 +18,7 @@ pub enum Outcome {
     /// periods, at a time from which the beam's damping outweighs everything that makes them grow
     /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
     Sustained,
-    /// The number of panels allowed did not suffice; what was found up to
+    /// The number of panels or of contacts allowed did not suffice; what was found up to
     /// [`known_until`](Solution::known_until) stands.
     LimitReached,
 }

@@ -75,6 +75,11 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             solution.known_until = f64::INFINITY;
             return solution;
         };
+        if solution.contacts.len() >= settings.max_contacts {
+            solution.known_until = end + time;
+            solution.outcome = Outcome::LimitReached;
+            return solution;
+        }
         body_travel += body * time;
         history.advance(time);
         history.condense();
