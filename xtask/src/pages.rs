@@ -70,7 +70,9 @@ fn tables_are_current(root: &Path) -> Result<(), Failure> {
     for chapter in CHAPTERS {
         let page = fs::read_to_string(folder(root).join(format!("chapter-{chapter}.md")))?;
         if with_table(&page, &of(&all, chapter))? != page {
-            return Err(format!("docs/chapters/chapter-{chapter}.md is not what `cargo xtask book --write` makes").into());
+            return Err(
+                format!("docs/chapters/chapter-{chapter}.md is not what `cargo xtask book --write` makes").into()
+            );
         }
     }
     Ok(())
@@ -106,7 +108,7 @@ fn table(statements: &[Statement]) -> String {
     table.text(&format!("{agree} of {} statements agree within their tolerance.", statements.len()));
     let row = |statement: &Statement| {
         let Statement { quantity, source, stated, ours, agrees, .. } = statement.clone();
-        vec![quantity, source, stated, significant(ours, 4), if agrees { "✓" } else { "✗" }.to_owned()]
+        vec![quantity, source, stated, significant(ours, 5), if agrees { "✓" } else { "✗" }.to_owned()]
     };
     let rows: Vec<_> = statements.iter().map(row).collect();
     table.table(&["quantity", "where", "thesis", "ours", ""], &rows);
@@ -139,7 +141,7 @@ mod tests {
         let page = format!("# A\n\n{BEGIN}\nold\n{END}\n\nend\n");
         let new = with_table(&page, &[statement(1.560_52)]).unwrap();
         assert!(new.starts_with("# A\n") && new.ends_with("\n\nend\n") && !new.contains("old"));
-        assert!(new.contains("| S | 2.5 | 1.559 | 1.561 | ✓ |") && new.contains("1 of 1 statements"));
+        assert!(new.contains("| S | 2.5 | 1.559 | 1.5605 | ✓ |") && new.contains("1 of 1 statements"));
         assert_eq!(with_table(&new, &[statement(1.560_52)]).unwrap(), new);
         assert!(with_table("# A\n", &[]).is_err());
     }
@@ -155,6 +157,9 @@ mod tests {
 
     #[test]
     fn figures_are_named_as_in_the_run() {
-        assert_eq!(figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](../figures/chapter-3-x.svg)", 2), ["fig-2-03.svg"]);
+        assert_eq!(
+            figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](../figures/chapter-3-x.svg)", 2),
+            ["fig-2-03.svg"]
+        );
     }
 }
