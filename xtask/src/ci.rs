@@ -44,18 +44,15 @@ const STEPS: [Step; 5] = [
     Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
 ];
 
-/// Something of our own that must not fail, with its name.
-pub type Check<'a> = (&'a str, &'a dyn Fn() -> Result<(), Failure>);
-
 /// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests (sweeps over MPI among them where it is
-/// installed), and at last our own checks.
-pub fn run(root: &Path, checks: &[Check]) -> Result<(), Failure> {
+/// installed), and at last the chapters in their quick form.
+pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
     let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
     if !mpi {
         eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
     }
     STEPS.iter().try_for_each(|step| carry_out(step, root, mpi))?;
-    checks.iter().try_for_each(|(name, check)| timed(name, check))
+    timed("chapters, quick form", quick_chapters)
 }
 
 /// What the `mpi` feature is built and tested with; clang stands for its library.

@@ -1,9 +1,9 @@
 //! From the fields of a scene to the terms of the solver, and back again in its errors.
 
 use contact_models::Law;
-use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{History, Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
-use crate::model;
+use crate::model::{self, Kept};
 use crate::scene::{self, InvalidInput, Scene};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
@@ -72,24 +72,19 @@ impl Scene {
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return Ok(self.drop(rod, Settings::default())?.structure);
         }
-        if model::chooses_modes(self) { Ok(self.impact()?.structure) } else { self.structure_of(self.modes.count()) }
+        if model::chooses_modes(self) {
+            Ok(self.impact()?.structure)
+        } else {
+            self.structure_of(self.modes.count(), &mut Kept::default())
+        }
     }
 
     /// The structure with its first `count` modes, or all that are listed.
-    fn structure_of(&self, count: Option<usize>) -> Result<Structure, InvalidInput> {
-        let modes = self.structure.modes(self.place(), count)?;
+    fn structure_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Structure, InvalidInput> {
+        let modes = self.structure.modes_with(self.place(), count, &mut kept.modes)?;
         let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
             let whole = self.structure.static_compliance_m_n(self.place())?;
-            let kept: f64 = modes
-                .iter()
-                .filter(|mode| mode.omega_rad_s > 0.0)
-                .map(|mode| (mode.shape / mode.omega_rad_s).powi(2))
-                .sum();
-            match self.structure {
-                // exact on both sides, so that less than nothing is rounding: on a support, of nothing
-                scene::Structure::Beam(_) => (whole - kept).max(0.0),
-                _ => residual(whole, kept)?,
-            }
+            residual(&self.structure, whole, compliance(&modes))?
         } else {
             0.0
         };
@@ -100,7 +95,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`Scene::structure`].
-    pub fn mode_shapes(&self, count: usize) -> Result<Vec<vibroimpact_sim::modal::Mode>, InvalidInput> {
+    pub fn mode_shapes(&self, count: usize) -> Result<Vec<Mode>, InvalidInput> {
         self.structure.modes(self.place(), Some(count))
     }
 
@@ -128,17 +123,21 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn impact(&self) -> Result<Impact, InvalidInput> {
-        if model::chooses_modes(self) { model::settled_impact(self) } else { self.impact_of(self.modes.count()) }
+        if model::chooses_modes(self) {
+            model::settled_impact(self)
+        } else {
+            self.impact_of(self.modes.count(), &mut Kept::default())
+        }
     }
 
     /// The impact with the first `count` modes, or all that are listed.
-    pub(crate) fn impact_of(&self, count: Option<usize>) -> Result<Impact, InvalidInput> {
+    pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return self.drop(rod, settings);
         }
-        let structure = self.structure_of(count)?;
+        let structure = self.structure_of(count, kept)?;
         let start = self.start(&structure.modes)?;
         Ok(Impact {
             structure,
@@ -153,10 +152,17 @@ impl Scene {
     }
 }
 
-/// Compliance of the whole less that of the modes kept. Rounding may put a complete set of modes below zero.
-pub(crate) fn residual(whole: f64, kept: f64) -> Result<f64, InvalidInput> {
+/// Static compliance of the elastic ones of these modes (m/N).
+pub(crate) fn compliance(modes: &[Mode]) -> f64 {
+    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
+}
+
+/// Static compliance of the whole less that of the modes kept (m/N). Rounding may put a complete set of modes below
+/// zero.
+pub(crate) fn residual(structure: &scene::Structure, whole: f64, kept: f64) -> Result<f64, InvalidInput> {
     const ROUNDING: f64 = 1e-9;
-    if whole >= kept * (1.0 - ROUNDING) {
+    // a beam's are exact on both sides, so that less than nothing is rounding: on a support, of nothing
+    if matches!(structure, scene::Structure::Beam(_)) || whole >= kept * (1.0 - ROUNDING) {
         Ok((whole - kept).max(0.0))
     } else {
         let allowed = format!("not less than that of the modes kept, {kept:e}");

@@ -15,6 +15,19 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// Contacts listed one by one; the rest are counted.
 const LISTED: usize = 20;
 
+/// The words of a text in lines as long as `fits` allows; a word too long stands alone.
+pub(crate) fn filled(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let longer = lines.last().map(|line| format!("{line} {word}")).filter(|line| fits(line));
+        match (longer, lines.last_mut()) {
+            (Some(longer), Some(line)) => *line = longer,
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// A number with four significant digits and its unit, with an SI prefix: `1.235 ms`.
 pub fn quantity(value: f64, unit: &str) -> String {
     const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];

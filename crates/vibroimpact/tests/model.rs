@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use vibroimpact::Scene;
 use vibroimpact::beam_modes::{Beam, End, Segment};
 use vibroimpact::contact_models::Hertz;
-use vibroimpact::model::{Answer, Model, Modes, Reflection, VALIDATED, reflection_bound};
+use vibroimpact::model::{Answer, Kept, Model, Modes, Reflection, VALIDATED, reflection_bound};
 use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
 
@@ -359,6 +359,32 @@ fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
         assert!((finite.start_s - start).abs() < 1e-4 * end, "{start} {finite:?}");
         assert!((finite.end_s - end).abs() < 1e-4 * end, "{end} {finite:?}");
         assert!((finite.impulse_n_s - impulse).abs() < 1e-4, "{impulse} {finite:?}");
+    }
+}
+
+#[test]
+fn what_other_scenes_have_left_changes_no_bit() {
+    let segment = |length_m: f64, thickness_m: f64| {
+        json!({ "length_m": length_m, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.02,
+                "thickness_m": thickness_m })
+    };
+    let mut kept = Kept::default();
+    for segments in [json!([segment(1.0, 0.01)]), json!([segment(0.4, 0.01), segment(0.6, 0.006)])] {
+        // a place that comes again, numbers of modes that rise and fall, stated and chosen
+        for place in [0.3, 0.7, 0.3] {
+            for (radius, modes) in
+                [(0.01, json!("auto")), (0.025, json!("auto")), (0.015, json!(60)), (0.015, json!(20))]
+            {
+                let scene = Scene::from_value(&with(&[
+                    ("/structure/segments", segments.clone()),
+                    ("/location_m", json!(place)),
+                    ("/striker/radius_m", json!(radius)),
+                    ("/modes", modes),
+                ]))
+                .unwrap();
+                assert_eq!(scene.answer_with(&mut kept).unwrap(), scene.answer().unwrap());
+            }
+        }
     }
 }
 

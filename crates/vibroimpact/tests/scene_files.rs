@@ -135,7 +135,7 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
         ("pinned-beam", "/modes", json!(-1)),
         ("pinned-beam", "/modes", json!(100_000)),
         ("pinned-beam", "/modes", json!(2.5)),
-        ("pinned-beam", "/tolerance", json!(0.5)),
+        ("pinned-beam", "/tolerance", json!(0.6)),
         ("pinned-beam", "/residual_compliance", json!("yes")),
         ("pinned-beam", "/start", json!({ "gap_m": -1 })),
         ("pinned-beam", "/start", json!({ "moving_modes": [{ "mode": 0 }] })),

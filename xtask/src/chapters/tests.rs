@@ -160,6 +160,17 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
 }
 
 #[test]
+fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    study_auto(folder.path(), true, 0).unwrap();
+    let report = fs::read_to_string(folder.path().join("report.md")).unwrap();
+    for target in ["damped scenes within their tolerance", "largest actual error over reported uncertainty"] {
+        let line = report.lines().find(|line| line.contains(target)).unwrap();
+        assert!(line.contains("✓ agrees"), "{line}");
+    }
+}
+
+#[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("2, 3, 4, 6, 7, 8 or all"));

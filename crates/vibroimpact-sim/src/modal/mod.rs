@@ -26,12 +26,11 @@
 //! the nodal forces, which the law fixes; Newton's method finds them. Steps come from a ladder `2^-j` s whose
 //! propagators and responses are tabulated, so a step costs `O(N)` multiplications and no transcendental function.
 //! A branch of the law ends (separation, reversal, yield) on its boundary, landed on by a step of unknown length.
-//! In free flight nothing is integrated: bounds on the gap prove whole windows free of contact
-//! (see `flight.rs`), and a proof that none will come ends the impact.
+//! In free flight nothing is integrated: a bound on the gap's motion gives a time before which no contact can come
+//! (see `flight.rs`), and a bound that none will come at all ends the impact.
 //!
 //! The uncertainty of the restitution is five times the tolerance and three times the difference to a second solution,
-//! of 32 times the tolerance. Undamped
-//! impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
+//! of 32 times the tolerance. Undamped impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
 
 mod contact;
 mod flight;

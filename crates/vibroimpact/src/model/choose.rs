@@ -1,7 +1,7 @@
 //! Which model a scene is given to.
 
 use super::pose::{Pose, chooses_modes, modal_only};
-use super::{Answer, Cost, Model, infinite, rigid, settle};
+use super::{Answer, Cost, Kept, Model, infinite, rigid, settle};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene};
 
@@ -51,17 +51,28 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn choose(&self) -> Result<Choice, InvalidInput> {
+        self.choose_with(&mut Kept::default())
+    }
+
+    /// As [`Scene::answer`], by what earlier scenes have left: the same answer to the last bit, sooner.
+    ///
+    /// # Errors
+    /// As [`Scene::answer`].
+    pub fn answer_with(&self, kept: &mut Kept) -> Result<Answer, InvalidInput> {
+        Ok(self.choose_with(kept)?.answer)
+    }
+
+    fn choose_with(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
         if self.is_infinite() {
             return infinite::of_infinite_structure(self);
         }
         let mut cost = Cost::default();
         let mut choice = match (self.model, modal_only(self)) {
-            (Model::Auto | Model::Modal, Some(_)) => settle::stated(self, &mut cost)?,
+            (Model::Auto | Model::Modal, Some(_)) => settle::stated(self, kept, &mut cost)?,
             (forced, Some(why)) => return Err(refused(forced, format!("auto or modal: {why}"))),
-            (Model::Auto, None) => auto(&mut Pose::new(self)?, &mut cost)?,
-            (forced, None) => {
-                forced_tier(forced, &mut Pose::new(self)?, &mut cost)?.map_err(|reason| refused(forced, reason))?
-            }
+            (Model::Auto, None) => auto(&mut Pose::new(self, kept)?, &mut cost)?,
+            (forced, None) => forced_tier(forced, &mut Pose::new(self, kept)?, &mut cost)?
+                .map_err(|reason| refused(forced, reason))?,
         };
         choice.answer.cost = cost;
         Ok(choice)
@@ -80,18 +91,19 @@ impl Scene {
         if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) {
             return self.answer().map(drop);
         }
+        let kept = &mut Kept::default();
         if modal_only(self).is_none() {
-            Pose::new(self)?;
+            Pose::new(self, kept)?;
         }
         // where the program chooses the modes there are enough of them
-        self.impact_of(if chooses_modes(self) { Some(0) } else { self.modes.count() }).map(drop)
+        self.impact_of(if chooses_modes(self) { Some(0) } else { self.modes.count() }, kept).map(drop)
     }
 }
 
 /// The cheapest tier that is certain to reach the tolerance.
 fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {
-        return settle::stated(pose.scene, cost);
+        return settle::stated(pose.scene, pose.kept, cost);
     }
     for tier in [rigid::certified, super::emoc::certified, infinite::certified] {
         if let Ok(choice) = tier(pose, cost)? {
@@ -103,10 +115,10 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
 
 /// The modal problem with as many modes as the restitution needs to settle.
 pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
-    let mut pose = Pose::new(scene)?;
-    let choice = modal(&mut pose, &mut Cost::default())?;
+    let kept = &mut Kept::default();
+    let choice = modal(&mut Pose::new(scene, kept)?, &mut Cost::default())?;
     // the modal tier always has one
-    choice.impact.map_or_else(|| scene.impact_of(Some(0)), Ok)
+    choice.impact.map_or_else(|| scene.impact_of(Some(0), kept), Ok)
 }
 
 /// The modal tier.
@@ -114,7 +126,7 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
     if chooses_modes(pose.scene) && pose.approaches() {
         settle::settle(pose, cost)
     } else {
-        settle::stated(pose.scene, cost)
+        settle::stated(pose.scene, pose.kept, cost)
     }
 }
 

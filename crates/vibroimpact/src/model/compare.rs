@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::choose::forced_tier;
 use super::pose::{Pose, modal_only};
-use super::{Answer, Cost, Model};
+use super::{Answer, Cost, Kept, Model};
 use crate::scene::{InvalidInput, Scene};
 
 /// What [`Scene::compare`] found.
@@ -39,7 +39,7 @@ impl Scene {
     pub fn compare(&self) -> Result<Comparison, InvalidInput> {
         let scene = Scene { model: Model::Auto, ..self.clone() };
         let chosen = scene.answer()?;
-        let mut tiers = Vec::new();
+        let (mut tiers, mut kept) = (Vec::new(), Kept::default());
         for model in [Model::Rigid, Model::Emoc, Model::InfiniteBeam, Model::Modal] {
             // the tiers see what was asked for, because being asked for widens what they accept
             let scene = Scene { model, ..self.clone() };
@@ -50,7 +50,7 @@ impl Scene {
                 (false, Some(why)) => Err(why.to_owned()),
                 (false, None) => {
                     let mut cost = Cost::default();
-                    let tried = forced_tier(model, &mut Pose::new(&scene)?, &mut cost)?;
+                    let tried = forced_tier(model, &mut Pose::new(&scene, &mut kept)?, &mut cost)?;
                     tried.map(|choice| Answer { cost, ..choice.answer })
                 }
             };

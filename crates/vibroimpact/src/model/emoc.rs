@@ -105,16 +105,15 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let duration_s = pose.wall.duration_s;
     let fastest = FAST.sqrt() / (VALIDATED.c * duration_s);
     let mut count = 32.min(pose.source.most());
-    while count < pose.source.most()
-        && pose.source.first(count, cost)?.last().is_some_and(|mode| mode.omega_rad_s < fastest)
-    {
+    while count < pose.source.most() && pose.first(count, cost)?.last().is_some_and(|mode| mode.omega_rad_s < fastest) {
         count = (2 * count).min(pose.source.most());
     }
-    let modes = pose.source.first(count, cost)?;
+    let mass_kg = pose.striker.mass_kg;
+    let modes = pose.first(count, cost)?;
     if modes.iter().any(|mode| mode.omega_rad_s == 0.0 && mode.shape != 0.0) {
         return Ok(Err("another model: the law is for structures that do not move freely as a rigid body".to_owned()));
     }
-    let restitution = law(VALIDATED.c, VALIDATED.q, pose.striker.mass_kg, duration_s, modes);
+    let restitution = law(VALIDATED.c, VALIDATED.q, mass_kg, duration_s, modes);
     let count = modes.len();
     cost.solves += 1;
     let uncertainty = class.is_ok().then_some(VALIDATED.error_95);

@@ -239,9 +239,9 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let duration_s = ended.unwrap_or(f64::INFINITY) * groups.time_s;
     let (bound, z) = beam.reflections(duration_s);
 
-    let modes = pose.source.first(SUMMED, cost)?;
-    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     let (mass, speed) = (pose.striker.mass_kg, pose.striker.speed_m_s);
+    let modes = pose.first(SUMMED, cost)?;
+    let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     let ratio = solution.rebound_ratio();
     let impulse = mass * speed * (1.0 + ratio.unwrap_or(0.0));
     let beam_mass = beam.mass_per_length * (beam.distances[0] + beam.distances[1]);

@@ -7,7 +7,7 @@
 //! | [`Model::Modal`] | finitely many modes, the others answer statically | everywhere else; raised until the restitution has settled |
 //! | [`Model::Emoc`] | no course in time at all | asked for, or the tolerance is as wide as the law's validated error |
 //!
-//! [`Scene::answer`] chooses and solves, [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
+//! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] many scenes of one beam, faster), [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
 //! beside the others. All of it is deterministic.
 
 mod attached;
@@ -15,6 +15,7 @@ mod choose;
 mod compare;
 mod emoc;
 mod infinite;
+mod kept;
 mod plan;
 mod pose;
 mod rigid;
@@ -33,6 +34,7 @@ pub(crate) use choose::settled_impact;
 pub use compare::{Comparison, Tier};
 pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};
+pub use kept::Kept;
 pub use plan::{Estimate, Plan};
 pub(crate) use pose::chooses_modes;
 pub use text::{answer_text, comparison_text, net_text, plan_text};

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::choose::{Choice, Tried, forced_tier, refused};
 use super::pose::{Pose, chooses_modes, modal_only};
 use super::text::small;
-use super::{Cost, Model, emoc, infinite, rigid, settle};
+use super::{Cost, Kept, Model, emoc, infinite, rigid, settle};
 use crate::scene::{InvalidInput, Scene};
 
 /// Steps of an ordinary impact, in contact and in flight.
@@ -106,7 +106,8 @@ impl Scene {
         if let Some(why) = modal_only(self) {
             return self.plan_of_modes(why);
         }
-        let mut pose = Pose::new(self)?;
+        let mut kept = Kept::default();
+        let mut pose = Pose::new(self, &mut kept)?;
         let cost = &mut Cost::default();
         let cheap: [(Model, Certify, f64); 3] = [
             (Model::Rigid, rigid::certified, FORMULA_S),
@@ -137,7 +138,7 @@ impl Scene {
         if !matches!(self.model, Model::Auto | Model::Modal) {
             return Err(refused(self.model, format!("auto or modal: {why}")));
         }
-        let impact = self.impact_of(self.modes.count())?;
+        let impact = self.impact_of(self.modes.count(), &mut Kept::default())?;
         let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
         let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(without).into();
         tiers.push(Estimate::of_stated(impact.structure.modes.len(), impact.settings.tolerance));

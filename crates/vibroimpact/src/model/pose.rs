@@ -3,8 +3,8 @@
 use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
 
-use super::{Cost, DEFAULT_TOLERANCE, Modes};
-use crate::impact::{in_scene, residual};
+use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
+use crate::impact::{compliance, in_scene, residual};
 use crate::scene::json::number;
 use crate::scene::{self, InvalidInput, Scene};
 
@@ -13,6 +13,9 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
 /// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
 const UNEXCITED: f64 = 1e-6;
+
+/// Modes of a beam are computed in multiples of this.
+const SIZES: usize = 16;
 
 /// A scene, ready for any tier.
 pub(super) struct Pose<'a> {
@@ -23,6 +26,7 @@ pub(super) struct Pose<'a> {
     pub tolerance: f64,
     pub wall: Wall,
     pub source: Source<'a>,
+    pub kept: &'a mut Kept,
 }
 
 /// Why there is nothing to choose and the modes are resolved as they are stated; `None` for a structure at rest that a
@@ -105,7 +109,7 @@ pub(super) enum Source<'a> {
 
 impl<'a> Pose<'a> {
     /// Poses a scene that is not infinite.
-    pub fn new(scene: &'a Scene) -> Result<Pose<'a>, InvalidInput> {
+    pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
         let striker = Striker {
             mass_kg: scene.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
             speed_m_s: scene.striker.speed_m_s,
@@ -148,7 +152,7 @@ impl<'a> Pose<'a> {
             }
         };
         let wall = Wall::new(&law, &striker);
-        Ok(Pose { scene, striker, law, tolerance, wall, source })
+        Ok(Pose { scene, striker, law, tolerance, wall, source, kept })
     }
 
     /// Whether the striker moves towards the structure.
@@ -161,40 +165,33 @@ impl<'a> Pose<'a> {
     pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<Structure, InvalidInput> {
         let least = UNEXCITED * self.tolerance / (4.0 * self.striker.mass_kg);
         let residual_wanted = self.scene.residual_compliance != Some(false);
-        let modes = self.source.first(count, cost)?;
+        let modes = self.first(count, cost)?;
         let kept: Vec<Mode> = modes.iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
-        let static_part = compliance(&kept);
-        let residual_compliance_m_n = match &self.source {
-            _ if !residual_wanted => 0.0,
-            // rounding may leave a trace of either sign where nothing is left
-            Source::Beam { whole_m_n, .. } => (whole_m_n - static_part).max(0.0),
-            Source::Listed { whole_m_n: Some(whole), .. } => residual(*whole, static_part)?,
-            Source::Listed { whole_m_n: None, .. } => 0.0,
+        let residual_compliance_m_n = match self.source.whole_m_n() {
+            Some(whole_m_n) if residual_wanted => residual(&self.scene.structure, whole_m_n, compliance(&kept))?,
+            _ => 0.0,
         };
         Ok(Structure { modes: kept, residual_compliance_m_n })
     }
-}
 
-/// Static compliance of modes (m/N).
-pub(super) fn compliance(modes: &[Mode]) -> f64 {
-    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
-}
-
-impl Source<'_> {
     /// The first `count` modes, or all of a list.
     pub fn first(&mut self, count: usize, cost: &mut Cost) -> Result<&[Mode], InvalidInput> {
-        match self {
+        match &mut self.source {
             Source::Beam { beam, location_m, modes, .. } => {
                 if modes.len() < count {
-                    *modes = beam.modes(count)?.seen_from(*location_m)?;
-                    cost.modes_computed += count as u64;
+                    // in few sizes, so that scenes of one beam ask for the same
+                    let size = count.next_multiple_of(SIZES);
+                    *modes = self.kept.modes.first(beam, size)?.seen_from(*location_m)?;
+                    cost.modes_computed += size as u64;
                 }
                 Ok(modes.get(..count).unwrap_or(modes))
             }
             Source::Listed { modes, .. } => Ok(modes.get(..count).unwrap_or(modes)),
         }
     }
+}
 
+impl Source<'_> {
     /// How many modes there are at most.
     pub fn most(&self) -> usize {
         match self {

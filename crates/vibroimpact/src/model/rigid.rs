@@ -32,7 +32,7 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
         Source::Listed { modes, .. } => modes.len(),
     };
     let mass = pose.striker.mass_kg;
-    let moving = pose.source.first(rigid_bodies, cost)?.iter().filter(|mode| mode.omega_rad_s == 0.0);
+    let moving = pose.first(rigid_bodies, cost)?.iter().filter(|mode| mode.omega_rad_s == 0.0);
     let share: f64 = moving.map(|mode| mass * mode.shape.powi(2)).sum();
     if share > STILL {
         return Ok(Err("the structure moves freely as a rigid body".to_owned()));

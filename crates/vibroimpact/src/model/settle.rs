@@ -18,13 +18,13 @@
 //! same wrong course at every `N`. So from the third number of modes on, the solver is asked for an accuracy that rises
 //! from one to the next: its errors are part of the differences, and restitutions agree when both have become small.
 
-use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Structure};
+use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
-use super::pose::{Pose, Source, chooses_modes, compliance};
+use super::pose::{Pose, Source, chooses_modes};
 use super::text::small;
-use super::{Answer, Cost, DEFAULT_TOLERANCE, Model, Modes};
-use crate::impact::{Impact, in_scene};
+use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
+use crate::impact::{Impact, compliance, in_scene};
 use crate::scene::{InvalidInput, Scene};
 
 /// More modes than this are not tried.
@@ -78,7 +78,7 @@ struct Rung {
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let structure = pose.structure(count, cost)?;
-        let mut solver = Solver::new(&structure).map_err(in_scene)?;
+        let solver = pose.kept.solver(&structure)?;
         let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
         cost.add(&solution.counts, structure.modes.len());
         Ok(Rung { count, structure, settings, solution })
@@ -144,7 +144,7 @@ pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), 
     let mut computed = (expected(pose, target)? + 2).min(most);
     let found = loop {
         let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
-        let modes = pose.source.first(computed, cost)?.to_vec();
+        let modes = pose.first(computed, cost)?.to_vec();
         let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
         let enough = (rigid + FEWEST + 1..=modes.len()).find(|&count| {
             let rest = (whole - compliance(&modes[..count])).max(0.0);
@@ -239,11 +239,11 @@ fn lightly_damped(pose: &mut Pose) -> &'static str {
 }
 
 /// The modes as they are stated, or all that a list has.
-pub(super) fn stated(scene: &Scene, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     let chosen = chooses_modes(scene);
     // without an approach the number of modes does not matter
-    let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() })?;
-    let mut solver = Solver::new(&impact.structure).map_err(in_scene)?;
+    let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
+    let solver = kept.solver(&impact.structure)?;
     let start = impact.start.as_ref();
     let solution = solver.solve(&impact.striker, &impact.law, start, &impact.settings).map_err(in_scene)?;
     let count = impact.structure.modes.len();

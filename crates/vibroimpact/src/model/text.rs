@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Answer, Comparison, Plan};
-use crate::text::{quantity, restitution};
+use crate::text::{filled, quantity, restitution};
 
 /// A number in passing: two significant digits.
 pub(super) fn small(value: f64) -> String {
@@ -14,18 +14,7 @@ pub(super) fn small(value: f64) -> String {
 const WIDTH: usize = 96;
 
 fn wrapped(text: &str, indent: usize) -> String {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].chars().count() + 1 + word.chars().count() + indent > WIDTH {
-            lines.push(word.to_owned());
-        } else {
-            if !lines[last].is_empty() {
-                lines[last].push(' ');
-            }
-            lines[last].push_str(word);
-        }
-    }
+    let lines = filled(text, |line| line.chars().count() + indent <= WIDTH);
     lines.join(&format!("\n{}", " ".repeat(indent)))
 }
 

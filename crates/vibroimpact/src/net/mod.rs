@@ -16,7 +16,7 @@ use serde::Serialize;
 use vibroimpact_sim::modal::{Mode, Solver};
 
 use crate::impact::in_scene;
-use crate::model;
+use crate::model::{self, Kept};
 use crate::scene::{InvalidInput, Scene};
 
 /// Modes in the law where neither the caller nor the scene states a number (thesis 7.2).
@@ -74,7 +74,7 @@ impl Scene {
             None => self.structure.modes(self.place(), self.modes.count())?,
         };
         // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
-        let resolved = self.impact_of(self.modes.count().or(Some(modes.len())))?;
+        let resolved = self.impact_of(self.modes.count().or(Some(modes.len())), &mut Kept::default())?;
         Solver::new(&resolved.structure).map_err(in_scene)?;
         let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.as_str() {
             "mass_kg" => fault.within("striker"),

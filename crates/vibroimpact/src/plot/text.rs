@@ -1,5 +1,7 @@
 //! How wide a text is, and numbers as text.
 
+use crate::text::filled;
+
 /// Width of `text` (px) at a font size, estimated from the widths of a wide sans-serif font, so
 /// that a margin made from it is rather too large than too small.
 pub(super) fn width_px(text: &str, size_px: f64) -> f64 {
@@ -20,22 +22,7 @@ pub(super) fn width_px(text: &str, size_px: f64) -> f64 {
 
 /// A text in lines no wider than `room_px`, as far as its words allow; its own line breaks stay.
 pub(super) fn wrapped(text: &str, size_px: f64, room_px: f64) -> Vec<String> {
-    let mut lines = Vec::new();
-    for paragraph in text.lines() {
-        let mut line = String::new();
-        for word in paragraph.split_whitespace() {
-            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if line.is_empty() || width_px(&longer, size_px) <= room_px {
-                line = longer;
-            } else {
-                lines.push(std::mem::replace(&mut line, word.to_owned()));
-            }
-        }
-        if !line.is_empty() {
-            lines.push(line);
-        }
-    }
-    lines
+    text.lines().flat_map(|paragraph| filled(paragraph, |line| width_px(line, size_px) <= room_px)).collect()
 }
 
 /// Text without the characters that XML does not allow.

@@ -98,6 +98,38 @@ impl Beam {
     }
 }
 
+/// The modes of the last beam, by how many were asked for: scenes of one beam share them.
+#[derive(Default)]
+pub(crate) struct KnownModes {
+    beam: Option<Beam>,
+    sets: Vec<(usize, BeamModes)>,
+}
+
+impl KnownModes {
+    /// More sets are not kept.
+    const MOST_SETS: usize = 32;
+
+    /// The first `count` modes of a beam. A set of another size is not cut to this one: it may differ in the last bit,
+    /// and no result may depend on what was asked before.
+    pub(crate) fn first(&mut self, beam: &Beam, count: usize) -> Result<&BeamModes, InvalidInput> {
+        if self.beam.as_ref() != Some(beam) {
+            *self = KnownModes { beam: Some(beam.clone()), sets: Vec::new() };
+        }
+        let place = match self.sets.iter().position(|(size, _)| *size == count) {
+            Some(place) => place,
+            None => {
+                let modes = beam.modes(count)?;
+                if self.sets.len() == Self::MOST_SETS {
+                    self.sets.remove(0);
+                }
+                self.sets.push((count, modes));
+                self.sets.len() - 1
+            }
+        };
+        Ok(&self.sets[place].1)
+    }
+}
+
 /// The modes of a beam.
 pub(crate) struct BeamModes {
     modes: beam_modes::Modes,

@@ -10,7 +10,7 @@ use vibroimpact_sim::modal::{Mode, Settings};
 use super::error::InvalidInput;
 use super::json::number;
 use super::{Contact, HertzStiffness, Scene, Striker, fields};
-use crate::impact::Impact;
+use crate::impact::{Impact, compliance};
 
 /// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
 /// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
@@ -92,9 +92,7 @@ impl DroppedRod {
     /// Static compliance of the whole elastic rod at its lower end (m/N).
     pub(super) fn static_compliance_m_n(&self) -> Result<f64, InvalidInput> {
         let structure = self.at_unit_speed()?.structure;
-        let elastic = structure.modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
-        let kept: f64 = elastic.map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
-        Ok(kept + structure.residual_compliance_m_n)
+        Ok(compliance(&structure.modes) + structure.residual_compliance_m_n)
     }
 }
 

@@ -28,7 +28,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("model", "one of auto, rigid, infinite-beam, modal, emoc"),
     ("modes", "\"auto\", or a whole number from 0 to 10000"),
     ("residual_compliance", "true or false"),
-    ("tolerance", "a number from 1e-13 to 0.1"),
+    ("tolerance", "a number from 1e-13 to 0.1; from 1e-10 to 0.5 where the program chooses the modes"),
     ("ends", "a list of two, the left and the right end, each one of clamped, pinned, free, guided"),
     ("ends[]", "one of clamped, pinned, free, guided"),
     ("segments", "a list of segments, each an object with length_m and a section"),
@@ -96,12 +96,17 @@ const FIELDS: &[(&str, &str)] = &[
 
 /// What the field at the end of this path may hold.
 pub(crate) fn allowed(path: &str) -> Option<&'static str> {
+    look_up(FIELDS, path)
+}
+
+/// What a table of fields says of the one at the end of this path. (`name[]` are the items of a list.)
+pub(crate) fn look_up(fields: &[(&str, &'static str)], path: &str) -> Option<&'static str> {
     let last = path.rsplit('.').next().unwrap_or(path);
     let name = match last.split_once('[') {
         Some((list, _)) => format!("{list}[]"),
         None => last.to_owned(),
     };
-    FIELDS.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
+    fields.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
 }
 
 /// The range of a number in the field of this name, where it has one; for the schema, which tests hold against what
@@ -115,7 +120,7 @@ pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
     match name {
         "modes" | "bending_modes" | "axial_modes" => Some((Included(0.0), Included(10_000.0))),
         "mode" => Some((Included(1.0), Unbounded)),
-        "tolerance" => Some((Included(1e-13), Included(0.1))),
+        "tolerance" => Some((Included(1e-13), Included(0.5))),
         "exponent" => Some((Included(1.0), Included(4.0))),
         "restitution" => Some((Included(1e-3), Included(1.0))),
         "k_bar" => Some((Excluded(0.0), Included(1000.0))),

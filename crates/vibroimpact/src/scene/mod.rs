@@ -30,7 +30,7 @@ mod beam;
 mod contact;
 mod dropped_rod;
 mod error;
-mod fields;
+pub(crate) mod fields;
 mod infinite;
 pub(crate) mod json;
 mod materials;
@@ -51,6 +51,7 @@ use serde_json::Value;
 
 use crate::model::{Model, Modes};
 
+pub(crate) use beam::KnownModes;
 pub use beam::{Beam, End, Segment};
 pub use contact::Contact;
 pub use dropped_rod::DroppedRod;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::modal;
 
-use super::beam::Beam;
+use super::beam::{Beam, KnownModes};
 use super::dropped_rod::DroppedRod;
 use super::error::InvalidInput;
 use super::fields;
@@ -115,6 +115,16 @@ impl Structure {
 
     /// The first `count` modes as seen from a place (all that there are, for `None`).
     pub(crate) fn modes(&self, place: Place, count: Option<usize>) -> Result<Vec<modal::Mode>, InvalidInput> {
+        self.modes_with(place, count, &mut KnownModes::default())
+    }
+
+    /// As [`Structure::modes`], by what is known of the beam.
+    pub(crate) fn modes_with(
+        &self,
+        place: Place,
+        count: Option<usize>,
+        known: &mut KnownModes,
+    ) -> Result<Vec<modal::Mode>, InvalidInput> {
         count.map_or(Ok(()), require_count)?;
         let missing = |field| InvalidInput::missing(field, fields::allowed(field).unwrap_or_default());
         let modes = match self {
@@ -127,7 +137,7 @@ impl Structure {
                 let stated = "a whole number from 0 to 10000, where the program does not choose it: for a structure that \
                               moves before the impact, and for an immovable striker";
                 let count = count.ok_or_else(|| InvalidInput::missing("modes", stated))?;
-                return beam.modes(count)?.seen_from(location_m);
+                return known.first(beam, count)?.seen_from(location_m);
             }
             Structure::Modal(listed) => {
                 place.require_no_distance("left out: the points of a modal structure have names")?;

@@ -1,7 +1,6 @@
 //! The results of a sweep in memory: the columns of `results.csv`.
 
 use std::sync::atomic::AtomicBool;
-use std::thread::available_parallelism;
 
 use super::Status;
 use super::definition::Sweep;
@@ -60,7 +59,6 @@ pub fn run_in_memory(
         Kind::Truth | Kind::Text => (name, Column::Texts(Vec::new())),
     };
     let mut table = Table { sweep, columns: columns(sweep).into_iter().map(column).collect(), chunks: 0, points: 0 };
-    let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads };
     threads::compute(sweep, Part::WHOLE, &mut table, threads, stop, tell)?;
     Ok(table.columns)
 }

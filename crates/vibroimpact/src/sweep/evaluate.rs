@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::model::Answer;
+use crate::model::{Answer, Kept};
 use crate::scene::{InvalidInput, Scene};
 
 /// Whether a scene can be solved, as far as can be told without solving it. A fault in the program itself is left to
@@ -12,8 +12,13 @@ pub(super) fn check(scene: &Scene) -> Result<(), InvalidInput> {
 }
 
 /// Solves a scene; `Err` says why it could not be solved, whatever went wrong.
-pub(super) fn evaluate(scene: Result<Scene, InvalidInput>) -> Result<Answer, String> {
-    guarded(|| scene?.answer())
+pub(super) fn evaluate(scene: Result<Scene, InvalidInput>, kept: &mut Kept) -> Result<Answer, String> {
+    let answer = guarded(|| scene?.answer_with(kept));
+    if answer.is_err() {
+        // what a solver that failed has left may be anything
+        *kept = Kept::default();
+    }
+    answer
 }
 
 fn guarded(solve: impl FnOnce() -> Result<Answer, InvalidInput>) -> Result<Answer, String> {

@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::error::SweepError;
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
+use crate::scene::fields::look_up;
 use crate::scene::json::{self, number, quote};
 use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};
 
@@ -45,21 +46,15 @@ const FIELDS: &[(&str, &str)] = &[
     ("fields[]", "an object with field, from and to"),
 ];
 
-fn allowed(path: &str) -> Option<&'static str> {
-    let last = path.rsplit('.').next().unwrap_or(path);
-    let name = last.split_once('[').map_or_else(|| last.to_owned(), |(list, _)| format!("{list}[]"));
-    FIELDS.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
-}
-
 fn fault(field: impl Into<String>, value: impl Into<String>) -> InvalidInput {
     let field = field.into();
-    let allowed = allowed(&field).unwrap_or_default();
+    let allowed = look_up(FIELDS, &field).unwrap_or_default();
     InvalidInput::new(field, value, allowed)
 }
 
 fn missing(field: impl Into<String>) -> InvalidInput {
     let field = field.into();
-    let allowed = allowed(&field).unwrap_or_default();
+    let allowed = look_up(FIELDS, &field).unwrap_or_default();
     InvalidInput::missing(field, allowed)
 }
 
@@ -227,7 +222,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
 /// Reads an object; what is allowed is told in the terms of sweeps.
 fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
     json::read(value).map_err(|found| {
-        let told = if found.allowed.starts_with("no such field") { None } else { allowed(&found.field) };
+        let told = if found.allowed.starts_with("no such field") { None } else { look_up(FIELDS, &found.field) };
         let field = if found.field.is_empty() { "the sweep".to_owned() } else { found.field };
         InvalidInput { field, allowed: told.map_or(found.allowed, str::to_owned), ..found }
     })

@@ -54,7 +54,6 @@ mod values;
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::thread::available_parallelism;
 
 pub use columns::{Column, MOST_IN_MEMORY, run_in_memory};
 pub use definition::Sweep;
@@ -112,7 +111,6 @@ pub fn run(
     if folder.progress().finished {
         return finish::summary(&folder);
     }
-    let threads = if threads == 0 { available_parallelism().map_or(1, usize::from) } else { threads };
     threads::compute(sweep, part, &mut folder, threads, stop, tell)?;
     finish::finish(sweep, part, &mut folder)
 }

@@ -21,6 +21,7 @@ use super::row;
 use super::tally::Tally;
 use super::threads::{BETWEEN_WRITES, Sink};
 use super::{Status, run as run_on_threads};
+use crate::model::Kept;
 
 /// How long rank 0 rests when no message is there. Waiting inside MPI would take a whole core.
 const REST: Duration = Duration::from_micros(200);
@@ -86,14 +87,14 @@ fn work(world: &SimpleCommunicator, stop: &AtomicBool) {
     let Some(sweep) = tree.and_then(|tree| Sweep::from_value(&tree).ok()) else { return };
     let lead = world.process_at_rank(0);
     // a message is a chunk's number and its rows; the first is too short for a number, that after a stop has END as its
-    let mut message = vec![0];
+    let (mut message, mut kept) = (vec![0], Kept::default());
     loop {
         lead.send(&message[..]);
         let (chunk, _) = lead.receive::<u64>();
         if chunk == END {
             return;
         }
-        message = match row::rows(&sweep, chunk, || stop.load(Ordering::Relaxed)) {
+        message = match row::rows(&sweep, chunk, &mut kept, || stop.load(Ordering::Relaxed)) {
             Some(rows) => [&chunk.to_le_bytes()[..], &rows].concat(),
             None => END.to_le_bytes().to_vec(),
         };

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::evaluate::evaluate;
-use crate::model::Answer;
+use crate::model::{Answer, Kept};
 use crate::scene::json::number;
 
 /// The kind of what a column holds.
@@ -58,14 +58,14 @@ pub(super) fn header(sweep: &Sweep) -> Vec<u8> {
 }
 
 /// The lines of a chunk, computed one after the other; `None` if `stop` told to give up on the way.
-pub(super) fn rows(sweep: &Sweep, chunk: u64, stop: impl Fn() -> bool) -> Option<Vec<u8>> {
+pub(super) fn rows(sweep: &Sweep, chunk: u64, kept: &mut Kept, stop: impl Fn() -> bool) -> Option<Vec<u8>> {
     let mut lines = Vec::new();
     for point in sweep.first_of_chunk(chunk)..sweep.first_of_chunk(chunk + 1) {
         if stop() {
             return None;
         }
         let values = sweep.values(point);
-        lines.extend(row(point, &values, &evaluate(sweep.scene_with(&values))));
+        lines.extend(row(point, &values, &evaluate(sweep.scene_with(&values), kept)));
     }
     Some(lines)
 }

@@ -12,6 +12,7 @@ use super::definition::Sweep;
 use super::error::SweepError;
 use super::folder::Part;
 use super::row;
+use crate::model::Kept;
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
 pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
@@ -39,7 +40,8 @@ pub(super) trait Sink {
     fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
 }
 
-/// Computes what is missing in the sink, a folder for example, and puts it there in order.
+/// Computes what is missing in the sink, a folder for example, and puts it there in order. `threads` of 0 stands for
+/// as many as the machine has cores.
 pub(super) fn compute(
     sweep: &Sweep,
     part: Part,
@@ -48,6 +50,7 @@ pub(super) fn compute(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
+    let threads = if threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { threads };
     let chunks = part.chunks(sweep);
     let begun = (chunks.start + sink.chunks())..chunks.end;
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
@@ -67,11 +70,12 @@ pub(super) fn compute(
 }
 
 fn work(sweep: &Sweep, desk: &Desk, give_up: impl Fn() -> bool) {
+    let mut kept = Kept::default();
     while !give_up() {
         let order = desk.assembly().hand_out();
         match order {
             Order::Chunk(chunk) => {
-                let Some(rows) = row::rows(sweep, chunk, &give_up) else { return };
+                let Some(rows) = row::rows(sweep, chunk, &mut kept, &give_up) else { return };
                 desk.assembly().take_in(chunk, rows);
                 desk.changed.notify_all();
             }

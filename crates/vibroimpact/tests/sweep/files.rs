@@ -130,7 +130,7 @@ fn the_schema_is_current_and_tells_sweeps_from_others() {
         ("/scene/striker/weight", json!(1)),
         ("/scene/contact/law", json!("herz")),
         ("/scene/contact/stiffness_n_m1_5", json!(-1)),
-        ("/scene/tolerance", json!(0.5)),
+        ("/scene/tolerance", json!(0.6)),
         ("/scene/residual_compliance", json!("yes")),
         ("/vary", json!({})),
         ("/vary/0", json!(3)),

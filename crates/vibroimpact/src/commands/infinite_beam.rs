@@ -9,7 +9,7 @@ use vibroimpact::report;
 use vibroimpact::vibroimpact_sim::infinite::{Groups, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
-use crate::products::Products;
+use super::products::Products;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact infinite-beam --s 15                       a summary to read
@@ -33,12 +33,6 @@ pub struct Arguments {
     /// The nondimensional number S, in place of a scene
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     s: Option<f64>,
-    /// Print one JSON object in place of the summary
-    #[arg(long)]
-    json: bool,
-    /// Write histories, picture and result into this folder
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
     #[command(flatten)]
     products: Products,
     #[command(subcommand)]
@@ -63,7 +57,7 @@ enum Study {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     match arguments {
         Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
-        Arguments { scene: Some(path), json, out, products, .. } => {
+        Arguments { scene: Some(path), products, .. } => {
             let scene = Scene::read(&path)?;
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
@@ -71,54 +65,38 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
                 return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
             }
             let (groups, solution) = scene.solve_infinite()?;
-            of_scene(&scene, &groups, &solution, json, out, &products)
+            of_scene(&scene, &groups, &solution, &products)
         }
-        Arguments { s, json, out, products, .. } => {
+        Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
             let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
             let headline = format!("Impact on an infinite beam, S = {s}");
-            result(&headline, &solution, None, json, out, &products)
+            result(&headline, &solution, None, &products)
         }
     }
 }
 
 /// Returns what is to be printed of a scene with an infinite structure.
-pub fn of_scene(
-    scene: &Scene,
-    groups: &Groups,
-    solution: &Solution,
-    json: bool,
-    out: Option<PathBuf>,
-    products: &Products,
-) -> Result<String, Failure> {
+pub fn of_scene(scene: &Scene, groups: &Groups, solution: &Solution, products: &Products) -> Result<String, Failure> {
     let headline = vibroimpact::text::infinite_headline(scene, &scene.infinite_impact()?);
-    result(&headline, solution, Some((scene, groups)), json, out, products)
+    result(&headline, solution, Some((scene, groups)), products)
 }
 
 fn result(
     headline: &str,
     solution: &Solution,
     posed: Option<(&Scene, &Groups)>,
-    json: bool,
-    out: Option<PathBuf>,
     products: &Products,
 ) -> Result<String, Failure> {
     let (scene, groups) = posed.unzip();
     let summary = Summary::new(solution, groups);
-    let mut printed = if json { export::json(&summary)? } else { format!("{headline}\n\n{}", text(&summary)) };
-    let prepared = products.prepare(
+    let printed = if products.json { export::json(&summary)? } else { format!("{headline}\n\n{}", text(&summary)) };
+    let told = products.write(
         || picture(headline, solution, groups),
         |figure| report::of_infinite_impact(headline, scene, &summary, figure),
+        || files(headline, solution, groups),
     )?;
-    if let Some(folder) = out {
-        let files = files(headline, solution, groups)?;
-        files.write(&folder)?;
-        if !json {
-            let names: Vec<&str> = files.names().collect();
-            printed += &format!("\n  wrote {} to {}\n", names.join(", "), folder.display());
-        }
-    }
-    Ok(printed + &prepared.write(json)?)
+    Ok(printed + &told)
 }
 
 fn list(count: usize, json: bool) -> Result<String, Failure> {

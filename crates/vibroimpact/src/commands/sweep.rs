@@ -38,6 +38,9 @@ pub const MERGE_EXAMPLES: &str = "Example:
 The folders must be those of all parts of one sweep, each once and finished; the message names those that are missing.
 The results have the very bytes that an undivided sweep gives.";
 
+/// Exit code of a sweep that was asked to stop.
+pub const STOPPED: u8 = 130;
+
 /// A sweep, and where it goes.
 #[derive(Args)]
 pub struct SweepArguments {
@@ -128,7 +131,7 @@ fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
     let asked = Arc::clone(&stop);
     ctrlc::set_handler(move || {
         if asked.swap(true, Ordering::Relaxed) {
-            std::process::exit(super::STOPPED.into());
+            std::process::exit(STOPPED.into());
         }
     })?;
     Ok(stop)

@@ -1,0 +1,69 @@
+//! The commands `plan` and `compare`: which model, and why.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use vibroimpact::export::{self, Failure};
+use vibroimpact::{Scene, model, pictures};
+
+use super::headline;
+use super::products::{self, picture_file};
+
+pub const PLAN_EXAMPLES: &str = "Examples:
+  vibroimpact plan ball.json                     each model: does it apply, expected error, cost
+  vibroimpact plan ball.json --json              the same as one JSON object
+
+Nothing costly is solved. A scene chooses with these fields, each of which may be left out:
+
+  \"model\": \"auto\", \"rigid\", \"infinite-beam\", \"modal\" or \"emoc\"
+  \"modes\": \"auto\", or the number of modes that the structure is stated to have
+  \"tolerance\": accuracy of the restitution, truncation included where modes are chosen; 1e-3";
+
+pub const COMPARE_EXAMPLES: &str = "Examples:
+  vibroimpact compare ball.json                  restitution, uncertainty, cost of every model
+  vibroimpact compare ball.json --json           the same as one JSON object
+  vibroimpact compare ball.json --plot models.svg
+                                                 restitutions with their uncertainties; .svg or .png
+
+Models that do not apply are listed with the reason. Differences are from the model that is known best.";
+
+/// The scene to plan.
+#[derive(Args)]
+pub struct PlanArguments {
+    /// The scene file
+    scene: PathBuf,
+    /// Print one JSON object in place of the table
+    #[arg(long)]
+    json: bool,
+}
+
+/// The scene to answer by every model.
+#[derive(Args)]
+pub struct CompareArguments {
+    /// The scene file
+    scene: PathBuf,
+    /// Print one JSON object in place of the table
+    #[arg(long)]
+    json: bool,
+    /// Draw restitutions and uncertainties into this file, .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture_file)]
+    plot: Option<PathBuf>,
+}
+
+/// Carries `plan` out and returns what is to be printed.
+pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Failure> {
+    let plan = Scene::read(&scene)?.plan()?;
+    if json { export::json(&plan) } else { Ok(model::plan_text(&plan)) }
+}
+
+/// Carries `compare` out and returns what is to be printed.
+pub fn compare(CompareArguments { scene, json, plot }: CompareArguments) -> Result<String, Failure> {
+    let scene = Scene::read(&scene)?;
+    let comparison = scene.compare()?;
+    let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) };
+    let told = match plot {
+        Some(path) => products::draw(&path, &pictures::of_comparison(&headline(&scene)?, &comparison), json)?,
+        None => String::new(),
+    };
+    Ok(printed + &told)
+}

@@ -1,0 +1,97 @@
+//! The commands `emoc` and `fit`: net restitution, and its parameters from data.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use vibroimpact::emoc::Parameters;
+use vibroimpact::export::{self, Failure};
+use vibroimpact::net::{self, FitSummary};
+use vibroimpact::{InvalidInput, Scene, text};
+
+pub const EMOC_EXAMPLES: &str = "Examples:
+  vibroimpact emoc ball.json                               all parameters 1, where nothing has been fitted
+  vibroimpact emoc ball.json --mu0 0.5 --alpha0 8 --alpha1 0.3 --emoc-modes 50 --json
+
+Nothing is integrated in time: the restitution is that of least kinetic energy after the impact under the law's
+inequalities, which has a closed form in the mode shapes at the point of impact,
+
+  e = ebar max(1/(1+Z), (beta0+beta1)/(1+beta0)),   Z = m sum phi_k^2,   t = mu0 Z,   ebar = (t^2+1)/(t^2+t+1),
+  beta0 = x/(1+x) with x = alpha0 Z/N,              beta1 = y/(1+y) with y = alpha1 m phi_1^2.
+
+The branch printed is the term that is active. Contact, speed and frequencies do not enter. Parameters for a beam come
+from `vibroimpact fit`.";
+
+pub const FIT_EXAMPLES: &str = "Examples:
+  vibroimpact fit measured.csv --scene ball.json           the three parameters, their intervals, the error
+  vibroimpact fit measured.csv --scene ball.json --json    the same as one JSON object
+
+The table is comma-separated, its first line names the columns:
+
+  mass_kg,location_m,restitution
+  0.0638,0.25,0.41
+  0.0638,0.50,0.38
+
+Other columns are ignored. The scene gives the beam; masses and places come from the table. At least three lines are
+needed, and they should cover light and heavy strikers. The search starts from many points, because the sum of squares
+has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
+a law with three parameters are not: take them as a lower bound on the uncertainty.";
+
+/// The scene and the parameters of the law.
+#[derive(Args)]
+pub struct EmocArguments {
+    /// The scene file
+    scene: PathBuf,
+    /// Moderated mass ratio coefficient, not negative
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    mu0: f64,
+    /// Modal richness coefficient, not negative
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    alpha0: f64,
+    /// Slow response coefficient, not negative
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    alpha1: f64,
+    /// Number of modes in the law; the scene's when left out
+    #[arg(long, value_name = "N")]
+    emoc_modes: Option<usize>,
+    /// Print one JSON object in place of the list
+    #[arg(long)]
+    json: bool,
+}
+
+/// The data and the beam that they are of.
+#[derive(Args)]
+pub struct FitArguments {
+    /// The table (CSV): mass_kg, location_m, restitution
+    data: PathBuf,
+    /// The scene file that describes the beam
+    #[arg(long)]
+    scene: PathBuf,
+    /// Number of modes in the law
+    #[arg(long, value_name = "N", default_value_t = 50)]
+    emoc_modes: usize,
+    /// Print one JSON object in place of the list
+    #[arg(long)]
+    json: bool,
+}
+
+/// Carries `emoc` out and returns what is to be printed.
+pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
+    let EmocArguments { scene, mu0, alpha0, alpha1, emoc_modes, json } = arguments;
+    let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
+    let rebound = Scene::read(&scene)?.emoc(&parameters, emoc_modes);
+    let rebound = if emoc_modes.is_some() { rebound.map_err(of_option)? } else { rebound? };
+    if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound)) }
+}
+
+/// Carries `fit` out and returns what is to be printed.
+pub fn fit(FitArguments { data, scene, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
+    let scene = Scene::read(&scene)?;
+    let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option)?;
+    let fit = FitSummary::new(&observations, emoc_modes)?;
+    if json { export::json(&fit) } else { Ok(text::fit(&fit)) }
+}
+
+/// A fault in the number of modes, which an option gave.
+fn of_option(fault: InvalidInput) -> InvalidInput {
+    if fault.field == "modes" { InvalidInput { field: "--emoc-modes".to_owned(), ..fault } } else { fault }
+}

@@ -1,0 +1,58 @@
+//! What one scene leaves for the next: the modes of its beam, the tables of its solvers.
+
+use std::collections::VecDeque;
+
+use vibroimpact_sim::modal::{Solver, Structure};
+
+use crate::impact::in_scene;
+use crate::scene::{InvalidInput, KnownModes};
+
+/// Modes in the tables that are kept, in all; about 5 kB each.
+const MOST_MODES: usize = 2000;
+
+/// Modes and tables of the scenes answered last, for [`Scene::answer_with`](crate::Scene::answer_with). Scenes of one
+/// beam share its modes, and impacts at one place of it the tables of the solver, which cost about as much as an impact.
+/// No result depends on what is kept, to the last bit.
+///
+/// ```
+/// use vibroimpact::{Scene, model::Kept};
+///
+/// let mut kept = Kept::default();
+/// for mass_kg in [0.05, 0.1, 0.2] {
+///     let scene = Scene::from_json(&format!(r#"{{
+///         "structure": {{ "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
+///                        "segments": [{{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }}] }},
+///         "striker": {{ "mass_kg": {mass_kg}, "speed_m_s": 1 }},
+///         "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1.8e10 }},
+///         "location_m": 0.9
+///     }}"#))?;
+///     assert_eq!(scene.answer_with(&mut kept)?, scene.answer()?);
+/// }
+/// # Ok::<(), vibroimpact::SceneError>(())
+/// ```
+#[derive(Default)]
+pub struct Kept {
+    pub(crate) modes: KnownModes,
+    solvers: VecDeque<(Structure, Solver)>,
+}
+
+impl Kept {
+    /// A solver for a structure, with the tables that it has from before.
+    pub(super) fn solver(&mut self, structure: &Structure) -> Result<&mut Solver, InvalidInput> {
+        let known = self.solvers.iter().position(|(kept, _)| kept == structure);
+        let last = match known.and_then(|place| self.solvers.remove(place)) {
+            Some(known) => known,
+            None => (structure.clone(), Solver::new(structure).map_err(in_scene)?),
+        };
+        let mut modes = last.0.modes.len();
+        self.solvers.push_front(last);
+        // those used last, as far as there is room
+        let fit = self.solvers.iter().skip(1).take_while(|(structure, _)| {
+            modes += structure.modes.len();
+            modes <= MOST_MODES
+        });
+        let fit = fit.count();
+        self.solvers.truncate(1 + fit);
+        Ok(&mut self.solvers[0].1)
+    }
+}
