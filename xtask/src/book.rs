@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use vibroimpact::Scene;
 
+/// Where the repository's files stand on the web: the built book has no others than its own.
+const REPOSITORY: &str = "https://github.com/vibroimpact/vibroimpact/tree/main/";
+
 /// What a page asks to be checked.
 #[derive(Debug, PartialEq)]
 enum Item {
@@ -39,7 +42,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
                 Item::Command { line, exit } => (0, execute(line, *exit, &program, workplace.path())),
                 Item::JsonScene(text) => (1, scene(Scene::from_json(text))),
                 Item::TomlScene(text) => (1, scene(Scene::from_toml(text))),
-                Item::Link(target) => (2, follow(page, target)),
+                Item::Link(target) => (2, follow(root, page, target)),
             };
             counts[kind] += 1;
             if let Err(fault) = result {
@@ -94,11 +97,19 @@ fn commands(text: &str) -> Vec<Item> {
 /// A link to a file of ours, without its anchor.
 fn link(target: &CowStr) -> Option<Item> {
     let file = target.split('#').next().unwrap_or_default();
+    let ours = file.starts_with(REPOSITORY).then(|| Item::Link(file.to_owned()));
+    ours.or_else(|| relative(file))
+}
+
+fn relative(file: &str) -> Option<Item> {
     (!file.is_empty() && !file.contains("://") && !file.starts_with("mailto:")).then(|| Item::Link(file.to_owned()))
 }
 
-fn follow(page: &Path, target: &str) -> Result<(), Failure> {
-    let place = page.parent().unwrap_or(Path::new("")).join(target);
+fn follow(root: &Path, page: &Path, target: &str) -> Result<(), Failure> {
+    let place = match target.strip_prefix(REPOSITORY) {
+        Some(path) => root.join(path),
+        None => page.parent().unwrap_or(Path::new("")).join(target),
+    };
     if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
 }
 
@@ -182,12 +193,70 @@ mod tests {
         );
     }
 
+    /// `Name::Variant` for every public enum of the crates whose name ends so.
+    fn variants(root: &Path, ending: &str) -> Vec<String> {
+        fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                match path.extension() {
+                    _ if path.is_dir() => sources(&path, found),
+                    Some(extension) if extension == "rs" => found.push(path),
+                    _ => {}
+                }
+            }
+        }
+        let mut files = Vec::new();
+        for krate in fs::read_dir(root.join("crates")).unwrap() {
+            sources(&krate.unwrap().path().join("src"), &mut files);
+        }
+        let mut found = Vec::new();
+        for file in files {
+            let text = fs::read_to_string(file).unwrap();
+            for declared in text.split("\npub enum ").skip(1) {
+                let (name, rest) = declared.split_once(" {\n").unwrap();
+                if name.ends_with(ending) {
+                    let body = rest.split_once("\n}").unwrap().0;
+                    // a variant stands four spaces in; its fields stand deeper
+                    let variant = body.lines().filter_map(|line| line.strip_prefix("    "));
+                    let variant = variant.filter(|line| line.starts_with(|c: char| c.is_ascii_uppercase()));
+                    found.extend(variant.map(|line| {
+                        let end = line.find(|c: char| !c.is_alphanumeric()).unwrap_or(line.len());
+                        format!("{name}::{}", &line[..end])
+                    }));
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_error_and_outcome_is_on_the_page_of_errors() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+        let page = fs::read_to_string(root.join("docs/errors.md")).unwrap();
+        let errors = variants(root, "Error");
+        assert!(errors.contains(&"SweepError::Refused".to_owned()) && errors.contains(&"FitError::Invalid".to_owned()));
+        let missing: Vec<String> = errors
+            .into_iter()
+            .chain(variants(root, "Outcome"))
+            .chain(variants(root, "Stop"))
+            .filter(|name| !page.contains(&format!("`{name}`")))
+            .collect();
+        assert!(missing.is_empty(), "{missing:?}");
+        for krate in fs::read_dir(root.join("crates")).unwrap() {
+            let name = krate.unwrap().file_name().into_string().unwrap();
+            assert!(page.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+
     #[test]
     fn what_does_not_hold_is_found() {
         let here = tempfile::tempdir().unwrap();
         assert!(execute("exit 2", 2, here.path(), here.path()).is_ok());
         assert!(execute("exit 2", 0, here.path(), here.path()).is_err());
-        assert!(follow(&here.path().join("page.md"), "absent.md").is_err());
+        let page = here.path().join("page.md");
+        assert!(follow(here.path(), &page, "absent.md").is_err());
+        assert!(follow(here.path(), &page, &format!("{REPOSITORY}absent")).is_err());
+        assert!(follow(here.path(), &page, REPOSITORY).is_ok());
         assert!(scene(Scene::from_json("{}")).is_err());
     }
 }

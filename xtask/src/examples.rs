@@ -36,7 +36,7 @@ pub fn of_crates(root: &Path) -> Result<(), Failure> {
     programs.iter().try_for_each(|program| run(&program.display().to_string(), &mut Command::new(program)))
 }
 
-/// Runs the programs in `examples/`, each a package of its own outside the workspace.
+/// Runs the programs in `examples/`, each a package of its own outside the workspace, and their tests.
 pub fn alone(root: &Path) -> Result<(), Failure> {
     let mut manifests: Vec<PathBuf> = Vec::new();
     for entry in fs::read_dir(root.join("examples"))? {
@@ -50,13 +50,15 @@ pub fn alone(root: &Path) -> Result<(), Failure> {
         return Err("no packages in examples/".into());
     }
     for manifest in &manifests {
-        let mut command = cargo();
-        command.args(["run", "--quiet", "--manifest-path"]).arg(manifest);
-        // one folder for all, so that what they share is built once
-        if std::env::var_os("CARGO_TARGET_DIR").is_none() {
-            command.env("CARGO_TARGET_DIR", root.join("target/examples"));
+        for task in ["run", "test"] {
+            let mut command = cargo();
+            command.args([task, "--quiet", "--manifest-path"]).arg(manifest);
+            // one folder for all, so that what they share is built once
+            if std::env::var_os("CARGO_TARGET_DIR").is_none() {
+                command.env("CARGO_TARGET_DIR", root.join("target/examples"));
+            }
+            run(&manifest.display().to_string(), &mut command)?;
         }
-        run(&manifest.display().to_string(), &mut command)?;
     }
     Ok(())
 }

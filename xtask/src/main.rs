@@ -6,6 +6,7 @@ mod chapters;
 mod ci;
 mod examples;
 mod fuzz;
+mod pages;
 mod soak;
 
 use std::io::{ErrorKind, Write};
@@ -28,8 +29,12 @@ struct Cli {
 enum Task {
     /// Check everything: format, clippy, docs, packages, tests, and the chapters in their quick form
     Ci,
-    /// Check the book: links, commands, scenes
-    Book,
+    /// Check the book: links, commands, scenes, and the chapters' numbers against a run of them
+    Book {
+        /// Write the chapters' tables and figures from a run, and check nothing
+        #[arg(long)]
+        write: bool,
+    },
     /// Run the example programs of the crates
     Examples {
         /// Those outside the workspace, which use one crate alone
@@ -132,7 +137,8 @@ fn run(task: Task) -> Result<(), Failure> {
             // the record's counts and errors are held by a test; its instructions by `bench-check`
             ci::run(root, || reproduce(Chapters::All, &root.join("out/ci"), true, None))
         }
-        Task::Book => book::run(root),
+        Task::Book { write: true } => pages::write(root),
+        Task::Book { write: false } => book::run(root).and_then(|()| pages::check(root)),
         Task::Examples { alone: false } => examples::of_crates(root),
         Task::Examples { alone: true } => examples::alone(root),
         Task::BenchRecord { references } => bench::record(root, references),

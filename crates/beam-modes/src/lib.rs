@@ -32,6 +32,10 @@
 //! Neighbours whose rigidities are in the ratio 1e12, or lengths in the ratio 1e3, keep shapes orthonormal to 1e-11;
 //! see `tests/stepped.rs`. Contrasts are refused beyond 1e12.
 //!
+//! # Limits
+//! Euler-Bernoulli: no shear and no rotary inertia, which tell once a half wave is shorter than some ten thicknesses.
+//! The beam is straight, without axial load, and bends in one plane; supports are at its ends.
+//!
 //! # Example
 //! ```
 //! use beam_modes::{Beam, End, Segment};

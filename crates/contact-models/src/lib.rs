@@ -44,6 +44,9 @@
 //! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
 //! has dissipated. [`trace`] drives a law with a prescribed motion.
 //!
+//! The laws give the normal force of one contact. There is no friction, no adhesion (no law pulls), and no wave in the
+//! bodies: those belong to the structure.
+//!
 //! Parameters are checked by each law's `new`. Fields are public; after changing one,
 //! `validated` checks again. Checked laws give finite numbers for every finite compression and
 //! rate; beyond 1e30 (SI units) either counts as 1e30.

@@ -74,6 +74,13 @@
 //! Without features the crate depends on nothing and needs neither `std` nor an allocator. `qp` (default) brings
 //! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel).
 //!
+//! # Limits
+//!
+//! The closed form is for one contact and a structure at rest. The contact's law, the speed and the frequencies do not
+//! enter, so that the number of modes stands for the duration of the contact: they should reach somewhat beyond the
+//! frequencies that it excites. With three parameters for a structure the law follows averages over place and mass; on
+//! the beams of the thesis it misses resolved impacts by 0.05 to 0.08 (rms), single ones by up to 0.3.
+//!
 //! # Several contacts
 //!
 //! In contact coordinates (all contacts, normals and tangents, stacked) impulses `P` change the strikers' contact

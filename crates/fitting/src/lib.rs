@@ -33,6 +33,11 @@
 //! | `S`, `s^2` | sum of squares, variance `S/(m - n)` |
 //! | `C` | covariance of `u` |
 //!
+//! # Limits
+//!
+//! Jacobians are dense: a few parameters, up to some thousand residuals. The loss is the sum of squares, in which
+//! outliers count in full. Intervals assume independent errors of equal variance.
+//!
 //! # What can happen
 //!
 //! Bad input is an [`InvalidInput`]. A model that is not finite at any starting point is

@@ -61,6 +61,11 @@
 //! are near. Panels are halved until the last Legendre coefficients are negligible, so that a kink of the density
 //! inside (the end of a contact) is closed in on.
 //!
+//! # Limits
+//!
+//! Kernels are sums of powers and orders are constant. Newton's method solves dense systems: tens of unknowns, not
+//! thousands. A solution that blows up ends early, and [`Solution::stop`] says where and why.
+//!
 //! # Example
 //!
 //! A ball on a stand-in for an infinite beam, `x = t - int [(t-s) + sqrt(t-s)] x ds`, until it lifts off:

@@ -1,8 +1,23 @@
 //! One impact of a compact body on a vibrating structure, fully resolved.
 //!
-//! [`modal`] solves impacts on structures described by their modes; [`dropped_rod`] poses the drop of a tilted rod on
-//! an immovable surface as one of them. [`infinite`] solves impacts on an infinite beam or plate, which carry the
-//! energy away as waves.
+//! | module | structure | method | thesis |
+//! |---|---|---|---|
+//! | [`modal`] | any that is described by its modes, at rest or moving | modes exact, the force by collocation | chapters 3, 4 |
+//! | [`infinite`] | an infinite beam or plate, which carries the energy away as waves | one scalar Volterra equation | chapter 2 |
+//! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, posed as a modal impact | as `modal` | chapter 8 |
+//!
+//! Each states its mathematics, with a table of symbols, at its head. Throughout, `z` is the displacement of the
+//! striker and `w` that of the structure at the contact (m), `xi` the compression (m), `F` the contact force (N), `m`
+//! the striker's mass (kg), and the restitution the relative speed of separation over that of approach, both of
+//! rigid-body motions.
+//!
+//! # Limits
+//!
+//! Structures are linear, and the contact is one point. The striker moves along one line and does not rotate. Gravity
+//! and friction are left out during the impact. The infinite structures take Hertz contact alone. An impact on many
+//! undamped modes amplifies every error; the stated uncertainty tells by how much. The energy ledger resolves the
+//! fastest mode, so that its cost grows with the cube of the number of modes, and outweighs that of the impact from a
+//! few hundred on; [`modal::Solver::solve`] alone does without it.
 
 pub mod dropped_rod;
 mod error;

@@ -39,6 +39,11 @@
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
 //! [`fitting`], [`fracdiff`].
+//!
+//! # Limits
+//!
+//! Linear structures, one point of contact, a striker that moves along one line without rotation; no gravity and no
+//! friction during the impact. The mathematics, with its symbols, is in the crates that solve.
 
 mod impact;
 mod input;

@@ -1,0 +1,151 @@
+//! Balls dropped on a vibrating bar in the physics engine rapier.
+//!
+//! A physics engine knows one restitution a pair of bodies. On a bar that is wrong by a large factor from place to
+//! place. Here the engine asks the EMOC law at each new contact, through its hook for contacts; the law costs some
+//! nanoseconds. Beside it stand the engine with the best constant for each ball, and bounces with every contact
+//! resolved.
+
+mod beam;
+mod engine;
+
+use beam::{Ball, Bar, LENGTH_M, Law};
+use std::error::Error;
+use std::fmt::Write as _;
+
+/// A light ball, one in between, and a heavy one.
+const BALLS: [Ball; 3] = [Ball { radius_m: 0.008 }, Ball { radius_m: 0.014 }, Ball { radius_m: 0.02 }];
+/// Places that the law is fitted at.
+const FITTED: usize = 30;
+/// Places from a support to the middle at which it is compared; the fit has seen none of them.
+const COMPARED: usize = 8;
+/// Height of fall (m): 3.1 m/s.
+const DROP_M: f64 = 0.5;
+/// In a row.
+const BOUNCES: usize = 4;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    print!("{}", tables()?);
+    Ok(())
+}
+
+/// All that the program prints.
+fn tables() -> Result<String, Box<dyn Error>> {
+    let mut out = String::new();
+    let bar = Bar::new()?;
+    let law = fitted(&bar)?;
+    let p = law.parameters;
+    writeln!(out, "law for all balls: mu0 {:.3}, alpha0 {:.3}, alpha1 {:.3}", p.mu0, p.alpha0, p.alpha1)?;
+    for ball in BALLS {
+        writeln!(out, "\nball of {:.0} mm, {:.0} g\n", 2e3 * ball.radius_m, 1e3 * ball.mass_kg())?;
+        writeln!(out, "                              height (mm) of successive bounces from {:.0} mm", 1e3 * DROP_M)?;
+        writeln!(
+            out,
+            "   x (mm)  e resolved    EMOC       resolved               rapier, EMOC           rapier, constant"
+        )?;
+        let rows = compare(&bar, &law, ball)?;
+        for row in &rows {
+            let heights = |of: &dyn Fn(usize) -> Option<f64>| -> String {
+                (0..3).map(|i| of(i).map_or(format!("{:>7}", "-"), |h| format!("{:7.1}", 1e3 * h))).collect()
+            };
+            writeln!(
+                out,
+                "{:9.1}{:12.3}{:8.3}   {}   {}   {}",
+                1e3 * row.x_m,
+                row.resolved[0].restitution,
+                row.law,
+                heights(&|i| row.resolved.get(i).map(|bounce| bounce.height_m)),
+                heights(&|i| row.with_law.get(i).map(|bounce| bounce.height_m)),
+                heights(&|i| row.with_constant.get(i).map(|bounce| bounce.height_m)),
+            )?;
+        }
+        writeln!(
+            out,
+            "mean error of the restitution: EMOC {:.3}, constant {:.3}; resolved bounces last up to {:.1} ms",
+            mean_error(&rows, |row| &row.with_law),
+            mean_error(&rows, |row| &row.with_constant),
+            1e3 * rows.iter().flat_map(|row| &row.resolved).map(|bounce| bounce.duration_s).fold(0.0, f64::max),
+        )?;
+    }
+    Ok(out)
+}
+
+/// The law, fitted to all balls.
+fn fitted(bar: &Bar) -> Result<Law, Box<dyn Error>> {
+    let places: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();
+    bar.law(&BALLS, &places, DROP_M)
+}
+
+/// What becomes of a ball dropped at a place.
+struct Row {
+    x_m: f64,
+    /// Restitution by the law.
+    law: f64,
+    resolved: Vec<beam::Bounce>,
+    with_law: Vec<engine::Bounce>,
+    with_constant: Vec<engine::Bounce>,
+}
+
+fn compare(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Row>, Box<dyn Error>> {
+    let places: Vec<f64> = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64).collect();
+    let resolved = places.iter().map(|&x| bar.bounces(ball, x, DROP_M, BOUNCES)).collect::<Result<Vec<_>, _>>()?;
+    // the constant that fits these very places best: more than a game's author would know
+    let constant = resolved.iter().map(|bounces| bounces[0].restitution).sum::<f64>() / COMPARED as f64;
+    let at = |x| law.restitution(ball.mass_kg(), x);
+    let row = |(x_m, resolved): (f64, Vec<beam::Bounce>)| Row {
+        x_m,
+        law: at(x_m),
+        resolved,
+        with_law: engine::bounces(ball, x_m, DROP_M, BOUNCES, at),
+        with_constant: engine::bounces(ball, x_m, DROP_M, BOUNCES, |_| constant),
+    };
+    Ok(places.into_iter().zip(resolved).map(row).collect())
+}
+
+/// Of the engine's first bounce, against the resolved one.
+fn mean_error(rows: &[Row], bounces: impl Fn(&Row) -> &[engine::Bounce]) -> f64 {
+    let error = |row| (bounces(row)[0].restitution() - row.resolved[0].restitution).abs();
+    rows.iter().map(error).sum::<f64>() / rows.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_book_shows_what_is_printed() {
+        let page = include_str!("../../../docs/how-to/physics-engine.md");
+        let tables = tables().unwrap();
+        assert!(page.contains(&format!("```text\n{tables}```")), "{tables}");
+    }
+
+    #[test]
+    fn the_engine_rebounds_as_the_law_says() {
+        let bar = Bar::new().unwrap();
+        let law = fitted(&bar).unwrap();
+        for ball in BALLS {
+            for x in [0.02, 0.07, 0.11, 0.15, 0.23, 0.28] {
+                let bounces = engine::bounces(ball, x, DROP_M, 2, |x| law.restitution(ball.mass_kg(), x));
+                assert_eq!(bounces.len(), 2);
+                for bounce in bounces {
+                    let wanted = law.restitution(ball.mass_kg(), x) * bounce.speed_before_m_s;
+                    // gravity acts on during the step of the contact
+                    let step = beam::GRAVITY_M_S2 * engine::STEP_S;
+                    assert!((bounce.speed_after_m_s - wanted).abs() <= step, "{} {wanted}", bounce.speed_after_m_s);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_law_is_nearer_to_the_resolved_bounce_than_the_best_constants() {
+        let bar = Bar::new().unwrap();
+        let law = fitted(&bar).unwrap();
+        let (mut of_law, mut of_constant) = (0.0, 0.0);
+        for ball in BALLS {
+            let rows = compare(&bar, &law, ball).unwrap();
+            of_law += mean_error(&rows, |row| &row.with_law);
+            of_constant += mean_error(&rows, |row| &row.with_constant);
+        }
+        assert!(of_law < of_constant, "{of_law} {of_constant}");
+    }
+}
