@@ -272,6 +272,62 @@ fn reversals_behind_a_residual_compliance() {
     }
 }
 
+/// A contact a thousand times stiffer than the residual compliance behind it: nearly all of the gap is taken up by the
+/// compliance, and an error of the force must not be taken for surfaces that have parted.
+#[test]
+fn a_hard_contact_behind_a_residual_compliance() {
+    let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape };
+    let structure = Structure {
+        modes: vec![
+            mode(1.2160361712701584, 0.020805500388699716),
+            mode(4.864144685080634, 0.03311089673940061),
+            mode(10.944325541431425, 0.03188880940462351),
+            mode(19.456578740322534, 0.01763852315498458),
+            mode(30.40090428175396, -0.0038179960183024188),
+            mode(43.7773021657257, -0.023714669825415827),
+            mode(0.0, 0.09908877401009737),
+            mode(0.0, 0.5395653781857226),
+        ],
+        residual_compliance_m_n: 2.110571348277004e-6,
+    };
+    let striker = Striker { mass_kg: 15479.79545052681, speed_m_s: 0.3617139734325054 };
+    let law = Law::from(Hertz::new(295117987073.0457).unwrap());
+    let start = Start {
+        amplitude: vec![
+            0.003983493407974803,
+            0.0004100399187616022,
+            -0.0007059671983022537,
+            0.00029984135404229507,
+            0.0006733854191444199,
+            0.00019263016194060888,
+            -0.8733242510345859,
+            0.40994265145827846,
+        ],
+        rate: vec![
+            -0.00025610746671355983,
+            0.00246464716124219,
+            6.824243804665353e-5,
+            -0.006908863566526099,
+            0.024731848378234066,
+            -0.0014611665859350243,
+            0.002421965827045995,
+            -1.598387350037492e-5,
+        ],
+        gap_m: 0.0006696355739981407,
+    };
+    let mut solver = Solver::new(&structure).unwrap();
+    let mut at = |tolerance: f64| solver.solve(&striker, &law, Some(&start), &settings(tolerance)).unwrap();
+    let reference = at(1e-12);
+    for i in 0..=80 {
+        let tolerance = if i == 0 { 1.7515076975222824e-7 } else { 10f64.powf(-4.0 - 0.08 * f64::from(i)) };
+        let solution = at(tolerance);
+        assert_eq!((solution.outcome, solution.sub_impacts.len()), (Outcome::Rebound, 1), "{tolerance:e}");
+        let error = (solution.restitution.unwrap() - reference.restitution.unwrap()).abs();
+        let stated = solution.restitution_uncertainty.unwrap();
+        assert!(error <= stated && stated < 100.0 * tolerance, "{tolerance:e}: {error:e}, stated {stated:e}");
+    }
+}
+
 /// A structure that swings freely and only just reaches an immovable stop.
 #[test]
 fn a_stop_at_the_end_of_a_swing() {

@@ -1,5 +1,6 @@
 //! One interval of contact: from first touch to separation.
 
+use super::behind::Behind;
 use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s};
 use super::landing::{self, Approach, Landed, REACH};
 use super::legendre::{BASIS, Nodal, Q, evaluate};
@@ -206,9 +207,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.approach(which, place * h, h);
         }
         // modes that turn several times within the step escape the coefficients, but not the law at its end
-        let defect = self.setting.law.force(&self.branch, end.0, end.1).force_n - evaluate(&force, 1.0);
-        self.counts.law_evaluations += 1;
-        if defect.abs() * h > DEFECT * tolerance {
+        if self.defect(end, &force) * h > DEFECT * tolerance {
             std::mem::swap(self.motion, &mut self.before);
             return self.refine(self.level + 1);
         }
@@ -222,6 +221,12 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             self.level = self.level.max(level_within(SHARE * (at - self.motion.time)));
         }
         None
+    }
+
+    /// By how much the force misses the law at the end of a step (N).
+    fn defect(&mut self, end: (f64, f64), force: &Nodal) -> f64 {
+        self.counts.law_evaluations += 1;
+        (self.setting.law.force(&self.branch, end.0, end.1).force_n - evaluate(force, 1.0)).abs()
     }
 
     /// Longest step for a landing (s).
@@ -257,7 +262,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             approach.gap[1] += self.motion.drift_rate;
             approach.kernel[1] += self.setting.mu;
             match approach.land(expected, reach, self.counts) {
-                Some(landed) if truncation(&landed.force) * landed.length <= self.setting.impulse_tolerance => {
+                Some(landed) if self.is_exact(&landed) => {
                     // the branch may have ended before, in a dip that this landing passed over
                     let boundaries = self.setting.law.boundaries(&self.branch);
                     let (start, noise) = ((self.compression, self.rate), self.noise(&landed.step));
@@ -275,13 +280,20 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.refine((self.level + 1).max(level_within(SHARE * expected)))
     }
 
+    /// Whether the force of a landing is known as well as that of a step must be.
+    fn is_exact(&mut self, landed: &Landed) -> bool {
+        let tolerance = self.setting.impulse_tolerance;
+        truncation(&landed.force) * landed.length <= tolerance
+            && self.defect((landed.compression, landed.rate), &landed.force) * landed.length <= DEFECT * tolerance
+    }
+
     /// Commits a landing and asks the law what follows.
     fn cross(&mut self, which: usize, landed: Landed) -> Option<ContactEnd> {
         self.before.copy_from(self.motion);
         landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);
-        (self.compression, self.rate) = (self.behind_compliance(landed.compression, landed.rate), landed.rate);
+        (self.compression, self.rate) = (landed.compression, landed.rate);
         self.previous = Some((landed.force, landed.length));
         match self.setting.law.cross(&self.branch, which, landed.compression, landed.rate) {
             After::Release(memory) => Some(ContactEnd::Released(memory)),
@@ -358,40 +370,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Compression and rate at the end of a step that the motion has just made.
     fn end_of_step(&self, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
-        let (gap, gap_rate) = (self.motion.gap(), self.motion.gap_rate());
-        let (law, c) = (self.setting.law, self.setting.residual_compliance);
-        if c == 0.0 {
-            return (gap, gap_rate);
-        }
-        let estimate = gap - c * evaluate(force, 1.0);
-        if law.depends_on_rate() {
-            let rate = landing::end_slope(self.compression, &step.compression, h);
-            return (self.behind_compliance(estimate, rate), rate);
-        }
-        let compression = self.behind_compliance(estimate, 0.0);
-        (compression, gap_rate / (1.0 + c * law.force(&self.branch, compression, 0.0).per_compression_n_m))
-    }
-
-    /// The compression at which the law itself holds behind the residual compliance, `xi + c F(xi, xi') = g`, near an
-    /// estimate. The polynomial of the force misses it at the end of a step by as much as it misses the force; short
-    /// steps that begin there would see that as a rate.
-    fn behind_compliance(&self, estimate: f64, rate: f64) -> f64 {
-        let c = self.setting.residual_compliance;
-        if c == 0.0 {
-            return estimate;
-        }
-        let gap = self.motion.gap();
-        let mut compression = estimate;
-        for _ in 0..4 {
-            let force = self.setting.law.force(&self.branch, compression, rate);
-            let excess = compression + c * force.force_n - gap;
-            let next = compression - excess / (1.0 + c * force.per_compression_n_m);
-            if !next.is_finite() || next == compression {
-                break;
-            }
-            compression = next;
-        }
-        compression
+        let behind =
+            Behind { law: self.setting.law, branch: &self.branch, compliance: self.setting.residual_compliance };
+        let gap = (self.motion.gap(), self.motion.gap_rate());
+        behind.end_of_step(gap, self.compression, step, force, h)
     }
 
     /// Books a step that has been made: peaks, counts, record.

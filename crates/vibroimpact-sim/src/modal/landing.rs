@@ -3,8 +3,9 @@
 //! It is shorter than the period of every mode, so free motion and impulse responses are Taylor series, whose terms
 //! at the contact are the same few numbers whatever the length tried.
 
+use super::behind::Behind;
 use super::ladder::{Ladder, Vibration};
-use super::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
+use super::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
 use contact_models::{Boundary, Branch, ContactLaw};
@@ -39,6 +40,8 @@ pub(crate) struct Landed {
     /// Compression and rate on arrival.
     pub compression: f64,
     pub rate: f64,
+    /// How fast the distance to the boundary changes there; 0 where that is not known.
+    margin_rate: f64,
 }
 
 impl<L: ContactLaw> Approach<'_, L> {
@@ -84,19 +87,15 @@ impl<L: ContactLaw> Approach<'_, L> {
         let step = collocate(self.law, self.branch, &given, guess, counts)?;
         let force = basis.coefficients(&step.force);
         let (free_gap, free_rate) = self.free(length);
-        let (gap, gap_rate) =
-            (free_gap + dot(&end_response, &step.force), free_rate + dot(&end_rate_response, &step.force));
-        let compression = gap - self.residual_compliance * evaluate(&force, 1.0);
-        let rate = if self.residual_compliance == 0.0 {
-            gap_rate
-        } else if self.law.depends_on_rate() {
-            end_slope(self.start_compression, &step.compression, length)
-        } else {
-            let stiffness = self.law.force(self.branch, compression, 0.0).per_compression_n_m;
-            gap_rate / (1.0 + self.residual_compliance * stiffness)
-        };
-        let margin = self.boundary().margin(compression, rate);
-        Some((Landed { length, step, force, compression, rate }, margin))
+        let gap = (free_gap + dot(&end_response, &step.force), free_rate + dot(&end_rate_response, &step.force));
+        let behind = self.behind();
+        let end = behind.end_of_step(gap, self.start_compression, &step, &force, length);
+        let (margin, margin_rate) = behind.margin(&self.boundary(), gap, end);
+        Some((Landed { length, step, force, compression: end.0, rate: end.1, margin_rate }, margin))
+    }
+
+    fn behind(&self) -> Behind<'_, L> {
+        Behind { law: self.law, branch: self.branch, compliance: self.residual_compliance }
     }
 
     /// Gap and its rate after `t` of free motion.
@@ -133,7 +132,8 @@ impl<L: ContactLaw> Approach<'_, L> {
     /// branch does not end there.
     pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
         let start = self.free(0.0);
-        let initial = self.boundary().margin(self.start_compression, start.1).max(0.0);
+        let (margin, _) = self.behind().margin(&self.boundary(), start, (self.start_compression, start.1));
+        let initial = margin.max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high = self.without_force(expected, longest);
         let mut guess = [0.0; Q];
@@ -153,10 +153,8 @@ impl<L: ContactLaw> Approach<'_, L> {
         let mut high_margin = best_margin;
         // Newton's method on the length where the margin's slope is at hand, regula falsi where it is not, both
         // kept within the bracket
-        let per = self.boundary();
         for _ in 0..60 {
-            let slope = if per.per_rate == 0.0 { per.per_compression * best.rate } else { 0.0 };
-            let newton = best.length - best_margin / slope;
+            let newton = best.length - best_margin / best.margin_rate;
             let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
             let next = [newton, secant, 0.5 * (low + high)].into_iter().find(|x| *x > low && *x < high);
             let Some(next) = next else { break };

@@ -32,6 +32,7 @@
 //! The uncertainty of the restitution is five times the tolerance and three times the difference to a second solution,
 //! of 32 times the tolerance. Undamped impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
 
+mod behind;
 mod contact;
 mod flight;
 mod forcing;

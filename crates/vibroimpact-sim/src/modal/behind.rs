@@ -1,0 +1,75 @@
+//! Behind a residual compliance: what the gap between the bodies makes of the contact itself.
+//!
+//! The gap is the compression and what the compliance yields, `g = xi + c F(xi, xi')`. Where the compliance is soft
+//! against the contact nearly all of the gap is `c F`, and a small error of the force, as a polynomial makes it beyond its
+//! nodes, is a large one of the compression: at the end of a step the law itself is solved.
+
+use super::landing::end_slope;
+use super::legendre::{Nodal, evaluate};
+use super::step::Collocated;
+use contact_models::{Boundary, Branch, ContactLaw};
+
+/// Newton's method on a convex function: a third of the way at least in each iteration.
+const ITERATIONS_MAX: usize = 60;
+
+/// A branch of a law behind a compliance.
+pub(crate) struct Behind<'a, L> {
+    pub law: &'a L,
+    pub branch: &'a Branch,
+    /// The residual compliance `c` (m/N).
+    pub compliance: f64,
+}
+
+impl<L: ContactLaw> Behind<'_, L> {
+    /// Compression and its rate at the end of a step of `h`, of which the gap and its rate there are known.
+    pub fn end_of_step(
+        &self,
+        (gap, gap_rate): (f64, f64),
+        start_compression: f64,
+        step: &Collocated,
+        force: &Nodal,
+        h: f64,
+    ) -> (f64, f64) {
+        if self.compliance == 0.0 {
+            return (gap, gap_rate);
+        }
+        let estimate = gap - self.compliance * evaluate(force, 1.0);
+        if self.law.depends_on_rate() {
+            let rate = end_slope(start_compression, &step.compression, h);
+            return (self.compression(gap, estimate, rate), rate);
+        }
+        let compression = self.compression(gap, estimate, 0.0);
+        let stiffness = self.law.force(self.branch, compression, 0.0).per_compression_n_m;
+        (compression, gap_rate / (1.0 + self.compliance * stiffness))
+    }
+
+    /// The compression at which `xi + c F(xi, xi') = g`, near an estimate.
+    fn compression(&self, gap: f64, estimate: f64, rate: f64) -> f64 {
+        let mut compression = estimate;
+        for _ in 0..ITERATIONS_MAX {
+            let force = self.law.force(self.branch, compression, rate);
+            let excess = compression + self.compliance * force.force_n - gap;
+            let next = compression - excess / (1.0 + self.compliance * force.per_compression_n_m);
+            if !next.is_finite() || (next - compression).abs() <= 1e-15 * next.abs() {
+                break;
+            }
+            compression = next;
+        }
+        compression
+    }
+
+    /// Distance to a boundary of the branch, positive inside, and how fast it changes, which is not known (0) at the
+    /// boundaries of a rate. A boundary in the compression alone is one in the gap, where the law does not depend on the
+    /// rate, and the gap is smooth where the compression is not: `g^(2/3)` at a separation.
+    pub fn margin(&self, boundary: &Boundary, gap: (f64, f64), (compression, rate): (f64, f64)) -> (f64, f64) {
+        if boundary.per_rate != 0.0 {
+            return (boundary.margin(compression, rate), 0.0);
+        }
+        if self.compliance == 0.0 || self.law.depends_on_rate() {
+            return (boundary.margin(compression, rate), boundary.per_compression * rate);
+        }
+        let met = boundary.level / boundary.per_compression;
+        let yielded = self.compliance * self.law.force(self.branch, met, 0.0).force_n;
+        (boundary.margin(gap.0 - yielded, 0.0), boundary.per_compression * gap.1)
+    }
+}
