@@ -236,6 +236,12 @@ pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
 /// Where a polynomial that is positive at the nodes falls below `-noise` between them, if it does: the place of the first
 /// such dip's least value, by the parabola through three neighbours among nodes and middles.
 fn dip(margins: &Nodal, noise: f64) -> Option<f64> {
+    let range = |(low, high): (f64, f64), margin: &f64| (low.min(*margin), high.max(*margin));
+    let (least, largest) = margins.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
+    // between nodes a polynomial goes beyond its values there by less than their range
+    if least > largest - least {
+        return None;
+    }
     let coefficients = BASIS.coefficients(margins);
     // a Legendre polynomial is 1 at most
     if coefficients[0] > coefficients[1..].iter().map(|c| c.abs()).sum() {
