@@ -5,7 +5,7 @@ mod common;
 use beam_modes::{Beam, End, Segment};
 use common::random::{any_law, any_structure, config, decades};
 use common::{GOLDEN, ball, hertz, pinned, pinned_with_residual, seen_from, settings};
-use contact_models::{Hertz, Hysteretic, Law, LinearSpring};
+use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
@@ -268,6 +268,31 @@ fn reversals_behind_a_residual_compliance() {
         for power in 5..=12 {
             let (value, stated) = e(10f64.powi(-power));
             assert!((value - reference).abs() <= stated, "N = {n}, 1e-{power}: {value} against {reference}");
+        }
+    }
+}
+
+/// A heavily damped contact pauses, without force, and resumes, a dozen times: however long the steps of its ladder are
+/// against the modes (time is scaled, which moves the one against the other), none of the short contacts is passed over.
+#[test]
+fn pauses_of_a_damped_contact() {
+    let impact = |time: f64, tolerance: f64| {
+        let mode = |k: i32| Mode {
+            omega_rad_s: 163.3572170466924 * f64::from(k * k) / time,
+            damping_ratio: 0.0,
+            shape: 1.4 * (f64::from(k) * 0.063468).sin(),
+        };
+        let structure = Structure { modes: (1..=36).map(mode).collect(), residual_compliance_m_n: 0.0 };
+        let striker = Striker { mass_kg: 0.0033958439615988456, speed_m_s: 1.0 / time };
+        let law = Law::from(KelvinVoigt::new(1e5 / (time * time), 316.3016118820335 / time).unwrap());
+        let solution = Solver::new(&structure).unwrap().solve(&striker, &law, None, &settings(tolerance)).unwrap();
+        solution.restitution.unwrap()
+    };
+    let reference = impact(1.0, 1e-12);
+    for time in [1.0, 1.3, 1.7, 103.44039057817238] {
+        for tolerance in [1e-6, 1e-9] {
+            let restitution = impact(time, tolerance);
+            assert!((restitution - reference).abs() < tolerance, "{time} {tolerance}: {restitution} {reference}");
         }
     }
 }
