@@ -40,7 +40,7 @@ impl Volterra<'_> {
     /// of a segment. It is solved twice, the second time with more nodes on other panels; the difference is the
     /// estimate, the finer solution the answer. While the estimate is above the tolerance, both are tightened, a few
     /// times; where that was in vain the estimate says so. Of methods of low order a run with few steps costs less, but
-    /// to know its error takes a second run with more, and then it costs no less (`docs/performance.md`).
+    /// to know its error takes a second run with more, and then it costs no less (`docs/performance-other.md`).
     ///
     /// The estimate is of values: the time of an event errs by the error of its function over its rate. What happens
     /// between the nodes of both solutions alone, such as a pulse much shorter than the interval, is seen by neither:

@@ -2,20 +2,20 @@
 
 use fracdiff::{
     Collocation, Convolution, Equation, Event, GalerkinStates, InitialValueProblem, InvalidInput, Method, Solution,
-    Stop, SumOfExponentials, Term, Volterra,
+    Stop, SumOfExponentials, Term, Volterra, test_problems,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+/// The library's list, with collocation kept from going on for long.
 fn every_method(steps: usize) -> Vec<Method> {
-    vec![
-        Method::GrunwaldLetnikov(Convolution { steps }),
-        Method::L1(Convolution { steps }),
-        Method::Trapezoidal(Convolution { steps }),
-        Method::SumOfExponentials(SumOfExponentials { steps, ..Default::default() }),
-        Method::GalerkinStates(GalerkinStates { steps, ..Default::default() }),
-        Method::Collocation(Collocation { most_panels: 100, ..Default::default() }),
-    ]
+    let mut methods = test_problems::every_method(steps);
+    for method in &mut methods {
+        if let Method::Collocation(collocation) = method {
+            collocation.most_panels = 100;
+        }
+    }
+    methods
 }
 
 fn assert_finite(solution: &Solution) {
