@@ -15,8 +15,9 @@ pub struct InvalidInput {
 /// Smallest positive parameter. With [`LARGEST`] it bounds every product a law forms, so that
 /// no force overflows; both lie far outside any physics.
 pub(crate) const SMALLEST: f64 = 1e-30;
-/// Largest parameter, compression and rate that a law computes with.
-pub(crate) const LARGEST: f64 = 1e30;
+/// Largest parameter that a law takes, and largest compression (m) and rate (m/s) that it computes with: beyond, its
+/// force is the one at this bound.
+pub const LARGEST: f64 = 1e30;
 
 impl InvalidInput {
     /// Passes `value` if `holds`, and reports it with what is `allowed` otherwise.

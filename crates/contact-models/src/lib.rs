@@ -83,7 +83,7 @@ mod viscous;
 #[doc = include_str!("../README.md")]
 mod readme {}
 
-pub use error::InvalidInput;
+pub use error::{InvalidInput, LARGEST};
 pub use flores::Flores;
 pub use hertz::Hertz;
 pub use hunt_crossley::HuntCrossley;

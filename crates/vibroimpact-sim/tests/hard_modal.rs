@@ -355,6 +355,32 @@ fn a_hard_contact_behind_a_residual_compliance() {
 
 /// A structure that swings freely and only just reaches an immovable stop.
 #[test]
+fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
+    // the surface stands a million compressions from its place, kept there by next to no force: nothing may change
+    let mode = Mode { omega_rad_s: 1e-7, damping_ratio: 0.0, shape: 30.0 };
+    let other = Mode { omega_rad_s: 2e-7, damping_ratio: 0.0, shape: 20.0 };
+    let structure = Structure { modes: vec![mode, other], residual_compliance_m_n: 0.0 };
+    let striker = Striker { mass_kg: 2e-3, speed_m_s: 2.0 };
+    let laws = [
+        (Law::from(Hertz::new(1.7e13).unwrap()), 1e-12),
+        (Law::from(Hysteretic::new(4e12, 1.5, 1.5, 0.4, 1e-9).unwrap()), 1e-10),
+    ];
+    for (law, floor) in laws {
+        let solve = |amplitude: f64| {
+            // against each other, so that where the modes stand cancels in part
+            let start = Start { amplitude: vec![amplitude, -amplitude], ..Start::at_rest(2) };
+            let settings = Settings { max_sub_impacts: 1, ..settings(1e-12) };
+            Solver::new(&structure).unwrap().solve(&striker, &law, Some(&start), &settings).unwrap()
+        };
+        let impulse = |solution: &Solution| solution.sub_impacts[0].impulse_n_s;
+        let (near, far) = (solve(0.0), solve(0.03));
+        let change = impulse(&far) / impulse(&near) - 1.0;
+        assert!(change.abs() < floor, "{law:?}: {change:e}");
+        assert!(far.counts.rejected_steps <= near.counts.rejected_steps + 2, "{:?} {:?}", near.counts, far.counts);
+    }
+}
+
+#[test]
 fn a_stop_at_the_end_of_a_swing() {
     let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape };
     let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };

@@ -7,7 +7,7 @@ use super::legendre::{BASIS, Nodal, Q, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::solution::{Counts, SubImpact};
 use super::step::{BLUR, Collocated, Given, collocate, first_crossing, truncation};
-use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
+use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 
 /// How a contact ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub(crate) enum ContactEnd {
     Released(Memory),
     /// Nothing moves any more.
     AtRest,
-    /// The settings' limit on steps, or the finest step, was reached.
+    /// The settings' limit on steps, the finest step, or the end of what the law computes with was reached.
     Limit,
 }
 
@@ -59,9 +59,11 @@ pub(crate) struct Contact<'a, L> {
     level: i32,
     /// Legendre coefficients of the last step's force, and its length.
     previous: Option<(Nodal, f64)>,
-    /// Compression and rate now.
+    /// Compression, its rate, and the gap now. The gap is summed up as it changes: as the difference of where the bodies
+    /// are it would carry the rounding of the way from their places, which a stiff contact turns into force.
     compression: f64,
     rate: f64,
+    gap: f64,
     /// Where the branch is expected to end: which boundary, and when.
     horizon: Option<(usize, f64)>,
     peak_force: Peak,
@@ -95,6 +97,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             previous: None,
             compression: memory.touch_m,
             rate,
+            gap: memory.touch_m,
             horizon: None,
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
@@ -102,6 +105,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         contact.enter(contact.branch);
         contact.level = contact.first_level();
         let end = contact.follow();
+        contact.motion.drift += contact.gap - contact.motion.gap();
         let found = SubImpact {
             start_s,
             end_s: contact.motion.time,
@@ -146,7 +150,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn follow(&mut self) -> ContactEnd {
         loop {
             let steps = self.counts.contact_steps + self.counts.rejected_steps;
-            if steps >= self.setting.max_steps || self.level > J_MAX {
+            if steps >= self.setting.max_steps || self.level > J_MAX || self.is_beyond_the_law() {
                 return ContactEnd::Limit;
             }
             if steps % REST_CHECK == REST_CHECK - 1 && self.energy() < self.setting.rest_energy {
@@ -156,6 +160,11 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 return end;
             }
         }
+    }
+
+    /// Whether the law has been asked for more than it knows.
+    fn is_beyond_the_law(&self) -> bool {
+        self.compression.abs().max(self.peak_compression.largest).max(self.rate.abs()) > LARGEST
     }
 
     /// Kinetic and elastic energy of everything that moves, without what the striker shares with the rigid bodies (J).
@@ -183,7 +192,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + 1);
         };
         let boundaries = self.setting.law.boundaries(&self.branch);
-        let (start, noise) = ((self.compression, self.rate), self.noise(&step));
+        let (start, noise) = ((self.compression, self.rate), self.noise(&step, h));
         if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, noise) {
             return self.approach(which, place * h, h);
         }
@@ -198,9 +207,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + finer.clamp(1, 4));
         }
         self.before.copy_from(self.motion);
-        self.ladder.advance(self.level, &mut self.motion.vibration, &force);
-        self.motion.advance_drift(h, &force, self.setting.mu);
-        let end = self.end_of_step(&step, &force, h);
+        let moved = self.ladder.advance(self.level, &mut self.motion.vibration, &force);
+        let gap = self.gap + (moved + self.motion.advance_drift(h, &force, self.setting.mu));
+        let end = self.end_of_step(gap, &step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
         if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h, noise) {
             std::mem::swap(self.motion, &mut self.before);
@@ -213,6 +222,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         }
         self.note(h, &step, &force);
         (self.compression, self.rate) = end;
+        self.gap = gap;
         self.previous = Some((force, h));
         if error * GROWTH < tolerance {
             self.level = (self.level - 1).max(J_MIN);
@@ -258,14 +268,14 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 kernel: self.ladder.kernel,
                 residual_compliance: self.setting.residual_compliance,
             };
-            approach.gap[0] += self.motion.drift;
+            approach.gap[0] = self.gap;
             approach.gap[1] += self.motion.drift_rate;
             approach.kernel[1] += self.setting.mu;
             match approach.land(expected, reach, self.counts) {
                 Some(landed) if self.is_exact(&landed) => {
                     // the branch may have ended before, in a dip that this landing passed over
                     let boundaries = self.setting.law.boundaries(&self.branch);
-                    let (start, noise) = ((self.compression, self.rate), self.noise(&landed.step));
+                    let (start, noise) = ((self.compression, self.rate), self.noise(&landed.step, landed.length));
                     match first_crossing(&boundaries, &landed.step, start, None, landed.length, noise) {
                         None => return self.cross(which, landed),
                         Some((earlier, place)) => (which, expected) = (earlier, place * landed.length),
@@ -295,7 +305,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         landing::advance(self.ladder, &mut self.motion.vibration, landed.length, &landed.step.force);
         self.motion.advance_drift(landed.length, &landed.force, self.setting.mu);
         self.note(landed.length, &landed.step, &landed.force);
-        (self.compression, self.rate) = (landed.compression, landed.rate);
+        (self.compression, self.rate, self.gap) = (landed.compression, landed.rate, landed.gap);
         self.previous = Some((landed.force, landed.length));
         match self.setting.law.cross(&self.branch, which, landed.compression, landed.rate) {
             After::Release(memory) => Some(ContactEnd::Released(memory)),
@@ -313,7 +323,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         let mut response = *structure;
         let inertia = self.setting.mu * h * h;
         for i in 0..Q {
-            free[i] += self.motion.drift + self.motion.drift_rate * basis.nodes[i] * h;
+            free[i] = self.gap + (free[i] + self.motion.drift_rate * basis.nodes[i] * h);
             for j in 0..Q {
                 response[i][j] -= inertia * basis.power[1][i][j];
             }
@@ -327,7 +337,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         let given = Given {
             h,
             start_compression: self.compression,
-            start_gap: self.motion.gap(),
+            start_gap: self.gap,
             free,
             response: &response,
             residual_compliance: self.setting.residual_compliance,
@@ -361,21 +371,23 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         })
     }
 
-    /// How exact the compression of a step is (m): it is the small difference of a drift and many modes, and behind a
-    /// compliance that of a force as well.
-    fn noise(&self, step: &Collocated) -> f64 {
-        let structure: f64 = self.motion.vibration.alpha.iter().map(|a| a.abs()).sum();
-        let gap = 4.0 * f64::EPSILON * (structure + self.motion.drift.abs() + self.compression.abs());
+    /// How exact the compression of a step of `h` is (m): it is the small difference of how far a drift and many modes
+    /// move, and behind a compliance that of a force as well.
+    fn noise(&self, step: &Collocated, h: f64) -> f64 {
+        let state = &self.motion.vibration;
+        let modes = self.ladder.modes.iter().zip(&state.alpha).zip(&state.beta);
+        let moved = modes.map(|((mode, a), b)| (mode.omega_rad_s * h).min(1.0) * a.abs() + h * b.abs());
+        let moved = moved.sum::<f64>() + h * self.motion.drift_rate.abs();
+        let gap = 4.0 * f64::EPSILON * (moved + self.gap.abs() + self.compression.abs());
         let pressed = step.force.iter().fold(0.0f64, |a, b| a.max(b.abs())) * self.setting.residual_compliance;
         gap + BLUR * pressed
     }
 
     /// Compression and rate at the end of a step that the motion has just made.
-    fn end_of_step(&self, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
+    fn end_of_step(&self, gap: f64, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
         let behind =
             Behind { law: self.setting.law, branch: &self.branch, compliance: self.setting.residual_compliance };
-        let gap = (self.motion.gap(), self.motion.gap_rate());
-        behind.end_of_step(gap, self.compression, step, force, h)
+        behind.end_of_step((gap, self.motion.gap_rate()), self.compression, step, force, h)
     }
 
     /// Books a step that has been made: peaks, counts, record.

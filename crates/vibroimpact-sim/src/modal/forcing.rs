@@ -14,17 +14,19 @@
 
 use super::ladder::Rotation;
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
-use super::oscillator::{NEARLY_CRITICAL, propagate, response};
+use super::oscillator::{NEARLY_CRITICAL, Propagator, propagate, response};
 use super::problem::Mode;
 use num_complex::Complex64;
 use std::array;
 
 /// Tables of one step length.
 pub(crate) struct Forcing {
-    /// Free displacement at the nodes, per mode: from `alpha`, from `beta`.
+    /// How far free motion has moved at the nodes, per mode: from `alpha`, from `beta`.
     pub at_nodes: Vec<(Nodal, Nodal)>,
     /// Response at the nodes, summed over the modes, to nodal forces.
     pub compliance: Matrix,
+    /// Response at the end of the step, summed over the modes, to Legendre forces.
+    pub at_end: Nodal,
     /// Response of each mode at the end of the step, `[n][k]` for Legendre force `n`.
     pub displacement: [Vec<f64>; Q],
     pub velocity: [Vec<f64>; Q],
@@ -46,7 +48,9 @@ impl Forcing {
                 terms.start = BASIS.terms::<SERIES>(turned, terms.start);
                 // as many even as odd ones
                 terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
-                slow(mode, w, h, (half.p12[k], half.p22[k]), &terms, &mut compliance)
+                let middle =
+                    Propagator { p11_less_1: half.p11_less_1[k], p12: half.p12[k], p21: half.p21[k], p22: half.p22[k] };
+                slow(mode, w, h, &middle, &terms, &mut compliance)
             } else if mode.damping_ratio < NEARLY_CRITICAL {
                 fast(mode, w, h, &mut compliance)
             } else {
@@ -58,7 +62,8 @@ impl Forcing {
                 end[1][n][k] = -w * part.end.1[n];
             }
         }
-        Forcing { at_nodes, compliance: compliance.at_nodes(h), displacement, velocity }
+        let at_end = displacement.each_ref().map(|row| row.iter().sum());
+        Forcing { at_nodes, compliance: compliance.at_nodes(h), at_end, displacement, velocity }
     }
 }
 
@@ -75,7 +80,7 @@ fn rate(mode: &Mode) -> f64 {
 
 /// What one mode contributes to a level.
 struct Part {
-    /// Free displacement at the nodes, from displacement and from velocity.
+    /// How far free motion has moved at the nodes, from displacement and from velocity.
     at_nodes: (Nodal, Nodal),
     /// Displacement and velocity at the end of the step to unit Legendre forces, for unit weight.
     end: (Nodal, Nodal),
@@ -127,8 +132,8 @@ impl Compliance {
     }
 }
 
-/// By power series, from `S` and `S'` in the middle of the step.
-fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, compliance: &mut Compliance) -> Part {
+/// By power series, from the free motion in the middle of the step.
+fn slow(mode: &Mode, w: f64, h: f64, middle: &Propagator, terms: &Terms, compliance: &mut Compliance) -> Part {
     let angle = mode.omega_rad_s * h;
     let (square, damping) = (angle * angle, 2.0 * mode.damping_ratio * angle);
 
@@ -142,15 +147,16 @@ fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, complian
 
     // S^(p) h^p/p! in the middle, and the same of h S'
     let mut series = [(0.0, 0.0); HALF_SERIES];
-    let (mut s, mut v) = (middle.0, middle.1 * h);
+    let (mut s, mut v) = (middle.p12, middle.p22 * h);
     for (term, reciprocal) in series[..terms.middle].iter_mut().zip(&RECIPROCAL[1..]) {
         *term = (s, v);
         (s, v) = (v * reciprocal, (-damping * v - square * s) * reciprocal);
     }
     let series = &series[..terms.middle];
     let sums @ [even, odd] = &[0, 1].map(|parity| weighted_sums(series, parity));
-    let per_second = 1.0 / h;
-    // the even part is the same in both halves, the odd part changes its sign
+    let square_per_second = square / h;
+    // the even part is the same in both halves, the odd part changes its sign; those of the integral of `S`, which is
+    // taken from the middle, are odd and even
     let at = |i: usize, of: usize| {
         if i < Q / 2 {
             even[of][Q / 2 - 1 - i] - odd[of][Q / 2 - 1 - i]
@@ -160,25 +166,29 @@ fn slow(mode: &Mode, w: f64, h: f64, middle: (f64, f64), terms: &Terms, complian
     };
     let end = |n: usize, of: usize| sums[n % 2][of][n / 2];
     Part {
-        // from unit displacement: S' + 2 zeta omega S
-        at_nodes: (array::from_fn(|i| (at(i, 1) + damping * at(i, 0)) * per_second), array::from_fn(|i| at(i, 0))),
+        // a unit displacement moves by -omega^2 int S
+        at_nodes: (
+            array::from_fn(|i| middle.p11_less_1 + square_per_second * if i < Q / 2 { at(i, 1) } else { -at(i, 1) }),
+            array::from_fn(|i| at(i, 0)),
+        ),
         end: (array::from_fn(|n| h * end(n, 2)), array::from_fn(|n| end(n, 3))),
     }
 }
 
-/// Even or odd terms of `S` and `h S'`: at the nodes of the second half, and integrated with the Legendre polynomials.
+/// Even or odd terms: of `S` at the nodes of the second half, of its integral from the middle to there, and of `S` and
+/// `h S'` integrated with the Legendre polynomials.
 fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
-    let (mut s_nodes, mut v_nodes, mut s_end, mut v_end) = ([0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2]);
+    let (mut s_nodes, mut to_nodes, mut s_end, mut v_end) = ([0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2], [0.0; Q / 2]);
     for (terms, weights) in series.chunks_exact(2).zip(BASIS.about_middle.chunks_exact(2)) {
-        let ((s, v), [powers, integrals]) = (terms[parity], &weights[parity]);
+        let ((s, v), [powers, from_middle, integrals]) = (terms[parity], &weights[parity]);
         for m in 0..Q / 2 {
             s_nodes[m] += s * powers[m];
-            v_nodes[m] += v * powers[m];
+            to_nodes[m] += s * from_middle[m];
             s_end[m] += s * integrals[m];
             v_end[m] += v * integrals[m];
         }
     }
-    [s_nodes, v_nodes, s_end, v_end]
+    [s_nodes, to_nodes, s_end, v_end]
 }
 
 /// By parts; below critical damping.
@@ -214,7 +224,7 @@ fn fast(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
     let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
     let sine = to_nodes.1.map(|im| im / omega_d);
     Part {
-        at_nodes: (array::from_fn(|i| to_nodes.0[i] + sigma * sine[i]), sine),
+        at_nodes: (array::from_fn(|i| to_nodes.0[i] + sigma * sine[i] - 1.0), sine),
         end: (moments.map(|e| scale * e.im), moments.map(|e| scale * (lambda * e).im)),
     }
 }
@@ -245,7 +255,7 @@ fn by_quadrature(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Pa
     for i in 0..Q {
         let part = basis.nodes[i] * h;
         let p = propagate(mode, part);
-        (at_nodes.0[i], at_nodes.1[i]) = (p.p11, p.p12);
+        (at_nodes.0[i], at_nodes.1[i]) = (p.p11_less_1, p.p12);
         let (to_node, _) = response(mode, part);
         for n in 0..Q {
             for m in 0..=n {
@@ -264,14 +274,21 @@ mod tests {
         Mode { omega_rad_s, damping_ratio, shape: 1.0 }
     }
 
-    fn assert_close(one: (Part, Compliance), other: (Part, Compliance), h: f64, floor: f64, what: &str) {
+    /// `moved`: how far free motion from a unit displacement goes, and what cancels in it, in size.
+    fn assert_close(
+        (one, other): ((Part, Compliance), (Part, Compliance)),
+        h: f64,
+        moved: f64,
+        floor: f64,
+        what: &str,
+    ) {
         let close = |a: &Nodal, b: &Nodal, unit: f64, part: &str| {
             for i in 0..Q {
                 let error = (a[i] - b[i]).abs() / unit;
                 assert!(error < floor, "{what}, {part} {i}: {} and {}, {error:e}", a[i], b[i]);
             }
         };
-        close(&one.0.at_nodes.0, &other.0.at_nodes.0, 1.0, "from displacement");
+        close(&one.0.at_nodes.0, &other.0.at_nodes.0, moved.min(1.0), "from displacement");
         close(&one.0.at_nodes.1, &other.0.at_nodes.1, h, "from velocity");
         close(&one.0.end.0, &other.0.end.0, h * h, "displacement");
         close(&one.0.end.1, &other.0.end.1, h, "velocity");
@@ -303,8 +320,9 @@ mod tests {
                         start: BASIS.terms::<SERIES>(turned, 2),
                         middle: BASIS.terms::<HALF_SERIES>(0.5 * turned, 2).next_multiple_of(2),
                     };
-                    let (one, other) = each_way(&mode, h, |c| slow(&mode, 1.0, h, (p.p12, p.p22), &terms, c));
-                    assert_close(one, other, h, 2e-14, &format!("{turned} {zeta} {h}"));
+                    let both = each_way(&mode, h, |c| slow(&mode, 1.0, h, &p, &terms, c));
+                    let angle = mode.omega_rad_s * h;
+                    assert_close(both, h, angle * (angle + zeta), 2e-14, &format!("{turned} {zeta} {h}"));
                 }
             }
         }
@@ -316,10 +334,10 @@ mod tests {
             for zeta in [0.0, 0.02, 0.5, 0.9, 0.9899] {
                 for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
                     let mode = mode(turned / h, zeta);
-                    let (one, other) = each_way(&mode, h, |c| fast(&mode, 1.0, h, c));
+                    let both = each_way(&mode, h, |c| fast(&mode, 1.0, h, c));
                     // an angle is no more exact than its last digit, and nearly equal roots cancel
                     let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
-                    assert_close(one, other, h, floor, &format!("{turned} {zeta} {h}"));
+                    assert_close(both, h, 1.0, floor, &format!("{turned} {zeta} {h}"));
                 }
             }
         }

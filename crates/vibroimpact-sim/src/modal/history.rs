@@ -194,8 +194,9 @@ impl<L: ContactLaw> History<L> {
                     let (free, displacement, velocity) = &panel.modes[k][q];
                     let (a, b) = (start.vibration.alpha[k], start.vibration.beta[k]);
                     let weight = mode.shape * mode.shape;
-                    motion.vibration.alpha[k] = free.p11 * a + free.p12 * b - weight * dot(displacement, &coefficients);
-                    let beta = free.p21 * a + free.p22 * b - weight * dot(velocity, &coefficients);
+                    let (alpha, beta) = free.apply(a, b);
+                    motion.vibration.alpha[k] = alpha - weight * dot(displacement, &coefficients);
+                    let beta = beta - weight * dot(velocity, &coefficients);
                     motion.vibration.beta[k] = beta;
                     lost += 2.0 * mode.damping_ratio * mode.omega_rad_s * (beta * beta / weight);
                 }
@@ -253,8 +254,7 @@ impl<L: ContactLaw> History<L> {
         for (k, mode) in self.elastic.iter().enumerate() {
             let (a, b) = (piece.start.vibration.alpha[k], piece.start.vibration.beta[k]);
             let p = propagate(mode, t);
-            motion.vibration.alpha[k] = p.p11 * a + p.p12 * b;
-            motion.vibration.beta[k] = p.p21 * a + p.p22 * b;
+            (motion.vibration.alpha[k], motion.vibration.beta[k]) = p.apply(a, b);
         }
         let Some(contact) = &piece.contact else {
             motion.coast(t);

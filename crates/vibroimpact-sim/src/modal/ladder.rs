@@ -4,7 +4,7 @@
 //! contact is their plain sum and `alpha_k'' + 2 zeta_k omega_k alpha_k' + omega_k^2 alpha_k = -phi_k^2 F`.
 
 use super::forcing::Forcing;
-use super::legendre::{Matrix, Nodal, Q, TAYLOR};
+use super::legendre::{Matrix, Nodal, Q, TAYLOR, dot};
 use super::oscillator::propagate;
 use super::problem::Mode;
 
@@ -32,7 +32,7 @@ pub(crate) struct Vibration {
 
 /// Free motion over one step of the ladder.
 pub(crate) struct Rotation {
-    pub p11: Vec<f64>,
+    pub p11_less_1: Vec<f64>,
     pub p12: Vec<f64>,
     pub p21: Vec<f64>,
     pub p22: Vec<f64>,
@@ -90,7 +90,7 @@ impl Ladder {
         self.rotation(j).apply(state);
     }
 
-    /// Free displacement at the nodes of a step of level `j`, and the compliance there to nodal forces.
+    /// How far free motion has moved at the nodes of a step of level `j`, and the compliance there to nodal forces.
     pub fn at_nodes(&mut self, j: i32, state: &Vibration) -> (Nodal, &Matrix) {
         let forcing = self.forcing(j);
         let mut free = [0.0; Q];
@@ -104,12 +104,16 @@ impl Ladder {
         (free, &forcing.compliance)
     }
 
-    /// Motion over one step of level `j` under a force with these Legendre coefficients.
-    pub fn advance(&mut self, j: i32, state: &mut Vibration, force: &Nodal) {
-        self.rotation(j).apply(state);
+    /// Motion over one step of level `j` under a force with these Legendre coefficients; returns how far the sum of the
+    /// modes moves, which is known better than where it is.
+    pub fn advance(&mut self, j: i32, state: &mut Vibration, force: &Nodal) -> f64 {
+        let rotation = self.rotation(j);
+        let free = rotation.moves(state);
+        rotation.apply(state);
         let forcing = self.forcing(j);
         accumulate(&mut state.alpha, &forcing.displacement, force);
         accumulate(&mut state.beta, &forcing.velocity, force);
+        free + dot(&forcing.at_end, force)
     }
 
     fn rotation(&mut self, j: i32) -> &Rotation {
@@ -140,24 +144,32 @@ fn accumulate(state: &mut [f64], table: &[Vec<f64>; Q], force: &Nodal) {
 
 impl Rotation {
     pub fn new(modes: &[Mode], h: f64) -> Rotation {
-        let [mut p11, mut p12, mut p21, mut p22] = [(); 4].map(|()| Vec::with_capacity(modes.len()));
+        let [mut p11_less_1, mut p12, mut p21, mut p22] = [(); 4].map(|()| Vec::with_capacity(modes.len()));
         for mode in modes {
             let p = propagate(mode, h);
-            p11.push(p.p11);
+            p11_less_1.push(p.p11_less_1);
             p12.push(p.p12);
             p21.push(p.p21);
             p22.push(p.p22);
         }
-        Rotation { p11, p12, p21, p22 }
+        Rotation { p11_less_1, p12, p21, p22 }
+    }
+
+    /// How far free motion moves the sum of the modes, to rounding of this distance.
+    fn moves(&self, state: &Vibration) -> f64 {
+        let n = self.p12.len();
+        let (less, p12) = (&self.p11_less_1[..n], &self.p12[..n]);
+        let (alpha, beta) = (&state.alpha[..n], &state.beta[..n]);
+        (0..n).map(|k| less[k] * alpha[k] + p12[k] * beta[k]).sum()
     }
 
     fn apply(&self, state: &mut Vibration) {
-        let n = self.p11.len();
-        let (p11, p12, p21, p22) = (&self.p11[..n], &self.p12[..n], &self.p21[..n], &self.p22[..n]);
+        let n = self.p12.len();
+        let (less, p12, p21, p22) = (&self.p11_less_1[..n], &self.p12[..n], &self.p21[..n], &self.p22[..n]);
         let (alpha, beta) = (&mut state.alpha[..n], &mut state.beta[..n]);
         for k in 0..n {
             let (a, b) = (alpha[k], beta[k]);
-            alpha[k] = p11[k] * a + p12[k] * b;
+            alpha[k] = a + (less[k] * a + p12[k] * b);
             beta[k] = p21[k] * a + p22[k] * b;
         }
     }

@@ -40,6 +40,8 @@ pub(crate) struct Landed {
     /// Compression and rate on arrival.
     pub compression: f64,
     pub rate: f64,
+    /// The gap there (m).
+    pub gap: f64,
     /// How fast the distance to the boundary changes there; 0 where that is not known.
     margin_rate: f64,
 }
@@ -91,7 +93,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         let behind = self.behind();
         let end = behind.end_of_step(gap, self.start_compression, &step, &force, length);
         let (margin, margin_rate) = behind.margin(&self.boundary(), gap, end);
-        Some((Landed { length, step, force, compression: end.0, rate: end.1, margin_rate }, margin))
+        Some((Landed { length, step, force, compression: end.0, rate: end.1, gap: gap.0, margin_rate }, margin))
     }
 
     fn behind(&self) -> Behind<'_, L> {
@@ -280,7 +282,7 @@ mod tests {
             for (k, mode) in ladder.modes.iter().enumerate() {
                 let p = propagate(mode, length);
                 let (a, b, w) = (before.alpha[k], before.beta[k], ladder.weight[k]);
-                let (mut alpha, mut beta) = (p.p11 * a + p.p12 * b, p.p21 * a + p.p22 * b);
+                let (mut alpha, mut beta) = p.apply(a, b);
                 if length > 0.0 {
                     let (displacement, velocity) = response(mode, length);
                     alpha -= w * dot(&displacement, &coefficients);
@@ -303,7 +305,7 @@ mod tests {
             let exact: f64 = (0..5)
                 .map(|k| {
                     let p = propagate(&ladder.modes[k], t);
-                    p.p11 * state.alpha[k] + p.p12 * state.beta[k]
+                    p.apply(state.alpha[k], state.beta[k]).0
                 })
                 .sum();
             assert!((sum - exact).abs() < 1e-13, "{t}: {sum} {exact}");

@@ -32,9 +32,9 @@ pub(crate) struct Basis {
     pub power: Vec<Matrix>,
     /// `power_end[p][j]`: the same over [0, 1].
     pub power_end: Vec<Nodal>,
-    /// `about_middle[p]`: first `(c - 1/2)^p` for the nodes `c` of the second half; then the integrals over [0, 1] of
-    /// `P_n(2s-1) (1/2 - s)^p` for the `n` of the parity of `p` (the others vanish).
-    pub about_middle: Vec<[[f64; Q / 2]; 2]>,
+    /// `about_middle[p]`: first `(c - 1/2)^p` for the nodes `c` of the second half, then its integral up to there, then
+    /// the integrals over [0, 1] of `P_n(2s-1) (1/2 - s)^p` for the `n` of the parity of `p` (the others vanish).
+    pub about_middle: Vec<[[f64; Q / 2]; 3]>,
     /// `within[t]`: a motion that turns by at most so much (rad) needs `t` terms of its power series.
     within: [f64; SERIES],
     /// `derivatives[k][n][i]`: `d^k/ds^k P_n(2s-1)` at node `i`.
@@ -191,10 +191,11 @@ impl Basis {
         let mut power_end = moments(1.0);
         power_end.truncate(TAYLOR);
 
-        let mut about_middle = vec![[[0.0; Q / 2]; 2]; HALF_SERIES];
-        for (p, [powers, integrals]) in about_middle.iter_mut().enumerate() {
+        let mut about_middle = vec![[[0.0; Q / 2]; 3]; HALF_SERIES];
+        for (p, [powers, from_middle, integrals]) in about_middle.iter_mut().enumerate() {
             for m in 0..Q / 2 {
                 powers[m] = (nodes[Q / 2 + m] - 0.5).powi(p as i32);
+                from_middle[m] = powers[m] * (nodes[Q / 2 + m] - 0.5) / (p + 1) as f64;
                 integrals[m] =
                     fine.iter().map(|(x, w)| w * (0.5 - x).powi(p as i32) * legendre(*x)[2 * m + p % 2]).sum();
             }

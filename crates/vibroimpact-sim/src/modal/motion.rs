@@ -41,15 +41,18 @@ impl Motion {
         (self.impulse, self.impulse_integral) = (other.impulse, other.impulse_integral);
     }
 
-    /// The drift over `h` seconds under a force of Legendre coefficients `force`, with inverse mass `mu`.
-    pub fn advance_drift(&mut self, h: f64, force: &Nodal, mu: f64) {
+    /// The drift over `h` seconds under a force of Legendre coefficients `force`, with inverse mass `mu`; returns how
+    /// far it went.
+    pub fn advance_drift(&mut self, h: f64, force: &Nodal, mu: f64) -> f64 {
         // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on
         let (impulse, moment) = (h * force[0], h * h * (force[0] / 2.0 - force[1] / 6.0));
         self.time += h;
         self.impulse_integral += self.impulse * h + moment;
         self.impulse += impulse;
-        self.drift += self.drift_rate * h - mu * moment;
+        let moved = self.drift_rate * h - mu * moment;
+        self.drift += moved;
         self.drift_rate -= mu * impulse;
+        moved
     }
 
     /// The drift over `h` seconds without force.

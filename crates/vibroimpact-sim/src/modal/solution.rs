@@ -10,7 +10,8 @@ pub enum Outcome {
     NoContact,
     /// The motion died down with the bodies still in contact.
     Sustained,
-    /// A limit of the settings was reached first; the solution holds what was found until then.
+    /// A limit of the settings was reached first, the finest step, or [`contact_models::LARGEST`]; the solution holds
+    /// what was found until then.
     LimitReached,
 }
 

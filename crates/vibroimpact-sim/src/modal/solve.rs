@@ -279,8 +279,7 @@ pub(crate) fn modal_state(
             }
             None => {
                 let p = propagate(mode, motion.time);
-                (amplitude[k], rate[k]) =
-                    (p.p11 * amplitude[k] + p.p12 * rate[k], p.p21 * amplitude[k] + p.p22 * rate[k]);
+                (amplitude[k], rate[k]) = p.apply(amplitude[k], rate[k]);
             }
         }
     }
