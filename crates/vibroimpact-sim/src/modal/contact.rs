@@ -192,8 +192,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.refine(self.level + 1);
         };
         let boundaries = self.setting.law.boundaries(&self.branch);
-        let (start, noise) = ((self.compression, self.rate), self.noise(&step, h));
-        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, noise) {
+        let start = (self.compression, self.rate);
+        if let Some((which, place)) = first_crossing(&boundaries, &step, start, None, h, || self.noise(&step, h)) {
             return self.approach(which, place * h, h);
         }
         if step.force == [0.0; Q] && !self.resolves(&boundaries, &step, h) {
@@ -211,7 +211,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         let gap = self.gap + (moved + self.motion.advance_drift(h, &force, self.setting.mu));
         let end = self.end_of_step(gap, &step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
-        if outside && let Some((which, place)) = first_crossing(&boundaries, &step, start, Some(end), h, noise) {
+        if outside
+            && let Some((which, place)) =
+                first_crossing(&boundaries, &step, start, Some(end), h, || self.noise(&step, h))
+        {
             std::mem::swap(self.motion, &mut self.before);
             return self.approach(which, place * h, h);
         }
@@ -275,7 +278,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
                 Some(landed) if self.is_exact(&landed) => {
                     // the branch may have ended before, in a dip that this landing passed over
                     let boundaries = self.setting.law.boundaries(&self.branch);
-                    let (start, noise) = ((self.compression, self.rate), self.noise(&landed.step, landed.length));
+                    let start = (self.compression, self.rate);
+                    let noise = || self.noise(&landed.step, landed.length);
                     match first_crossing(&boundaries, &landed.step, start, None, landed.length, noise) {
                         None => return self.cross(which, landed),
                         Some((earlier, place)) => (which, expected) = (earlier, place * landed.length),

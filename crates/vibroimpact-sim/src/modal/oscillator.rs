@@ -36,12 +36,7 @@ pub(crate) fn propagate(mode: &Mode, t: f64) -> Propagator {
         let sine = if split * t < 1e-17 { t } else { -parted / (2.0 * split) };
         (decay * (1.0 + 0.5 * parted), decay * sine, decayed + 0.5 * decay * parted)
     };
-    Propagator {
-        p11_less_1: less_1 + sigma * sine,
-        p12: sine,
-        p21: -omega * omega * sine,
-        p22: cosine - sigma * sine,
-    }
+    Propagator { p11_less_1: less_1 + sigma * sine, p12: sine, p21: -omega * omega * sine, p22: cosine - sigma * sine }
 }
 
 impl Propagator {

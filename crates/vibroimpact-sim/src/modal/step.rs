@@ -190,14 +190,14 @@ fn eliminate<const FROM: usize>(a: &mut Matrix) {
 
 /// The first place on a step where a branch ends, by a straight line through the neighbouring points. Compression and
 /// rate are looked at at the nodes, between them, and at the end of the step where that is given. Compressions are known
-/// to `noise_m`, and what lies within is no crossing.
+/// to `noise_m`, asked for where that matters, and what lies within is no crossing.
 pub(crate) fn first_crossing(
     boundaries: &[Boundary; 2],
     step: &Collocated,
     start: (f64, f64),
     end: Option<(f64, f64)>,
     h: f64,
-    noise_m: f64,
+    noise_m: impl Fn() -> f64,
 ) -> Option<(usize, f64)> {
     let basis = &*BASIS;
     let mut first: Option<(usize, f64)> = None;
@@ -206,7 +206,7 @@ pub(crate) fn first_crossing(
             continue;
         }
         // rounding of the interpolated rate must not look like a crossing where a branch begins on its boundary
-        let noise = noise_m * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
+        let noise = || noise_m() * (boundary.per_compression.abs() + 50.0 * boundary.per_rate.abs() / h);
         let (mut before, mut inside) = (0.0, boundary.margin(start.0, start.1).max(0.0));
         let margins: Nodal = std::array::from_fn(|i| boundary.margin(step.compression[i], step.rate[i]));
         let at_nodes = (0..Q).map(|i| (basis.nodes[i], margins[i]));
@@ -214,7 +214,7 @@ pub(crate) fn first_crossing(
         let met = at_nodes.chain(at_end).find_map(|(at, margin)| {
             let place = before + (at - before) * inside / (inside - margin);
             (before, inside) = (at, margin.max(0.0));
-            (margin < -noise).then_some(place)
+            (margin < 0.0 && margin < -noise()).then_some(place)
         });
         if let Some(place) = met.or_else(|| dip(&margins, noise))
             && first.is_none_or(|(_, earlier)| place < earlier)
@@ -233,9 +233,9 @@ pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
     if last < before { last * (last / before) } else { last }
 }
 
-/// Where a polynomial that is positive at the nodes falls below `-noise` between them, if it does: the place of the first
+/// Where a polynomial that is positive at the nodes falls below `-noise()` between them, if it does: the place of the first
 /// such dip's least value, by the parabola through three neighbours among nodes and middles.
-fn dip(margins: &Nodal, noise: f64) -> Option<f64> {
+fn dip(margins: &Nodal, noise: impl Fn() -> f64) -> Option<f64> {
     let range = |(low, high): (f64, f64), margin: &f64| (low.min(*margin), high.max(*margin));
     let (least, largest) = margins.iter().fold((f64::INFINITY, f64::NEG_INFINITY), range);
     // between nodes a polynomial goes beyond its values there by less than their range
@@ -267,7 +267,8 @@ fn dip(margins: &Nodal, noise: f64) -> Option<f64> {
         let bend = (rise - fall) / (c - a);
         let slope = fall + bend * (b - a);
         let place = b - slope / (2.0 * bend);
-        (middle - slope * slope / (4.0 * bend) < -noise).then_some(place)
+        let least = middle - slope * slope / (4.0 * bend);
+        (least < 0.0 && least < -noise()).then_some(place)
     })
 }
 
@@ -282,17 +283,17 @@ mod tests {
         for lowest in [0.3, 0.47, 0.71] {
             let polynomial = |s: f64, at: f64| ((s - lowest) * (s - lowest) + at) * (1.0 + s);
             let above = BASIS.nodes.map(|s| polynomial(s, 3e-4));
-            assert_eq!(dip(&above, 0.0), None);
+            assert_eq!(dip(&above, || 0.0), None);
             let below = BASIS.nodes.map(|s| polynomial(s, -3e-4));
             if below.iter().all(|margin| *margin > 0.0) {
-                let place = dip(&below, 0.0).unwrap();
+                let place = dip(&below, || 0.0).unwrap();
                 assert!((place - lowest).abs() < 0.02, "{place}");
-                assert_eq!(dip(&below, 1e-2), None);
+                assert_eq!(dip(&below, || 1e-2), None);
             }
         }
         // falling to the end and rising from the start are no dips
-        assert_eq!(dip(&BASIS.nodes, 0.0), None);
-        assert_eq!(dip(&BASIS.nodes.map(|s| 1.0 - s), 0.0), None);
+        assert_eq!(dip(&BASIS.nodes, || 0.0), None);
+        assert_eq!(dip(&BASIS.nodes.map(|s| 1.0 - s), || 0.0), None);
     }
 
     #[test]
