@@ -36,7 +36,7 @@ pub(crate) struct Setting<'a, L> {
 /// Energy is looked at once in this many steps.
 const REST_CHECK: u64 = 8;
 /// A step is doubled when its error is this many times below the tolerance.
-const GROWTH: f64 = 10.0;
+const GROWTH: f64 = 250.0;
 /// Part of the tolerated error that the nodal forces may have.
 const NEWTON_SHARE: f64 = 1e-2;
 /// By how much the law may be missed at the end of a step, where the polynomial is extrapolated: in tolerances.
@@ -44,7 +44,9 @@ const DEFECT: f64 = 1.0;
 /// A mode that turns by no more than this (rad) in a step is followed by the polynomial through the nodes.
 const RESOLVED: f64 = 2.0;
 /// Part of the way to the expected end of a branch that one step may take.
-const SHARE: f64 = 0.7;
+const SHARE: f64 = 0.85;
+/// The error of a landing grows with this power of its length at least, where the force ends as `(t - end)^(3/2)`.
+const LANDING: f64 = 2.5;
 
 pub(crate) struct Contact<'a, L> {
     setting: &'a Setting<'a, L>,
@@ -66,6 +68,8 @@ pub(crate) struct Contact<'a, L> {
     gap: f64,
     /// Where the branch is expected to end: which boundary, and when.
     horizon: Option<(usize, f64)>,
+    /// Longest landing that accuracy allows, as far as landings of this branch have shown (s).
+    landing: f64,
     peak_force: Peak,
     peak_compression: Peak,
 }
@@ -99,6 +103,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             rate,
             gap: memory.touch_m,
             horizon: None,
+            landing: f64::INFINITY,
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
         };
@@ -119,6 +124,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn enter(&mut self, branch: Branch) {
         self.branch = branch;
         self.horizon = None;
+        self.landing = f64::INFINITY;
         self.needs_rate = self.setting.law.depends_on_rate()
             || self.setting.law.boundaries(&branch).iter().any(|b| b.per_rate != 0.0);
     }
@@ -187,9 +193,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             self.horizon = None;
             return self.approach(which, (at - self.motion.time).max(0.0), self.reach());
         }
-        let h = step_s(self.level);
-        let Some((step, force)) = self.attempt(h) else {
-            return self.refine(self.level + 1);
+        let level = self.level_now();
+        let h = step_s(level);
+        let Some((step, force)) = self.attempt(level) else {
+            return self.refine(level + 1);
         };
         let boundaries = self.setting.law.boundaries(&self.branch);
         let start = (self.compression, self.rate);
@@ -197,17 +204,17 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.approach(which, place * h, h);
         }
         if step.force == [0.0; Q] && !self.resolves(&boundaries, &step, h) {
-            return self.refine(self.level + 1);
+            return self.refine(level + 1);
         }
         let tolerance = self.setting.impulse_tolerance;
         let error = truncation(&force) * h;
         if error > tolerance {
-            // the error falls at least like h^3
-            let finer = ((error / tolerance).log2() / 3.0) as i32;
-            return self.refine(self.level + finer.clamp(1, 4));
+            // the error falls at least like h^5, but for the first steps of a contact, which are begun short enough
+            let finer = ((error / tolerance).log2() / 5.0) as i32;
+            return self.refine(level + finer.clamp(1, 4));
         }
         self.before.copy_from(self.motion);
-        let moved = self.ladder.advance(self.level, &mut self.motion.vibration, &force);
+        let moved = self.ladder.advance(level, &mut self.motion.vibration, &force);
         let gap = self.gap + (moved + self.motion.advance_drift(h, &force, self.setting.mu));
         let end = self.end_of_step(gap, &step, &force, h);
         let outside = boundaries.iter().any(|boundary| boundary.margin(end.0, end.1) < 0.0);
@@ -221,19 +228,23 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         // modes that turn several times within the step escape the coefficients, but not the law at its end
         if self.defect(end, &force) * h > DEFECT * tolerance {
             std::mem::swap(self.motion, &mut self.before);
-            return self.refine(self.level + 1);
+            return self.refine(level + 1);
         }
         self.note(h, &step, &force);
         (self.compression, self.rate) = end;
         self.gap = gap;
         self.previous = Some((force, h));
-        if error * GROWTH < tolerance {
-            self.level = (self.level - 1).max(J_MIN);
-        }
-        if let Some((_, at)) = self.horizon {
-            self.level = self.level.max(level_within(SHARE * (at - self.motion.time)));
+        if level == self.level && error * GROWTH < tolerance {
+            self.level = (level - 1).max(J_MIN);
         }
         None
+    }
+
+    /// The level of the next step: what accuracy allows, and no nearer to the expected end of the branch than a share of
+    /// the way.
+    fn level_now(&self) -> i32 {
+        let towards = |(_, at): (usize, f64)| level_within(SHARE * (at - self.motion.time));
+        self.horizon.map_or(self.level, |horizon| self.level.max(towards(horizon)))
     }
 
     /// By how much the force misses the law at the end of a step (N).
@@ -245,7 +256,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     /// Longest step for a landing (s).
     fn reach(&self) -> f64 {
         let slowest = if self.level < J_MIN { step_s(J_MIN) } else { step_s(self.level) * 2.0 };
-        if self.ladder.fastest_rad_s > 0.0 { (REACH / self.ladder.fastest_rad_s).min(slowest) } else { slowest }
+        let reach = slowest.min(self.landing);
+        if self.ladder.fastest_rad_s > 0.0 { reach.min(REACH / self.ladder.fastest_rad_s) } else { reach }
     }
 
     fn refine(&mut self, level: i32) -> Option<ContactEnd> {
@@ -256,7 +268,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Goes towards the end of the branch, expected after `expected` seconds of a step of `h`: lands there if it is
     /// near, or takes shorter steps.
-    fn approach(&mut self, mut which: usize, mut expected: f64, h: f64) -> Option<ContactEnd> {
+    fn approach(&mut self, which: usize, expected: f64, h: f64) -> Option<ContactEnd> {
         let reach = self.reach().min(h);
         if expected <= reach {
             let series = landing::taylor_of_free_motion(self.ladder, &self.motion.vibration, reach);
@@ -274,33 +286,43 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             approach.gap[0] = self.gap;
             approach.gap[1] += self.motion.drift_rate;
             approach.kernel[1] += self.setting.mu;
-            match approach.land(expected, reach, self.counts) {
-                Some(landed) if self.is_exact(&landed) => {
+            let landed = approach.land(expected, reach, self.counts);
+            match landed.map(|landed| (landed, self.excess(&landed))) {
+                Some((landed, excess)) if excess <= 1.0 => {
                     // the branch may have ended before, in a dip that this landing passed over
                     let boundaries = self.setting.law.boundaries(&self.branch);
                     let start = (self.compression, self.rate);
                     let noise = || self.noise(&landed.step, landed.length);
                     match first_crossing(&boundaries, &landed.step, start, None, landed.length, noise) {
                         None => return self.cross(which, landed),
-                        Some((earlier, place)) => (which, expected) = (earlier, place * landed.length),
+                        Some((earlier, place)) => {
+                            self.horizon = Some((earlier, self.motion.time + place * landed.length));
+                            return self.refine(self.level + 1);
+                        }
                     }
                 }
-                Some(landed) => expected = landed.length,
+                // too long for its accuracy
+                Some((landed, excess)) => {
+                    self.landing = 0.9 * landed.length * excess.powf(-1.0 / LANDING).max(1e-3);
+                    self.horizon = Some((which, self.motion.time + landed.length));
+                    return self.refine(self.level + 1);
+                }
                 // not so near after all: go on, until a step meets the boundary again
                 None => return self.refine((self.level + 1).max(level_within(reach))),
             }
         }
         self.horizon = Some((which, self.motion.time + expected));
-        self.refine((self.level + 1).max(level_within(SHARE * expected)))
+        self.refine(self.level)
     }
 
-    /// Whether the force of a landing is known as well as that of a step must be. How it misses the law at the end
-    /// matters only behind a compliance, where it is a part of the compression there.
-    fn is_exact(&mut self, landed: &Landed) -> bool {
-        let tolerance = self.setting.impulse_tolerance;
-        truncation(&landed.force) * landed.length <= tolerance
-            && (self.setting.residual_compliance == 0.0
-                || self.defect((landed.compression, landed.rate), &landed.force) * landed.length <= DEFECT * tolerance)
+    /// By how much the force of a landing is less well known than that of a step must be. How it misses the law at the
+    /// end matters only behind a compliance, where it is a part of the compression there.
+    fn excess(&mut self, landed: &Landed) -> f64 {
+        let mut error = truncation(&landed.force);
+        if self.setting.residual_compliance > 0.0 {
+            error = error.max(self.defect((landed.compression, landed.rate), &landed.force) / DEFECT);
+        }
+        error * landed.length / self.setting.impulse_tolerance
     }
 
     /// Commits a landing and asks the law what follows.
@@ -321,9 +343,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     }
 
     /// Solves one ladder step of the present level: its nodal values, and the force's Legendre coefficients.
-    fn attempt(&mut self, h: f64) -> Option<(Collocated, Nodal)> {
-        let basis = &*BASIS;
-        let (mut free, structure) = self.ladder.at_nodes(self.level, &self.motion.vibration);
+    fn attempt(&mut self, level: i32) -> Option<(Collocated, Nodal)> {
+        let (basis, h) = (&*BASIS, step_s(level));
+        let (mut free, structure) = self.ladder.at_nodes(level, &self.motion.vibration);
         let mut response = *structure;
         let inertia = self.setting.mu * h * h;
         for i in 0..Q {

@@ -5,7 +5,7 @@
 
 use super::behind::Behind;
 use super::ladder::{Ladder, Vibration};
-use super::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot};
+use super::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
 use super::solution::Counts;
 use super::step::{Collocated, Given, collocate};
 use contact_models::{Boundary, Branch, ContactLaw};
@@ -32,6 +32,7 @@ pub(crate) struct Approach<'a, L> {
 }
 
 /// A landing found.
+#[derive(Clone, Copy)]
 pub(crate) struct Landed {
     pub length: f64,
     pub step: Collocated,
@@ -42,23 +43,20 @@ pub(crate) struct Landed {
     pub rate: f64,
     /// The gap there (m).
     pub gap: f64,
-    /// How fast the distance to the boundary changes there; 0 where that is not known.
+    /// Distance to the boundary there, and how fast it changes; 0 where that is not known.
+    margin: f64,
     margin_rate: f64,
 }
 
+/// A force that the law fixed on one length serves for others while it need not be carried on by more than this part of
+/// it, nor any node be left outside.
+const CARRIED: f64 = 0.05;
+
 impl<L: ContactLaw> Approach<'_, L> {
     /// The step of this length: its force, its end, and the margin of the boundary there.
-    fn attempt(&self, length: f64, guess: Nodal, counts: &mut Counts) -> Option<(Landed, f64)> {
+    fn attempt(&self, length: f64, guess: Nodal, counts: &mut Counts) -> Option<Landed> {
         let basis = &*BASIS;
-        // the series of the kernel begins with p = 1; its terms fall, and the small ones are left out
-        let mut kernel = self.kernel;
-        let least = 1e-18 * (kernel[1] * length * length).abs();
-        let mut power = 1.0;
-        for value in &mut kernel {
-            *value *= power;
-            power *= length;
-        }
-        let terms = 1 + kernel.iter().rposition(|value| (value * length).abs() > least).unwrap_or(0);
+        let (kernel, terms) = self.scaled_kernel(length);
         let response: Matrix = array::from_fn(|j| {
             let mut column = [0.0; Q];
             for (kernel, power) in kernel[..terms].iter().zip(&basis.power) {
@@ -68,14 +66,7 @@ impl<L: ContactLaw> Approach<'_, L> {
             }
             column
         });
-        let (mut end_response, mut end_rate_response) = ([0.0; Q], [0.0; Q]);
-        for p in 1..terms {
-            for j in 0..Q {
-                end_response[j] -= kernel[p] * length * basis.power_end[p][j];
-                end_rate_response[j] -= kernel[p] * basis.power_end[p - 1][j];
-            }
-        }
-        let free = basis.nodes.map(|c| self.free(c * length).0);
+        let free = basis.nodes.map(|c| self.free(c * length)[0]);
         let given = Given {
             h: length,
             start_compression: self.start_compression,
@@ -87,27 +78,65 @@ impl<L: ContactLaw> Approach<'_, L> {
             accuracy: self.accuracy / length,
         };
         let step = collocate(self.law, self.branch, &given, guess, counts)?;
+        Some(self.arrive(length, step))
+    }
+
+    /// The end of a step of this length and these forces.
+    fn arrive(&self, length: f64, step: Collocated) -> Landed {
+        let basis = &*BASIS;
+        let (kernel, terms) = self.scaled_kernel(length);
         let force = basis.coefficients(&step.force);
-        let (free_gap, free_rate) = self.free(length);
-        let gap = (free_gap + dot(&end_response, &step.force), free_rate + dot(&end_rate_response, &step.force));
+        let mut moments = [0.0; TAYLOR];
+        for (moment, power) in moments[..terms].iter_mut().zip(&basis.power_end) {
+            *moment = dot(power, &step.force);
+        }
+        let [mut gap, mut rate, mut bend] = self.free(length);
+        bend -= kernel[1] / length * evaluate(&force, 1.0);
+        for p in 1..terms {
+            gap -= kernel[p] * length * moments[p];
+            rate -= kernel[p] * moments[p - 1];
+            if p > 1 {
+                bend -= kernel[p] / length * moments[p - 2];
+            }
+        }
         let behind = self.behind();
-        let end = behind.end_of_step(gap, self.start_compression, &step, &force, length);
-        let (margin, margin_rate) = behind.margin(&self.boundary(), gap, end);
-        Some((Landed { length, step, force, compression: end.0, rate: end.1, gap: gap.0, margin_rate }, margin))
+        let end = behind.end_of_step((gap, rate), self.start_compression, &step, &force, length);
+        let boundary = self.boundary();
+        let (margin, margin_rate) = if self.residual_compliance == 0.0 {
+            (boundary.margin(end.0, end.1), boundary.per_compression * rate + boundary.per_rate * bend)
+        } else {
+            behind.margin(&boundary, (gap, rate), end)
+        };
+        Landed { length, step, force, compression: end.0, rate: end.1, gap, margin, margin_rate }
+    }
+
+    /// The derivatives of the impulse response times `length^p`, and how many matter: their series begins with `p` = 1,
+    /// its terms fall, and the small ones are left out.
+    fn scaled_kernel(&self, length: f64) -> ([f64; TAYLOR], usize) {
+        let mut kernel = self.kernel;
+        let least = 1e-18 * (kernel[1] * length).abs();
+        let mut power = 1.0;
+        for value in &mut kernel {
+            *value *= power;
+            power *= length;
+        }
+        let terms = 1 + kernel.iter().rposition(|value| value.abs() > least).unwrap_or(0);
+        (kernel, terms)
     }
 
     fn behind(&self) -> Behind<'_, L> {
         Behind { law: self.law, branch: self.branch, compliance: self.residual_compliance }
     }
 
-    /// Gap and its rate after `t` of free motion.
-    fn free(&self, t: f64) -> (f64, f64) {
-        let (mut value, mut slope) = (0.0, 0.0);
+    /// Gap, its rate and half the rate of that after `t` of free motion.
+    fn free(&self, t: f64) -> [f64; 3] {
+        let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
         for p in (0..TAYLOR).rev() {
+            bend = bend * t + slope;
             slope = slope * t + value;
             value = value * t + self.gap[p];
         }
-        (value, slope)
+        [value, slope, 2.0 * bend]
     }
 
     fn boundary(&self) -> Boundary {
@@ -120,7 +149,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         let boundary = self.boundary();
         let mut length = expected.clamp(1e-3 * longest, longest);
         for _ in 0..if boundary.per_rate == 0.0 { 3 } else { 0 } {
-            let (gap, rate) = self.free(length);
+            let [gap, rate, _] = self.free(length);
             let next = length - boundary.margin(gap, rate) / (boundary.per_compression * rate);
             if !(next > 0.0 && next < longest) {
                 break;
@@ -130,49 +159,83 @@ impl<L: ContactLaw> Approach<'_, L> {
         length
     }
 
+    /// The force of a landing, cut short or carried on to where it meets the boundary itself, if that is near enough for
+    /// the law to hold there as it does at the nodes. Behind a compliance the law has to be solved at the very end.
+    fn carried(&self, from: &Landed) -> Option<Landed> {
+        let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
+        let carry = |coefficients: &Nodal, part: f64| BASIS.nodes.map(|c| evaluate(coefficients, c * part));
+        let mut landed = *from;
+        for _ in 0..if self.residual_compliance == 0.0 { 8 } else { 0 } {
+            let next = landed.length - landed.margin / landed.margin_rate;
+            if !range.contains(&next) {
+                return None;
+            }
+            let moved = (next - landed.length).abs();
+            let force = carry(&from.force, next / from.length);
+            landed = self.arrive(next, Collocated { force, ..from.step });
+            // the next of Newton's steps would be the square of this one
+            if moved <= 1e-7 * next {
+                let part = next / from.length;
+                landed.step.compression = carry(&BASIS.coefficients(&from.step.compression), part);
+                if self.needs_rate {
+                    landed.step.rate = carry(&BASIS.coefficients(&from.step.rate), part);
+                }
+                return Some(landed);
+            }
+        }
+        None
+    }
+
     /// Searches `(0, longest]` for the length at which the boundary is met, starting near `expected`; `None` if the
     /// branch does not end there.
     pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
         let start = self.free(0.0);
-        let (margin, _) = self.behind().margin(&self.boundary(), start, (self.start_compression, start.1));
+        let (margin, _) =
+            self.behind().margin(&self.boundary(), (start[0], start[1]), (self.start_compression, start[1]));
         let initial = margin.max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high = self.without_force(expected, longest);
         let mut guess = [0.0; Q];
         let mut side = 0;
-        let (mut best, mut best_margin) = loop {
-            let (landed, margin) = self.attempt(high, guess, counts)?;
+        let mut best = loop {
+            let landed = self.attempt(high, guess, counts)?;
+            if let Some(landed) = self.carried(&landed) {
+                return (landed.length <= longest).then_some(landed);
+            }
             guess = landed.step.force;
-            if margin <= 0.0 {
-                break (landed, margin);
+            if landed.margin <= 0.0 {
+                break landed;
             }
             if high >= longest {
                 return None;
             }
-            (low, low_margin) = (high, margin);
+            (low, low_margin) = (high, landed.margin);
             high = (2.0 * high).min(longest);
         };
-        let mut high_margin = best_margin;
+        let mut high_margin = best.margin;
         // Newton's method on the length where the margin's slope is at hand, regula falsi where it is not, both
         // kept within the bracket
         for _ in 0..60 {
-            let newton = best.length - best_margin / best.margin_rate;
+            let newton = best.length - best.margin / best.margin_rate;
             let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
             let next = [newton, secant, 0.5 * (low + high)].into_iter().find(|x| *x > low && *x < high);
             let Some(next) = next else { break };
             let moved = (best.length - next).abs();
-            (best, best_margin) = self.attempt(next, best.step.force, counts)?;
+            best = self.attempt(next, best.step.force, counts)?;
+            if let Some(landed) = self.carried(&best) {
+                return Some(landed);
+            }
             // what follows does not depend on where within these last digits the branch is left
-            if moved <= 1e-13 * high || best_margin.abs() <= 1e-13 * initial {
+            if moved <= 1e-13 * high || best.margin.abs() <= 1e-13 * initial {
                 break;
             }
-            if best_margin <= 0.0 {
+            if best.margin <= 0.0 {
                 (high, high_margin, low_margin) =
-                    (next, best_margin, if side < 0 { 0.5 * low_margin } else { low_margin });
+                    (next, best.margin, if side < 0 { 0.5 * low_margin } else { low_margin });
                 side = -1;
             } else {
                 (low, low_margin, high_margin) =
-                    (next, best_margin, if side > 0 { 0.5 * high_margin } else { high_margin });
+                    (next, best.margin, if side > 0 { 0.5 * high_margin } else { high_margin });
                 side = 1;
             }
         }
