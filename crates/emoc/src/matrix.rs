@@ -79,7 +79,8 @@ pub(crate) fn solve_factored(f: &[f64], n: usize, x: &mut [f64]) {
 }
 
 /// Checks that `W` is symmetric and positive semidefinite and that `v` lies in its range, by elimination with
-/// the largest diagonal entry as pivot until only rounding is left of `W`; then nothing may be left of `v`.
+/// the largest diagonal entry as pivot until only rounding is left of `W`; then nothing may be left of `v`, or no more than
+/// goes with what is left of `W`.
 pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidInput> {
     let n = v.len();
     require_symmetric("inverse_inertia_per_kg", w, n)?;
@@ -87,6 +88,8 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
     let fastest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (mut w, mut v) = (w.to_vec(), v.to_vec());
     let mut left: Vec<usize> = (0..n).collect();
+    // `v.W^-1.v` of what has been eliminated
+    let mut energy = 0.0;
     while !left.is_empty() {
         let mut place = 0;
         for k in 1..left.len() {
@@ -100,6 +103,7 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
             break;
         }
         left.swap_remove(place);
+        energy += v[p] * v[p] / pivot;
         for &i in &left {
             let ratio = w[i * n + p] / pivot;
             for &j in &left {
@@ -116,7 +120,9 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
                 return Err(InvalidInput { field, index: Some(i * n + j), value: w[i * n + j], allowed });
             }
         }
-        if v[i].abs() > 100.0 * ROUNDING * fastest {
+        // `W = B B^T` and `v = B u` let `v_i^2` be `W_ii u.u`, however small
+        let unexplained = v[i] * v[i] > 100.0 * w[i * n + i].max(0.0) * energy;
+        if v[i].abs() > 100.0 * ROUNDING * fastest && unexplained {
             let allowed = "velocities in the range of inverse_inertia_per_kg (an immovable body does not move)";
             return Err(InvalidInput { field: "velocity_m_s", index: Some(i), value: v[i], allowed });
         }

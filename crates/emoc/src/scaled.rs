@@ -11,6 +11,8 @@ const ENERGY_ROUNDING: f64 = 1e-10;
 const CLOSING_ROUNDING: f64 = 1e-9;
 /// Impulse, over what stops the fastest contact by itself, from which on bodies count as wedged.
 const WEDGED: f64 = 1e6;
+/// Share of the impulses between wedged bodies, which cancel, that may be missing at a contact.
+const WEDGED_ROUNDING: f64 = 1e-11;
 /// Mode shapes smaller than this share of the largest response do not count.
 const OUT_OF_REACH: f64 = 1e-8;
 
@@ -95,6 +97,13 @@ impl<'a> Scaled<'a> {
         let impulse = engine.minimise(&program)?.x;
         let struck = self.problem.struck_rates(&impulse);
         let rate_changes = struck.iter().zip(&self.problem.modes).map(|(rate, mode)| rate - mode.rate).collect();
+        // between wedged bodies the least energy may be out of reach of any finite impulse
+        let pressing = impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let solution = self.problem.solution(Outcome::Solved, impulse.clone(), struck);
+        let closes = |&i: &usize| solution.opening_m_s[i] < -10.0 * CLOSING_ROUNDING - WEDGED_ROUNDING * pressing;
+        if self.normals.iter().any(closes) {
+            return Err(Failure::Stopped("the bodies are wedged: no impulse of sensible size keeps them apart"));
+        }
         Ok(Point { impulse, rate_changes })
     }
 

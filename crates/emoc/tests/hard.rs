@@ -148,6 +148,26 @@ fn degenerate_and_infeasible_programs() {
     assert!(matches!(solver.solve(&immovable), Err(SolveError::Invalid(_))));
 }
 
+/// A point held but for a hair: its velocity may be as small as its mobility allows, and no larger.
+#[test]
+fn a_point_that_hardly_moves() {
+    let mut solver = Solver::new();
+    let contact = Contact { friction: Friction::None, coefficients: coefficients(0.5, 0.2, 0.1) };
+    for hair in [1e-3, 1e-5, 3e-6, 1e-6] {
+        // W = B B^T, v = B u with B = [[1, 0], [1, hair]] and u = (-1, 0.7)
+        let mut problem = Problem {
+            contacts: vec![contact; 2],
+            inverse_inertia_per_kg: vec![1.0, 1.0, 1.0, 1.0 + hair * hair],
+            velocity_m_s: vec![-1.0, -1.0 + 0.7 * hair],
+            modes: vec![],
+        };
+        assert!(solver.solve(&problem).is_ok(), "{hair:e}: {:?}", solver.solve(&problem));
+        problem.velocity_m_s[1] += 100.0 * hair;
+        let off = solver.solve(&problem);
+        assert!(hair >= 1e-5 || matches!(off, Err(SolveError::Invalid(_))), "{hair:e}: {off:?}");
+    }
+}
+
 /// Masses and shapes over twelve decades and more, with the same `Z`: the same restitution.
 #[test]
 fn twelve_decades_of_mass() {
