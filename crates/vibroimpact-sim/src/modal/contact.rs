@@ -129,7 +129,8 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             || self.setting.law.boundaries(&branch).iter().any(|b| b.per_rate != 0.0);
     }
 
-    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
+    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance, and which
+    /// resolves the modes that could part the surfaces at once.
     fn first_level(&self) -> i32 {
         let state = &self.motion.vibration;
         let mut acceleration = 0.0;
@@ -150,7 +151,21 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             let middle = coarse + (fine - coarse) / 2;
             if small(middle) { fine = middle } else { coarse = middle + 1 }
         }
-        fine
+        fine.max(self.level_of_reversal())
+    }
+
+    /// The coarsest level that resolves all modes but the fastest, as far as these together are slower than half the rate
+    /// of compression: the surfaces then do not part within the step unseen, nor in the following ones of twice its length.
+    fn level_of_reversal(&self) -> i32 {
+        let state = &self.motion.vibration;
+        let mut rate = 0.5 * self.rate;
+        for (k, mode) in self.ladder.modes.iter().enumerate().rev() {
+            rate -= state.beta[k].hypot(mode.omega_rad_s * state.alpha[k]);
+            if rate < 0.0 {
+                return level_within(RESOLVED / mode.omega_rad_s);
+            }
+        }
+        J_MIN
     }
 
     fn follow(&mut self) -> ContactEnd {
