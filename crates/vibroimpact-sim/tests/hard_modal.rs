@@ -353,7 +353,43 @@ fn a_hard_contact_behind_a_residual_compliance() {
     }
 }
 
-/// A structure that swings freely and only just reaches an immovable stop.
+/// Spring and dashpot behind a residual compliance, which is a solid with three elements: the contact lags behind the gap,
+/// by far less than the impact lasts up to far more. Against a Runge-Kutta integration of the three equations.
+#[test]
+fn a_damped_contact_that_lags_behind_a_residual_compliance() {
+    let (mass, stiffness, compliance, speed) = (1.0, 1.0, 1.0, 1.0);
+    for damping in [0.01, 0.1, 0.5, 2.0, 10.0, 100.0, 1e4, 1e6] {
+        // m g'' = -F, c xi' + k xi = F, F = (g - xi)/compliance, until the force is gone
+        let slope = |[g, v, xi]: [f64; 3]| {
+            let force = (g - xi) / compliance;
+            [v, -force / mass, (force - stiffness * xi) / damping]
+        };
+        let (mut state, mut h) = ([0.0, speed, 0.0], 2e-5);
+        while h > 1e-14 {
+            let along = |d: [f64; 3], by: f64| std::array::from_fn(|i| state[i] + by * d[i]);
+            let a = slope(state);
+            let b = slope(along(a, 0.5 * h));
+            let c = slope(along(b, 0.5 * h));
+            let d = slope(along(c, h));
+            let next = std::array::from_fn(|i| state[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+            if next[0] < next[2] { h *= 0.5 } else { state = next }
+        }
+        let structure = Structure { modes: vec![], residual_compliance_m_n: compliance };
+        let striker = Striker { mass_kg: mass, speed_m_s: speed };
+        let law = Law::from(KelvinVoigt::new(stiffness, damping).unwrap());
+        for tolerance in [1e-5, 1e-8, 1e-11] {
+            let solution = Solver::new(&structure).unwrap().solve(&striker, &law, None, &settings(tolerance)).unwrap();
+            let (e, stated) = (solution.restitution.unwrap_or(f64::NAN), solution.restitution_uncertainty);
+            let error = (e + state[1] / speed).abs();
+            assert!(
+                error <= stated.unwrap_or(0.0) + 1e-11,
+                "{damping} {tolerance:e}: {e} and {:e}, {error:e}",
+                -state[1]
+            );
+        }
+    }
+}
+
 #[test]
 fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
     // the surface stands a million compressions from its place, kept there by next to no force: nothing may change
@@ -380,6 +416,7 @@ fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
     }
 }
 
+/// A structure that swings freely and only just reaches an immovable stop.
 #[test]
 fn a_stop_at_the_end_of_a_swing() {
     let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape };
