@@ -358,7 +358,7 @@ fn a_hard_contact_behind_a_residual_compliance() {
 #[test]
 fn a_damped_contact_that_lags_behind_a_residual_compliance() {
     let (mass, stiffness, compliance, speed) = (1.0, 1.0, 1.0, 1.0);
-    for damping in [0.01, 0.1, 0.5, 2.0, 10.0, 100.0, 1e4, 1e6] {
+    for damping in [0.01, 0.1, 0.5, 2.0, 10.0, 100.0] {
         // m g'' = -F, c xi' + k xi = F, F = (g - xi)/compliance, until the force is gone
         let slope = |[g, v, xi]: [f64; 3]| {
             let force = (g - xi) / compliance;

@@ -2,10 +2,12 @@
 //!
 //! The gap is the compression and what the compliance yields, `g = xi + c F(xi, xi')`. Where the compliance is soft
 //! against the contact nearly all of the gap is `c F`, and a small error of the force, as a polynomial makes it beyond its
-//! nodes, is a large one of the compression: at the end of a step the law itself is solved.
+//! nodes, is a large one of the compression: at the end of a step the law itself is solved. Where the force depends on
+//! the rate, the contact lags behind the gap by `c F_rate / (1 + c F_xi)`, in steps shorter than which the compression is
+//! a state of its own, carried on by the polynomial through its nodes.
 
 use super::landing::end_slope;
-use super::legendre::{Nodal, evaluate};
+use super::legendre::{BASIS, Nodal, evaluate};
 use super::step::Collocated;
 use contact_models::{Boundary, Branch, ContactLaw};
 
@@ -36,6 +38,13 @@ impl<L: ContactLaw> Behind<'_, L> {
         let estimate = gap - self.compliance * evaluate(force, 1.0);
         if self.law.depends_on_rate() {
             let rate = end_slope(start_compression, &step.compression, h);
+            let force = self.law.force(self.branch, estimate, rate);
+            let lag = self.compliance * force.per_rate_n_s_m / (1.0 + self.compliance * force.per_compression_n_m);
+            // An error of the compression at the start is one of the rate here, divided by the step. Solved for with that
+            // rate, the compression would be wrong by more than before, step by step.
+            if lag * BASIS.end_slope_from_start.abs() > h {
+                return (end_value(start_compression, &step.compression), rate);
+            }
             return (self.compression(gap, estimate, rate), rate);
         }
         let compression = self.compression(gap, estimate, 0.0);
@@ -72,4 +81,11 @@ impl<L: ContactLaw> Behind<'_, L> {
         let yielded = self.compliance * self.law.force(self.branch, met, 0.0).force_n;
         (boundary.margin(gap.0 - yielded, 0.0), boundary.per_compression * gap.1)
     }
+}
+
+/// Value at the end of a step of the polynomial with these values at its start and at the nodes. To the polynomial through
+/// the nodes alone it adds a multiple of the Legendre polynomial that vanishes there, and is 1 at both ends.
+fn end_value(start: f64, nodal: &Nodal) -> f64 {
+    let coefficients = BASIS.coefficients(nodal);
+    start + (evaluate(&coefficients, 1.0) - evaluate(&coefficients, 0.0))
 }

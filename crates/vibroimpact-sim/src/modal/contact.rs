@@ -247,7 +247,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.approach(which, place * h, h);
         }
         // modes that turn several times within the step escape the coefficients, but not the law at its end
-        if self.defect(end, &force, h) * h > DEFECT * tolerance {
+        if self.defect(end, &force) * h > DEFECT * tolerance {
             std::mem::swap(self.motion, &mut self.before);
             return self.refine(level + 1);
         }
@@ -268,13 +268,10 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         self.horizon.map_or(self.level, |horizon| self.level.max(towards(horizon)))
     }
 
-    /// By how much the force at the end of a step of `h` would have to change to obey the law there (N). Behind a compliance
-    /// a change of the force is one of the rate, and a contact that lags behind the gap answers it many times over.
-    fn defect(&mut self, end: (f64, f64), force: &Nodal, h: f64) -> f64 {
+    /// By how much the force misses the law at the end of a step (N).
+    fn defect(&mut self, end: (f64, f64), force: &Nodal) -> f64 {
         self.counts.law_evaluations += 1;
-        let law = self.setting.law.force(&self.branch, end.0, end.1);
-        let answer = 1.0 + self.setting.residual_compliance * law.per_rate_n_s_m / h;
-        (law.force_n - evaluate(force, 1.0)).abs() / answer
+        (self.setting.law.force(&self.branch, end.0, end.1).force_n - evaluate(force, 1.0)).abs()
     }
 
     /// Longest step for a landing (s).
@@ -344,7 +341,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn excess(&mut self, landed: &Landed) -> f64 {
         let mut error = truncation(&landed.force);
         if self.setting.residual_compliance > 0.0 {
-            error = error.max(self.defect((landed.compression, landed.rate), &landed.force, landed.length) / DEFECT);
+            error = error.max(self.defect((landed.compression, landed.rate), &landed.force) / DEFECT);
         }
         error * landed.length / self.setting.impulse_tolerance
     }
