@@ -5,7 +5,7 @@ mod common;
 use beam_modes::{Beam, End, Segment};
 use common::random::{any_law, any_structure, config, decades};
 use common::{GOLDEN, ball, hertz, pinned, pinned_with_residual, seen_from, settings};
-use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring};
+use contact_models::{Hertz, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
 use proptest::prelude::*;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
@@ -413,6 +413,37 @@ fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
         let change = impulse(&far) / impulse(&near) - 1.0;
         assert!(change.abs() < floor, "{law:?}: {change:e}");
         assert!(far.counts.rejected_steps <= near.counts.rejected_steps + 2, "{:?} {:?}", near.counts, far.counts);
+    }
+}
+
+/// At first touch the structure's fast modes pull its surface away again, after a contact of microseconds in an impact of
+/// seconds. It has no impulse to speak of, but a law that remembers the speed of approach answers to the second touch.
+#[test]
+fn surfaces_that_part_at_once() {
+    let mode = |k: usize| Mode {
+        omega_rad_s: 2640.0 * (k * k) as f64,
+        damping_ratio: 0.0024,
+        shape: 6.8 * (0.78 * k as f64).sin(),
+    };
+    let mut modes: Vec<Mode> = (1..=11).map(mode).collect();
+    modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 0.07 });
+    // the seventh mode moves towards the striker, the sixth away from it, both faster than the striker
+    let mut start = Start::at_rest(modes.len());
+    start.rate[6] = 1.7e-4;
+    start.rate[5] = -1.3e-4;
+    let structure = Structure { modes, residual_compliance_m_n: 0.0 };
+    let striker = Striker { mass_kg: 870.0, speed_m_s: 1.9e-4 };
+    let law = LankaraniNikravesh { stiffness_n_m1_5: 2055.0, restitution: 0.67, lowest_approach_speed_m_s: 1e-6 };
+    let law = Law::from(law);
+    let mut solver = Solver::new(&structure).unwrap();
+    let mut at = |tolerance: f64| solver.solve(&striker, &law, Some(&start), &settings(tolerance)).unwrap();
+    let reference = at(1e-11);
+    assert!(reference.sub_impacts.len() > 1 && reference.sub_impacts[0].end_s < 1e-4, "{reference:?}");
+    for tolerance in [1e-4, 1e-5, 1e-6, 1e-8] {
+        let solution = at(tolerance);
+        assert_eq!(solution.sub_impacts.len(), reference.sub_impacts.len(), "{tolerance:e}");
+        let error = (solution.restitution.unwrap() - reference.restitution.unwrap()).abs();
+        assert!(error <= solution.restitution_uncertainty.unwrap(), "{tolerance:e}: {error:e}");
     }
 }
 
