@@ -38,11 +38,7 @@ impl<L: ContactLaw> Behind<'_, L> {
         let estimate = gap - self.compliance * evaluate(force, 1.0);
         if self.law.depends_on_rate() {
             let rate = end_slope(start_compression, &step.compression, h);
-            let force = self.law.force(self.branch, estimate, rate);
-            let lag = self.compliance * force.per_rate_n_s_m / (1.0 + self.compliance * force.per_compression_n_m);
-            // An error of the compression at the start is one of the rate here, divided by the step. Solved for with that
-            // rate, the compression would be wrong by more than before, step by step.
-            if lag * BASIS.end_slope_from_start.abs() > h {
+            if self.lags(estimate, rate, h) {
                 return (end_value(start_compression, &step.compression), rate);
             }
             return (self.compression(gap, estimate, rate), rate);
@@ -50,6 +46,14 @@ impl<L: ContactLaw> Behind<'_, L> {
         let compression = self.compression(gap, estimate, 0.0);
         let stiffness = self.law.force(self.branch, compression, 0.0).per_compression_n_m;
         (compression, gap_rate / (1.0 + self.compliance * stiffness))
+    }
+
+    /// Whether the contact lags behind the gap so far that an error of the compression at the start of a step of `h`, which
+    /// is one of the rate at its end, would make a larger one of the compression that the law gives with that rate.
+    pub fn lags(&self, compression: f64, rate: f64, h: f64) -> bool {
+        let force = self.law.force(self.branch, compression, rate);
+        let lag = self.compliance * force.per_rate_n_s_m / (1.0 + self.compliance * force.per_compression_n_m);
+        lag * BASIS.end_slope_from_start.abs() > h
     }
 
     /// The compression at which `xi + c F(xi, xi') = g`, near an estimate.

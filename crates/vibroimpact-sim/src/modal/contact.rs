@@ -141,15 +141,9 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         const SINGULAR: f64 = 1e-4;
         let small = |j: i32| {
             let h = step_s(j);
-            let gap = self.gap + h * (self.rate + 0.5 * h * acceleration.max(0.0));
-            let force = self.setting.law.force(&self.branch, gap, self.rate).force_n;
-            // however hard the contact, the compliance behind it yields
-            let behind = if self.setting.residual_compliance > 0.0 {
-                (gap - self.compression) / self.setting.residual_compliance
-            } else {
-                f64::INFINITY
-            };
-            SINGULAR * force.min(behind) * h <= self.setting.impulse_tolerance
+            let compression = self.compression + h * (self.rate + 0.5 * h * acceleration.max(0.0));
+            let force = self.setting.law.force(&self.branch, compression, self.rate).force_n;
+            SINGULAR * force * h <= self.setting.impulse_tolerance
         };
         // the force at the end of a step grows with the step
         let (mut coarse, mut fine) = (J_MIN, J_MAX);
@@ -247,7 +241,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
             return self.approach(which, place * h, h);
         }
         // modes that turn several times within the step escape the coefficients, but not the law at its end
-        if self.defect(end, &force) * h > DEFECT * tolerance {
+        if self.defect(end, &force) * h > DEFECT * tolerance || error * self.answer(end, h) > tolerance {
             std::mem::swap(self.motion, &mut self.before);
             return self.refine(level + 1);
         }
@@ -272,6 +266,18 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     fn defect(&mut self, end: (f64, f64), force: &Nodal) -> f64 {
         self.counts.law_evaluations += 1;
         (self.setting.law.force(&self.branch, end.0, end.1).force_n - evaluate(force, 1.0)).abs()
+    }
+
+    /// How many times over the compliance answers an error of the force, which moves the gap: of a contact that lags behind
+    /// it, whose own stiffness does not hold the compression down.
+    fn answer(&self, end: (f64, f64), h: f64) -> f64 {
+        let compliance = self.setting.residual_compliance;
+        if compliance == 0.0 || !self.setting.law.depends_on_rate() {
+            return 1.0;
+        }
+        let behind = Behind { law: self.setting.law, branch: &self.branch, compliance };
+        let mobility = self.setting.mu + self.ladder.kernel[1];
+        if behind.lags(end.0, end.1, h) { 1.0 + mobility * h * h / compliance } else { 1.0 }
     }
 
     /// Longest step for a landing (s).
