@@ -447,6 +447,17 @@ fn surfaces_that_part_at_once() {
     }
 }
 
+/// Compressions beyond those that a law computes with: no answer rather than a wrong one.
+#[test]
+fn a_compression_beyond_the_law() {
+    let structure = Structure::default();
+    let striker = Striker { mass_kg: 5e19, speed_m_s: 1e26 };
+    let law = Law::from(Hysteretic::new(1e-10, 1.6, 1.4, 0.4, 1.8e-4).unwrap());
+    let solution = run(&structure, &striker, &law);
+    assert_eq!((solution.outcome, solution.restitution), (Outcome::LimitReached, None));
+    assert!(energy_kept(&structure, &striker, &solution) < 1.0 + 1e-9, "{solution:?}");
+}
+
 /// A structure that swings freely and only just reaches an immovable stop.
 #[test]
 fn a_stop_at_the_end_of_a_swing() {
