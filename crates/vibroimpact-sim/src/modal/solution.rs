@@ -64,7 +64,7 @@ pub struct Solution {
     pub outcome: Outcome,
     /// Net restitution: relative speed of separation over that of approach, both of the rigid-body motions
     /// (for a structure without rigid-body modes: of the striker alone). `None` unless the bodies approached
-    /// each other and the impact ended.
+    /// each other, fast enough for the ratio to be a number, and the impact ended.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution, from a second, coarser solution; `None` if not asked for.
     pub restitution_uncertainty: Option<f64>,

@@ -133,7 +133,7 @@ impl Solver {
             let second = self.run(striker, law, start, settings, tolerance, &mut counts, &mut None);
             // a second solution that ends otherwise says that nothing is certain
             let other = self.restitution(&second, striker, start);
-            other.map_or(1.0, |other| 5.0 * settings.tolerance + 3.0 * (other - value).abs())
+            other.map_or(1.0, |other| (5.0 * settings.tolerance + 3.0 * (other - value).abs()).min(f64::MAX))
         });
         let (amplitude, rate) = modal_state(&self.modes, &self.place, &run.motion, start);
         Ok(Solution {
@@ -239,7 +239,9 @@ impl Solver {
     fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
         let before = self.initial(striker, start).drift_rate;
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
-        (ended && before > 0.0 && self.inverse_mass(striker) > 0.0).then(|| -run.motion.drift_rate / before)
+        let ratio = -run.motion.drift_rate / before;
+        // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
+        (ended && before > 0.0 && self.inverse_mass(striker) > 0.0 && ratio.is_finite()).then_some(ratio)
     }
 
     pub(crate) fn modes(&self) -> &[Mode] {
