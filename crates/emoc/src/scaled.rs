@@ -98,13 +98,14 @@ impl<'a> Scaled<'a> {
         let struck = self.problem.struck_rates(&impulse);
         let rate_changes = struck.iter().zip(&self.problem.modes).map(|(rate, mode)| rate - mode.rate).collect();
         // between wedged bodies the least energy may be out of reach of any finite impulse
-        let pressing = impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
-        let solution = self.problem.solution(Outcome::Solved, impulse.clone(), struck);
+        let point = Point { impulse, rate_changes };
+        let pressing = point.impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        let solution = self.state(&point);
         let closes = |&i: &usize| solution.opening_m_s[i] < -10.0 * CLOSING_ROUNDING - WEDGED_ROUNDING * pressing;
         if self.normals.iter().any(closes) {
             return Err(Failure::Stopped("the bodies are wedged: no impulse of sensible size keeps them apart"));
         }
-        Ok(Point { impulse, rate_changes })
+        Ok(point)
     }
 
     /// P_1 for many contacts: least energy under the outward constraints, whose demands are lowered to `share`
@@ -190,7 +191,7 @@ impl<'a> Scaled<'a> {
 
     /// What the demands of Eqs. 6.9 and 6.10 find at a point.
     pub(crate) fn attained(&self, point: &Point) -> Attained {
-        let solution = self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point));
+        let solution = self.state(point);
         let buzz = |i: usize| -> f64 {
             let terms = self.problem.modes.iter().zip(&solution.modal_rate);
             terms.map(|(mode, rate)| (mode.shape[i] * rate).abs()).sum()
@@ -204,11 +205,16 @@ impl<'a> Scaled<'a> {
     /// Whether a numerical solution is what it should be: no energy gained and no contact closing beyond rounding,
     /// and no impulses that only cancel each other up to rounding, as between wedged bodies.
     pub(crate) fn admissible(&self, point: &Point) -> bool {
-        let solution = self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point));
+        let solution = self.state(point);
         let modes: f64 = self.problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
         solution.energy_change_j <= ENERGY_ROUNDING * (1.0 + modes)
             && self.normals.iter().all(|&i| solution.opening_m_s[i] >= -CLOSING_ROUNDING)
             && point.impulse.iter().all(|p| p.abs() <= WEDGED)
+    }
+
+    /// The state at a point, in the units of the program.
+    fn state(&self, point: &Point) -> Solution {
+        self.problem.solution(Outcome::Solved, point.impulse.clone(), self.rates(point))
     }
 
     fn rates(&self, point: &Point) -> Vec<f64> {

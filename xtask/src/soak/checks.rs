@@ -206,7 +206,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
     }
     if let (Some(e), true) = (solution.restitution, start == &at_rest) {
         // of the relative motion, whose energy may be a small part of the whole
-        let excess = 1.0 + 10.0 * settings.tolerance * (1.0 + solution.sub_impacts.len() as f64) + rounding;
+        let excess = 1.0 + 10.0 * settings.tolerance * contacts + rounding;
         check(e.abs() <= excess, || format!("restitution {e}"))?;
     }
     Ok(())

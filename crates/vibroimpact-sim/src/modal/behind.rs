@@ -71,19 +71,23 @@ impl<L: ContactLaw> Behind<'_, L> {
         compression
     }
 
-    /// Distance to a boundary of the branch, positive inside, and how fast it changes, which is not known (0) at the
-    /// boundaries of a rate. A boundary in the compression alone is one in the gap, where the law does not depend on the
+    /// Distance to a boundary of the branch, positive inside, and how fast it changes, which behind a compliance is not
+    /// known (0) at the boundaries of a rate; `gap` is the gap with its first two derivatives. A boundary in the compression alone is one in the gap, where the law does not depend on the
     /// rate, and the gap is smooth where the compression is not: `g^(2/3)` at a separation.
-    pub fn margin(&self, boundary: &Boundary, gap: (f64, f64), (compression, rate): (f64, f64)) -> (f64, f64) {
+    pub fn margin(&self, boundary: &Boundary, gap: [f64; 3], (compression, rate): (f64, f64)) -> (f64, f64) {
+        if self.compliance == 0.0 {
+            let slope = boundary.per_compression * gap[1] + boundary.per_rate * gap[2];
+            return (boundary.margin(compression, rate), slope);
+        }
         if boundary.per_rate != 0.0 {
             return (boundary.margin(compression, rate), 0.0);
         }
-        if self.compliance == 0.0 || self.law.depends_on_rate() {
+        if self.law.depends_on_rate() {
             return (boundary.margin(compression, rate), boundary.per_compression * rate);
         }
         let met = boundary.level / boundary.per_compression;
         let yielded = self.compliance * self.law.force(self.branch, met, 0.0).force_n;
-        (boundary.margin(gap.0 - yielded, 0.0), boundary.per_compression * gap.1)
+        (boundary.margin(gap[0] - yielded, 0.0), boundary.per_compression * gap[1])
     }
 }
 

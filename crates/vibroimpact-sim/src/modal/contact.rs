@@ -272,12 +272,15 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     /// it, whose own stiffness does not hold the compression down.
     fn answer(&self, end: (f64, f64), h: f64) -> f64 {
         let compliance = self.setting.residual_compliance;
-        if compliance == 0.0 || !self.setting.law.depends_on_rate() {
-            return 1.0;
+        if compliance > 0.0 && self.behind().lags(end.0, end.1, h) {
+            1.0 + (self.setting.mu + self.ladder.kernel[1]) * h * h / compliance
+        } else {
+            1.0
         }
-        let behind = Behind { law: self.setting.law, branch: &self.branch, compliance };
-        let mobility = self.setting.mu + self.ladder.kernel[1];
-        if behind.lags(end.0, end.1, h) { 1.0 + mobility * h * h / compliance } else { 1.0 }
+    }
+
+    fn behind(&self) -> Behind<'_, L> {
+        Behind { law: self.setting.law, branch: &self.branch, compliance: self.setting.residual_compliance }
     }
 
     /// Longest step for a landing (s).
@@ -438,9 +441,7 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
     /// Compression and rate at the end of a step that the motion has just made.
     fn end_of_step(&self, gap: f64, step: &Collocated, force: &Nodal, h: f64) -> (f64, f64) {
-        let behind =
-            Behind { law: self.setting.law, branch: &self.branch, compliance: self.setting.residual_compliance };
-        behind.end_of_step((gap, self.motion.gap_rate()), self.compression, step, force, h)
+        self.behind().end_of_step((gap, self.motion.gap_rate()), self.compression, step, force, h)
     }
 
     /// Books a step that has been made: peaks, counts, record.

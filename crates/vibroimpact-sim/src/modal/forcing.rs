@@ -48,9 +48,7 @@ impl Forcing {
                 terms.start = BASIS.terms::<SERIES>(turned, terms.start);
                 // as many even as odd ones
                 terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
-                let middle =
-                    Propagator { p11_less_1: half.p11_less_1[k], p12: half.p12[k], p21: half.p21[k], p22: half.p22[k] };
-                slow(mode, w, h, &middle, &terms, &mut compliance)
+                slow(mode, w, h, &half.of(k), &terms, &mut compliance)
             } else if mode.damping_ratio < NEARLY_CRITICAL {
                 fast(mode, w, h, &mut compliance)
             } else {

@@ -5,7 +5,7 @@
 
 use super::forcing::Forcing;
 use super::legendre::{Matrix, Nodal, Q, TAYLOR, dot};
-use super::oscillator::propagate;
+use super::oscillator::{Propagator, propagate};
 use super::problem::Mode;
 
 /// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of a second.
@@ -153,6 +153,11 @@ impl Rotation {
             p22.push(p.p22);
         }
         Rotation { p11_less_1, p12, p21, p22 }
+    }
+
+    /// Free motion of one mode.
+    pub fn of(&self, k: usize) -> Propagator {
+        Propagator { p11_less_1: self.p11_less_1[k], p12: self.p12[k], p21: self.p21[k], p22: self.p22[k] }
     }
 
     /// How far free motion moves the sum of the modes, to rounding of this distance.

@@ -101,12 +101,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         }
         let behind = self.behind();
         let end = behind.end_of_step((gap, rate), self.start_compression, &step, &force, length);
-        let boundary = self.boundary();
-        let (margin, margin_rate) = if self.residual_compliance == 0.0 {
-            (boundary.margin(end.0, end.1), boundary.per_compression * rate + boundary.per_rate * bend)
-        } else {
-            behind.margin(&boundary, (gap, rate), end)
-        };
+        let (margin, margin_rate) = behind.margin(&self.boundary(), [gap, rate, bend], end);
         Landed { length, step, force, compression: end.0, rate: end.1, gap, margin, margin_rate }
     }
 
@@ -128,7 +123,7 @@ impl<L: ContactLaw> Approach<'_, L> {
         Behind { law: self.law, branch: self.branch, compliance: self.residual_compliance }
     }
 
-    /// Gap, its rate and half the rate of that after `t` of free motion.
+    /// Gap, its rate and the rate of that after `t` of free motion.
     fn free(&self, t: f64) -> [f64; 3] {
         let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
         for p in (0..TAYLOR).rev() {
@@ -162,20 +157,22 @@ impl<L: ContactLaw> Approach<'_, L> {
     /// The force of a landing, cut short or carried on to where it meets the boundary itself, if that is near enough for
     /// the law to hold there as it does at the nodes. Behind a compliance the law has to be solved at the very end.
     fn carried(&self, from: &Landed) -> Option<Landed> {
+        if self.residual_compliance > 0.0 {
+            return None;
+        }
         let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
         let carry = |coefficients: &Nodal, part: f64| BASIS.nodes.map(|c| evaluate(coefficients, c * part));
         let mut landed = *from;
-        for _ in 0..if self.residual_compliance == 0.0 { 8 } else { 0 } {
+        for _ in 0..8 {
             let next = landed.length - landed.margin / landed.margin_rate;
             if !range.contains(&next) {
                 return None;
             }
-            let moved = (next - landed.length).abs();
-            let force = carry(&from.force, next / from.length);
+            let (moved, part) = ((next - landed.length).abs(), next / from.length);
+            let force = carry(&from.force, part);
             landed = self.arrive(next, Collocated { force, ..from.step });
             // the next of Newton's steps would be the square of this one
             if moved <= 1e-7 * next {
-                let part = next / from.length;
                 landed.step.compression = carry(&BASIS.coefficients(&from.step.compression), part);
                 if self.needs_rate {
                     landed.step.rate = carry(&BASIS.coefficients(&from.step.rate), part);
@@ -190,8 +187,7 @@ impl<L: ContactLaw> Approach<'_, L> {
     /// branch does not end there.
     pub fn land(&self, expected: f64, longest: f64, counts: &mut Counts) -> Option<Landed> {
         let start = self.free(0.0);
-        let (margin, _) =
-            self.behind().margin(&self.boundary(), (start[0], start[1]), (self.start_compression, start[1]));
+        let (margin, _) = self.behind().margin(&self.boundary(), start, (self.start_compression, start[1]));
         let initial = margin.max(0.0);
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high = self.without_force(expected, longest);
