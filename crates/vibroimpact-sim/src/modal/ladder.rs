@@ -160,7 +160,8 @@ impl Rotation {
         Propagator { p11_less_1: self.p11_less_1[k], p12: self.p12[k], p21: self.p21[k], p22: self.p22[k] }
     }
 
-    /// How far free motion moves the sum of the modes, to rounding of this distance.
+    /// How far free motion moves the sum of the modes, to rounding of this distance. A loop of its own: summed up in that of
+    /// `apply`, it would keep that one from the vector units.
     fn moves(&self, state: &Vibration) -> f64 {
         let n = self.p12.len();
         let (less, p12) = (&self.p11_less_1[..n], &self.p12[..n]);
