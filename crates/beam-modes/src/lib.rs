@@ -60,6 +60,7 @@ mod flexure;
 mod modes;
 mod piece;
 mod plane;
+mod remainder;
 mod rod;
 mod roots;
 mod shapes;
@@ -69,6 +70,9 @@ mod uniform;
 pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
 pub use modes::Modes;
+pub use remainder::{
+    MOST_REMAINDER_MODES, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes,
+};
 pub use rod::{Rod, RodEnd, RodSegment};
 
 /// Runs the example of the readme.

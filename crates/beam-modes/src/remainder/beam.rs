@@ -1,0 +1,89 @@
+//! Remainder modes of a beam whose modes are known as far as one likes.
+
+use super::{PointMode, PointsMode, remainder_at_points, remainder_modes};
+use crate::beam::Beam;
+use crate::error::InvalidInput;
+use crate::modes::Modes;
+
+/// How many modes to compute so that what lies beyond them hardly tells in the remainder of `kept` modes: four times
+/// as many, and at least 200 more.
+fn enough(kept: usize) -> usize {
+    kept.saturating_mul(4).max(kept.saturating_add(200)).min(100_000)
+}
+
+impl Beam {
+    /// The `count` remainder modes (1 to 4) at `x_m` of all modes but the first `kept` (rigid-body motions included), so
+    /// that `kept` modes and these few answer a force at `x_m` nearly as all modes do; see [`remainder_modes`].
+    ///
+    /// Computes some four times as many modes as are kept. Where remainders are wanted at many places or for many
+    /// `kept`, [`Modes::remainder`] does it from modes computed once.
+    ///
+    /// ```
+    /// use beam_modes::{Beam, End, Segment};
+    /// let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 275.0, mass_per_length_kg_m: 1.0 };
+    /// let beam = Beam { segments: vec![segment], ends: [End::Clamped, End::Free] };
+    /// let remainder = beam.remainder(0.8, 40, 2)?;
+    /// assert!(remainder.len() == 2 && remainder[0].omega_rad_s > beam.modes(40)?.omega_rad_s()[39]);
+    /// # Ok::<(), beam_modes::InvalidInput>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a place off the beam, and for a `count` other than 1 to 4.
+    pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
+        let whole_m_n = self.static_compliance(x_m)?;
+        self.modes(enough(kept))?.remainder(x_m, kept, count, whole_m_n)
+    }
+
+    /// Remainder modes common to several places on the beam, at most one a place; see [`remainder_at_points`].
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
+        let modes = self.modes(enough(kept))?;
+        let shapes = x_m.iter().map(|&x| modes.shapes_at(x)).collect::<Result<Vec<_>, _>>()?;
+        let omega = modes.omega_rad_s();
+        let elastic = modes.rigid_body_count();
+        let mut rest = Vec::with_capacity(x_m.len() * x_m.len());
+        for (i, &x) in x_m.iter().enumerate() {
+            for (j, &y) in x_m.iter().enumerate() {
+                let known = (elastic..omega.len()).map(|k| shapes[i][k] * shapes[j][k] / omega[k].powi(2));
+                rest.push(self.static_green(x, y)? - known.sum::<f64>());
+            }
+        }
+        let seen = |k: usize| PointsMode { omega_rad_s: omega[k], shapes: shapes.iter().map(|s| s[k]).collect() };
+        let tail: Vec<PointsMode> = (kept.max(elastic)..omega.len()).map(seen).collect();
+        remainder_at_points(&tail, &rest)
+    }
+}
+
+impl Modes {
+    /// As [`Beam::remainder`], from modes already computed, preferably four times as many as are kept;
+    /// `static_compliance_m_n` is that of the whole structure at `x_m`.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a place off the structure, for a `count` other than 1 to 4, for no mode beyond `kept`, and
+    /// for a compliance that is negative or not finite.
+    pub fn remainder(
+        &self,
+        x_m: f64,
+        kept: usize,
+        count: usize,
+        static_compliance_m_n: f64,
+    ) -> Result<Vec<PointMode>, InvalidInput> {
+        let shapes = self.shapes_at(x_m)?;
+        let each = self.omega_rad_s().iter().zip(&shapes);
+        let elastic: Vec<PointMode> =
+            each.map(|(&omega_rad_s, &shape)| PointMode { omega_rad_s, shape }).skip(self.rigid_body_count()).collect();
+        let tail = elastic.get(kept.saturating_sub(self.rigid_body_count())..).unwrap_or_default();
+        if tail.is_empty() {
+            return Err(InvalidInput::new("kept", kept, "fewer than the modes that were computed"));
+        }
+        if !(static_compliance_m_n >= 0.0 && static_compliance_m_n.is_finite()) {
+            let allowed = "a finite number, at least 0";
+            return Err(InvalidInput::new("static_compliance_m_n", static_compliance_m_n, allowed));
+        }
+        // smallest first, so that the sum is as exact as its last terms
+        let known: f64 = elastic.iter().rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
+        remainder_modes(tail, (static_compliance_m_n - known).max(0.0), count)
+    }
+}

@@ -1,0 +1,136 @@
+//! Modes left out of a truncated model, replaced by a few *remainder modes* that answer a force as they do.
+//!
+//! Seen from one point, the modes `k > N` left out are the spectral measure with the weights `phi_k^2 / omega_k^2` at
+//! `x_k = 1 / omega_k^2`; its moments are
+//!
+//! ```text
+//! m_j = sum_{k > N} phi_k^2 / omega_k^(2 j),      j = 1, 2, ...
+//! ```
+//!
+//! `m_1` is the residual static compliance (residual flexibility), `m_2` the residual inertia (R. H. MacNeal, Comput.
+//! Struct. 1:581, 1971; S. Rubin, AIAA J. 13:995, 1975). The Gauss quadrature with `n` nodes `X_r` and weights `W_r`
+//! matches the first `2 n` moments. It is `n` modes, `omega_r = X_r^(-1/2)` and `phi_r = (W_r / X_r)^(1/2)`, which
+//! answer every force slower than themselves as the whole tail does, and add no algebraic equation to the model. Their
+//! frequencies lie above those of the modes kept.
+//!
+//! Where no solved beam stands behind the modes, [`remainder_from_trend`] makes one remainder mode of the residual
+//! compliance alone. Several points of one body need one common set of modes: [`remainder_at_points`].
+
+mod beam;
+mod points;
+mod quadrature;
+mod trend;
+
+pub use points::{PointsMode, remainder_at_points};
+pub use trend::remainder_from_trend;
+
+use crate::error::InvalidInput;
+use quadrature::{Atom, gauss_quadrature};
+
+/// A mode as seen from one point of the structure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointMode {
+    /// Natural frequency, rad/s.
+    pub omega_rad_s: f64,
+    /// Mass-normalised shape at the point, kg^(-1/2).
+    pub shape: f64,
+}
+
+/// At most as many remainder modes as this: more gain nothing against the rounding of the moments.
+pub const MOST_REMAINDER_MODES: usize = 4;
+
+/// The `count` remainder modes (1 to 4) of the modes left out, in ascending order of frequency; fewer where the tail
+/// moves at fewer frequencies, none where the point does not move in it.
+///
+/// `tail` lists the modes `N+1 .. M` that were computed but are not kept. `static_rest_m_n` is what the modes beyond
+/// `M` add to the static compliance, `G(x,x) - sum_{k <= M} phi_k^2/omega_k^2`. It is spread over frequencies above
+/// the highest of `tail` by the law of shear waves, evenly spaced frequencies of even shapes, for which the
+/// compliance left beyond `omega` falls as `1/omega`; in bending it falls as `omega^(-3/2)`, and what little is left
+/// beyond `M` may be spread by either law. The first moment is exact in any case.
+///
+/// ```
+/// use beam_modes::{PointMode, remainder_modes};
+/// // the tail of a pinned beam beyond ten modes, at its middle
+/// let mode = |k: i32| PointMode {
+///     omega_rad_s: 160.0 * f64::from(k * k),
+///     shape: if k % 2 == 0 { 0.0 } else { 1.414 },
+/// };
+/// let tail: Vec<PointMode> = (11..=200).map(mode).collect();
+/// let remainder = remainder_modes(&tail, 0.0, 2)?;
+/// let compliance = |modes: &[PointMode]| modes.iter().map(|m| (m.shape / m.omega_rad_s).powi(2)).sum::<f64>();
+/// assert_eq!(remainder.len(), 2);
+/// assert!((compliance(&remainder) / compliance(&tail) - 1.0).abs() < 1e-12);
+/// # Ok::<(), beam_modes::InvalidInput>(())
+/// ```
+///
+/// # Errors
+/// [`InvalidInput`] for a `count` other than 1 to 4, for frequencies that are not positive, for a compliance that is
+/// negative, for numbers that are not finite or beyond 1e60, and for a compliance beyond an empty `tail`.
+pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
+    if !(1..=MOST_REMAINDER_MODES).contains(&count) {
+        return Err(InvalidInput::new("count", count, "1 to 4"));
+    }
+    for (k, mode) in tail.iter().enumerate() {
+        require_mode(&format!("tail[{k}]"), mode.omega_rad_s, &[mode.shape])?;
+    }
+    let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
+        return match require_compliance(static_rest_m_n)? {
+            0.0 => Ok(Vec::new()),
+            rest => Err(InvalidInput::new("static_rest_m_n", rest, "0 where no mode of the tail is given")),
+        };
+    };
+    let mut atoms: Vec<Atom> = tail
+        .iter()
+        .map(|mode| Atom { x: (highest / mode.omega_rad_s).powi(2), weight: (mode.shape / mode.omega_rad_s).powi(2) })
+        .collect();
+    atoms.extend(asymptotic_atoms(require_compliance(static_rest_m_n)?));
+    let mode = |atom: Atom| {
+        let omega_rad_s = highest / atom.x.sqrt();
+        PointMode { omega_rad_s, shape: atom.weight.sqrt() * omega_rad_s }
+    };
+    let mut modes: Vec<PointMode> = gauss_quadrature(&atoms, count).into_iter().map(mode).collect();
+    modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
+    Ok(modes)
+}
+
+/// Mean of `1/omega^2` over compliance that lies beyond `omega_M` by the law of shear waves, in units of
+/// `1/omega_M^2`.
+const ASYMPTOTIC_MEAN: f64 = 1.0 / 3.0;
+
+/// Compliance beyond `omega = 1` whose part beyond `omega` falls as `1/omega`, on intervals of constant ratio; each
+/// atom has the weight and the mean `x = 1/omega^2` of its interval, the last stands for all that is beyond.
+fn asymptotic_atoms(compliance: f64) -> impl Iterator<Item = Atom> {
+    const RATIO: f64 = 1.25;
+    const INTERVALS: i32 = 40;
+    (0..=INTERVALS).filter(move |_| compliance > 0.0).map(move |j| {
+        let near = RATIO.powi(-j);
+        if j == INTERVALS {
+            return Atom { x: ASYMPTOTIC_MEAN * near * near, weight: compliance * near };
+        }
+        let far = near / RATIO;
+        Atom { x: ASYMPTOTIC_MEAN * (near * near + near * far + far * far), weight: compliance * (near - far) }
+    })
+}
+
+fn highest(omega_rad_s: impl Iterator<Item = f64>) -> Option<f64> {
+    omega_rad_s.max_by(f64::total_cmp)
+}
+
+fn require_mode(path: &str, omega_rad_s: f64, shapes: &[f64]) -> Result<(), InvalidInput> {
+    const ALLOWED: &str = "a number from 1e-60 to 1e60";
+    if !(1e-60..=1e60).contains(&omega_rad_s) {
+        return Err(InvalidInput::new(format!("{path}.omega_rad_s"), omega_rad_s, ALLOWED));
+    }
+    match shapes.iter().find(|shape| shape.is_nan() || shape.abs() > 1e60) {
+        Some(shape) => Err(InvalidInput::new(format!("{path}.shape"), shape, "a number of at most 1e60 in size")),
+        None => Ok(()),
+    }
+}
+
+fn require_compliance(compliance_m_n: f64) -> Result<f64, InvalidInput> {
+    if (0.0..=1e60).contains(&compliance_m_n) {
+        Ok(compliance_m_n)
+    } else {
+        Err(InvalidInput::new("static_rest_m_n", compliance_m_n, "0 up to 1e60"))
+    }
+}

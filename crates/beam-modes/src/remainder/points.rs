@@ -1,0 +1,97 @@
+//! One set of remainder modes for several points of a body: block Gauss quadrature with one block.
+
+use super::{ASYMPTOTIC_MEAN, highest, require_mode};
+use crate::error::InvalidInput;
+use faer::linalg::solvers::SelfAdjointEigen;
+use faer::{Mat, Side};
+
+/// A mode as seen from several points of a structure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointsMode {
+    /// Natural frequency, rad/s.
+    pub omega_rad_s: f64,
+    /// Mass-normalised shape at each of the points, kg^(-1/2).
+    pub shapes: Vec<f64>,
+}
+
+/// Directions that share less than this of the largest in the scaled residual compliance are rounding: points that
+/// coincide, or that the tail moves as one.
+const DEPENDENT: f64 = 1e-11;
+
+/// Points whose shapes are smaller than this against those of the liveliest stand still but for rounding.
+const NODE: f64 = 1e-13;
+
+/// Remainder modes of the modes left out as seen from several points of one body: at most one a point, fewer where
+/// points coincide or lie on nodes of all shapes of the tail.
+///
+/// They match the first two moments `M_j = sum_{k > N} phi_k phi_k^T / omega_k^(2 j)`, `j = 1, 2`, which are matrices
+/// of the points, so that every force on one point is answered rightly at every other. With `M_2 u = x M_1 u` and
+/// `u^T M_1 u = 1`, each solution is a mode `omega = x^(-1/2)` of the shape `omega M_1 u`.
+///
+/// `tail` lists the modes computed but not kept, all with as many shapes; `static_rest_m_n`, row by row, is what the
+/// modes beyond add to the static Green's function between the points, as for
+/// [`remainder_modes`](super::remainder_modes).
+///
+/// # Errors
+/// [`InvalidInput`] as for [`remainder_modes`](super::remainder_modes), for numbers of shapes that differ, and for a
+/// `static_rest_m_n` that is not a matrix of the points.
+pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Result<Vec<PointsMode>, InvalidInput> {
+    let points = tail.first().map_or(0, |mode| mode.shapes.len());
+    for (k, mode) in tail.iter().enumerate() {
+        require_mode(&format!("tail[{k}]"), mode.omega_rad_s, &mode.shapes)?;
+        if mode.shapes.len() != points {
+            return Err(InvalidInput::new(
+                format!("tail[{k}].shapes"),
+                format!("{} values", mode.shapes.len()),
+                "one value a point, as many in every mode",
+            ));
+        }
+    }
+    if static_rest_m_n.len() != points * points {
+        let given = format!("{} values", static_rest_m_n.len());
+        return Err(InvalidInput::new("static_rest_m_n", given, "the square of the number of points"));
+    }
+    if let Some(entry) = static_rest_m_n.iter().find(|entry| entry.is_nan() || entry.abs() > 1e60) {
+        return Err(InvalidInput::new("static_rest_m_n", entry, "numbers of at most 1e60 in size"));
+    }
+    let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
+        return Ok(Vec::new());
+    };
+
+    // moments with x in units of 1/highest^2
+    let moment = |i: usize, j: usize, order: i32| {
+        let rest = 0.5 * (static_rest_m_n[i * points + j] + static_rest_m_n[j * points + i]);
+        let term = |mode: &PointsMode| {
+            let [p, q] = [i, j].map(|point| mode.shapes[point] / mode.omega_rad_s);
+            p * q * (highest / mode.omega_rad_s).powi(2 * (order - 1))
+        };
+        tail.iter().map(term).sum::<f64>() + rest * ASYMPTOTIC_MEAN.powi(order - 1)
+    };
+    // every point by its own compliance, so that one that hardly moves counts as the others do
+    let size: Vec<f64> = (0..points).map(|i| moment(i, i, 1).max(0.0).sqrt()).collect();
+    let floor = NODE * size.iter().copied().fold(0.0, f64::max);
+    let scale: Vec<f64> = size.iter().map(|&size| if size > floor { size } else { 0.0 }).collect();
+    let over = |value: f64, i: usize, j: usize| {
+        let size = scale[i] * scale[j];
+        if size > 0.0 { value / size } else { 0.0 }
+    };
+    let first = Mat::from_fn(points, points, |i, j| over(moment(i, j, 1), i, j));
+    let second = Mat::from_fn(points, points, |i, j| over(moment(i, j, 2), i, j));
+    let unsolved = || InvalidInput::new("tail", "as given", "modes whose moments double precision resolves");
+    let eigen = SelfAdjointEigen::new(first.as_ref(), Side::Lower).map_err(|_| unsolved())?;
+    let largest = (0..points).map(|r| eigen.S()[r]).fold(0.0, f64::max);
+    let kept: Vec<usize> = (0..points).filter(|&r| eigen.S()[r] > DEPENDENT * largest).collect();
+    // columns Q D^(-1/2) of the part of M_1 that is not singular
+    let whiten = Mat::from_fn(points, kept.len(), |i, r| eigen.U()[(i, kept[r])] / eigen.S()[kept[r]].sqrt());
+    let reduced = whiten.transpose() * &second * &whiten;
+    let poles = SelfAdjointEigen::new(reduced.as_ref(), Side::Lower).map_err(|_| unsolved())?;
+    let shapes = &first * &whiten * poles.U();
+
+    let mode = |r: usize| {
+        let omega_rad_s = highest / poles.S()[r].sqrt();
+        let shapes = (0..points).map(|i| omega_rad_s * scale[i] * shapes[(i, r)]).collect();
+        PointsMode { omega_rad_s, shapes }
+    };
+    // x > 0 but for rounding in directions that hardly count
+    Ok((0..kept.len()).rev().filter(|&r| poles.S()[r] > 0.0).map(mode).collect())
+}
