@@ -19,6 +19,7 @@
 //! fastest mode, so that its cost grows with the cube of the number of modes, and outweighs that of the impact from a
 //! few hundred on; [`modal::Solver::solve`] alone does without it.
 
+pub mod assembly;
 pub mod dropped_rod;
 mod error;
 pub mod infinite;

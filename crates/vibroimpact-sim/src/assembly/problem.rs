@@ -1,0 +1,267 @@
+//! The problem as the field poses it: bodies in their modes, contacts between their points, loads.
+
+use crate::InvalidInput;
+
+/// Bounds on sizes: wide enough for any system of units, narrow enough that no product overflows.
+const SCALE_MAX: f64 = 1e30;
+/// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
+const OMEGA_MAX_RAD_S: f64 = 1e15;
+/// A harmonic load nearer than this, relative to the frequency of an undamped mode that it drives, is resonance.
+const RESONANCE: f64 = 1e-9;
+
+/// One mode of a body. Shapes belong to points, see [`Point`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyMode {
+    /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
+    pub omega_rad_s: f64,
+    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`. A rigid-body mode has none.
+    pub damping_ratio: f64,
+}
+
+/// A linear body: its modes, and their motion when the clock starts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Body {
+    /// The mass-normalised modes, in any order.
+    pub modes: Vec<BodyMode>,
+    /// Modal amplitudes `a_k` at the start (m kg^1/2), one a mode.
+    pub amplitude: Vec<f64>,
+    /// Their rates (m kg^1/2 / s), one a mode.
+    pub rate: Vec<f64>,
+}
+
+impl Body {
+    /// A compact body, which moves along `x` without vibrating: one rigid mode, whose shape at any point is
+    /// `mass_kg^(-1/2)`.
+    pub fn mass(mass_kg: f64, position_m: f64, velocity_m_s: f64) -> Body {
+        let root = mass_kg.sqrt();
+        Body {
+            modes: vec![BodyMode { omega_rad_s: 0.0, damping_ratio: 0.0 }],
+            amplitude: vec![root * position_m],
+            rate: vec![root * velocity_m_s],
+        }
+    }
+
+    /// These modes, undeformed and at rest.
+    pub fn at_rest(modes: Vec<BodyMode>) -> Body {
+        let zeros = vec![0.0; modes.len()];
+        Body { amplitude: zeros.clone(), rate: zeros, modes }
+    }
+}
+
+/// One side of a contact.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Point {
+    /// The ground, which does not move.
+    Ground,
+    /// A point of a body, by the mass-normalised shapes of the body's modes there (kg^-1/2).
+    OfBody {
+        /// Number of the body.
+        body: usize,
+        /// `phi_k` at the point (kg^-1/2), one value a mode.
+        shape: Vec<f64>,
+    },
+}
+
+/// A contact of two points along `x`. The first lies on the side of greater `x`; the force pushes it along `+x` and the
+/// second along `-x`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact<L> {
+    /// The two points.
+    pub sides: [Point; 2],
+    /// Distance of the two surfaces when both bodies are undeformed and in place (m); negative for an interference.
+    pub gap_m: f64,
+    /// The force-compression law.
+    pub law: L,
+}
+
+/// A force as a function of time.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Force {
+    /// Constant from the start.
+    Constant {
+        /// The force (N).
+        force_n: f64,
+    },
+    /// `force_n sin(omega_rad_s t + phase_rad)`.
+    Harmonic {
+        /// Amplitude (N).
+        force_n: f64,
+        /// Circular frequency (rad/s), positive.
+        omega_rad_s: f64,
+        /// Phase at the start (rad).
+        phase_rad: f64,
+    },
+    /// Straight lines between measured or stated values; zero before the first and after the last.
+    Sampled {
+        /// Times (s), ascending; equal neighbours make a jump.
+        times_s: Vec<f64>,
+        /// Forces at these times (N).
+        forces_n: Vec<f64>,
+    },
+}
+
+/// A load on a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// Number of the body.
+    pub body: usize,
+    /// Modal force per unit of [`Load::force`]: the shapes at the loaded point (kg^-1/2) for a force in N; the modes'
+    /// participation `int m phi_k dx` (kg^1/2) for an acceleration field, whose "force" is then in m/s^2.
+    pub shape: Vec<f64>,
+    /// The force, positive along `+x`.
+    pub force: Force,
+}
+
+/// Bodies, contacts and loads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assembly<L> {
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// The contacts between them.
+    pub contacts: Vec<Contact<L>>,
+    /// The loads on them.
+    pub loads: Vec<Load>,
+}
+
+/// How accurately, and how far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Time at which the run ends (s).
+    pub end_s: f64,
+    /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far: 1e-13 to 0.1.
+    /// Default 1e-9.
+    pub tolerance: f64,
+    /// Stop after this many steps, of contacts and flights together. Default 2,000,000,000.
+    pub max_steps: u64,
+    /// Stop after this many intervals of contact. Default 100,000,000.
+    pub max_intervals: u64,
+}
+
+impl Settings {
+    /// The defaults, for a run that ends at `end_s`.
+    pub fn until(end_s: f64) -> Settings {
+        Settings { end_s, tolerance: 1e-9, max_steps: 2_000_000_000, max_intervals: 100_000_000 }
+    }
+
+    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+        let within = (0.0..=1e12).contains(&self.end_s) && self.end_s > 0.0;
+        InvalidInput::unless(within, "end_s", self.end_s, "a positive number up to 1e12 s")?;
+        InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
+        InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
+        InvalidInput::unless(self.max_intervals > 0, "max_intervals", self.max_intervals, "at least 1")
+    }
+}
+
+const FINITE: &str = "a finite number, at most 1e30 in size";
+
+fn is_finite(value: f64) -> bool {
+    value.abs() <= SCALE_MAX
+}
+
+fn require(ok: bool, field: impl FnOnce() -> String, value: f64, allowed: &'static str) -> Result<(), InvalidInput> {
+    if ok { Ok(()) } else { Err(InvalidInput { field: field(), value: value.to_string(), allowed }) }
+}
+
+fn require_all_finite(values: &[f64], count: usize, field: &str) -> Result<(), InvalidInput> {
+    InvalidInput::unless(values.len() == count, field, format!("{} values", values.len()), "one value a mode")?;
+    let wrong = values.iter().position(|value| !is_finite(*value));
+    wrong.map_or(Ok(()), |k| require(false, || format!("{field}[{k}]"), values[k], FINITE))
+}
+
+impl<L> Assembly<L> {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// The first field out of range, with its value and what would be allowed.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        for (i, body) in self.bodies.iter().enumerate() {
+            body.check(&format!("bodies[{i}]"))?;
+        }
+        for (i, contact) in self.contacts.iter().enumerate() {
+            let field = format!("contacts[{i}]");
+            require(is_finite(contact.gap_m), || format!("{field}.gap_m"), contact.gap_m, FINITE)?;
+            for (side, point) in contact.sides.iter().enumerate() {
+                if let Point::OfBody { body, shape } = point {
+                    let field = format!("{field}.sides[{side}]");
+                    require_all_finite(shape, self.modes_of(*body, &field)?, &format!("{field}.shape"))?;
+                }
+            }
+        }
+        for (i, load) in self.loads.iter().enumerate() {
+            let field = format!("loads[{i}]");
+            require_all_finite(&load.shape, self.modes_of(load.body, &field)?, &format!("{field}.shape"))?;
+            load.force.check(&field)?;
+            if let Force::Harmonic { omega_rad_s, .. } = load.force {
+                self.require_no_resonance(load, omega_rad_s, &field)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn modes_of(&self, body: usize, field: &str) -> Result<usize, InvalidInput> {
+        let found = self.bodies.get(body).map(|body| body.modes.len());
+        found.ok_or_else(|| InvalidInput {
+            field: format!("{field}.body"),
+            value: body.to_string(),
+            allowed: "the number of a body, from 0",
+        })
+    }
+
+    /// An undamped mode driven at its own frequency grows without bound, which a steady motion cannot describe.
+    fn require_no_resonance(&self, load: &Load, omega_rad_s: f64, field: &str) -> Result<(), InvalidInput> {
+        let modes = self.bodies[load.body].modes.iter().zip(&load.shape);
+        let resonant = modes.filter(|(_, shape)| **shape != 0.0).any(|(mode, _)| {
+            mode.damping_ratio < RESONANCE && (mode.omega_rad_s - omega_rad_s).abs() <= RESONANCE * omega_rad_s
+        });
+        require(
+            !resonant,
+            || format!("{field}.force.omega_rad_s"),
+            omega_rad_s,
+            "a frequency that is not that of an undamped mode which the load drives (or a damped mode)",
+        )
+    }
+}
+
+impl Body {
+    fn check(&self, field: &str) -> Result<(), InvalidInput> {
+        for (k, mode) in self.modes.iter().enumerate() {
+            let of = |quantity: &str| format!("{field}.modes[{k}].{quantity}");
+            let omega = mode.omega_rad_s;
+            let allowed = "0 (rigid body) up to 1e15 rad/s";
+            require((0.0..=OMEGA_MAX_RAD_S).contains(&omega), || of("omega_rad_s"), omega, allowed)?;
+            let zeta = mode.damping_ratio;
+            require((0.0..=1e6).contains(&zeta), || of("damping_ratio"), zeta, "0 up to 1e6")?;
+        }
+        require_all_finite(&self.amplitude, self.modes.len(), &format!("{field}.amplitude"))?;
+        require_all_finite(&self.rate, self.modes.len(), &format!("{field}.rate"))
+    }
+}
+
+impl Force {
+    fn check(&self, field: &str) -> Result<(), InvalidInput> {
+        let of = |quantity: &str| format!("{field}.force.{quantity}");
+        match self {
+            Force::Constant { force_n } => require(is_finite(*force_n), || of("force_n"), *force_n, FINITE),
+            Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
+                require(is_finite(*force_n), || of("force_n"), *force_n, FINITE)?;
+                require(is_finite(*phase_rad), || of("phase_rad"), *phase_rad, FINITE)?;
+                let allowed = "a positive number up to 1e15 rad/s";
+                let within = *omega_rad_s > 0.0 && *omega_rad_s <= OMEGA_MAX_RAD_S;
+                require(within, || of("omega_rad_s"), *omega_rad_s, allowed)
+            }
+            Force::Sampled { times_s, forces_n } => {
+                require_all_finite(times_s, times_s.len(), &of("times_s"))?;
+                let count = format!("{} values", forces_n.len());
+                let equal = forces_n.len() == times_s.len();
+                InvalidInput::unless(equal, &of("forces_n"), count, "one value a time")?;
+                require_all_finite(forces_n, times_s.len(), &of("forces_n"))?;
+                let wrong = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1]);
+                wrong.map_or(Ok(()), |i| {
+                    require(false, || of(&format!("times_s[{i}]")), times_s[i], "not less than the time before")
+                })
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! What a run came to, and what is told while it goes on.
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The end of the time asked for was reached.
+    End,
+    /// Nothing can move enough any more to open a contact that is closed or close one that is open.
+    Rest,
+    /// The run stopped before; everything up to there is kept.
+    Stopped(Reason),
+}
+
+/// Why a run stopped before its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// `Settings::max_steps` were made.
+    Steps,
+    /// `Settings::max_intervals` were found.
+    Intervals,
+    /// A step would have to be shorter than the numbers resolve.
+    FinestStep,
+    /// A compression or rate left the range in which laws compute ([`contact_models::LARGEST`]).
+    LawRange,
+    /// Contacts opened and closed again and again without time going on.
+    Chatter,
+    /// The observer asked for it.
+    Interrupted,
+}
+
+impl Outcome {
+    /// The outcome as a word for tables and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Outcome::End => "end",
+            Outcome::Rest => "rest",
+            Outcome::Stopped(_) => "stopped",
+        }
+    }
+}
+
+impl Reason {
+    /// The reason as words for tables and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Reason::Steps => "limit of steps",
+            Reason::Intervals => "limit of intervals",
+            Reason::FinestStep => "finest step",
+            Reason::LawRange => "range of the contact law",
+            Reason::Chatter => "contacts that open and close without time going on",
+            Reason::Interrupted => "interrupted",
+        }
+    }
+}
+
+/// One interval of contact, from touch to release in the law's own sense.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// First touch (s); 0 for a contact that touches at the start.
+    pub start_s: f64,
+    /// Release (s); `None` for a contact under way at the end.
+    pub end_s: Option<f64>,
+    /// Impulse of the contact force (N s).
+    pub impulse_n_s: f64,
+    /// Largest contact force (N).
+    pub peak_force_n: f64,
+    /// Largest compression (m).
+    pub peak_compression_m: f64,
+    /// Rate of compression at first touch (m/s).
+    pub approach_speed_m_s: f64,
+    /// Rate of opening at the release (m/s).
+    pub separation_speed_m_s: Option<f64>,
+}
+
+/// What a contact did over the whole run.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Statistics {
+    /// Intervals of contact.
+    pub intervals: u64,
+    /// Time in contact (s).
+    pub contact_time_s: f64,
+    /// Impulse (N s).
+    pub impulse_n_s: f64,
+    /// Largest force (N).
+    pub largest_force_n: f64,
+    /// `int F^2 dt` (N^2 s): over the time of the run, the square of the root mean square of the force.
+    pub squared_force_n2_s: f64,
+    /// `int F xi' dt` while the compression grows (J): over the time of the run, the contact work rate.
+    pub compression_work_j: f64,
+    /// `int F xi' dt` (J): what went into the contact, stored or lost.
+    pub work_j: f64,
+}
+
+/// A contact at the end of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactEnd {
+    /// What it did.
+    pub statistics: Statistics,
+    /// Displacement of either side (m).
+    pub displacement_m: [f64; 2],
+    /// Velocity of either side (m/s).
+    pub velocity_m_s: [f64; 2],
+    /// Force at the end (N).
+    pub force_n: f64,
+    /// Energy that the contact stores (J).
+    pub stored_j: f64,
+}
+
+/// Where the energy went. `start + load_work = bodies + stored + modal_damping + contact_loss + unaccounted`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ledger {
+    /// Kinetic and elastic energy of each body at the start and at the end (J).
+    pub bodies_j: Vec<[f64; 2]>,
+    /// Work of the loads (J).
+    pub load_work_j: f64,
+    /// Lost in modal damping (J).
+    pub modal_damping_j: f64,
+    /// Lost in the contacts (J).
+    pub contact_loss_j: f64,
+    /// What the numbers leave open (J).
+    pub unaccounted_j: f64,
+}
+
+/// What the computation cost, in deterministic counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Panels committed with a closed contact.
+    pub contact_steps: u64,
+    /// Panels tried and not committed.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of contact laws.
+    pub law_evaluations: u64,
+    /// Panels without a closed contact.
+    pub flight_steps: u64,
+    /// Transitions of contacts from one branch of their law to another, touches and releases included.
+    pub events: u64,
+}
+
+/// The result of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Why it ended.
+    pub outcome: Outcome,
+    /// When (s).
+    pub end_s: f64,
+    /// Modal amplitudes at the end (m kg^1/2), body by body.
+    pub amplitude: Vec<Vec<f64>>,
+    /// Their rates (m kg^1/2 / s).
+    pub rate: Vec<Vec<f64>>,
+    /// The contacts.
+    pub contacts: Vec<ContactEnd>,
+    /// Energy, if it was asked for ([`Observer::wants_energy`]).
+    pub energy: Option<Ledger>,
+    /// Costs.
+    pub counts: Counts,
+}
+
+/// Follows a run while it goes on; every method may be left out.
+pub trait Observer {
+    /// An interval of contact has ended, or the run has with the contact still closed.
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        let _ = (contact, interval);
+    }
+
+    /// A stretch of motion without an event has been made, and can be evaluated anywhere.
+    fn panel(&mut self, panel: &dyn Motion) {
+        let _ = panel;
+    }
+
+    /// Whether [`Observer::panel`] is wanted. Default: no.
+    fn wants_panels(&self) -> bool {
+        false
+    }
+
+    /// Whether the energy ledger is wanted. Default: no.
+    fn wants_energy(&self) -> bool {
+        false
+    }
+
+    /// Asked now and then: whether the run should stop.
+    fn interrupts(&mut self) -> bool {
+        false
+    }
+}
+
+/// Watches nothing.
+impl Observer for () {}
+
+/// The state of a contact at a moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSample {
+    /// Whether the contact is closed.
+    pub closed: bool,
+    /// Overlap of the surfaces (m); negative while they are apart.
+    pub overlap_m: f64,
+    /// Its rate (m/s).
+    pub rate_m_s: f64,
+    /// Contact force (N).
+    pub force_n: f64,
+    /// Displacement of either side (m).
+    pub displacement_m: [f64; 2],
+    /// Velocity of either side (m/s).
+    pub velocity_m_s: [f64; 2],
+}
+
+/// A stretch of motion between two events, evaluated where it is asked for.
+pub trait Motion {
+    /// Its beginning (s).
+    fn start_s(&self) -> f64;
+    /// Its end (s).
+    fn end_s(&self) -> f64;
+    /// Modal amplitudes and rates of all bodies, one after the other, at a time within.
+    fn modes(&self, time_s: f64) -> (Vec<f64>, Vec<f64>);
+    /// A contact at a time within.
+    fn contact(&self, contact: usize, time_s: f64) -> ContactSample;
+}
