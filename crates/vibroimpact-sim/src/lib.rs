@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | [`modal`] | any that is described by its modes, at rest or moving | modes exact, the force by collocation | chapters 3, 4 |
 //! | [`infinite`] | an infinite beam or plate, which carries the energy away as waves | one scalar Volterra equation | chapter 2 |
+//! | [`assembly`] | many bodies, contacts and loads, over long times | as `modal`, for a vector of contacts | beyond |
 //! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, posed as a modal impact | as `modal` | chapter 8 |
 //!
 //! Each states its mathematics, with a table of symbols, at its head. Throughout, `z` is the displacement of the

@@ -1,9 +1,64 @@
 //! Many bodies, contacts and loads over long times.
+//!
+//! # The problem
+//! All bodies together are one list of mass-normalised modes. A contact `c` joins a point A and a point B, of two bodies
+//! or of a body and the ground, along one axis `x`; A lies on the side of greater `x`:
+//!
+//! ```text
+//! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = -sum_c psi_kc F_c + f_k(t)
+//! xi_c = sum_k psi_kc a_k - gap_c,      psi_kc = phi_kB - phi_kA,      F_c = law_c(xi_c, xi_c') >= 0
+//! ```
+//!
+//! | symbol | meaning | unit |
+//! |---|---|---|
+//! | `a_k`, `phi_k` | modal amplitude; mass-normalised shape at a point | m kg^1/2; kg^-1/2 |
+//! | `omega_k`, `zeta_k` | undamped circular frequency (0: rigid-body mode), damping ratio | rad/s, 1 |
+//! | `psi_kc` | what a unit amplitude adds to the overlap of a contact | kg^-1/2 |
+//! | `xi_c`, `F_c` | overlap (compression where it is positive) and force of a contact, which pushes A along `+x` | m, N |
+//! | `f_k` | modal load | N kg^-1/2 |
+//!
+//! One striker against one structure ([`crate::modal`]) is the case of two bodies, one contact and no load.
+//!
+//! # The method
+//! The modes are linear and uncoupled: they are propagated exactly, on panels of `2^-j` s whose tables are kept
+//! (`tables.rs`). Loads cost nothing on the way (`load.rs`): modes are carried relative to their steady motion. Unknown
+//! are only the forces of closed contacts, polynomials through Gauss nodes whose values the laws fix; Newton's method
+//! finds them, with a matrix that has a block for each two contacts on one body (`collocate.rs`).
+//!
+//! The march (`march.rs`) tries a panel, judges it, and commits it, tries it shorter, or cuts it at an event. Three rules
+//! hold for every panel that is committed:
+//!
+//! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a tenth of the tolerance
+//!    in impulse;
+//! 2. no event function falls to zero on it. An event function is the distance to a boundary of a law's branch, or of
+//!    the surfaces of an open contact. It is known by a polynomial and a bound on what that misses (`enclosure.rs`), and
+//!    judged in one place (`event.rs`); a panel on which it is within the bound of zero is too long;
+//! 3. it lies in one branch of every law. An event is the end of a terminal panel (`terminal.rs`), whose length is the
+//!    root of the event function; one law transition follows.
+//!
+//! Without closed contact a panel is as long as the bound on the motion of the open ones allows.
+//!
+//! # Limits
+//! Bodies are linear, contacts are points that move along one axis; there is no friction. A harmonic load at the frequency
+//! of an undamped mode is refused. Errors grow along a chaotic motion: compare with a run at another tolerance to see up
+//! to when event times agree.
 
+mod collocate;
+mod dense;
+mod enclosure;
+mod event;
+mod load;
+mod march;
 mod problem;
 mod solution;
+mod solve;
+mod state;
+mod system;
+mod tables;
+mod terminal;
 
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
 pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,
 };
+pub use solve::run;

@@ -240,6 +240,14 @@ impl Body {
 }
 
 impl Force {
+    /// The largest it ever is, in size (N).
+    pub(super) fn largest(&self) -> f64 {
+        match self {
+            Force::Constant { force_n } | Force::Harmonic { force_n, .. } => force_n.abs(),
+            Force::Sampled { forces_n, .. } => forces_n.iter().fold(0.0, |most, force| most.max(force.abs())),
+        }
+    }
+
     fn check(&self, field: &str) -> Result<(), InvalidInput> {
         let of = |quantity: &str| format!("{field}.force.{quantity}");
         match self {

@@ -458,23 +458,23 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
 
 /// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
 /// polynomial searched once the contact is over.
-#[derive(Clone, Copy)]
-struct Peak {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Peak {
     largest: f64,
     nodal: Nodal,
 }
 
 impl Peak {
-    const NONE: Peak = Peak { largest: 0.0, nodal: [0.0; Q] };
+    pub const NONE: Peak = Peak { largest: 0.0, nodal: [0.0; Q] };
 
-    fn note(&mut self, nodal: &Nodal) {
+    pub fn note(&mut self, nodal: &Nodal) {
         let largest = nodal.iter().fold(0.0, |a: f64, b| a.max(*b));
         if largest > self.largest {
             *self = Peak { largest, nodal: *nodal };
         }
     }
 
-    fn value(&self) -> f64 {
+    pub fn value(&self) -> f64 {
         let coefficients = BASIS.coefficients(&self.nodal);
         let value = |at: f64| evaluate(&coefficients, at);
         // the best of a grid, then twice the vertex of the parabola through it and its neighbours

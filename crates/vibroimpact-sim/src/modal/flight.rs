@@ -84,7 +84,7 @@ impl Bounds {
 }
 
 /// First positive root of `u + u' t - b t^2/2` with `u >= 0`, `b >= 0`; infinite if there is none.
-fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
+pub(crate) fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
     let root = (slope * slope + 2.0 * b * u).sqrt();
     if slope >= 0.0 { if b == 0.0 { f64::INFINITY } else { (slope + root) / b } } else { 2.0 * u / (root - slope) }
 }
@@ -136,7 +136,7 @@ pub(crate) fn fly(
 
 /// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below.
 /// Overlaps within `noise` count as zero.
-fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64) -> Option<f64> {
+pub(crate) fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64) -> Option<f64> {
     let evaluate = |t: f64| {
         let (mut value, mut slope) = (0.0, 0.0);
         for p in (0..TAYLOR).rev() {

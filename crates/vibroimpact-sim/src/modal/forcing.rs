@@ -41,19 +41,9 @@ impl Forcing {
         let end = [displacement.each_mut().map(|row| &mut row[..n]), velocity.each_mut().map(|row| &mut row[..n])];
         let mut compliance = Compliance::new();
         // modes come by rising frequency: none needs fewer terms than those before it
-        let mut terms = Terms { start: 2, middle: 2 };
+        let mut terms = Terms::default();
         for (k, (mode, &w)) in modes.iter().zip(weight).enumerate() {
-            let turned = rate(mode) * h;
-            let part = if turned <= SLOW {
-                terms.start = BASIS.terms::<SERIES>(turned, terms.start);
-                // as many even as odd ones
-                terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
-                slow(mode, w, h, &half.of(k), &terms, &mut compliance)
-            } else if mode.damping_ratio < NEARLY_CRITICAL {
-                fast(mode, w, h, &mut compliance)
-            } else {
-                by_quadrature(mode, w, h, &mut compliance)
-            };
+            let part = part(mode, w, h, &half.of(k), &mut terms, &mut compliance);
             at_nodes.push(part.at_nodes);
             for n in 0..Q {
                 end[0][n][k] = -w * part.end.0[n];
@@ -65,10 +55,38 @@ impl Forcing {
     }
 }
 
-/// Terms of the power series about the start of a step and about its middle.
-struct Terms {
+/// Terms of the power series about the start of a step and about its middle. A mode needs no fewer than a slower one.
+pub(crate) struct Terms {
     start: usize,
     middle: usize,
+}
+
+impl Default for Terms {
+    fn default() -> Terms {
+        Terms { start: 2, middle: 2 }
+    }
+}
+
+/// One mode on a step of `h`; `half` is its free motion over `h/2`. Its compliance, times `w`, is added to that of others.
+pub(crate) fn part(
+    mode: &Mode,
+    w: f64,
+    h: f64,
+    half: &Propagator,
+    terms: &mut Terms,
+    compliance: &mut Compliance,
+) -> Part {
+    let turned = rate(mode) * h;
+    if turned <= SLOW {
+        terms.start = BASIS.terms::<SERIES>(turned, terms.start);
+        // as many even as odd ones
+        terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
+        slow(mode, w, h, half, terms, compliance)
+    } else if mode.damping_ratio < NEARLY_CRITICAL {
+        fast(mode, w, h, compliance)
+    } else {
+        by_quadrature(mode, w, h, compliance)
+    }
 }
 
 /// `|lambda|`, of the faster root if there are two (rad/s).
@@ -77,15 +95,15 @@ fn rate(mode: &Mode) -> f64 {
 }
 
 /// What one mode contributes to a level.
-struct Part {
+pub(crate) struct Part {
     /// How far free motion has moved at the nodes, from displacement and from velocity.
-    at_nodes: (Nodal, Nodal),
+    pub at_nodes: (Nodal, Nodal),
     /// Displacement and velocity at the end of the step to unit Legendre forces, for unit weight.
-    end: (Nodal, Nodal),
+    pub end: (Nodal, Nodal),
 }
 
 /// The compliance as it is gathered, mode by mode.
-struct Compliance {
+pub(crate) struct Compliance {
     /// Slow modes: derivatives of their common impulse response at zero, times `h^p`.
     impulse: [f64; SERIES],
     terms: usize,
@@ -96,11 +114,12 @@ struct Compliance {
 }
 
 impl Compliance {
-    fn new() -> Compliance {
+    pub fn new() -> Compliance {
         Compliance { impulse: [0.0; SERIES], terms: 0, by_parts: [0.0; Q], legendre: [[0.0; Q]; Q] }
     }
 
-    fn at_nodes(mut self, h: f64) -> Matrix {
+    /// Response at the nodes to nodal forces.
+    pub fn at_nodes(mut self, h: f64) -> Matrix {
         let basis = &*BASIS;
         if self.by_parts[0] != 0.0 {
             for (s, derivatives) in self.by_parts.iter().zip(&basis.derivatives) {

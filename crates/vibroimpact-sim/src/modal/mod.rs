@@ -33,19 +33,19 @@
 //! of 32 times the tolerance. Undamped impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
 
 mod behind;
-mod contact;
-mod flight;
-mod forcing;
+pub(crate) mod contact;
+pub(crate) mod flight;
+pub(crate) mod forcing;
 mod history;
-mod ladder;
-mod landing;
-mod legendre;
+pub(crate) mod ladder;
+pub(crate) mod landing;
+pub(crate) mod legendre;
 mod motion;
-mod oscillator;
-mod problem;
+pub(crate) mod oscillator;
+pub(crate) mod problem;
 mod solution;
 mod solve;
-mod step;
+pub(crate) mod step;
 
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};

@@ -116,7 +116,7 @@ pub(crate) fn collocate<L: ContactLaw>(
 }
 
 /// Rates at the nodes of a polynomial on a step of `h`, by its values at the start and at the nodes.
-fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
+pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     let basis = &*BASIS;
     std::array::from_fn(|i| (basis.slope_from_start[i] * start + dot(&basis.slope_from_nodes[i], nodal)) / h)
 }
@@ -170,7 +170,7 @@ impl Newton {
 
 /// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
 /// units.
-fn eliminate<const FROM: usize>(a: &mut Matrix) {
+pub(crate) fn eliminate<const FROM: usize>(a: &mut Matrix) {
     for pivot in FROM..FROM + Q / 2 {
         let inverse = 1.0 / a[pivot][pivot];
         let mut below = [0.0; Q];

@@ -84,6 +84,25 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
                 -2.0 * mode.damping_ratio * mode.omega_rad_s * v - mode.omega_rad_s.powi(2) * a - mode.shape * force;
         }
     };
+    let size = 2 * n + 2;
+    // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
+    let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
+    let scale = |i: usize| striker.speed_m_s * if i.is_multiple_of(2) { 1.0 / fastest } else { 1.0 };
+    let mut y = vec![0.0; size];
+    y[1] = -striker.speed_m_s;
+    dormand_prince(|_, y, dy| slope(y, dy), scale, &mut y, (0.0, end_s, 1e-3 / fastest), tolerance);
+    y[1]
+}
+
+/// Integrates `y' = f(t, y)` from and to these times, with a first step, by an adaptive Dormand-Prince 5(4) pair: the
+/// error of a step in component `i` is held to `tolerance * scale(i)`.
+pub fn dormand_prince(
+    slope: impl Fn(f64, &[f64], &mut [f64]),
+    scale: impl Fn(usize) -> f64,
+    y: &mut Vec<f64>,
+    (start_s, end_s, first_s): (f64, f64, f64),
+    tolerance: f64,
+) {
     const A: [[f64; 6]; 6] = [
         [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
@@ -94,15 +113,11 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
     ];
     const E: [f64; 7] =
         [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
-    let size = 2 * n + 2;
-    // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
-    let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
-    let scale = |i: usize| striker.speed_m_s * if i.is_multiple_of(2) { 1.0 / fastest } else { 1.0 };
-    let mut y = vec![0.0; size];
-    y[1] = -striker.speed_m_s;
+    const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
+    let size = y.len();
     let mut k = vec![vec![0.0; size]; 7];
-    slope(&y, &mut k[0]);
-    let (mut t, mut h) = (0.0, 1e-3 / fastest);
+    slope(start_s, y, &mut k[0]);
+    let (mut t, mut h) = (start_s, first_s);
     while t < end_s {
         h = h.min(end_s - t);
         let mut trial = y.clone();
@@ -111,17 +126,16 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
                 trial[i] = y[i] + h * (0..=stage).map(|s| A[stage][s] * k[s][i]).sum::<f64>();
             }
             let mut next = std::mem::take(&mut k[stage + 1]);
-            slope(&trial, &mut next);
+            slope(t + C[stage] * h, &trial, &mut next);
             k[stage + 1] = next;
         }
         let error =
             (0..size).map(|i| (h * (0..7).map(|s| E[s] * k[s][i]).sum::<f64>()).abs() / scale(i)).fold(0.0, f64::max);
         if error <= tolerance {
             t += h;
-            y = trial;
+            *y = trial;
             k.swap(0, 6);
         }
         h *= (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0);
     }
-    y[1]
 }

@@ -1,0 +1,261 @@
+//! Collocation of the contact forces on one panel: the only unknowns of the motion.
+//!
+//! On a panel the force of each closed contact is a polynomial. At each of its nodes the law must hold,
+//! `F = law(xi, xi')` with `xi_c = xi_c,free + sum_c' R_cc' F_c'`, `R` the exact responses. Newton's matrix
+//! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body.
+
+use super::solution::Counts;
+use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, apply, dot};
+use crate::modal::step::{eliminate, slopes};
+use contact_models::{Branch, ContactLaw, Force};
+
+/// More iterations than this mean that the panel is too long.
+const ITERATIONS_MAX: u32 = 16;
+/// A ratio of successive changes above this asks for a new matrix.
+const SLOW: f64 = 0.1;
+
+/// A closed contact on a panel, before its force is known.
+pub(super) struct Unknown<'a, L> {
+    pub law: &'a L,
+    pub branch: Branch,
+    /// Compression at the start of the panel (m).
+    pub start: f64,
+    /// Compression at the nodes if no contact had a force (m).
+    pub free: Nodal,
+    /// Whether the rate is asked for, by the law or by an end of its branch.
+    pub needs_rate: bool,
+    /// How well the force is wanted (N).
+    pub accuracy: f64,
+    /// A first guess of the force at the nodes (N).
+    pub guess: Nodal,
+}
+
+/// Force (N), compression (m) and its rate (m/s; zero unless asked for) at the nodes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Collocated {
+    pub force: Nodal,
+    pub compression: Nodal,
+    pub rate: Nodal,
+}
+
+/// Solves the laws at all nodes of a panel of `h`; `response` gives `R_cc'` (m/N). `None` if the iteration does not
+/// converge.
+pub(super) fn collocate<'r, L: ContactLaw>(
+    unknowns: &[Unknown<L>],
+    response: impl Fn(usize, usize) -> Option<&'r Matrix>,
+    h: f64,
+    counts: &mut Counts,
+) -> Option<Vec<Collocated>> {
+    let n = unknowns.len();
+    let start = |unknown: &Unknown<L>| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
+    let mut found: Vec<Collocated> = unknowns.iter().map(start).collect();
+    let mut values = vec![[Force::ZERO; Q]; n];
+    let mut change = vec![[0.0; Q]; n];
+    let mut newton: Option<Blocks> = None;
+    let mut last: Option<f64> = None;
+    for _ in 0..ITERATIONS_MAX {
+        counts.newton_iterations += 1;
+        for (c, unknown) in unknowns.iter().enumerate() {
+            let mut compression = unknown.free;
+            for other in 0..n {
+                if let Some(response) = response(c, other) {
+                    let moved = apply(response, &found[other].force);
+                    for i in 0..Q {
+                        compression[i] += moved[i];
+                    }
+                }
+            }
+            if unknown.law.depends_on_rate() {
+                found[c].rate = slopes(unknown.start, &compression, h);
+            }
+            found[c].compression = compression;
+            values[c] = std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
+            counts.law_evaluations += Q as u64;
+            change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
+        }
+        let matrix = newton.get_or_insert_with(|| Blocks::factored(&values, &response, h));
+        matrix.solve(&mut change);
+        // the change that is largest against the accuracy asked for
+        let (mut excess, mut converged) = (0.0f64, true);
+        for (c, unknown) in unknowns.iter().enumerate() {
+            let (mut largest, mut size) = (0.0f64, 0.0f64);
+            for i in 0..Q {
+                found[c].force[i] += change[c][i];
+                largest = largest.max(change[c][i].abs());
+                size = size.max(found[c].force[i].abs());
+            }
+            // a sum passes on what is not a number, the maxima do not
+            if !found[c].force.iter().sum::<f64>().is_finite() {
+                return None;
+            }
+            converged &= largest <= 1e-15 * size;
+            excess = excess.max(largest / unknown.accuracy);
+        }
+        // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
+        let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
+        if converged || ratio * excess <= 1.0 {
+            for (unknown, found) in unknowns.iter().zip(&mut found) {
+                if unknown.needs_rate && !unknown.law.depends_on_rate() {
+                    found.rate = slopes(unknown.start, &found.compression, h);
+                }
+            }
+            return Some(found);
+        }
+        if ratio > SLOW && last.is_some() {
+            newton = None;
+        }
+        last = Some(excess);
+    }
+    None
+}
+
+/// Newton's matrix in blocks, factored. Off the diagonal of ones its size is `(h omega)^2` with `omega` the contacts' own
+/// frequency, so that elimination needs no pivoting.
+struct Blocks {
+    contacts: usize,
+    /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`. `None` is zero.
+    blocks: Vec<Option<Matrix>>,
+}
+
+impl Blocks {
+    fn factored<'r>(values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) -> Blocks {
+        let n = values.len();
+        let mut blocks: Vec<Option<Matrix>> = Vec::with_capacity(n * n);
+        for p in 0..n {
+            for q in 0..n {
+                blocks.push(response(p, q).map(|response| block(&values[p], response, h, p == q)));
+            }
+        }
+        for p in 0..n {
+            let Some(mut diagonal) = blocks[p * n + p] else { continue };
+            eliminate::<0>(&mut diagonal);
+            eliminate::<{ Q / 2 }>(&mut diagonal);
+            blocks[p * n + p] = Some(diagonal);
+            for q in p + 1..n {
+                if let Some(block) = &mut blocks[p * n + q] {
+                    block.iter_mut().for_each(|column| back_substitute(&diagonal, column));
+                }
+            }
+            for i in p + 1..n {
+                let Some(left) = blocks[i * n + p] else { continue };
+                for q in p + 1..n {
+                    let Some(right) = blocks[p * n + q] else { continue };
+                    let target = blocks[i * n + q].get_or_insert([[0.0; Q]; Q]);
+                    for (column, right) in target.iter_mut().zip(&right) {
+                        let product = apply(&left, right);
+                        for r in 0..Q {
+                            column[r] -= product[r];
+                        }
+                    }
+                }
+            }
+        }
+        Blocks { contacts: n, blocks }
+    }
+
+    /// Solves in place.
+    fn solve(&self, right: &mut [Nodal]) {
+        let n = self.contacts;
+        for p in 0..n {
+            for q in 0..p {
+                self.subtract(p, q, right);
+            }
+            if let Some(diagonal) = &self.blocks[p * n + p] {
+                back_substitute(diagonal, &mut right[p]);
+            }
+        }
+        for p in (0..n).rev() {
+            for q in p + 1..n {
+                self.subtract(p, q, right);
+            }
+        }
+    }
+
+    fn subtract(&self, p: usize, q: usize, right: &mut [Nodal]) {
+        if let Some(block) = &self.blocks[p * self.contacts + q] {
+            let product = apply(block, &right[q]);
+            for i in 0..Q {
+                right[p][i] -= product[i];
+            }
+        }
+    }
+}
+
+/// `delta_pq - F_xi R - F_rate D R` of one pair.
+fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matrix {
+    let mut block = [[0.0; Q]; Q];
+    for j in 0..Q {
+        for i in 0..Q {
+            block[j][i] = -values[i].per_compression_n_m * response[j][i];
+        }
+        block[j][j] += f64::from(u8::from(diagonal));
+    }
+    if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
+        for j in 0..Q {
+            for i in 0..Q {
+                block[j][i] -= values[i].per_rate_n_s_m / h * dot(&BASIS.slope_from_nodes[i], &response[j]);
+            }
+        }
+    }
+    block
+}
+
+/// Solves with a factored diagonal block: unit lower and upper triangle in one, by columns, the diagonal inverted.
+fn back_substitute(a: &Matrix, b: &mut Nodal) {
+    for j in 0..Q {
+        for i in j + 1..Q {
+            b[i] -= a[j][i] * b[j];
+        }
+    }
+    for j in (0..Q).rev() {
+        b[j] *= a[j][j];
+        for i in 0..j {
+            b[i] -= a[j][i] * b[j];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact_models::LinearSpring;
+
+    /// Linear springs: the collocation equations are linear, and solved in one iteration to rounding.
+    #[test]
+    fn coupled_springs_meet_their_laws_at_every_node() {
+        let law = LinearSpring::new(3.0).unwrap();
+        let matrix = |scale: f64| -> Matrix {
+            std::array::from_fn(|j| std::array::from_fn(|i| -scale / (1.0 + (2 * i + 3 * j) as f64)))
+        };
+        // a chain: the outer two share no body
+        let (own, near) = (matrix(0.1), matrix(-0.04));
+        let response = |p: usize, q: usize| match p.abs_diff(q) {
+            0 => Some(&own),
+            1 => Some(&near),
+            _ => None,
+        };
+        let unknown = |c: usize| Unknown {
+            law: &law,
+            branch: contact_models::ContactLaw::touch(&law, &Default::default(), 1.0),
+            start: 0.0,
+            free: BASIS.nodes.map(|s| s * (1.0 + c as f64)),
+            needs_rate: false,
+            accuracy: 1e-15,
+            guess: [0.0; Q],
+        };
+        let unknowns: Vec<_> = (0..3).map(unknown).collect();
+        let found = collocate(&unknowns, response, 0.5, &mut Counts::default()).unwrap();
+        for c in 0..3 {
+            let mut compression = unknowns[c].free;
+            for other in 0..3 {
+                if let Some(response) = response(c, other) {
+                    let moved = apply(response, &found[other].force);
+                    (0..Q).for_each(|i| compression[i] += moved[i]);
+                }
+            }
+            for i in 0..Q {
+                assert!((found[c].force[i] - 3.0 * compression[i]).abs() < 1e-13, "{c} {i}");
+            }
+        }
+    }
+}

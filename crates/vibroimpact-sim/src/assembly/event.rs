@@ -1,0 +1,178 @@
+//! Event location: where on a panel an event function first falls to zero. This is the only place where one is judged.
+//!
+//! An event function `m` is positive inside a branch: the distance to a boundary of its law, or of two surfaces that are
+//! apart. On a panel it is known by the polynomial through the start and the nodes, which misses it by at most `rho`
+//! ([`super::enclosure`]), and to rounding. In Bernstein's form a polynomial lies within the range of its coefficients,
+//! so that a panel without event is known as such, and subdivision leads to the first zero.
+//!
+//! A branch may begin on its boundary, where `m(0) = 0` to rounding. Then `(m(s) - m(0))/s`, a polynomial too, is asked
+//! in place of `m`.
+
+use crate::modal::legendre::{BASIS, Nodal, Q};
+use std::sync::LazyLock;
+
+/// Points of a panel: its start and the nodes.
+const POINTS: usize = Q + 1;
+
+/// An event function on a panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EventFunction {
+    /// Its value at the start of the panel.
+    pub start: f64,
+    pub nodal: Nodal,
+    /// By how much the polynomial may miss it, and its slope along the panel (panel length 1).
+    pub rho: f64,
+    pub rho_slope: f64,
+    /// Rounding of its values.
+    pub noise: f64,
+}
+
+/// What an event function does on a panel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// It stays positive.
+    Clear,
+    /// The panel is too long to tell.
+    Doubtful,
+    /// It falls to zero at this part of the panel.
+    Meets(f64),
+}
+
+impl EventFunction {
+    pub fn verdict(&self) -> Verdict {
+        let slack = self.rho + self.noise;
+        if self.start < -slack {
+            return Verdict::Meets(0.0);
+        }
+        if self.start > slack {
+            let mut values = [self.start; POINTS];
+            values[1..].copy_from_slice(&self.nodal);
+            judge(&TABLES.whole, &values, slack, self.rho <= self.noise)
+        } else {
+            // rounding of a value is one of the slope from the start, largest at the first node
+            let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
+            let noise = 2.0 * self.noise / BASIS.nodes[0];
+            judge(&TABLES.deflated, &slopes, self.rho_slope + noise, self.rho_slope <= noise)
+        }
+    }
+}
+
+/// `certain`: that what lies within the slack is rounding, and no shorter panel would tell more.
+fn judge<const N: usize>(to_bernstein: &[[f64; N]; N], values: &[f64; N], slack: f64, certain: bool) -> Verdict {
+    let mut bernstein = [0.0; N];
+    for (column, value) in to_bernstein.iter().zip(values) {
+        for i in 0..N {
+            bernstein[i] += column[i] * value;
+        }
+    }
+    if bernstein.iter().all(|b| *b > slack) {
+        return Verdict::Clear;
+    }
+    match first_at_or_below(&bernstein, slack) {
+        None => Verdict::Clear,
+        Some(_) => match first_at_or_below(&bernstein, if certain { -slack } else { 0.0 }) {
+            Some(place) => Verdict::Meets(place),
+            None if certain => Verdict::Clear,
+            None => Verdict::Doubtful,
+        },
+    }
+}
+
+/// The first place on [0, 1] at which the polynomial with these Bernstein coefficients is at most `level`, to about 1e-9.
+fn first_at_or_below<const N: usize>(bernstein: &[f64; N], level: f64) -> Option<f64> {
+    const DEPTH: i32 = 30;
+    let mut stack = vec![(*bernstein, 0.0, 0)];
+    while let Some((b, from, depth)) = stack.pop() {
+        if b.iter().all(|b| *b > level) {
+            continue;
+        }
+        if b[0] <= level || depth == DEPTH {
+            return Some(from);
+        }
+        let (mut left, mut right) = ([0.0; N], b);
+        for i in 0..N {
+            left[i] = right[0];
+            for k in 0..N - 1 - i {
+                right[k] = 0.5 * (right[k] + right[k + 1]);
+            }
+        }
+        stack.push((right, from + 0.5f64.powi(depth + 1), depth + 1));
+        stack.push((left, from, depth + 1));
+    }
+    None
+}
+
+/// From values to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to coefficient `i`.
+struct Conversions {
+    /// Through the start and the nodes.
+    whole: [[f64; POINTS]; POINTS],
+    /// Through the nodes.
+    deflated: [[f64; Q]; Q],
+}
+
+static TABLES: LazyLock<Conversions> = LazyLock::new(|| {
+    let mut points = [0.0; POINTS];
+    points[1..].copy_from_slice(&BASIS.nodes);
+    Conversions { whole: conversion(&points), deflated: conversion(&BASIS.nodes) }
+});
+
+/// Through these points: the Lagrange polynomials in Bernstein's form, each a product of linear factors, which are
+/// multiplied in that form.
+fn conversion<const N: usize>(points: &[f64; N]) -> [[f64; N]; N] {
+    std::array::from_fn(|j| {
+        let mut product = vec![1.0];
+        for m in (0..N).filter(|&m| m != j) {
+            let scale = 1.0 / (points[j] - points[m]);
+            // the factor (s - points[m]) scale, at either end
+            let (low, high) = (-points[m] * scale, (1.0 - points[m]) * scale);
+            let n = product.len();
+            product = (0..=n)
+                .map(|i| {
+                    let share = i as f64 / n as f64;
+                    let from_low = if i < n { (1.0 - share) * low * product[i] } else { 0.0 };
+                    let from_high = if i > 0 { share * high * product[i - 1] } else { 0.0 };
+                    from_low + from_high
+                })
+                .collect();
+        }
+        std::array::from_fn(|i| product[i])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn function(f: impl Fn(f64) -> f64, rho: f64) -> EventFunction {
+        EventFunction { start: f(0.0), nodal: BASIS.nodes.map(f), rho, rho_slope: rho, noise: 1e-14 }
+    }
+
+    #[test]
+    fn zeros_are_found_first_and_dips_are_seen() {
+        let meets = |verdict, at: f64| match verdict {
+            Verdict::Meets(place) => assert!((place - at).abs() < 1e-8, "{place} {at}"),
+            other => panic!("{other:?}"),
+        };
+        meets(function(|s| (0.3 - s) * (0.7 - s) * (2.0 - s), 0.0).verdict(), 0.3);
+        meets(function(|s| 1.0 - s, 0.0).verdict(), 1.0);
+        // a dip between two nodes, and one that only touches
+        for lowest in [0.05, 0.3, 0.5, 0.71, 0.97] {
+            let dip = |depth: f64| move |s: f64| (s - lowest).powi(2) * (1.0 + s) - depth;
+            meets(function(dip(1e-6), 0.0).verdict(), lowest - (1e-6 / (1.0 + lowest)).sqrt());
+            assert_eq!(function(dip(-1e-6), 0.0).verdict(), Verdict::Clear);
+            assert_eq!(function(dip(-1e-6), 1e-5).verdict(), Verdict::Doubtful);
+        }
+        assert_eq!(function(|s| 1.0 + s, 1e-3).verdict(), Verdict::Clear);
+    }
+
+    #[test]
+    fn a_branch_may_begin_on_its_boundary() {
+        assert_eq!(function(|s| s + s * s, 0.0).verdict(), Verdict::Clear);
+        assert_eq!(function(|s| s, 2.0).verdict(), Verdict::Doubtful);
+        match function(|s| s * (0.4 - s), 0.0).verdict() {
+            Verdict::Meets(place) => assert!((place - 0.4).abs() < 1e-8),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(function(|s| -s, 0.0).verdict(), Verdict::Meets(0.0));
+    }
+}

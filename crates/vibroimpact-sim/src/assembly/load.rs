@@ -1,0 +1,278 @@
+//! Loads: what they do to modes and contacts, without integration.
+//!
+//! - Constant and sampled loads are, until the next break, straight lines in time: `f_k(t) = f0_k + f1_k (t - t0)`. An
+//!   elastic mode moves about `f_k/omega_k^2 - 2 zeta_k f1_k/omega_k^3`, a straight line too, and is carried relative to
+//!   it. A rigid mode is carried whole: over `h` seconds the load moves it by `f h^2/2 + f1 h^3/6`.
+//! - A harmonic load makes each mode, and so each contact, follow one sinusoid, `Re(G e^{i Omega t})` with
+//!   `G_k = -i e^{i phase} f_k / (omega_k^2 - Omega^2 + 2 i zeta_k omega_k Omega)`; modes are carried relative to it.
+//!
+//! So what is carried of an elastic mode is free motion, and a contact sees of the loads a cubic and a few sinusoids.
+
+use super::problem::{Assembly, Force};
+use super::system::{Link, Span, System};
+use crate::modal::legendre::TAYLOR;
+use num_complex::Complex64;
+
+/// Loads of one frequency.
+pub(super) struct Harmonic {
+    pub omega_rad_s: f64,
+    /// The steady motion `G` of each mode (m kg^1/2), and of the overlap of each contact (m).
+    pub modes: Vec<Complex64>,
+    pub contacts: Vec<Complex64>,
+}
+
+impl Harmonic {
+    /// `e^{i Omega t}`.
+    pub fn turn(&self, time_s: f64) -> Complex64 {
+        Complex64::cis(self.omega_rad_s * time_s)
+    }
+}
+
+/// What straight-line loads do to one contact, at the time `t0` of the last break.
+#[derive(Debug, Clone, Copy, Default)]
+struct Line {
+    /// Shift of the elastic modes (m) and its rate (m/s).
+    shift: f64,
+    shift_rate: f64,
+    /// Acceleration of the rigid modes (m/s^2) and its rate (m/s^3).
+    acceleration: f64,
+    jerk: f64,
+}
+
+/// One load in the order of the modes.
+struct Source {
+    span: Span,
+    force: Force,
+}
+
+/// All loads.
+pub(super) struct Loads {
+    pub harmonics: Vec<Harmonic>,
+    lines: Vec<Source>,
+    /// Times at which a straight line ends, ascending.
+    breaks: Vec<f64>,
+    next: usize,
+    since_s: f64,
+    /// Modal forces at `since_s` and their rates; empty where there is no straight-line load.
+    force: Vec<f64>,
+    force_rate: Vec<f64>,
+    /// Modes that are rigid and loaded.
+    rigid: Vec<usize>,
+    contacts: Vec<Line>,
+}
+
+impl Loads {
+    pub fn new<L>(assembly: &Assembly<L>, system: &System) -> Loads {
+        let mut loads = Loads {
+            harmonics: Vec::new(),
+            lines: Vec::new(),
+            breaks: Vec::new(),
+            next: 0,
+            since_s: 0.0,
+            force: Vec::new(),
+            force_rate: Vec::new(),
+            rigid: Vec::new(),
+            contacts: vec![Line::default(); system.links.len()],
+        };
+        for load in &assembly.loads {
+            let span = system.span(load.body, &load.shape);
+            match &load.force {
+                Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
+                    loads.add_harmonic(system, &span, *force_n, *omega_rad_s, *phase_rad);
+                }
+                force => {
+                    if let Force::Sampled { times_s, .. } = force {
+                        loads.breaks.extend(times_s.iter().filter(|time| **time > 0.0));
+                    }
+                    loads.lines.push(Source { span, force: force.clone() });
+                }
+            }
+        }
+        for harmonic in &mut loads.harmonics {
+            let amplitude = |link: &Link, part: fn(&Complex64) -> f64| {
+                let values: Vec<f64> = harmonic.modes.iter().map(part).collect();
+                link.sum(&values)
+            };
+            let of = |link| Complex64::new(amplitude(link, |g| g.re), amplitude(link, |g| g.im));
+            harmonic.contacts = system.links.iter().map(of).collect();
+        }
+        loads.breaks.sort_by(f64::total_cmp);
+        loads.breaks.dedup();
+        loads.set_lines(system, 0.0);
+        loads
+    }
+
+    fn add_harmonic(&mut self, system: &System, span: &Span, force_n: f64, omega_rad_s: f64, phase_rad: f64) {
+        let found = self.harmonics.iter().position(|harmonic| harmonic.omega_rad_s == omega_rad_s);
+        let at = found.unwrap_or(self.harmonics.len());
+        if found.is_none() {
+            let modes = vec![Complex64::ZERO; system.modes.len()];
+            self.harmonics.push(Harmonic { omega_rad_s, modes, contacts: Vec::new() });
+        }
+        let phasor = -Complex64::i() * Complex64::cis(phase_rad) * force_n;
+        for (k, shape) in span.modes.clone().zip(&span.psi).filter(|(_, shape)| **shape != 0.0) {
+            let (omega, zeta) = (system.modes[k].omega_rad_s, system.modes[k].damping_ratio);
+            let square = (omega - omega_rad_s) * (omega + omega_rad_s);
+            let stiffness = Complex64::new(square, 2.0 * zeta * omega * omega_rad_s);
+            self.harmonics[at].modes[k] += phasor * *shape / stiffness;
+        }
+    }
+
+    /// Takes the straight lines that begin at `time_s`.
+    fn set_lines(&mut self, system: &System, time_s: f64) {
+        if self.lines.is_empty() {
+            return;
+        }
+        self.since_s = time_s;
+        self.force = vec![0.0; system.modes.len()];
+        self.force_rate = vec![0.0; system.modes.len()];
+        for Source { span, force } in &self.lines {
+            let (value, rate) = line_at(force, time_s);
+            for (k, shape) in span.modes.clone().zip(&span.psi) {
+                self.force[k] += shape * value;
+                self.force_rate[k] += shape * rate;
+            }
+        }
+        self.rigid = (0..system.modes.len())
+            .filter(|&k| system.modes[k].is_rigid() && (self.force[k] != 0.0 || self.force_rate[k] != 0.0))
+            .collect();
+        self.contacts = system.links.iter().map(|link| self.line_of(system, link)).collect();
+    }
+
+    fn line_of(&self, system: &System, link: &Link) -> Line {
+        let mut line = Line::default();
+        for &(k, psi) in &link.rigid {
+            line.acceleration += psi * self.force[k];
+            line.jerk += psi * self.force_rate[k];
+        }
+        for &(k, psi) in &link.elastic {
+            let (shift, rate) = self.shift(system, k);
+            line.shift += psi * shift;
+            line.shift_rate += psi * rate;
+        }
+        line
+    }
+
+    /// Where the straight lines hold an elastic mode, at the last break, and the rate of that.
+    fn shift(&self, system: &System, k: usize) -> (f64, f64) {
+        let (omega, zeta) = (system.modes[k].omega_rad_s, system.modes[k].damping_ratio);
+        let rate = self.force_rate[k] / (omega * omega);
+        (self.force[k] / (omega * omega) - 2.0 * zeta / omega * rate, rate)
+    }
+
+    /// The next time at which a straight line ends, infinite if none does.
+    pub fn next_break_s(&self) -> f64 {
+        self.breaks.get(self.next).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Passes the break that has been reached: the whole motion goes on, what is carried of the elastic modes jumps.
+    pub fn pass_break(&mut self, system: &System, time_s: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+        self.next += 1;
+        self.add_shifts(system, time_s, 1.0, amplitude, rate);
+        self.set_lines(system, time_s);
+        self.add_shifts(system, time_s, -1.0, amplitude, rate);
+    }
+
+    fn add_shifts(&self, system: &System, time_s: f64, sign: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+        for k in (0..self.force.len()).filter(|&k| !system.modes[k].is_rigid()) {
+            let (shift, slope) = self.shift(system, k);
+            amplitude[k] += sign * (shift + slope * (time_s - self.since_s));
+            rate[k] += sign * slope;
+        }
+    }
+
+    /// From the whole motion of the modes at `time_s` to what is carried of it (`sign` -1), or back (`sign` 1).
+    pub fn shift_modes(&self, system: &System, time_s: f64, sign: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+        self.add_shifts(system, time_s, sign, amplitude, rate);
+        for harmonic in &self.harmonics {
+            let turn = harmonic.turn(time_s);
+            for (k, gain) in harmonic.modes.iter().enumerate() {
+                let moved = gain * turn;
+                amplitude[k] += sign * moved.re;
+                rate[k] -= sign * harmonic.omega_rad_s * moved.im;
+            }
+        }
+    }
+
+    /// What the straight lines do to the rigid modes over `h` seconds from `time_s` on.
+    pub fn push_rigid(&self, time_s: f64, h: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+        for &k in &self.rigid {
+            let force = self.force[k] + self.force_rate[k] * (time_s - self.since_s);
+            amplitude[k] += h * h * (0.5 * force + h * self.force_rate[k] / 6.0);
+            rate[k] += h * (force + 0.5 * h * self.force_rate[k]);
+        }
+    }
+
+    /// What the loads add to the overlap of a contact and its rate at `time_s`, beyond what the modes carry.
+    pub fn overlap(&self, contact: usize, time_s: f64) -> (f64, f64) {
+        let line = &self.contacts[contact];
+        let mut overlap = (line.shift + line.shift_rate * (time_s - self.since_s), line.shift_rate);
+        for harmonic in &self.harmonics {
+            let moved = harmonic.contacts[contact] * harmonic.turn(time_s);
+            overlap.0 += moved.re;
+            overlap.1 -= harmonic.omega_rad_s * moved.im;
+        }
+        overlap
+    }
+
+    /// What the loads do to one side of a contact by itself: displacement and velocity at `time_s` beyond the modes'.
+    pub fn side(&self, system: &System, side: &Span, time_s: f64) -> (f64, f64) {
+        let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
+        self.shift_modes(system, time_s, 1.0, &mut amplitude, &mut rate);
+        (side.sum(&amplitude), side.sum(&rate))
+    }
+
+    /// By how much the straight lines move the overlap of a contact within `h` seconds from `time_s` on.
+    pub fn moved_by_lines(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+        let line = &self.contacts[contact];
+        h * (line.shift_rate + h * (0.5 * self.acceleration(contact, time_s) + h * line.jerk / 6.0))
+    }
+
+    /// What the straight lines add to the rate of the overlap within `h` seconds, beyond what the modes carry now.
+    pub fn rate_by_lines(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+        let line = &self.contacts[contact];
+        line.shift_rate + h * (self.acceleration(contact, time_s) + 0.5 * h * line.jerk)
+    }
+
+    /// Acceleration of the overlap by the rigid modes' straight-line loads (m/s^2).
+    pub fn acceleration(&self, contact: usize, time_s: f64) -> f64 {
+        self.contacts[contact].acceleration + self.contacts[contact].jerk * (time_s - self.since_s)
+    }
+
+    /// Adds `g^(p)/p!` of what the loads do to the overlap of a contact.
+    pub fn add_series(&self, contact: usize, time_s: f64, series: &mut [f64; TAYLOR]) {
+        let line = &self.contacts[contact];
+        series[1] += line.shift_rate;
+        series[2] += 0.5 * self.acceleration(contact, time_s);
+        series[3] += line.jerk / 6.0;
+        for harmonic in &self.harmonics {
+            let mut term = harmonic.contacts[contact] * harmonic.turn(time_s);
+            for (p, value) in series.iter_mut().enumerate().skip(1) {
+                term *= Complex64::i() * harmonic.omega_rad_s / p as f64;
+                *value += term.re;
+            }
+        }
+    }
+
+    /// The fastest of the loads (rad/s).
+    pub fn fastest_rad_s(&self) -> f64 {
+        self.harmonics.iter().map(|harmonic| harmonic.omega_rad_s).fold(0.0, f64::max)
+    }
+}
+
+/// Value and slope of a constant or sampled load just after `time_s`.
+fn line_at(force: &Force, time_s: f64) -> (f64, f64) {
+    match force {
+        Force::Constant { force_n } => (*force_n, 0.0),
+        Force::Sampled { times_s, forces_n } => {
+            let after = times_s.partition_point(|time| *time <= time_s);
+            if after == 0 || after == times_s.len() {
+                return (0.0, 0.0);
+            }
+            let (from, to) = (times_s[after - 1], times_s[after]);
+            let slope = (forces_n[after] - forces_n[after - 1]) / (to - from);
+            (forces_n[after - 1] + slope * (time_s - from), slope)
+        }
+        Force::Harmonic { .. } => (0.0, 0.0),
+    }
+}

@@ -1,0 +1,1000 @@
+//! The march: try a panel, judge it, commit it.
+//!
+//! A trial never changes the motion. A panel is judged by three questions: is the force of every closed contact known
+//! well enough, does an event function fall to zero on it, and is the panel short enough to tell. It is then committed,
+//! tried again shorter, or cut at the event, which is located and handed to the law. Without closed contact there is
+//! nothing to solve, and panels are as long as it is certain that none closes.
+
+use super::collocate::{Collocated, Unknown, collocate};
+use super::dense::Panel;
+use super::enclosure::{Flight, of_panel, safe_time};
+use super::event::{EventFunction, Verdict};
+use super::load::Loads;
+use super::problem::{Assembly, Settings};
+use super::solution::{Counts, Interval, Observer, Outcome, Reason};
+use super::state::{Phase, State, Touch};
+use super::system::System;
+use super::tables::Tables;
+use super::terminal::{self, Landed, REACH, Window, series_of, value};
+use crate::modal::contact::Peak;
+use crate::modal::flight::first_root;
+use crate::modal::ladder::{J_MAX, J_MIN, level_within, step_s};
+use crate::modal::legendre::{BASIS, Nodal, Q, evaluate};
+use crate::modal::step::{slopes, truncation};
+use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
+
+/// Part of the stated tolerance that one panel may use up.
+const STEP_SHARE: f64 = 0.1;
+/// Part of that which the nodal forces may miss the law by.
+const NEWTON_SHARE: f64 = 1e-2;
+/// A panel is doubled when its error is this many times below the tolerance.
+const GROWTH: f64 = 250.0;
+/// Part of the way to an expected event that one panel may take.
+const SHARE: f64 = 0.85;
+/// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
+const LANDING: f64 = 2.5;
+/// A force that the laws fixed on one length serves for others while it need not be carried on by more than this part.
+const CARRIED: f64 = 0.05;
+/// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
+const SINGULAR: f64 = 1e-4;
+/// A flight is followed by power series once the next safe step is this many levels finer than the series reach.
+const WINDOW: i32 = 2;
+/// So many events in a row without time going on are chatter.
+const CHATTER: u64 = 10_000;
+/// The observer is asked whether to stop once in so many panels.
+const ASK: u64 = 64;
+
+/// Which event function of which contact: a boundary of its branch, or its closing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Target {
+    contact: usize,
+    boundary: usize,
+}
+
+/// An event that is expected.
+#[derive(Debug, Clone, Copy)]
+struct Horizon {
+    target: Target,
+    at_s: f64,
+}
+
+/// A panel tried on a level: the closed contacts' forces, all contacts' overlaps, and what they are at its end.
+struct Trial {
+    solved: Vec<Collocated>,
+    force: Vec<Nodal>,
+    overlap: Vec<Nodal>,
+    end: Vec<(f64, f64)>,
+}
+
+pub(super) struct March<'a, L> {
+    pub assembly: &'a Assembly<L>,
+    pub system: System,
+    tables: Tables,
+    pub loads: Loads,
+    settings: Settings,
+    observer: &'a mut dyn Observer,
+    pub time_s: f64,
+    /// What is carried of the modes, see [`super::load`].
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub states: Vec<State>,
+    pub counts: Counts,
+    level: i32,
+    horizon: Option<Horizon>,
+    /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
+    landing: f64,
+    /// Longest terminal panel for which the series serve (s).
+    reach: f64,
+    intervals: u64,
+    last_event_s: f64,
+    events_at_once: u64,
+    stop: Option<Reason>,
+}
+
+impl<'a, L: ContactLaw> March<'a, L> {
+    pub fn new(assembly: &'a Assembly<L>, settings: Settings, observer: &'a mut dyn Observer) -> March<'a, L> {
+        let system = System::new(assembly);
+        let loads = Loads::new(assembly, &system);
+        let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
+        for (body, places) in assembly.bodies.iter().zip(&system.place) {
+            for (k, place) in places.iter().enumerate() {
+                (amplitude[*place], rate[*place]) = (body.amplitude[k], body.rate[k]);
+            }
+        }
+        loads.shift_modes(&system, 0.0, -1.0, &mut amplitude, &mut rate);
+        let fastest = system.modes.iter().map(|mode| mode.omega_rad_s * (1.0 + 2.0 * mode.damping_ratio));
+        let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
+        let state = |gap: f64| State {
+            phase: Phase::Open { memory: Memory::default(), clear_until: 0.0 },
+            overlap: 0.0,
+            rate: 0.0,
+            reference: -gap,
+            momentum: 0.0,
+            inverse_mass: 0.0,
+            statistics: Default::default(),
+        };
+        let states = assembly.contacts.iter().map(|contact| state(contact.gap_m)).collect();
+        let tables = Tables::new(&system);
+        March {
+            assembly,
+            system,
+            tables,
+            loads,
+            settings,
+            observer,
+            time_s: 0.0,
+            amplitude,
+            rate,
+            states,
+            counts: Counts::default(),
+            level: J_MIN,
+            horizon: None,
+            landing: f64::INFINITY,
+            reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
+            intervals: 0,
+            last_event_s: -1.0,
+            events_at_once: 0,
+            stop: None,
+        }
+    }
+
+    /// From the start to the end of the time asked for.
+    pub fn follow(&mut self) -> Outcome {
+        self.begin();
+        let outcome = loop {
+            if let Some(reason) = self.stop {
+                break Outcome::Stopped(reason);
+            }
+            if self.time_s >= self.settings.end_s {
+                break Outcome::End;
+            }
+            if self.time_s >= self.loads.next_break_s() {
+                self.loads.pass_break(&self.system, self.time_s, &mut self.amplitude, &mut self.rate);
+                self.forget_horizons();
+            }
+            if self.states.iter().any(State::is_closed) {
+                self.contact()
+            } else {
+                self.fly()
+            }
+            self.stop = self.stop.or_else(|| self.limit());
+        };
+        for c in 0..self.states.len() {
+            if let Some(interval) = self.states[c].finish(None) {
+                self.observer.interval(c, &interval);
+            }
+        }
+        outcome
+    }
+
+    fn limit(&mut self) -> Option<Reason> {
+        let steps = self.counts.contact_steps + self.counts.rejected_steps + self.counts.flight_steps;
+        if steps >= self.settings.max_steps {
+            Some(Reason::Steps)
+        } else if self.intervals >= self.settings.max_intervals {
+            Some(Reason::Intervals)
+        } else if self.level > J_MAX {
+            Some(Reason::FinestStep)
+        } else if self.events_at_once > CHATTER {
+            Some(Reason::Chatter)
+        } else if steps % ASK == 0 && self.observer.interrupts() {
+            Some(Reason::Interrupted)
+        } else {
+            let beyond =
+                |state: &State| state.is_closed() && (state.overlap.abs() > LARGEST || state.rate.abs() > LARGEST);
+            self.states.iter().any(beyond).then_some(Reason::LawRange)
+        }
+    }
+
+    /// Contacts that touch at the start close at once.
+    fn begin(&mut self) {
+        for c in 0..self.states.len() {
+            let (overlap, rate) = self.overlap_of_modes(c);
+            (self.states[c].overlap, self.states[c].rate) = (overlap, rate);
+            self.states[c].inverse_mass = self.system.inverse_mass(c);
+            self.states[c].momentum = self.momentum_of_loads(c);
+        }
+        for c in 0..self.states.len() {
+            let noise = self.noise(c);
+            if self.states[c].overlap > noise {
+                self.touch(c, self.states[c].overlap);
+            } else if self.states[c].overlap >= -noise && !self.parts_from_here(c) {
+                self.touch(c, 0.0);
+            }
+        }
+    }
+
+    /// Whether surfaces that touch begin to part: the first derivative that is not zero says so.
+    fn parts_from_here(&self, c: usize) -> bool {
+        let series = series_of(&self.system, &self.loads, c, self.moment());
+        let reach = self.reach.min(self.settings.end_s);
+        let mut power = 1.0;
+        let terms = series.map(|term| {
+            power *= reach;
+            term * power / reach
+        });
+        let size = terms[1..].iter().fold(0.0f64, |size, term| size.max(term.abs()));
+        terms[1..].iter().find(|term| term.abs() > 1e-12 * size).is_some_and(|term| *term < 0.0)
+    }
+
+    fn moment(&self) -> (f64, &[f64], &[f64]) {
+        (self.time_s, &self.amplitude, &self.rate)
+    }
+
+    /// Overlap of a contact and its rate, from modes and loads.
+    fn overlap_of_modes(&self, c: usize) -> (f64, f64) {
+        let link = &self.system.links[c];
+        let (shift, shift_rate) = self.loads.overlap(c, self.time_s);
+        (self.states[c].reference + (link.sum(&self.amplitude) + shift), link.sum(&self.rate) + shift_rate)
+    }
+
+    /// Rounding of an overlap that is a difference of where bodies are (m).
+    fn noise(&self, c: usize) -> f64 {
+        let link = &self.system.links[c];
+        let moved = link.rigid.iter().chain(&link.elastic).map(|(k, psi)| (psi * self.amplitude[*k]).abs());
+        4.0 * f64::EPSILON * (moved.sum::<f64>() + self.states[c].reference.abs())
+    }
+
+    /// Rounding of an overlap as it is summed up over a panel of `h` (m).
+    fn panel_noise(&self, c: usize, h: f64) -> f64 {
+        let link = &self.system.links[c];
+        let of = |(k, psi): &(usize, f64)| {
+            let turned = (self.system.modes[*k].omega_rad_s * h).min(1.0);
+            psi.abs() * (turned * self.amplitude[*k].abs() + h * self.rate[*k].abs())
+        };
+        let moved: f64 = link.rigid.iter().chain(&link.elastic).map(of).sum();
+        let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
+        // of the motion that the contact's momentum stands for no less is known
+        let moved = moved.max(self.states[c].speed_m_s() * h);
+        tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
+    }
+
+    fn law(&self, c: usize) -> &'a L {
+        &self.assembly.contacts[c].law
+    }
+
+    /// The momentum that the loads give a contact while it yields to them (N s), a scale for contacts that nothing else
+    /// has closed.
+    fn momentum_of_loads(&self, c: usize) -> f64 {
+        let inverse = self.states[c].inverse_mass;
+        let mut acceleration = self.loads.acceleration(c, 0.0).abs();
+        for load in &self.assembly.loads {
+            let span = self.system.span(load.body, &load.shape);
+            let links = self.system.links[c].spans.iter().filter(|link| link.modes == span.modes);
+            let drive: f64 = links.map(|link| link.psi.iter().zip(&span.psi).map(|(a, b)| a * b).sum::<f64>()).sum();
+            acceleration = acceleration.max(drive.abs() * load.force.largest());
+        }
+        let force = acceleration / inverse;
+        if !(force > 0.0 && force.is_finite()) {
+            return 0.0;
+        }
+        let law = self.law(c);
+        let branch = law.touch(&Memory::default(), 0.0);
+        let (mut low, mut high) = (-30.0f64, 10.0f64);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let found = law.force(&branch, 10f64.powf(middle), 0.0).force_n;
+            *(if found < force { &mut low } else { &mut high }) = middle;
+        }
+        (2.0 * acceleration * 10f64.powf(low)).sqrt() / inverse
+    }
+
+    /// The first contact of two surfaces that meet now, with this overlap beyond where they touch.
+    fn touch(&mut self, c: usize, beyond: f64) {
+        let law = self.law(c);
+        let Phase::Open { memory, .. } = self.states[c].phase else { return };
+        let (overlap, _) = self.overlap_of_modes(c);
+        let state = &mut self.states[c];
+        let inverse = state.inverse_mass;
+        state.overlap = memory.touch_m + beyond;
+        state.reference += state.overlap - overlap;
+        if beyond == 0.0 {
+            state.rate = state.rate.max(0.0);
+        }
+        let approach_speed_m_s = state.rate;
+        let interval = Interval {
+            start_s: self.time_s,
+            end_s: None,
+            impulse_n_s: 0.0,
+            peak_force_n: 0.0,
+            peak_compression_m: 0.0,
+            approach_speed_m_s,
+            separation_speed_m_s: None,
+        };
+        let touch = Touch {
+            branch: law.touch(&memory, approach_speed_m_s.max(0.0)),
+            needs_rate: false,
+            previous: None,
+            interval,
+            peak_force: Peak::NONE,
+            peak_compression: Peak::NONE,
+        };
+        state.phase = Phase::Closed(touch);
+        let momentum = if inverse > 0.0 { approach_speed_m_s.abs() / inverse } else { 0.0 };
+        state.momentum = state.momentum.max(momentum);
+        let of_others = |states: &[State]| states.iter().map(|state| state.momentum).fold(0.0, f64::max);
+        if state.momentum == 0.0 {
+            self.states[c].momentum = of_others(&self.states);
+        }
+        let alone = self.states.iter().filter(|state| state.is_closed()).count() == 1;
+        let branch = self.states[c].touch().map(|touch| touch.branch);
+        if let Some(branch) = branch {
+            self.enter(c, branch);
+        }
+        let first = self.first_level(c);
+        self.level = if alone { first } else { self.level.max(first) };
+        self.event();
+    }
+
+    fn enter(&mut self, c: usize, branch: Branch) {
+        let law = self.law(c);
+        if let Phase::Closed(touch) = &mut self.states[c].phase {
+            touch.branch = branch;
+            touch.needs_rate =
+                law.depends_on_rate() || law.boundaries(&branch).iter().any(|boundary| boundary.per_rate != 0.0);
+        }
+        self.forget_horizons();
+    }
+
+    fn event(&mut self) {
+        self.counts.events += 1;
+        self.events_at_once = if self.time_s > self.last_event_s { 0 } else { self.events_at_once + 1 };
+        self.last_event_s = self.time_s;
+    }
+
+    /// What was expected does not hold any more.
+    fn forget_horizons(&mut self) {
+        self.horizon = None;
+        self.landing = f64::INFINITY;
+        for state in &mut self.states {
+            if let Phase::Open { clear_until, .. } = &mut state.phase {
+                *clear_until = clear_until.min(self.time_s);
+            }
+        }
+    }
+
+    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
+    fn first_level(&self, c: usize) -> i32 {
+        let Some(touch) = self.states[c].touch() else { return J_MIN };
+        let mut series = series_of(&self.system, &self.loads, c, self.moment());
+        series[0] = self.states[c].overlap;
+        let law = self.law(c);
+        let allowed = self.impulse_tolerance(c) / SINGULAR;
+        let small = |j: i32| {
+            let h = step_s(j);
+            let [compression, rate, _] = value(&series, h.min(self.reach));
+            let compression = compression + rate.max(0.0) * (h - h.min(self.reach));
+            law.force(&touch.branch, compression, rate).force_n * h <= allowed
+        };
+        // the force at the end of a panel grows with the panel
+        let (mut coarse, mut fine) = (J_MIN, J_MAX);
+        while coarse < fine {
+            let middle = coarse + (fine - coarse) / 2;
+            if small(middle) { fine = middle } else { coarse = middle + 1 }
+        }
+        if self.reach.is_finite() { fine.max(level_within(4.0 * self.reach)) } else { fine }
+    }
+
+    /// Impulse that a panel may get wrong (N s).
+    fn impulse_tolerance(&self, c: usize) -> f64 {
+        (STEP_SHARE * self.settings.tolerance * self.states[c].momentum).max(f64::MIN_POSITIVE)
+    }
+
+    /// Time until the loads change or the run ends (s).
+    fn lasting(&self) -> f64 {
+        (self.settings.end_s.min(self.loads.next_break_s()) - self.time_s).max(0.0)
+    }
+
+    // ---- free flight ----
+
+    fn fly(&mut self) {
+        self.counts.flight_steps += 1;
+        let lasting = self.lasting();
+        let (mut go, mut curvatures) = (f64::INFINITY, Vec::new());
+        for c in 0..self.states.len() {
+            if self.clear_until(c) <= self.time_s {
+                let flight = self.renew(c, lasting);
+                curvatures.push((c, flight.curvature));
+            }
+            go = go.min(self.clear_until(c) - self.time_s);
+        }
+        let near = level_within(self.reach);
+        if go >= lasting {
+            if lasting <= self.reach { self.coast(lasting, true) } else { self.rotate(level_within(lasting)) }
+        } else if level_within(go) < near + WINDOW {
+            self.rotate(level_within(go.min(lasting)));
+        } else {
+            let by_level = lasting > step_s(near);
+            let window = if by_level { step_s(near) } else { lasting };
+            let mut first: Option<(usize, f64)> = None;
+            for c in (0..self.states.len()).filter(|c| self.clear_until(*c) < self.time_s + window).collect::<Vec<_>>()
+            {
+                let known = curvatures.iter().find(|(other, _)| *other == c).map(|(_, curvature)| *curvature);
+                let curvature = known.unwrap_or_else(|| self.flight(c, lasting).curvature);
+                let mut series = series_of(&self.system, &self.loads, c, self.moment());
+                series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
+                if let Some(time) = first_root(&series, curvature, window, self.noise(c))
+                    && first.is_none_or(|(_, earlier)| time < earlier)
+                {
+                    first = Some((c, time));
+                }
+            }
+            match first {
+                Some((c, time)) => {
+                    self.coast(time, false);
+                    let (_, rate) = self.overlap_of_modes(c);
+                    self.states[c].rate = rate;
+                    self.touch(c, 0.0);
+                }
+                None if by_level => self.rotate(near),
+                None => self.coast(window, true),
+            }
+        }
+    }
+
+    fn clear_until(&self, c: usize) -> f64 {
+        match self.states[c].phase {
+            Phase::Open { clear_until, .. } => clear_until,
+            Phase::Closed(_) => f64::INFINITY,
+        }
+    }
+
+    fn flight(&self, c: usize, lasting: f64) -> Flight {
+        let (overlap, rate) = self.overlap_of_modes(c);
+        let separation = self.states[c].touch_m() - overlap;
+        // surfaces that have just parted overlap by rounding
+        let separation = if separation < 0.0 && separation >= -self.noise(c) { 0.0 } else { separation };
+        safe_time(&self.system, &self.loads, c, (self.time_s, lasting), (separation, rate), self.motion())
+    }
+
+    fn motion(&self) -> (&[f64], &[f64]) {
+        (&self.amplitude, &self.rate)
+    }
+
+    fn renew(&mut self, c: usize, lasting: f64) -> Flight {
+        let flight = self.flight(c, lasting);
+        if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
+            *clear_until = self.time_s + flight.safe_s;
+        }
+        flight
+    }
+
+    fn rotate(&mut self, level: i32) {
+        self.show(step_s(level), &[], &[]);
+        self.tables.rotate(&self.system, level, &mut self.amplitude, &mut self.rate);
+        self.pass(step_s(level));
+    }
+
+    /// Free motion of any length within the series' reach; to the next break or the end where `whole`.
+    fn coast(&mut self, length: f64, whole: bool) {
+        self.show(length, &[], &[]);
+        terminal::coast(&self.system, length, &mut self.amplitude, &mut self.rate);
+        self.pass(length);
+        if whole {
+            self.arrive_exactly();
+        }
+    }
+
+    /// Time goes on, with what the loads do to the rigid modes meanwhile.
+    fn pass(&mut self, h: f64) {
+        self.loads.push_rigid(self.time_s, h, &mut self.amplitude, &mut self.rate);
+        self.time_s += h;
+    }
+
+    /// The end of the run and the breaks of loads are met to the last digit.
+    fn arrive_exactly(&mut self) {
+        let target = self.settings.end_s.min(self.loads.next_break_s());
+        if (self.time_s - target).abs() <= 1e-12 * target {
+            self.time_s = target;
+        }
+    }
+
+    // ---- contact ----
+
+    /// One trial of a panel with closed contacts, and what follows from it.
+    fn contact(&mut self) {
+        let lasting = self.lasting();
+        let reach = self.reach.min(self.landing);
+        let mut level = self.level;
+        if let Some(Horizon { target, at_s }) = self.horizon {
+            let left = (at_s - self.time_s).max(0.0);
+            if left <= reach {
+                self.horizon = None;
+                return self.land(target, left, reach.min(lasting));
+            }
+            level = level.max(level_within(SHARE * left));
+        }
+        if step_s(level) > lasting {
+            if lasting <= reach {
+                return self.land_at(lasting);
+            }
+            level = level_within(lasting);
+        }
+        let h = step_s(level);
+        let (contacts, closed) = self.involved(h);
+        let Some(trial) = self.attempt(level, &contacts, closed) else {
+            return self.refine(level + 1);
+        };
+        match self.judge(h, &contacts, closed, &trial.solved, &trial.overlap, true) {
+            Judgement::Clear => {}
+            Judgement::Doubtful => return self.refine(level + 1),
+            Judgement::Meets(target, place) => {
+                self.counts.rejected_steps += 1;
+                if place == 0.0 {
+                    return self.transition(target);
+                }
+                self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
+                return;
+            }
+        }
+        let mut error = 0.0f64;
+        for (i, &c) in contacts[..closed].iter().enumerate() {
+            let tolerance = self.impulse_tolerance(c);
+            // modes that turn several times within the panel escape the coefficients, but not the law at its end
+            let missed = (self.force_at(c, trial.end[i]) - evaluate(&trial.force[i], 1.0)).abs();
+            error = error.max(truncation(&trial.force[i]) * h / tolerance).max(missed * h / tolerance);
+        }
+        if !(error <= 1.0) {
+            // the error falls at least like h^5, but for the first panels of a contact, which are begun short enough
+            let finer = (error.log2() / 5.0) as i32;
+            return self.refine(level + finer.clamp(1, 4));
+        }
+        self.commit(level, &contacts, closed, trial);
+        if level == self.level && error * GROWTH < 1.0 {
+            self.level = (level - 1).max(J_MIN);
+        }
+    }
+
+    fn force_at(&mut self, c: usize, (compression, rate): (f64, f64)) -> f64 {
+        self.counts.law_evaluations += 1;
+        let law = self.law(c);
+        self.states[c].touch().map_or(0.0, |touch| law.force(&touch.branch, compression, rate).force_n)
+    }
+
+    fn refine(&mut self, level: i32) {
+        self.counts.rejected_steps += 1;
+        self.level = level;
+    }
+
+    /// The contacts of a panel of `h`: the closed ones, then the open ones that could close; and how many are closed.
+    fn involved(&mut self, h: f64) -> (Vec<usize>, usize) {
+        let mut contacts: Vec<usize> = (0..self.states.len()).filter(|&c| self.states[c].is_closed()).collect();
+        let closed = contacts.len();
+        let lasting = self.lasting();
+        for c in 0..self.states.len() {
+            if self.states[c].is_closed() {
+                continue;
+            }
+            let disturbed = self.system.neighbours[c].iter().any(|&other| self.states[other].is_closed());
+            if !disturbed && self.clear_until(c) <= self.time_s {
+                self.renew(c, lasting);
+            }
+            if disturbed || self.clear_until(c) < self.time_s + h {
+                (self.states[c].overlap, self.states[c].rate) = self.overlap_of_modes(c);
+                contacts.push(c);
+            }
+        }
+        (contacts, closed)
+    }
+
+    /// The closed contacts' laws and first guesses on a panel of `h`.
+    fn unknowns(&self, contacts: &[usize], h: f64, free: impl Fn(usize) -> Nodal) -> Vec<Unknown<'a, L>> {
+        let unknown = |(i, &c): (usize, &usize)| {
+            let state = &self.states[c];
+            let touch = state.touch()?;
+            let guess = touch.previous.map_or([0.0; Q], |(coefficients, length)| {
+                BASIS.nodes.map(|s| evaluate(&coefficients, 1.0 + s * h / length).max(0.0))
+            });
+            Some(Unknown {
+                law: self.law(c),
+                branch: touch.branch,
+                start: state.overlap,
+                free: free(i),
+                needs_rate: touch.needs_rate,
+                accuracy: NEWTON_SHARE * self.impulse_tolerance(c) / h,
+                guess,
+            })
+        };
+        contacts.iter().enumerate().filter_map(unknown).collect()
+    }
+
+    fn attempt(&mut self, level: i32, contacts: &[usize], closed: usize) -> Option<Trial> {
+        let h = step_s(level);
+        self.tables.prepare(&self.system, level, contacts, &contacts[..closed]);
+        let free: Vec<Nodal> = contacts.iter().map(|&c| self.free_at_nodes(level, c)).collect();
+        let unknowns = self.unknowns(&contacts[..closed], h, |i| free[i]);
+        let tables = &self.tables;
+        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
+        let solved = collocate(&unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, &mut self.counts)?;
+        let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
+        let (mut overlap, mut end) = (Vec::with_capacity(contacts.len()), Vec::with_capacity(contacts.len()));
+        for (i, &c) in contacts.iter().enumerate() {
+            let mut nodal = free[i];
+            let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
+            let (by_loads, rate_of_loads) = self.moved_by_loads(c, h);
+            let mut forced = 0.0;
+            for (j, solved) in solved.iter().enumerate() {
+                if let Some(response) = response(i, j) {
+                    let (moved, speed) = response.at_end(&force[j]);
+                    forced += moved;
+                    rate += speed;
+                    if i >= closed {
+                        for j in 0..Q {
+                            for i in 0..Q {
+                                nodal[i] += response.nodes[j][i] * solved.force[j];
+                            }
+                        }
+                    }
+                }
+            }
+            overlap.push(if i < closed { solved[i].compression } else { nodal });
+            end.push((self.states[c].overlap + (moved + by_loads + forced), rate + rate_of_loads));
+        }
+        Some(Trial { solved, force, overlap, end })
+    }
+
+    /// Overlap of a contact at the nodes if there were no contact force.
+    fn free_at_nodes(&self, level: i32, c: usize) -> Nodal {
+        let h = step_s(level);
+        let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
+        let overlap = self.states[c].overlap;
+        std::array::from_fn(|i| overlap + (moved[i] + self.moved_by_loads(c, BASIS.nodes[i] * h).0))
+    }
+
+    /// By how much the loads move the overlap of a contact within `h`, and what they add to its rate then, beyond what
+    /// the modes carry now.
+    fn moved_by_loads(&self, c: usize, h: f64) -> (f64, f64) {
+        let mut moved = self.loads.moved_by_lines(c, self.time_s, h);
+        let mut rate = self.loads.rate_by_lines(c, self.time_s, h);
+        for harmonic in &self.loads.harmonics {
+            let now = harmonic.contacts[c] * harmonic.turn(self.time_s);
+            // e^{ix} - 1 without cancellation
+            let half = (0.5 * harmonic.omega_rad_s * h).sin_cos();
+            let turned = num_complex::Complex64::new(-2.0 * half.0 * half.0, 2.0 * half.0 * half.1);
+            moved += (now * turned).re;
+            rate -= harmonic.omega_rad_s * (now + now * turned).im;
+        }
+        (moved, rate)
+    }
+
+    /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
+    fn judge(
+        &self,
+        h: f64,
+        contacts: &[usize],
+        closed: usize,
+        solved: &[Collocated],
+        overlap: &[Nodal],
+        enclosed: bool,
+    ) -> Judgement {
+        let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
+        for (i, &c) in contacts.iter().enumerate() {
+            let state = &self.states[c];
+            let mut rho = [0.0; 3];
+            if enclosed {
+                let steady = |k: usize| self.steady(contacts, closed, k);
+                rho = of_panel(&self.system, &self.loads, c, h, self.motion(), steady);
+            }
+            let noise = self.panel_noise(c, h);
+            let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
+                let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
+                let function = EventFunction {
+                    start,
+                    nodal,
+                    rho: per_overlap * rho[0] + per_rate * rho[1],
+                    rho_slope: per_overlap * rho[1] + per_rate * rho[2],
+                    // interpolation of a rate magnifies rounding
+                    noise: noise * (per_overlap + 50.0 * per_rate),
+                };
+                match function.verdict() {
+                    Verdict::Clear => {}
+                    Verdict::Doubtful => doubtful = true,
+                    Verdict::Meets(place) => {
+                        if first.is_none_or(|(_, earlier)| place < earlier) {
+                            first = Some((Target { contact: c, boundary }, place));
+                        }
+                    }
+                }
+            };
+            match state.touch() {
+                Some(touch) => {
+                    let rates = if touch.needs_rate { solved[i].rate } else { [0.0; Q] };
+                    for (which, boundary) in self.law(c).boundaries(&touch.branch).iter().enumerate() {
+                        if *boundary == Boundary::NEVER {
+                            continue;
+                        }
+                        let nodal = std::array::from_fn(|n| boundary.margin(overlap[i][n], rates[n]));
+                        let start = boundary.margin(state.overlap, state.rate);
+                        ask(which, start, nodal, (boundary.per_compression, boundary.per_rate));
+                    }
+                }
+                None => {
+                    let touch_m = state.touch_m();
+                    ask(0, touch_m - state.overlap, overlap[i].map(|overlap| touch_m - overlap), (1.0, 0.0));
+                }
+            }
+        }
+        match first {
+            Some((target, place)) => Judgement::Meets(target, place),
+            None if doubtful => Judgement::Doubtful,
+            None => Judgement::Clear,
+        }
+    }
+
+    /// Where the contact forces at the start of a panel hold an elastic mode, and how fast they move it there.
+    fn steady(&self, contacts: &[usize], closed: usize, k: usize) -> (f64, f64) {
+        let square = self.system.modes[k].omega_rad_s.powi(2);
+        let (mut held, mut moved) = (0.0, 0.0);
+        for &c in &contacts[..closed] {
+            let Some((force, h)) = self.states[c].touch().and_then(|touch| touch.previous) else { continue };
+            for span in self.system.links[c].spans.iter().filter(|span| span.modes.contains(&k)) {
+                let psi = span.psi[k - span.modes.start];
+                held -= psi * evaluate(&force, 1.0) / square;
+                // P_n' is n (n+1) at the end of [0, 1]
+                let slope: f64 = force.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
+                moved -= psi * slope / h / square;
+            }
+        }
+        (held, moved)
+    }
+
+    fn commit(&mut self, level: i32, contacts: &[usize], closed: usize, trial: Trial) {
+        let h = step_s(level);
+        self.show(h, &contacts[..closed], &trial.force);
+        self.tables.rotate(&self.system, level, &mut self.amplitude, &mut self.rate);
+        for (i, &c) in contacts[..closed].iter().enumerate() {
+            let link = &self.system.links[c];
+            self.tables.push(level, link, &trial.force[i], &mut self.amplitude, &mut self.rate);
+        }
+        self.pass(h);
+        self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
+    }
+
+    /// Books a panel of `h` that has been made.
+    fn book(
+        &mut self,
+        h: f64,
+        contacts: &[usize],
+        closed: usize,
+        solved: &[Collocated],
+        force: &[Nodal],
+        end: impl Fn(usize) -> (f64, f64),
+    ) {
+        self.counts.contact_steps += 1;
+        let now = self.time_s;
+        for (i, &c) in contacts.iter().enumerate() {
+            let state = &mut self.states[c];
+            if i < closed {
+                let rate = slopes(state.overlap, &solved[i].compression, h);
+                state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate);
+            } else if let Phase::Open { clear_until, .. } = &mut state.phase {
+                *clear_until = now;
+            }
+            (state.overlap, state.rate) = end(i);
+        }
+        self.arrive_exactly();
+    }
+
+    // ---- terminal panels ----
+
+    fn window(&mut self, contacts: &[usize], closed: usize) -> Window {
+        let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
+        let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
+        Window::new(&self.system, &mut self.tables, &self.loads, (contacts.to_vec(), closed), &overlaps, moment)
+    }
+
+    /// Goes on to the next break of the loads or the end, `length` away.
+    fn land_at(&mut self, length: f64) {
+        let (contacts, closed) = self.involved(length);
+        let window = self.window(&contacts, closed);
+        let mut unknowns = self.unknowns(&contacts[..closed], length, |_| [0.0; Q]);
+        let Some(landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
+            return self.refine(self.level.max(level_within(length)) + 1);
+        };
+        match self.judge(length, &contacts, closed, &landed.solved, &landed.overlap, false) {
+            Judgement::Meets(target, place) => self.head_for(target, place, length),
+            _ if self.excess(&contacts, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
+            _ => self.commit_landed(&contacts, closed, &landed),
+        }
+    }
+
+    fn head_for(&mut self, target: Target, place: f64, length: f64) {
+        self.counts.rejected_steps += 1;
+        if place == 0.0 {
+            self.transition(target);
+        } else {
+            self.horizon = Some(Horizon { target, at_s: self.time_s + place * length });
+        }
+    }
+
+    /// By how much the forces of a terminal panel are less well known than those of a panel must be.
+    fn excess(&self, contacts: &[usize], landed: &Landed) -> f64 {
+        let of = |(c, force): (&usize, &Nodal)| truncation(force) * landed.length / self.impulse_tolerance(*c);
+        contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
+    }
+
+    /// Goes to the event, expected after `expected` seconds and at most `longest` away.
+    fn land(&mut self, target: Target, expected: f64, longest: f64) {
+        let (contacts, closed) = self.involved(longest);
+        let Some(at) = contacts.iter().position(|c| *c == target.contact) else {
+            return self.refine(self.level + 1);
+        };
+        let window = self.window(&contacts, closed);
+        let Some(landed) = self.locate(&window, target, at, expected, longest) else {
+            // not so near after all: go on, until a panel meets the event again
+            return self.refine((self.level + 1).max(level_within(longest)));
+        };
+        let length = landed.length;
+        // the event may have come before, in a dip that this panel passed over, or another one first
+        match self.judge(length, &contacts, closed, &landed.solved, &landed.overlap, false) {
+            Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
+                return self.head_for(other, place, length);
+            }
+            _ => {}
+        }
+        let excess = self.excess(&contacts, &landed);
+        if excess > 1.0 {
+            self.landing = 0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3);
+            self.horizon = Some(Horizon { target, at_s: self.time_s + length });
+            return self.refine(self.level + 1);
+        }
+        self.commit_landed(&contacts, closed, &landed);
+        self.transition(target);
+    }
+
+    /// Value of an event function at the end of a terminal panel, and how fast it changes.
+    fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
+        let state = &self.states[target.contact];
+        match state.touch() {
+            Some(touch) => {
+                let boundary = self.law(target.contact).boundaries(&touch.branch)[target.boundary];
+                let slope = boundary.per_compression * rate + boundary.per_rate * acceleration;
+                (boundary.margin(overlap, rate), slope)
+            }
+            None => (state.touch_m() - overlap, -rate),
+        }
+    }
+
+    /// The terminal panel of at most `longest` whose end is the event.
+    fn locate(&mut self, window: &Window, target: Target, at: usize, expected: f64, longest: f64) -> Option<Landed> {
+        let state = &self.states[target.contact];
+        let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
+        let mut length = expected.clamp(1e-3 * longest, longest);
+        let mut unknowns = self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]);
+        let (mut low, mut low_margin) = (0.0, initial);
+        let mut high: Option<(f64, f64)> = None;
+        let mut side = 0;
+        for _ in 0..60 {
+            let landed = window.attempt(length, &mut unknowns, &mut self.counts)?;
+            for (unknown, solved) in unknowns.iter_mut().zip(&landed.solved) {
+                unknown.guess = solved.force;
+            }
+            if let Some(landed) = self.carried(window, target, at, &landed) {
+                return (landed.length <= longest).then_some(landed);
+            }
+            let (margin, slope) = self.margin(target, landed.end[at]);
+            if margin.abs() <= 1e-13 * initial {
+                return Some(landed);
+            }
+            if margin > 0.0 {
+                if let Some((_, high_margin)) = &mut high
+                    && side > 0
+                {
+                    *high_margin *= 0.5;
+                }
+                (low, low_margin, side) = (length, margin, 1);
+            } else {
+                if side < 0 {
+                    low_margin *= 0.5;
+                }
+                (high, side) = (Some((length, margin)), -1);
+            }
+            let next = match high {
+                None if length >= longest => return None,
+                None => (2.0 * length).min(longest),
+                Some((high, high_margin)) => {
+                    let newton = length - margin / slope;
+                    let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
+                    let within = |x: &f64| *x > low && *x < high;
+                    match [newton, secant, 0.5 * (low + high)].into_iter().find(within) {
+                        // what follows does not depend on where within these last digits the branch is left
+                        Some(next) if (next - length).abs() > 1e-13 * high => next,
+                        _ => return Some(landed),
+                    }
+                }
+            };
+            length = next;
+        }
+        None
+    }
+
+    /// The forces of a terminal panel, cut short or carried on to where they meet the event themselves, if that is near
+    /// enough for the laws to hold there as they do at the nodes.
+    fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
+        let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
+        let mut landed = from.clone();
+        for _ in 0..8 {
+            let (margin, slope) = self.margin(target, landed.end[at]);
+            let next = landed.length - margin / slope;
+            if !range.contains(&next) {
+                return None;
+            }
+            let moved = (next - landed.length).abs();
+            landed = window.carried(from, next);
+            // the next of Newton's steps would be the square of this one
+            if moved <= 1e-7 * next {
+                return Some(landed);
+            }
+        }
+        None
+    }
+
+    fn commit_landed(&mut self, contacts: &[usize], closed: usize, landed: &Landed) {
+        self.show(landed.length, &contacts[..closed], &landed.force);
+        terminal::coast(&self.system, landed.length, &mut self.amplitude, &mut self.rate);
+        for (i, &c) in contacts[..closed].iter().enumerate() {
+            let (link, nodal) = (&self.system.links[c], &landed.solved[i].force);
+            terminal::push(&self.system, link, landed.length, nodal, &mut self.amplitude, &mut self.rate);
+        }
+        self.pass(landed.length);
+        self.book(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
+            (landed.end[i][0], landed.end[i][1])
+        });
+    }
+
+    /// What follows where an event function has fallen to zero.
+    fn transition(&mut self, target: Target) {
+        let c = target.contact;
+        let law = self.law(c);
+        let Some(touch) = self.states[c].touch() else {
+            return self.touch(c, 0.0);
+        };
+        match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
+            After::Continue(branch) => {
+                self.enter(c, branch);
+                self.event();
+            }
+            After::Release(memory) => {
+                let (overlap, _) = self.overlap_of_modes(c);
+                let (now, rate) = (self.time_s, self.states[c].rate);
+                if let Some(interval) = self.states[c].finish(Some((now, rate))) {
+                    self.observer.interval(c, &interval);
+                }
+                self.intervals += 1;
+                let state = &mut self.states[c];
+                // the surfaces part where the law says so, not where the sum over the modes puts them
+                state.reference += state.overlap - overlap;
+                state.phase = Phase::Open { memory, clear_until: now };
+                self.forget_horizons();
+                self.event();
+            }
+        }
+    }
+
+    /// Shows the observer a panel that is about to be committed.
+    fn show(&mut self, h: f64, contacts: &[usize], force: &[Nodal]) {
+        if self.observer.wants_panels() && h > 0.0 {
+            let forces: Vec<(usize, Nodal)> = contacts.iter().copied().zip(force.iter().copied()).collect();
+            let panel = Panel {
+                system: &self.system,
+                loads: &self.loads,
+                laws: self.assembly,
+                states: &self.states,
+                start_s: self.time_s,
+                length_s: h,
+                amplitude: &self.amplitude,
+                rate: &self.rate,
+                forces,
+            };
+            self.observer.panel(&panel);
+        }
+    }
+}
+
+/// What the event functions of a panel say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Judgement {
+    Clear,
+    Doubtful,
+    Meets(Target, f64),
+}

@@ -1,0 +1,106 @@
+//! The contacts as the march carries them.
+
+use super::solution::{Interval, Statistics};
+use crate::modal::contact::Peak;
+use crate::modal::legendre::{BASIS, Nodal, Q};
+use contact_models::{Branch, Memory};
+
+/// A contact at a moment.
+#[derive(Debug, Clone)]
+pub(super) struct State {
+    pub phase: Phase,
+    /// Overlap of the surfaces (m) and its rate (m/s). While closed it is summed up as it changes: as the difference of
+    /// where the bodies are it would carry their rounding, which a stiff contact turns into force.
+    pub overlap: f64,
+    pub rate: f64,
+    /// What the overlap is beyond that of modes and loads (m): less the gap, and the rounding met so far.
+    pub reference: f64,
+    /// Largest momentum exchanged so far, or to be expected from the loads (N s).
+    pub momentum: f64,
+    /// Inverse mass with which the contact feels the bodies (1/kg).
+    pub inverse_mass: f64,
+    pub statistics: Statistics,
+}
+
+/// Whether a contact is closed.
+#[derive(Debug, Clone)]
+pub(super) enum Phase {
+    Open {
+        memory: Memory,
+        /// It is certain that the contact stays open until then (s), if its bodies meet no force.
+        clear_until: f64,
+    },
+    Closed(Touch),
+}
+
+/// A contact that is closed.
+#[derive(Debug, Clone)]
+pub(super) struct Touch {
+    pub branch: Branch,
+    pub needs_rate: bool,
+    /// Legendre coefficients of the last panel's force, and its length.
+    pub previous: Option<(Nodal, f64)>,
+    pub interval: Interval,
+    pub peak_force: Peak,
+    pub peak_compression: Peak,
+}
+
+impl State {
+    /// The speed that goes with the momentum (m/s).
+    pub fn speed_m_s(&self) -> f64 {
+        self.momentum * self.inverse_mass
+    }
+
+    pub fn is_closed(&self) -> bool {
+        matches!(self.phase, Phase::Closed(_))
+    }
+
+    pub fn touch(&self) -> Option<&Touch> {
+        match &self.phase {
+            Phase::Closed(touch) => Some(touch),
+            Phase::Open { .. } => None,
+        }
+    }
+
+    /// Overlap at which an open contact touches (m).
+    pub fn touch_m(&self) -> f64 {
+        match &self.phase {
+            Phase::Open { memory, .. } => memory.touch_m,
+            Phase::Closed(_) => f64::NAN,
+        }
+    }
+
+    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression.
+    pub fn book(&mut self, h: f64, nodal: &Nodal, coefficients: Nodal, compression: &Nodal, rate: &Nodal) {
+        let Phase::Closed(touch) = &mut self.phase else { return };
+        touch.previous = Some((coefficients, h));
+        touch.interval.impulse_n_s += h * coefficients[0];
+        touch.peak_force.note(nodal);
+        touch.peak_compression.note(compression);
+        let statistics = &mut self.statistics;
+        statistics.contact_time_s += h;
+        statistics.impulse_n_s += h * coefficients[0];
+        // the first coefficient is the mean: its row holds the weights of the nodes
+        let weights = &BASIS.to_coefficients[0];
+        for i in 0..Q {
+            let (weight, power) = (h * weights[i], nodal[i] * rate[i]);
+            statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];
+            statistics.work_j += weight * power;
+            statistics.compression_work_j += weight * power.max(0.0);
+        }
+    }
+
+    /// The interval that ends now.
+    pub fn finish(&mut self, released: Option<(f64, f64)>) -> Option<Interval> {
+        let Phase::Closed(touch) = &mut self.phase else { return None };
+        touch.interval.peak_force_n = touch.peak_force.value();
+        touch.interval.peak_compression_m = touch.peak_compression.value();
+        if let Some((time_s, rate)) = released {
+            touch.interval.end_s = Some(time_s);
+            touch.interval.separation_speed_m_s = Some(-rate);
+        }
+        self.statistics.intervals += 1;
+        self.statistics.largest_force_n = self.statistics.largest_force_n.max(touch.interval.peak_force_n);
+        Some(touch.interval)
+    }
+}

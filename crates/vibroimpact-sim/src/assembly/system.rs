@@ -1,0 +1,131 @@
+//! The assembly as the march needs it: all modes in one list, each contact as a row of weights over them.
+
+use super::problem::{Assembly, Point};
+use crate::modal::problem::Mode;
+use std::ops::Range;
+
+/// Weights `psi_k` over the modes of one body: what the modes' unit amplitudes add to the overlap of a contact.
+#[derive(Debug, Clone)]
+pub(super) struct Span {
+    pub modes: Range<usize>,
+    pub psi: Vec<f64>,
+}
+
+impl Span {
+    /// `sum psi_k values_k`.
+    pub fn sum(&self, values: &[f64]) -> f64 {
+        self.psi.iter().zip(&values[self.modes.clone()]).map(|(psi, value)| psi * value).sum()
+    }
+}
+
+/// One contact, `xi = u_B - u_A - gap`, over the modes of the one or two bodies that it joins.
+#[derive(Debug, Clone)]
+pub(super) struct Link {
+    pub spans: Vec<Span>,
+    /// Displacement of either side by itself; none for the ground.
+    pub sides: [Option<Span>; 2],
+    /// Elastic modes that move it, by rising frequency: number and `psi`.
+    pub elastic: Vec<(usize, f64)>,
+    /// Rigid modes that move it, likewise.
+    pub rigid: Vec<(usize, f64)>,
+}
+
+impl Link {
+    /// `sum psi_k values_k` over all modes.
+    pub fn sum(&self, values: &[f64]) -> f64 {
+        self.spans.iter().map(|span| span.sum(values)).sum()
+    }
+
+    /// Modes that this link and another both move, with the product of their weights.
+    pub fn shared<'a>(&'a self, other: &'a Link) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.spans.iter().flat_map(move |span| {
+            let partner = other.spans.iter().find(|other| other.modes == span.modes);
+            partner.into_iter().flat_map(move |partner| {
+                span.modes.clone().zip(span.psi.iter().zip(&partner.psi)).map(|(k, (one, two))| (k, one * two))
+            })
+        })
+    }
+
+    /// Whether both join the same body.
+    pub fn touches(&self, other: &Link) -> bool {
+        self.spans.iter().any(|span| other.spans.iter().any(|other| other.modes == span.modes))
+    }
+}
+
+/// All modes and contacts.
+#[derive(Debug, Clone)]
+pub(super) struct System {
+    /// The modes, body by body, each by rising frequency.
+    pub modes: Vec<Mode>,
+    /// The modes of each body.
+    pub bodies: Vec<Range<usize>>,
+    /// Where each mode of each body, as the user counts them, has its place.
+    pub place: Vec<Vec<usize>>,
+    pub links: Vec<Link>,
+    /// The contacts that share a body with a contact, itself included.
+    pub neighbours: Vec<Vec<usize>>,
+}
+
+impl System {
+    pub fn new<L>(assembly: &Assembly<L>) -> System {
+        let (mut modes, mut bodies, mut place) = (Vec::new(), Vec::new(), Vec::new());
+        for body in &assembly.bodies {
+            let first = modes.len();
+            let mut order: Vec<usize> = (0..body.modes.len()).collect();
+            order.sort_by(|&i, &j| body.modes[i].omega_rad_s.total_cmp(&body.modes[j].omega_rad_s));
+            let mut places = vec![0; order.len()];
+            for (i, &k) in order.iter().enumerate() {
+                places[k] = first + i;
+                let mode = body.modes[k];
+                modes.push(Mode { omega_rad_s: mode.omega_rad_s, damping_ratio: mode.damping_ratio, shape: 1.0 });
+            }
+            bodies.push(first..modes.len());
+            place.push(places);
+        }
+        let mut system = System { modes, bodies, place, links: Vec::new(), neighbours: Vec::new() };
+        system.links = assembly.contacts.iter().map(|contact| system.link(&contact.sides)).collect();
+        let links = &system.links;
+        let sharing = |one: &Link| (0..links.len()).filter(|&c| one.touches(&links[c])).collect();
+        system.neighbours = links.iter().map(sharing).collect();
+        system
+    }
+
+    /// Values given in the user's order, as a span over the modes of that body.
+    pub fn span(&self, body: usize, values: &[f64]) -> Span {
+        let modes = self.bodies[body].clone();
+        let mut psi = vec![0.0; modes.len()];
+        for (place, value) in self.place[body].iter().zip(values) {
+            psi[place - modes.start] = *value;
+        }
+        Span { modes, psi }
+    }
+
+    fn link(&self, sides: &[Point; 2]) -> Link {
+        let sides = sides.each_ref().map(|point| match point {
+            Point::Ground => None,
+            Point::OfBody { body, shape } => Some(self.span(*body, shape)),
+        });
+        let mut spans: Vec<Span> = Vec::new();
+        for (side, sign) in sides.iter().zip([-1.0, 1.0]) {
+            let Some(side) = side else { continue };
+            if let Some(same) = spans.iter_mut().find(|span| span.modes == side.modes) {
+                same.psi.iter_mut().zip(&side.psi).for_each(|(psi, value)| *psi += sign * value);
+            } else {
+                let psi = side.psi.iter().map(|value| sign * value).collect();
+                spans.push(Span { modes: side.modes.clone(), psi });
+            }
+        }
+        let weights = spans.iter().flat_map(|span| span.modes.clone().zip(span.psi.iter().copied()));
+        let moving = weights.filter(|(_, psi)| *psi != 0.0);
+        let (rigid, mut elastic): (Vec<_>, Vec<_>) = moving.partition(|(k, _)| self.modes[*k].is_rigid());
+        elastic.sort_by(|a, b| self.modes[a.0].omega_rad_s.total_cmp(&self.modes[b.0].omega_rad_s));
+        Link { spans, sides, elastic, rigid }
+    }
+
+    /// Inverse mass with which a contact feels the modes: the rigid ones, or all where there is none (1/kg).
+    pub fn inverse_mass(&self, contact: usize) -> f64 {
+        let link = &self.links[contact];
+        let of = |modes: &[(usize, f64)]| modes.iter().map(|(_, psi)| psi * psi).sum::<f64>();
+        if link.rigid.is_empty() { of(&link.elastic) } else { of(&link.rigid) }
+    }
+}

@@ -1,0 +1,216 @@
+//! Tables of panels `h = 2^-j` s: free motion and forced response of every mode, and the response of every contact to
+//! the force of another. All of them are filled as they are first asked for.
+
+use super::system::{Link, Span, System};
+use crate::modal::forcing::{Compliance, Terms, part};
+use crate::modal::ladder::{J_MAX, J_MIN, Rotation, step_s};
+use crate::modal::legendre::{Matrix, Nodal, Q, TAYLOR, dot};
+
+/// Response of one contact's overlap to the force of another.
+pub(super) struct Response {
+    /// At the nodes, to nodal forces (m/N).
+    pub nodes: Matrix,
+    /// At the end, to Legendre forces (m/N), and its rate (m/(N s)).
+    pub end: Nodal,
+    pub end_rate: Nodal,
+}
+
+/// Forced responses on one level.
+struct Forced {
+    /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
+    at_nodes: Vec<(Nodal, Nodal)>,
+    /// Amplitude and rate at the end, `[n][k]`, to a unit Legendre force `n` on mode `k`.
+    amplitude: [Vec<f64>; Q],
+    rate: [Vec<f64>; Q],
+    /// `[c][c']`, where asked for.
+    responses: Vec<Option<Box<Response>>>,
+}
+
+#[derive(Default)]
+struct Level {
+    rotation: Option<Box<Rotation>>,
+    forced: Option<Box<Forced>>,
+}
+
+pub(super) struct Tables {
+    levels: Vec<Level>,
+    /// Derivatives at zero of the response of contact `c` to an impulse of contact `c'`, where asked for.
+    kernels: Vec<Option<[f64; TAYLOR]>>,
+    contacts: usize,
+}
+
+impl Tables {
+    pub fn new(system: &System) -> Tables {
+        let contacts = system.links.len();
+        // one level more than is stepped on, for the half steps of the finest
+        let levels = std::iter::repeat_with(Level::default).take((J_MAX - J_MIN + 2) as usize).collect();
+        Tables { levels, kernels: vec![None; contacts * contacts], contacts }
+    }
+
+    /// Free motion over one panel of level `j`.
+    pub fn rotation(&mut self, system: &System, j: i32) -> &Rotation {
+        let level = &mut self.levels[(j - J_MIN) as usize];
+        level.rotation.get_or_insert_with(|| Box::new(Rotation::new(&system.modes, step_s(j))))
+    }
+
+    /// Makes sure that everything about level `j` is there for these contacts and these forces.
+    pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
+        self.rotation(system, j);
+        self.rotation(system, j + 1);
+        let (level, finer) = self.levels.split_at_mut((j + 1 - J_MIN) as usize);
+        let Some(half) = finer[0].rotation.as_deref() else { return };
+        let count = self.contacts;
+        let forced =
+            level[(j - J_MIN) as usize].forced.get_or_insert_with(|| Box::new(Forced::new(system, j, half, count)));
+        for &c in contacts {
+            for &other in forces {
+                if forced.responses[c * count + other].is_none() && system.neighbours[c].contains(&other) {
+                    let response = forced.response(system, j, half, &system.links[c], &system.links[other]);
+                    forced.responses[c * count + other] = Some(Box::new(response));
+                }
+            }
+        }
+    }
+
+    fn forced(&self, j: i32) -> Option<&Forced> {
+        self.levels[(j - J_MIN) as usize].forced.as_deref()
+    }
+
+    /// How far free motion moves the overlap of a contact at the nodes. Needs [`Tables::prepare`].
+    pub fn free_at_nodes(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> Nodal {
+        let mut moved = [0.0; Q];
+        let Some(forced) = self.forced(j) else { return moved };
+        for Span { modes, psi } in &link.spans {
+            let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
+            for (((from_a, from_b), psi), (a, b)) in forced.at_nodes[modes.clone()].iter().zip(psi).zip(motion) {
+                let (a, b) = (psi * a, psi * b);
+                for i in 0..Q {
+                    moved[i] += from_a[i] * a + from_b[i] * b;
+                }
+            }
+        }
+        moved
+    }
+
+    /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Tables::prepare`].
+    pub fn response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
+        self.forced(j)?.responses[c * self.contacts + other].as_deref()
+    }
+
+    /// How far free motion over a panel moves the overlap of a contact, and its rate then.
+    pub fn free_at_end(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> (f64, f64) {
+        let (mut moved, mut speed) = (0.0, 0.0);
+        let Some(rotation) = self.levels[(j - J_MIN) as usize].rotation.as_deref() else { return (moved, speed) };
+        for Span { modes, psi } in &link.spans {
+            let (less, p12) = (&rotation.p11_less_1[modes.clone()], &rotation.p12[modes.clone()]);
+            let (p21, p22) = (&rotation.p21[modes.clone()], &rotation.p22[modes.clone()]);
+            let (a, b) = (&amplitude[modes.clone()], &rate[modes.clone()]);
+            for k in 0..psi.len() {
+                moved += psi[k] * (less[k] * a[k] + p12[k] * b[k]);
+                speed += psi[k] * (p21[k] * a[k] + p22[k] * b[k]);
+            }
+        }
+        (moved, speed)
+    }
+
+    /// Free motion of all modes over one panel.
+    pub fn rotate(&mut self, system: &System, j: i32, amplitude: &mut [f64], rate: &mut [f64]) {
+        let rotation = self.rotation(system, j);
+        let n = amplitude.len();
+        let (less, p12) = (&rotation.p11_less_1[..n], &rotation.p12[..n]);
+        let (p21, p22, rate) = (&rotation.p21[..n], &rotation.p22[..n], &mut rate[..n]);
+        for k in 0..n {
+            let (a, b) = (amplitude[k], rate[k]);
+            amplitude[k] = a + (less[k] * a + p12[k] * b);
+            rate[k] = p21[k] * a + p22[k] * b;
+        }
+    }
+
+    /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
+    pub fn push(&self, j: i32, link: &Link, force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+        let Some(forced) = self.forced(j) else { return };
+        for Span { modes, psi } in &link.spans {
+            accumulate(&mut amplitude[modes.clone()], psi, &forced.amplitude, modes.start, force);
+            accumulate(&mut rate[modes.clone()], psi, &forced.rate, modes.start, force);
+        }
+    }
+
+    /// Derivatives at zero of the response of contact `c` to an impulse of `other`.
+    pub fn kernel(&mut self, system: &System, c: usize, other: usize) -> [f64; TAYLOR] {
+        *self.kernels[c * self.contacts + other].get_or_insert_with(|| {
+            let mut kernel = [0.0; TAYLOR];
+            for (k, weight) in system.links[c].shared(&system.links[other]) {
+                let mode = &system.modes[k];
+                let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
+                let (mut here, mut next) = (0.0, weight);
+                for value in &mut kernel {
+                    *value += here;
+                    (here, next) = (next, -drag * next - square * here);
+                }
+            }
+            kernel
+        })
+    }
+}
+
+/// `state[k] -= psi[k] sum_n table[n][k] force[n]`, in one pass.
+fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usize, force: &Nodal) {
+    let n = psi.len();
+    let state = &mut state[..n];
+    let [t0, t1, t2, t3, t4, t5, t6, t7] = table.each_ref().map(|row| &row[first..first + n]);
+    let [f0, f1, f2, f3, f4, f5, f6, f7] = *force;
+    for k in 0..n {
+        let response =
+            (t0[k] * f0 + t1[k] * f1 + t2[k] * f2 + t3[k] * f3) + (t4[k] * f4 + t5[k] * f5 + t6[k] * f6 + t7[k] * f7);
+        state[k] -= psi[k] * response;
+    }
+}
+
+impl Forced {
+    fn new(system: &System, j: i32, half: &Rotation, contacts: usize) -> Forced {
+        let n = system.modes.len();
+        let mut at_nodes = Vec::with_capacity(n);
+        let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
+        for body in &system.bodies {
+            let (mut terms, mut unused) = (Terms::default(), Compliance::new());
+            for k in body.clone() {
+                let part = part(&system.modes[k], 0.0, step_s(j), &half.of(k), &mut terms, &mut unused);
+                at_nodes.push(part.at_nodes);
+                for n in 0..Q {
+                    amplitude[n][k] = part.end.0[n];
+                    rate[n][k] = part.end.1[n];
+                }
+            }
+        }
+        let responses = std::iter::repeat_with(|| None).take(contacts * contacts).collect();
+        Forced { at_nodes, amplitude, rate, responses }
+    }
+
+    fn response(&self, system: &System, j: i32, half: &Rotation, one: &Link, other: &Link) -> Response {
+        let h = step_s(j);
+        let (mut end, mut end_rate) = ([0.0; Q], [0.0; Q]);
+        let mut compliance = Compliance::new();
+        let (mut terms, mut last) = (Terms::default(), 0.0);
+        for (k, weight) in one.shared(other).filter(|(_, weight)| *weight != 0.0) {
+            let mode = &system.modes[k];
+            if mode.omega_rad_s < last {
+                // the next body begins
+                terms = Terms::default();
+            }
+            last = mode.omega_rad_s;
+            part(mode, weight, h, &half.of(k), &mut terms, &mut compliance);
+            for n in 0..Q {
+                end[n] -= weight * self.amplitude[n][k];
+                end_rate[n] -= weight * self.rate[n][k];
+            }
+        }
+        Response { nodes: compliance.at_nodes(h), end, end_rate }
+    }
+}
+
+impl Response {
+    /// Overlap and its rate at the end of a panel, to a force with these Legendre coefficients.
+    pub fn at_end(&self, force: &Nodal) -> (f64, f64) {
+        (dot(&self.end, force), dot(&self.end_rate, force))
+    }
+}

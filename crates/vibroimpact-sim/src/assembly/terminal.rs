@@ -1,0 +1,258 @@
+//! Panels of any length, for the step that ends on an event.
+//!
+//! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series, whose
+//! terms at the contacts are the same few numbers whatever the length tried.
+
+use super::collocate::{Collocated, Unknown, collocate};
+use super::load::Loads;
+use super::solution::Counts;
+use super::system::{Link, Span, System};
+use super::tables::Tables;
+use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
+use contact_models::ContactLaw;
+use std::array;
+
+/// The series are used while the fastest motion turns by at most this many radians.
+pub(super) const REACH: f64 = 0.7;
+
+type Series = [f64; TAYLOR];
+
+/// The state of some contacts at the start of a terminal panel.
+pub(super) struct Window {
+    /// Closed contacts, then open ones that are watched.
+    pub contacts: Vec<usize>,
+    pub closed: usize,
+    /// `g^(p)/p!` of the free motion of each contact's overlap.
+    pub free: Vec<Series>,
+    /// Derivatives of the responses, `[c * closed + c']`; zero where no body is shared.
+    kernels: Vec<Series>,
+}
+
+/// A solved terminal panel.
+#[derive(Debug, Clone)]
+pub(super) struct Landed {
+    pub length: f64,
+    /// Of the closed contacts: values at the nodes, and Legendre coefficients of the force.
+    pub solved: Vec<Collocated>,
+    pub force: Vec<Nodal>,
+    /// Overlap of every contact of the window at the nodes.
+    pub overlap: Vec<Nodal>,
+    /// Overlap and its first two derivatives at the end.
+    pub end: Vec<[f64; 3]>,
+}
+
+impl Window {
+    /// `overlaps` are those of the contacts now.
+    pub fn new(
+        system: &System,
+        tables: &mut Tables,
+        loads: &Loads,
+        (contacts, closed): (Vec<usize>, usize),
+        overlaps: &[f64],
+        (time_s, amplitude, rate): (f64, &[f64], &[f64]),
+    ) -> Window {
+        let series = |(&c, overlap): (&usize, &f64)| {
+            let mut series = series_of(system, loads, c, (time_s, amplitude, rate));
+            series[0] = *overlap;
+            series
+        };
+        let free = contacts.iter().zip(overlaps).map(series).collect();
+        let mut kernels = Vec::with_capacity(contacts.len() * closed);
+        for &c in &contacts {
+            for &other in &contacts[..closed] {
+                kernels.push(tables.kernel(system, c, other));
+            }
+        }
+        Window { contacts, closed, free, kernels }
+    }
+
+    /// Solves the panel of this length.
+    pub fn attempt<L: ContactLaw>(
+        &self,
+        length: f64,
+        unknowns: &mut [Unknown<L>],
+        counts: &mut Counts,
+    ) -> Option<Landed> {
+        let responses: Vec<Option<Matrix>> = self.kernels.iter().map(|kernel| response(kernel, length)).collect();
+        for (c, unknown) in unknowns.iter_mut().enumerate() {
+            unknown.free = BASIS.nodes.map(|s| value(&self.free[c], s * length)[0]);
+        }
+        let solved = collocate(unknowns, |c, other| responses[c * self.closed + other].as_ref(), length, counts)?;
+        let force = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
+        Some(self.arrive(length, solved, force))
+    }
+
+    /// The panel under known forces: the overlaps at the nodes and at the end.
+    fn arrive(&self, length: f64, solved: Vec<Collocated>, force: Vec<Nodal>) -> Landed {
+        let (mut overlap, mut end) = (Vec::new(), Vec::new());
+        for (c, free) in self.free.iter().enumerate() {
+            let mut nodal = BASIS.nodes.map(|s| value(free, s * length)[0]);
+            let mut at_end = value(free, length);
+            for (other, solved) in solved.iter().enumerate() {
+                let kernel = &self.kernels[c * self.closed + other];
+                if let Some(response) = response(kernel, length) {
+                    for j in 0..Q {
+                        for i in 0..Q {
+                            nodal[i] += response[j][i] * solved.force[j];
+                        }
+                    }
+                    add_end(kernel, length, &solved.force, &force[other], &mut at_end);
+                }
+            }
+            overlap.push(nodal);
+            end.push(at_end);
+        }
+        Landed { length, solved, force, overlap, end }
+    }
+
+    /// The same forces, cut short or carried on to another length.
+    pub fn carried(&self, from: &Landed, length: f64) -> Landed {
+        let part = length / from.length;
+        let carry = |nodal: &Nodal| {
+            let coefficients = BASIS.coefficients(nodal);
+            BASIS.nodes.map(|s| evaluate(&coefficients, s * part))
+        };
+        let carried = |solved: &Collocated| Collocated {
+            force: carry(&solved.force),
+            compression: carry(&solved.compression),
+            rate: carry(&solved.rate),
+        };
+        let solved: Vec<Collocated> = from.solved.iter().map(carried).collect();
+        let force = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
+        self.arrive(length, solved, force)
+    }
+}
+
+/// Value, first and second derivative of a series at `t`.
+pub(super) fn value(series: &Series, t: f64) -> [f64; 3] {
+    let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
+    for p in (0..TAYLOR).rev() {
+        bend = bend * t + slope;
+        slope = slope * t + value;
+        value = value * t + series[p];
+    }
+    [value, slope, 2.0 * bend]
+}
+
+/// Derivatives of a response times `length^p`, and how many matter.
+fn scaled(kernel: &Series, length: f64) -> (Series, usize) {
+    let mut scaled = *kernel;
+    let mut power = 1.0;
+    for value in &mut scaled {
+        *value *= power;
+        power *= length;
+    }
+    let least = 1e-18 * scaled[1].abs();
+    let terms = scaled.iter().rposition(|value| value.abs() > least).map_or(0, |last| last + 1);
+    (scaled, terms)
+}
+
+/// Overlap at the nodes to nodal forces; `None` where there is no response at all.
+fn response(kernel: &Series, length: f64) -> Option<Matrix> {
+    let (scaled, terms) = scaled(kernel, length);
+    (terms > 0).then(|| {
+        let mut response = [[0.0; Q]; Q];
+        for (kernel, power) in scaled[..terms].iter().zip(&BASIS.power) {
+            for j in 0..Q {
+                for i in 0..Q {
+                    response[j][i] -= kernel * length * power[j][i];
+                }
+            }
+        }
+        response
+    })
+}
+
+/// Adds overlap, rate and acceleration at the end under these nodal forces with these coefficients.
+fn add_end(kernel: &Series, length: f64, nodal: &Nodal, force: &Nodal, end: &mut [f64; 3]) {
+    let (scaled, terms) = scaled(kernel, length);
+    let moments: [f64; TAYLOR] = array::from_fn(|p| if p < terms { dot(&BASIS.power_end[p], nodal) } else { 0.0 });
+    end[2] -= scaled[1] / length * evaluate(force, 1.0);
+    for p in 1..terms {
+        end[0] -= scaled[p] * length * moments[p];
+        end[1] -= scaled[p] * moments[p - 1];
+        if p > 1 {
+            end[2] -= scaled[p] / length * moments[p - 2];
+        }
+    }
+}
+
+/// `g^(p)/p!` of the free motion of a contact's overlap under the loads; its value is that of the modes alone.
+pub(super) fn series_of(
+    system: &System,
+    loads: &Loads,
+    contact: usize,
+    (time_s, amplitude, rate): (f64, &[f64], &[f64]),
+) -> Series {
+    let mut series = [0.0; TAYLOR];
+    for Span { modes, psi } in &system.links[contact].spans {
+        for (k, psi) in modes.clone().zip(psi) {
+            let mode = &system.modes[k];
+            let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
+            let (mut here, mut next) = (psi * amplitude[k], psi * rate[k]);
+            for value in &mut series {
+                *value += here;
+                (here, next) = (next, -drag * next - square * here);
+            }
+        }
+    }
+    let mut divided = 1.0;
+    for (p, value) in series.iter_mut().enumerate().skip(2) {
+        divided *= RECIPROCAL[p];
+        *value *= divided;
+    }
+    loads.add_series(contact, time_s, &mut series);
+    series
+}
+
+/// Free motion of all modes over `length`.
+pub(super) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+    for (k, mode) in system.modes.iter().enumerate() {
+        if mode.is_rigid() {
+            amplitude[k] += length * rate[k];
+            continue;
+        }
+        let terms = terms(mode.omega_rad_s, mode.damping_ratio, length);
+        let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
+        let (mut here, mut next) = (amplitude[k], rate[k]);
+        let (mut a, mut b, mut power) = (0.0, 0.0, 1.0);
+        for p in 0..terms {
+            a += power * here;
+            b += power * next;
+            (here, next) = (next, -drag * next - square * here);
+            power *= length * RECIPROCAL[p + 1];
+        }
+        (amplitude[k], rate[k]) = (a, b);
+    }
+}
+
+fn terms(omega: f64, zeta: f64, length: f64) -> usize {
+    BASIS.terms::<TAYLOR>((1.0 + 2.0 * zeta) * omega * length, 2)
+}
+
+/// Adds what nodal contact forces do to the modes within a panel of `length`.
+pub(super) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+    // the response of a mode is the sum of the derivatives of its impulse response times the moments of the force
+    let mut power = length;
+    let moments: Series = array::from_fn(|p| {
+        let moment = power * dot(&BASIS.power_end[p], nodal);
+        power *= length;
+        moment
+    });
+    for Span { modes, psi } in &link.spans {
+        for (k, psi) in modes.clone().zip(psi) {
+            let mode = &system.modes[k];
+            let terms = terms(mode.omega_rad_s, mode.damping_ratio, length);
+            let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
+            let (mut here, mut next) = (0.0, 1.0);
+            let (mut a, mut b) = (0.0, 0.0);
+            for moment in &moments[..terms] {
+                a += here * moment;
+                b += next * moment;
+                (here, next) = (next, -drag * next - square * here);
+            }
+            amplitude[k] -= psi * a;
+            rate[k] -= psi * b;
+        }
+    }
+}
