@@ -177,7 +177,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             Some(Reason::FinestStep)
         } else if self.events_at_once > CHATTER {
             Some(Reason::Chatter)
-        } else if steps % ASK == 0 && self.observer.interrupts() {
+        } else if steps.is_multiple_of(ASK) && self.observer.interrupts() {
             Some(Reason::Interrupted)
         } else {
             let beyond =
@@ -309,7 +309,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
         };
-        state.phase = Phase::Closed(touch);
+        state.phase = Phase::Closed(Box::new(touch));
         let momentum = if inverse > 0.0 { approach_speed_m_s.abs() / inverse } else { 0.0 };
         state.momentum = state.momentum.max(momentum);
         let of_others = |states: &[State]| states.iter().map(|state| state.momentum).fold(0.0, f64::max);
@@ -534,7 +534,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let missed = (self.force_at(c, trial.end[i]) - evaluate(&trial.force[i], 1.0)).abs();
             error = error.max(truncation(&trial.force[i]) * h / tolerance).max(missed * h / tolerance);
         }
-        if !(error <= 1.0) {
+        if error.is_nan() || error > 1.0 {
             // the error falls at least like h^5, but for the first panels of a contact, which are begun short enough
             let finer = (error.log2() / 5.0) as i32;
             return self.refine(level + finer.clamp(1, 4));

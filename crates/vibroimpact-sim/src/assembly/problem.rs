@@ -263,7 +263,7 @@ impl Force {
                 require_all_finite(times_s, times_s.len(), &of("times_s"))?;
                 let count = format!("{} values", forces_n.len());
                 let equal = forces_n.len() == times_s.len();
-                InvalidInput::unless(equal, &of("forces_n"), count, "one value a time")?;
+                InvalidInput::unless(equal, of("forces_n"), count, "one value a time")?;
                 require_all_finite(forces_n, times_s.len(), &of("forces_n"))?;
                 let wrong = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1]);
                 wrong.map_or(Ok(()), |i| {

@@ -30,7 +30,7 @@ pub(super) enum Phase {
         /// It is certain that the contact stays open until then (s), if its bodies meet no force.
         clear_until: f64,
     },
-    Closed(Touch),
+    Closed(Box<Touch>),
 }
 
 /// A contact that is closed.
