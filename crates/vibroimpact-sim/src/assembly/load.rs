@@ -254,6 +254,16 @@ impl Loads {
         }
     }
 
+    /// Whether no load changes any more.
+    pub fn are_constant(&self) -> bool {
+        self.harmonics.is_empty() && self.next == self.breaks.len() && self.force_rate.iter().all(|rate| *rate == 0.0)
+    }
+
+    /// The straight-line load on a rigid mode at the last break (N kg^-1/2).
+    pub fn on_mode(&self, k: usize) -> f64 {
+        self.force.get(k).copied().unwrap_or(0.0)
+    }
+
     /// The fastest of the loads (rad/s).
     pub fn fastest_rad_s(&self) -> f64 {
         self.harmonics.iter().map(|harmonic| harmonic.omega_rad_s).fold(0.0, f64::max)

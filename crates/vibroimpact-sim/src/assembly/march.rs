@@ -11,6 +11,7 @@ use super::enclosure::{Flight, of_panel, safe_time};
 use super::event::{EventFunction, Verdict};
 use super::load::Loads;
 use super::problem::{Assembly, Settings};
+use super::rest;
 use super::solution::{Counts, Interval, Observer, Outcome, Reason};
 use super::state::{Phase, State, Touch};
 use super::system::System;
@@ -41,6 +42,8 @@ const SINGULAR: f64 = 1e-4;
 const WINDOW: i32 = 2;
 /// So many events in a row without time going on are chatter.
 const CHATTER: u64 = 10_000;
+/// Rest is looked for once in so many committed panels.
+const REST: u64 = 64;
 /// The observer is asked whether to stop once in so many panels.
 const ASK: u64 = 64;
 
@@ -68,8 +71,8 @@ struct Trial {
 
 pub(super) struct March<'a, L> {
     pub assembly: &'a Assembly<L>,
-    pub system: System,
-    tables: Tables,
+    pub system: &'a System,
+    tables: &'a mut Tables,
     pub loads: Loads,
     settings: Settings,
     observer: &'a mut dyn Observer,
@@ -85,6 +88,8 @@ pub(super) struct March<'a, L> {
     landing: f64,
     /// Longest terminal panel for which the series serve (s).
     reach: f64,
+    /// Number of committed panels at which rest is looked for again.
+    ask_rest_at: u64,
     intervals: u64,
     last_event_s: f64,
     events_at_once: u64,
@@ -92,16 +97,21 @@ pub(super) struct March<'a, L> {
 }
 
 impl<'a, L: ContactLaw> March<'a, L> {
-    pub fn new(assembly: &'a Assembly<L>, settings: Settings, observer: &'a mut dyn Observer) -> March<'a, L> {
-        let system = System::new(assembly);
-        let loads = Loads::new(assembly, &system);
+    pub fn new(
+        assembly: &'a Assembly<L>,
+        system: &'a System,
+        tables: &'a mut Tables,
+        settings: Settings,
+        observer: &'a mut dyn Observer,
+    ) -> March<'a, L> {
+        let loads = Loads::new(assembly, system);
         let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
         for (body, places) in assembly.bodies.iter().zip(&system.place) {
             for (k, place) in places.iter().enumerate() {
                 (amplitude[*place], rate[*place]) = (body.amplitude[k], body.rate[k]);
             }
         }
-        loads.shift_modes(&system, 0.0, -1.0, &mut amplitude, &mut rate);
+        loads.shift_modes(system, 0.0, -1.0, &mut amplitude, &mut rate);
         let fastest = system.modes.iter().map(|mode| mode.omega_rad_s * (1.0 + 2.0 * mode.damping_ratio));
         let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
         let state = |gap: f64| State {
@@ -114,7 +124,6 @@ impl<'a, L: ContactLaw> March<'a, L> {
             statistics: Default::default(),
         };
         let states = assembly.contacts.iter().map(|contact| state(contact.gap_m)).collect();
-        let tables = Tables::new(&system);
         March {
             assembly,
             system,
@@ -131,6 +140,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             horizon: None,
             landing: f64::INFINITY,
             reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
+            ask_rest_at: REST,
             intervals: 0,
             last_event_s: -1.0,
             events_at_once: 0,
@@ -149,13 +159,15 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 break Outcome::End;
             }
             if self.time_s >= self.loads.next_break_s() {
-                self.loads.pass_break(&self.system, self.time_s, &mut self.amplitude, &mut self.rate);
+                self.loads.pass_break(self.system, self.time_s, &mut self.amplitude, &mut self.rate);
                 self.forget_horizons();
             }
-            if self.states.iter().any(State::is_closed) {
-                self.contact()
+            if !self.states.iter().any(State::is_closed) {
+                self.fly();
+            } else if self.settings.stop_at_rest && self.looks_for_rest() && rest::is_certain(self) {
+                break Outcome::Rest;
             } else {
-                self.fly()
+                self.contact();
             }
             self.stop = self.stop.or_else(|| self.limit());
         };
@@ -165,6 +177,14 @@ impl<'a, L: ContactLaw> March<'a, L> {
             }
         }
         outcome
+    }
+
+    fn looks_for_rest(&mut self) -> bool {
+        let now = self.counts.contact_steps >= self.ask_rest_at;
+        if now {
+            self.ask_rest_at = self.counts.contact_steps + REST;
+        }
+        now
     }
 
     fn limit(&mut self) -> Option<Reason> {
@@ -206,7 +226,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Whether surfaces that touch begin to part: the first derivative that is not zero says so.
     fn parts_from_here(&self, c: usize) -> bool {
-        let series = series_of(&self.system, &self.loads, c, self.moment());
+        let series = series_of(self.system, &self.loads, c, self.moment());
         let reach = self.reach.min(self.settings.end_s);
         let mut power = 1.0;
         let terms = series.map(|term| {
@@ -356,7 +376,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
     fn first_level(&self, c: usize) -> i32 {
         let Some(touch) = self.states[c].touch() else { return J_MIN };
-        let mut series = series_of(&self.system, &self.loads, c, self.moment());
+        let mut series = series_of(self.system, &self.loads, c, self.moment());
         series[0] = self.states[c].overlap;
         let law = self.law(c);
         let allowed = self.impulse_tolerance(c) / SINGULAR;
@@ -411,7 +431,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             {
                 let known = curvatures.iter().find(|(other, _)| *other == c).map(|(_, curvature)| *curvature);
                 let curvature = known.unwrap_or_else(|| self.flight(c, lasting).curvature);
-                let mut series = series_of(&self.system, &self.loads, c, self.moment());
+                let mut series = series_of(self.system, &self.loads, c, self.moment());
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
                 if let Some(time) = first_root(&series, curvature, window, self.noise(c))
                     && first.is_none_or(|(_, earlier)| time < earlier)
@@ -444,7 +464,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let separation = self.states[c].touch_m() - overlap;
         // surfaces that have just parted overlap by rounding
         let separation = if separation < 0.0 && separation >= -self.noise(c) { 0.0 } else { separation };
-        safe_time(&self.system, &self.loads, c, (self.time_s, lasting), (separation, rate), self.motion())
+        safe_time(self.system, &self.loads, c, (self.time_s, lasting), (separation, rate), self.motion())
     }
 
     fn motion(&self) -> (&[f64], &[f64]) {
@@ -461,14 +481,14 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     fn rotate(&mut self, level: i32) {
         self.show(step_s(level), &[], &[]);
-        self.tables.rotate(&self.system, level, &mut self.amplitude, &mut self.rate);
+        self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         self.pass(step_s(level));
     }
 
     /// Free motion of any length within the series' reach; to the next break or the end where `whole`.
     fn coast(&mut self, length: f64, whole: bool) {
         self.show(length, &[], &[]);
-        terminal::coast(&self.system, length, &mut self.amplitude, &mut self.rate);
+        terminal::coast(self.system, length, &mut self.amplitude, &mut self.rate);
         self.pass(length);
         if whole {
             self.arrive_exactly();
@@ -494,7 +514,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// One trial of a panel with closed contacts, and what follows from it.
     fn contact(&mut self) {
         let lasting = self.lasting();
-        let reach = self.reach.min(self.landing);
+        // a terminal panel is no better than one of about its length
+        let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
+        let reach = self.reach.min(self.landing).min(usual);
         let mut level = self.level;
         if let Some(Horizon { target, at_s }) = self.horizon {
             let left = (at_s - self.time_s).max(0.0);
@@ -600,10 +622,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     fn attempt(&mut self, level: i32, contacts: &[usize], closed: usize) -> Option<Trial> {
         let h = step_s(level);
-        self.tables.prepare(&self.system, level, contacts, &contacts[..closed]);
+        self.tables.prepare(self.system, level, contacts, &contacts[..closed]);
         let free: Vec<Nodal> = contacts.iter().map(|&c| self.free_at_nodes(level, c)).collect();
         let unknowns = self.unknowns(&contacts[..closed], h, |i| free[i]);
-        let tables = &self.tables;
+        let tables = &*self.tables;
         let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
         let solved = collocate(&unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, &mut self.counts)?;
         let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
@@ -673,7 +695,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let mut rho = [0.0; 3];
             if enclosed {
                 let steady = |k: usize| self.steady(contacts, closed, k);
-                rho = of_panel(&self.system, &self.loads, c, h, self.motion(), steady);
+                rho = of_panel(self.system, &self.loads, c, h, self.motion(), steady);
             }
             let noise = self.panel_noise(c, h);
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
@@ -741,7 +763,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     fn commit(&mut self, level: i32, contacts: &[usize], closed: usize, trial: Trial) {
         let h = step_s(level);
         self.show(h, &contacts[..closed], &trial.force);
-        self.tables.rotate(&self.system, level, &mut self.amplitude, &mut self.rate);
+        self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {
             let link = &self.system.links[c];
             self.tables.push(level, link, &trial.force[i], &mut self.amplitude, &mut self.rate);
@@ -780,7 +802,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     fn window(&mut self, contacts: &[usize], closed: usize) -> Window {
         let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        Window::new(&self.system, &mut self.tables, &self.loads, (contacts.to_vec(), closed), &overlaps, moment)
+        Window::new(self.system, self.tables, &self.loads, (contacts.to_vec(), closed), &overlaps, moment)
     }
 
     /// Goes on to the next break of the loads or the end, `length` away.
@@ -931,10 +953,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     fn commit_landed(&mut self, contacts: &[usize], closed: usize, landed: &Landed) {
         self.show(landed.length, &contacts[..closed], &landed.force);
-        terminal::coast(&self.system, landed.length, &mut self.amplitude, &mut self.rate);
+        terminal::coast(self.system, landed.length, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {
             let (link, nodal) = (&self.system.links[c], &landed.solved[i].force);
-            terminal::push(&self.system, link, landed.length, nodal, &mut self.amplitude, &mut self.rate);
+            terminal::push(self.system, link, landed.length, nodal, &mut self.amplitude, &mut self.rate);
         }
         self.pass(landed.length);
         self.book(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
@@ -976,7 +998,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         if self.observer.wants_panels() && h > 0.0 {
             let forces: Vec<(usize, Nodal)> = contacts.iter().copied().zip(force.iter().copied()).collect();
             let panel = Panel {
-                system: &self.system,
+                system: self.system,
                 loads: &self.loads,
                 laws: self.assembly,
                 states: &self.states,

@@ -50,6 +50,8 @@ mod event;
 mod load;
 mod march;
 mod problem;
+mod reliability;
+mod rest;
 mod solution;
 mod solve;
 mod state;
@@ -58,7 +60,8 @@ mod tables;
 mod terminal;
 
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
+pub use reliability::COARSER;
 pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,
 };
-pub use solve::run;
+pub use solve::{Solver, run};

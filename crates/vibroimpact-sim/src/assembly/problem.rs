@@ -137,12 +137,14 @@ pub struct Settings {
     pub max_steps: u64,
     /// Stop after this many intervals of contact. Default 100,000,000.
     pub max_intervals: u64,
+    /// End the run, [`super::Outcome::Rest`], once it is certain that no contact opens or closes any more. Default true.
+    pub stop_at_rest: bool,
 }
 
 impl Settings {
     /// The defaults, for a run that ends at `end_s`.
     pub fn until(end_s: f64) -> Settings {
-        Settings { end_s, tolerance: 1e-9, max_steps: 2_000_000_000, max_intervals: 100_000_000 }
+        Settings { end_s, tolerance: 1e-9, max_steps: 2_000_000_000, max_intervals: 100_000_000, stop_at_rest: true }
     }
 
     pub(super) fn check(&self) -> Result<(), InvalidInput> {

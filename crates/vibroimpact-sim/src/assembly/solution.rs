@@ -6,7 +6,8 @@
 pub enum Outcome {
     /// The end of the time asked for was reached.
     End,
-    /// Nothing can move enough any more to open a contact that is closed or close one that is open.
+    /// The energy above the static equilibrium under the loads is too small to open a contact that is closed or to close
+    /// one that is open. What still vibrates goes on.
     Rest,
     /// The run stopped before; everything up to there is kept.
     Stopped(Reason),

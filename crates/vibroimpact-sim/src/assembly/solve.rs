@@ -3,7 +3,10 @@
 use super::dense::in_users_order;
 use super::march::March;
 use super::problem::{Assembly, Settings};
-use super::solution::{ContactEnd, Observer, Run};
+use super::reliability::{COARSER, Comparison};
+use super::solution::{ContactEnd, Interval, Observer, Run};
+use super::system::System;
+use super::tables::Tables;
 use crate::InvalidInput;
 use contact_models::ContactLaw;
 
@@ -34,24 +37,71 @@ pub fn run<L: ContactLaw>(
     settings: &Settings,
     observer: &mut dyn Observer,
 ) -> Result<Run, InvalidInput> {
-    assembly.check()?;
-    settings.check()?;
-    let mut march = March::new(assembly, *settings, observer);
-    let outcome = march.follow();
-    let contacts = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
-    let (mut amplitude, mut rate) = (march.amplitude, march.rate);
-    march.loads.shift_modes(&march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
-    let (amplitude, rate) = in_users_order(&march.system, &amplitude, &rate);
-    let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
-    Ok(Run {
-        outcome,
-        end_s: march.time_s,
-        amplitude: by_body(&amplitude),
-        rate: by_body(&rate),
-        contacts,
-        energy: None,
-        counts: march.counts,
-    })
+    Solver::new(assembly)?.run(settings, observer)
+}
+
+/// Solves an assembly, more than once if asked: its tables are built as they are needed and kept.
+pub struct Solver<'a, L> {
+    assembly: &'a Assembly<L>,
+    system: System,
+    tables: Tables,
+}
+
+impl<'a, L: ContactLaw> Solver<'a, L> {
+    /// A solver for an assembly; builds no table yet.
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn new(assembly: &'a Assembly<L>) -> Result<Solver<'a, L>, InvalidInput> {
+        assembly.check()?;
+        let system = System::new(assembly);
+        let tables = Tables::new(&system);
+        Ok(Solver { assembly, system, tables })
+    }
+
+    /// As [`run`].
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn run(&mut self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
+        settings.check()?;
+        let mut march = March::new(self.assembly, &self.system, &mut self.tables, *settings, observer);
+        let outcome = march.follow();
+        let contacts = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
+        let (mut amplitude, mut rate) = (march.amplitude, march.rate);
+        march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
+        let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
+        let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
+        Ok(Run {
+            outcome,
+            end_s: march.time_s,
+            amplitude: by_body(&amplitude),
+            rate: by_body(&rate),
+            contacts,
+            energy: None,
+            counts: march.counts,
+        })
+    }
+
+    /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
+    /// [`COARSER`] times as large, finds each of them at a time that differs by less than its own tolerance of the time
+    /// since the start. `intervals` are those of the run to be judged, contact by contact, in order; the run ended at
+    /// `end_s`. Beyond that time only statistics mean anything.
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn reliable_until(
+        &mut self,
+        settings: &Settings,
+        intervals: &[Vec<Interval>],
+        end_s: f64,
+    ) -> Result<f64, InvalidInput> {
+        let tolerance = (COARSER * settings.tolerance).min(0.1);
+        let second = Settings { tolerance, end_s, ..*settings };
+        let mut comparison = Comparison::new(intervals, tolerance, end_s);
+        self.run(&second, &mut comparison)?;
+        Ok(comparison.certain_until())
+    }
 }
 
 fn contact_end<L: ContactLaw>(march: &March<L>, c: usize) -> ContactEnd {
@@ -66,7 +116,7 @@ fn contact_end<L: ContactLaw>(march: &March<L>, c: usize) -> ContactEnd {
     };
     for (i, side) in march.system.links[c].sides.iter().enumerate() {
         if let Some(side) = side {
-            let (shift, shift_rate) = march.loads.side(&march.system, side, march.time_s);
+            let (shift, shift_rate) = march.loads.side(march.system, side, march.time_s);
             end.displacement_m[i] = side.sum(&march.amplitude) + shift;
             end.velocity_m_s[i] = side.sum(&march.rate) + shift_rate;
         }

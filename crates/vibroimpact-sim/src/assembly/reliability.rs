@@ -1,0 +1,59 @@
+//! Up to when the events of a run are certain: a second run finds them again.
+
+use super::solution::{Interval, Observer};
+
+/// How much larger the tolerance of the second run is.
+pub const COARSER: f64 = 32.0;
+
+/// Compares the intervals of a run, as they come, with those of another.
+pub(super) struct Comparison<'a> {
+    known: &'a [Vec<Interval>],
+    seen: Vec<usize>,
+    tolerance: f64,
+    end_s: f64,
+    /// The first event that differs (s).
+    differs_at: f64,
+}
+
+impl<'a> Comparison<'a> {
+    pub fn new(known: &'a [Vec<Interval>], tolerance: f64, end_s: f64) -> Comparison<'a> {
+        Comparison { known, seen: vec![0; known.len()], tolerance, end_s, differs_at: f64::INFINITY }
+    }
+
+    /// Up to here every event was found again.
+    pub fn certain_until(&self) -> f64 {
+        // an interval that the second run did not find at all
+        let missed = self.known.iter().zip(&self.seen).filter_map(|(known, seen)| known.get(*seen));
+        missed.map(|interval| interval.start_s).fold(self.differs_at, f64::min).min(self.end_s)
+    }
+
+    fn differ(&self, one: Option<f64>, other: Option<f64>) -> bool {
+        match (one, other) {
+            (Some(one), Some(other)) => (one - other).abs() > self.tolerance * one.max(other),
+            // still closed at the end in one of them, and released there in the other
+            (Some(time), None) | (None, Some(time)) => (self.end_s - time).abs() > self.tolerance * self.end_s,
+            (None, None) => false,
+        }
+    }
+}
+
+impl Observer for Comparison<'_> {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        let Some(known) = self.known.get(contact).and_then(|known| known.get(self.seen[contact])) else {
+            self.differs_at = self.differs_at.min(interval.start_s);
+            return;
+        };
+        self.seen[contact] += 1;
+        if self.differ(Some(known.start_s), Some(interval.start_s)) {
+            self.differs_at = self.differs_at.min(known.start_s).min(interval.start_s);
+        } else if self.differ(known.end_s, interval.end_s) {
+            let ends = [known.end_s, interval.end_s].into_iter().flatten();
+            self.differs_at = ends.fold(self.differs_at, f64::min);
+        }
+    }
+
+    fn interrupts(&mut self) -> bool {
+        // nothing that comes later than a difference counts
+        self.differs_at < f64::INFINITY
+    }
+}

@@ -1,0 +1,192 @@
+//! Rest: when it is certain that no contact opens or closes any more.
+//!
+//! With the closed contacts `C` held closed, the loads have a static equilibrium: forces `F*` and rigid amplitudes with
+//!
+//! ```text
+//! F_c = law_c(xi_c),   xi_c = xi_c0 - sum_c' S_cc' F_c' + sum_r psi_rc a_r,   sum_c psi_rc F_c = f_r
+//! ```
+//!
+//! where `S_cc' = sum_elastic psi_kc psi_kc'/omega_k^2`. Above it the motion has the energy
+//!
+//! ```text
+//! E' = sum (b_k^2 + omega_k^2 (a_k - a_k*)^2)/2 + sum_c (U_c(xi) - U_c(xi*) - F_c* (xi - xi*))
+//! ```
+//!
+//! with `U` the energy that a contact stores: every term is positive, and `E'` never grows. A contact has to pass
+//! `F* xi* - U(xi*)` of it to open. An open one has to be moved by its distance at equilibrium: an elastic mode moves by
+//! at most `sqrt(2 E')/omega`, a closed contact by at most where its own term would be `E'`, and a rigid mode only as far
+//! as these let it.
+
+use super::march::March;
+use super::state::State;
+use contact_models::ContactLaw;
+use nalgebra::{DMatrix, DVector};
+
+/// Newton's method on the equilibrium.
+const ITERATIONS_MAX: usize = 40;
+
+/// A static equilibrium: contact forces (N), compressions (m), amplitudes of the rigid modes.
+struct Equilibrium {
+    closed: Vec<usize>,
+    force: Vec<f64>,
+    compression: Vec<f64>,
+    rigid: Vec<(usize, f64)>,
+}
+
+/// Whether nothing that can still happen opens or closes a contact.
+pub(super) fn is_certain<L: ContactLaw>(march: &March<L>) -> bool {
+    if !march.loads.are_constant() {
+        return false;
+    }
+    // a body that nothing holds flies on
+    let closed: Vec<usize> = (0..march.states.len()).filter(|&c| march.states[c].is_closed()).collect();
+    equilibrium(march, closed).is_some_and(|equilibrium| holds(march, &equilibrium))
+}
+
+fn equilibrium<L: ContactLaw>(march: &March<L>, closed: Vec<usize>) -> Option<Equilibrium> {
+    let system = march.system;
+    let rigid: Vec<usize> = (0..system.modes.len()).filter(|&k| system.modes[k].is_rigid()).collect();
+    let (n, m) = (closed.len(), rigid.len());
+    if m > n {
+        return None;
+    }
+    let psi = |c: usize, k: usize| -> f64 {
+        let found = system.links[c].rigid.iter().find(|(other, _)| *other == k);
+        found.map_or(0.0, |(_, psi)| *psi)
+    };
+    let flexibility = DMatrix::from_fn(n, n, |i, j| {
+        let shared = system.links[closed[i]].shared(&system.links[closed[j]]);
+        let elastic = shared.filter(|(k, _)| !system.modes[*k].is_rigid());
+        elastic.map(|(k, weight)| weight / system.modes[k].omega_rad_s.powi(2)).sum()
+    });
+    let rigid_part = DMatrix::from_fn(n, m, |i, r| psi(closed[i], rigid[r]));
+    // the overlap of each contact without force and with the rigid modes in place
+    let unloaded: Vec<f64> = closed
+        .iter()
+        .map(|&c| {
+            let moved: f64 = system.links[c].elastic.iter().map(|(k, psi)| psi * march.amplitude[*k]).sum();
+            let rigid: f64 = system.links[c].rigid.iter().map(|(k, psi)| psi * march.amplitude[*k]).sum();
+            march.states[c].overlap - moved - rigid
+        })
+        .collect();
+    let mut force: DVector<f64> =
+        DVector::from_fn(n, |i, _| law_at(march, closed[i], march.states[closed[i]].overlap).0);
+    let mut amplitude: DVector<f64> = DVector::from_fn(m, |r, _| march.amplitude[rigid[r]]);
+    let load = DVector::from_fn(m, |r, _| march.loads.on_mode(rigid[r]));
+    for _ in 0..ITERATIONS_MAX {
+        let compression = DVector::from_column_slice(&unloaded) - &flexibility * &force + &rigid_part * &amplitude;
+        let laws: Vec<(f64, f64)> = (0..n).map(|i| law_at(march, closed[i], compression[i])).collect();
+        let mut matrix = DMatrix::zeros(n + m, n + m);
+        let mut right = DVector::zeros(n + m);
+        for i in 0..n {
+            let (at, stiffness) = laws[i];
+            right[i] = at - force[i];
+            matrix[(i, i)] = 1.0;
+            for j in 0..n {
+                matrix[(i, j)] += stiffness * flexibility[(i, j)];
+            }
+            for r in 0..m {
+                matrix[(i, n + r)] = -stiffness * rigid_part[(i, r)];
+                matrix[(n + r, i)] = rigid_part[(i, r)];
+            }
+        }
+        let balance = &load - rigid_part.transpose() * &force;
+        right.rows_mut(n, m).copy_from(&balance);
+        let change = matrix.lu().solve(&right)?;
+        if !change.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        force += change.rows(0, n);
+        amplitude += change.rows(n, m);
+        let small = |change: f64, size: f64| change.abs() <= 1e-12 * size;
+        let forces_known = (0..n).all(|i| small(change[i], force[i].abs()));
+        let largest = amplitude.iter().fold(f64::MIN_POSITIVE, |most: f64, a| most.max(a.abs()));
+        if forces_known && (0..m).all(|r| small(change[n + r], largest)) {
+            let compression = DVector::from_column_slice(&unloaded) - &flexibility * &force + &rigid_part * &amplitude;
+            return Some(Equilibrium {
+                closed,
+                force: force.iter().copied().collect(),
+                compression: compression.iter().copied().collect(),
+                rigid: rigid.into_iter().zip(amplitude.iter().copied()).collect(),
+            });
+        }
+    }
+    None
+}
+
+/// Force of a closed contact at rest with this compression, and its slope.
+fn law_at<L: ContactLaw>(march: &March<L>, c: usize, compression: f64) -> (f64, f64) {
+    let Some(touch) = march.states[c].touch() else { return (0.0, 0.0) };
+    let force = march.assembly.contacts[c].law.force(&touch.branch, compression, 0.0);
+    (force.force_n, force.per_compression_n_m)
+}
+
+fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
+    let system = march.system;
+    if at.force.iter().any(|force| *force <= 0.0) {
+        return false;
+    }
+    let stored = |i: usize, compression: f64| {
+        let c = at.closed[i];
+        let touch = march.states[c].touch();
+        touch.map_or(0.0, |touch| march.assembly.contacts[c].law.stored_energy_j(&touch.branch, compression))
+    };
+    let mut energy: f64 = march.rate.iter().map(|b| 0.5 * b * b).sum();
+    for (k, mode) in system.modes.iter().enumerate().filter(|(_, mode)| !mode.is_rigid()) {
+        let held: f64 = at.closed.iter().zip(&at.force).map(|(&c, force)| weight(march, c, k) * force).sum();
+        energy += 0.5 * (mode.omega_rad_s * march.amplitude[k] + held / mode.omega_rad_s).powi(2);
+    }
+    let mut yielding = Vec::with_capacity(at.closed.len());
+    for (i, &c) in at.closed.iter().enumerate() {
+        let (now, still) = (march.states[c].overlap, at.compression[i]);
+        energy += (stored(i, now) - stored(i, still) - at.force[i] * (now - still)).max(0.0);
+        yielding.push(law_at(march, c, still).1);
+    }
+    let opens = (0..at.closed.len()).any(|i| at.force[i] * at.compression[i] - stored(i, at.compression[i]) <= energy);
+    !opens
+        && march
+            .states
+            .iter()
+            .enumerate()
+            .filter(|(_, state)| !state.is_closed())
+            .all(|(c, state)| stays_open(march, at, c, state, energy, &yielding))
+}
+
+/// `psi` of an elastic mode in a contact.
+fn weight<L>(march: &March<L>, c: usize, k: usize) -> f64 {
+    let span = march.system.links[c].spans.iter().find(|span| span.modes.contains(&k));
+    span.map_or(0.0, |span| span.psi[k - span.modes.start])
+}
+
+fn stays_open<L: ContactLaw>(
+    march: &March<L>,
+    at: &Equilibrium,
+    c: usize,
+    state: &State,
+    energy: f64,
+    yielding: &[f64],
+) -> bool {
+    let (system, link) = (march.system, &march.system.links[c]);
+    let (shift, _) = march.loads.overlap(c, march.time_s);
+    let (mut overlap, mut reach) = (state.reference + shift, 0.0);
+    let speed = (2.0 * energy).sqrt();
+    for &(k, psi) in &link.elastic {
+        let omega = system.modes[k].omega_rad_s;
+        let held: f64 = at.closed.iter().zip(&at.force).map(|(&other, force)| weight(march, other, k) * force).sum();
+        overlap -= psi * held / omega.powi(2);
+        reach += psi.abs() * speed / omega;
+    }
+    for &(k, psi) in &link.rigid {
+        overlap += psi * at.rigid.iter().find(|(other, _)| *other == k).map_or(0.0, |(_, amplitude)| *amplitude);
+        // moved by no more than what the contacts that hold the mode yield, and the elastic modes behind them
+        let held_by = at.closed.iter().zip(yielding).filter_map(|(&other, stiffness)| {
+            let (_, own) = system.links[other].rigid.iter().find(|(mode, _)| *mode == k)?;
+            let elastic: f64 =
+                system.links[other].elastic.iter().map(|(j, w)| w.abs() / system.modes[*j].omega_rad_s).sum();
+            // a contact that stiffens yields less on the one side and, while it stays closed, twice as much on the other
+            Some((2.0 * speed / stiffness.sqrt() + speed * elastic) / own.abs())
+        });
+        reach += psi.abs() * held_by.fold(f64::INFINITY, f64::min);
+    }
+    state.touch_m() - overlap > reach
+}
