@@ -65,15 +65,22 @@ fn interpolation(theta: f64) -> [f64; ORDERS] {
     std::array::from_fn(|r| (power * bounds.resolved[r]).min(fast[r] + bounds.lebesgue[r]))
 }
 
+/// A contact force and its rate, and what it acts on.
+pub(super) struct Pull<'a> {
+    pub link: &'a Link,
+    pub force_n: f64,
+    pub rate_n_s: f64,
+}
+
 /// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
-/// through start and nodes. `steady` is where the contact forces hold each mode, and its rate.
+/// through start and nodes. `pulls` are the contact forces at its start.
 pub(super) fn of_panel(
     system: &System,
     loads: &Loads,
     contact: usize,
     h: f64,
     (amplitude, rate): (&[f64], &[f64]),
-    steady: impl Fn(usize) -> (f64, f64),
+    pulls: &[Pull],
 ) -> [f64; ORDERS] {
     let mut rho = [0.0; ORDERS];
     let mut add = |amplitude: f64, theta: f64| {
@@ -88,7 +95,12 @@ pub(super) fn of_panel(
         if omega * h < FOLLOWED && turning < FOLLOWED {
             break;
         }
-        let (held, held_rate) = steady(k);
+        let (mut held, mut held_rate) = (0.0, 0.0);
+        for pull in pulls {
+            let psi = pull.link.weight(k) / (omega * omega);
+            held -= psi * pull.force_n;
+            held_rate -= psi * pull.rate_n_s;
+        }
         let size = (amplitude[k] - held).abs() + (rate[k] - held_rate).abs() / omega;
         add(psi.abs() * size, turning);
     }
@@ -98,58 +110,98 @@ pub(super) fn of_panel(
     rho
 }
 
-/// What is certain of a flight.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Flight {
-    /// A time (s) before which the contact cannot close, infinite if it never can.
-    pub safe_s: f64,
-    /// The overlap's second derivative is never larger (m/s^2).
-    pub curvature: f64,
+/// Amplitude bounds of the modes that move an open contact, summed up beyond some of them. They hold as long as the
+/// contact's bodies move freely, since no free vibration grows.
+#[derive(Debug, Clone)]
+pub(super) struct FlightBounds {
+    /// How many of the slowest modes a parabola follows, `H` of the others, `B` of these.
+    cuts: Vec<(usize, f64, f64)>,
+    /// How often they have served: damped vibrations leave room for better ones.
+    uses: u32,
 }
 
-/// A time from `time_s` on before which an open contact cannot close in free motion, infinite if it never can. `separation`
-/// is the distance of the surfaces, `rate` that of their approach; straight-line loads last for `lasting_s`.
-pub(super) fn safe_time(
-    system: &System,
-    loads: &Loads,
-    contact: usize,
-    (time_s, lasting_s): (f64, f64),
-    (separation, rate): (f64, f64),
-    (amplitude, mode_rate): (&[f64], &[f64]),
-) -> Flight {
-    let link: &Link = &system.links[contact];
-    let size = |k: usize| amplitude[k].hypot(mode_rate[k] / system.modes[k].omega_rad_s);
-    let acceleration = |after: f64| loads.acceleration(contact, time_s + after);
-    let mut curvature =
-        acceleration(0.0).max(acceleration(if lasting_s.is_finite() { lasting_s } else { 0.0 })).max(0.0);
-    curvature += loads.harmonics.iter().map(|h| h.omega_rad_s.powi(2) * h.contacts[contact].norm()).sum::<f64>();
-    // from all modes down: what is left out of the parabola is bounded by its amplitude
-    let mut cuts = Vec::with_capacity(link.elastic.len() + 1);
-    let (mut u, mut closing, mut above) = (separation, rate, 0.0);
-    cuts.push((u, closing, 0.0));
-    for &(k, psi) in link.elastic.iter().rev() {
-        let bound = psi.abs() * size(k);
-        above += bound;
-        u += psi * amplitude[k];
-        closing -= psi * mode_rate[k];
-        cuts.push((u - above * (1.0 + 1e-12), closing, bound));
-    }
-    let mut best = 0.0f64;
-    for i in (0..cuts.len()).rev() {
-        let (u, closing, _) = cuts[i];
-        // a parabola that is still above zero at the best time yet has its root beyond it
-        let at_best = u - best * (closing + 0.5 * curvature * best);
-        if best < f64::INFINITY && at_best > 0.0 && u >= 0.0 || (u == 0.0 && closing < 0.0 && best == 0.0) {
-            best = first_root_of_parabola(u, -closing, curvature);
+/// New bounds are taken after so many uses.
+const USES: u32 = 16;
+
+impl FlightBounds {
+    pub fn new(system: &System, contact: usize, (amplitude, rate): (&[f64], &[f64])) -> FlightBounds {
+        let elastic = &system.links[contact].elastic;
+        let n = elastic.len();
+        let bound = |(k, psi): &(usize, f64)| {
+            let speed = rate[*k] / system.modes[*k].omega_rad_s;
+            psi.abs() * (amplitude[*k] * amplitude[*k] + speed * speed).sqrt()
+        };
+        let bounds: Vec<f64> = elastic.iter().map(bound).collect();
+        let total: f64 = bounds.iter().sum();
+        let (mut cuts, mut below, mut curvature) = (Vec::new(), 0.0, 0.0);
+        for i in 0..=n {
+            // every count up to 4, then in ratios of about 4/3
+            if i <= 4 || i == n || i.leading_zeros() != (i - 1).leading_zeros() || i % (i.ilog2() as usize * 2) == 0 {
+                let above = if i == n { 0.0 } else { (total - below).max(0.0) * (1.0 + 1e-12) };
+                cuts.push((i, above, curvature));
+            }
+            if i < n {
+                let mode = &system.modes[elastic[i].0];
+                below += bounds[i];
+                curvature += (1.0 + 2.0 * mode.damping_ratio) * mode.omega_rad_s * mode.omega_rad_s * bounds[i];
+            }
         }
-        // the next parabola follows one mode more
-        if i > 0 {
-            let (k, _) = link.elastic[link.elastic.len() - i];
-            let mode = &system.modes[k];
-            curvature += (1.0 + 2.0 * mode.damping_ratio) * mode.omega_rad_s.powi(2) * cuts[i].2;
-        }
+        FlightBounds { cuts, uses: 0 }
     }
-    Flight { safe_s: best, curvature }
+
+    /// Whether newer bounds may be better.
+    pub fn are_worn(&mut self) -> bool {
+        self.uses += 1;
+        self.uses > USES
+    }
+
+    /// The overlap's second derivative in free motion without loads is never larger (m/s^2).
+    pub fn curvature(&self) -> f64 {
+        self.cuts.last().map_or(0.0, |cut| cut.2)
+    }
+
+    /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of
+    /// all but the elastic modes, less where the surfaces touch; the loads bend it by at most `bend` (m/s^2).
+    pub fn safe_time(
+        &self,
+        link: &Link,
+        (mut overlap, mut rate): (f64, f64),
+        bend: f64,
+        noise: f64,
+        (amplitude, mode_rate): (&[f64], &[f64]),
+    ) -> f64 {
+        let (mut next, mut best) = (0, 0.0f64);
+        for &(cut, above, curvature) in &self.cuts {
+            for &(k, psi) in &link.elastic[next..cut] {
+                overlap += psi * amplitude[k];
+                rate += psi * mode_rate[k];
+            }
+            next = cut;
+            let curvature = curvature + bend;
+            let mut separation = -overlap - above;
+            // surfaces that have just parted overlap by rounding
+            if above == 0.0 && separation < 0.0 && separation >= -noise {
+                separation = 0.0;
+            }
+            // a parabola that is still above zero at the best time yet has its root beyond it
+            let at_best = separation - best * (rate + 0.5 * curvature * best);
+            if at_best > 0.0 && separation >= 0.0 || (separation == 0.0 && rate < 0.0 && best == 0.0) {
+                best = first_root_of_parabola(separation, -rate, curvature);
+                if best == f64::INFINITY {
+                    break;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// By how much the loads may bend the overlap of a contact within `lasting_s` (m/s^2).
+pub(super) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_s: f64) -> f64 {
+    let lasting_s = if lasting_s.is_finite() { lasting_s } else { 0.0 };
+    let lines = loads.acceleration(contact, time_s).max(loads.acceleration(contact, time_s + lasting_s)).max(0.0);
+    let harmonics = loads.harmonics.iter().map(|h| h.omega_rad_s.powi(2) * h.contacts[contact].norm());
+    lines + harmonics.sum::<f64>()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 
 use super::collocate::{Collocated, Unknown, collocate};
 use super::dense::Panel;
-use super::enclosure::{Flight, of_panel, safe_time};
+use super::enclosure::{FlightBounds, Pull, bend_of_loads, of_panel};
 use super::event::{EventFunction, Verdict};
 use super::load::Loads;
 use super::problem::{Assembly, Settings};
@@ -115,7 +115,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let fastest = system.modes.iter().map(|mode| mode.omega_rad_s * (1.0 + 2.0 * mode.damping_ratio));
         let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
         let state = |gap: f64| State {
-            phase: Phase::Open { memory: Memory::default(), clear_until: 0.0 },
+            phase: Phase::Open { memory: Memory::default(), clear_until: 0.0, bounds: None },
             overlap: 0.0,
             rate: 0.0,
             reference: -gap,
@@ -367,8 +367,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
         self.horizon = None;
         self.landing = f64::INFINITY;
         for state in &mut self.states {
-            if let Phase::Open { clear_until, .. } = &mut state.phase {
+            if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
                 *clear_until = clear_until.min(self.time_s);
+                *bounds = None;
             }
         }
     }
@@ -410,11 +411,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
     fn fly(&mut self) {
         self.counts.flight_steps += 1;
         let lasting = self.lasting();
-        let (mut go, mut curvatures) = (f64::INFINITY, Vec::new());
+        let mut go = f64::INFINITY;
         for c in 0..self.states.len() {
             if self.clear_until(c) <= self.time_s {
-                let flight = self.renew(c, lasting);
-                curvatures.push((c, flight.curvature));
+                self.renew(c, lasting);
             }
             go = go.min(self.clear_until(c) - self.time_s);
         }
@@ -427,10 +427,12 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let by_level = lasting > step_s(near);
             let window = if by_level { step_s(near) } else { lasting };
             let mut first: Option<(usize, f64)> = None;
-            for c in (0..self.states.len()).filter(|c| self.clear_until(*c) < self.time_s + window).collect::<Vec<_>>()
-            {
-                let known = curvatures.iter().find(|(other, _)| *other == c).map(|(_, curvature)| *curvature);
-                let curvature = known.unwrap_or_else(|| self.flight(c, lasting).curvature);
+            for c in 0..self.states.len() {
+                if self.clear_until(c) >= self.time_s + window {
+                    continue;
+                }
+                let curvature = self.bounds(c).map_or(0.0, FlightBounds::curvature)
+                    + bend_of_loads(&self.loads, c, self.time_s, lasting);
                 let mut series = series_of(self.system, &self.loads, c, self.moment());
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
                 if let Some(time) = first_root(&series, curvature, window, self.noise(c))
@@ -459,24 +461,39 @@ impl<'a, L: ContactLaw> March<'a, L> {
         }
     }
 
-    fn flight(&self, c: usize, lasting: f64) -> Flight {
-        let (overlap, rate) = self.overlap_of_modes(c);
-        let separation = self.states[c].touch_m() - overlap;
-        // surfaces that have just parted overlap by rounding
-        let separation = if separation < 0.0 && separation >= -self.noise(c) { 0.0 } else { separation };
-        safe_time(self.system, &self.loads, c, (self.time_s, lasting), (separation, rate), self.motion())
-    }
-
     fn motion(&self) -> (&[f64], &[f64]) {
         (&self.amplitude, &self.rate)
     }
 
-    fn renew(&mut self, c: usize, lasting: f64) -> Flight {
-        let flight = self.flight(c, lasting);
-        if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
-            *clear_until = self.time_s + flight.safe_s;
+    /// Bounds on the free motion of an open contact.
+    fn bounds(&mut self, c: usize) -> Option<&FlightBounds> {
+        let motion = (self.amplitude.as_slice(), self.rate.as_slice());
+        let new = || Box::new(FlightBounds::new(self.system, c, motion));
+        match &mut self.states[c].phase {
+            Phase::Open { bounds, .. } => {
+                if bounds.as_mut().is_some_and(|bounds| bounds.are_worn()) {
+                    *bounds = None;
+                }
+                Some(bounds.get_or_insert_with(new))
+            }
+            Phase::Closed(_) => None,
         }
-        flight
+    }
+
+    /// Finds out until when an open contact stays open, if its bodies meet no force.
+    fn renew(&mut self, c: usize, lasting: f64) {
+        let link = &self.system.links[c];
+        let (shift, shift_rate) = self.loads.overlap(c, self.time_s);
+        let rigid = |values: &[f64]| link.rigid.iter().map(|(k, psi)| psi * values[*k]).sum::<f64>();
+        let overlap = self.states[c].reference + (rigid(&self.amplitude) + shift) - self.states[c].touch_m();
+        let rate = rigid(&self.rate) + shift_rate;
+        let bend = bend_of_loads(&self.loads, c, self.time_s, lasting);
+        let noise = self.noise(c);
+        self.bounds(c);
+        let motion = (self.amplitude.as_slice(), self.rate.as_slice());
+        if let Phase::Open { clear_until, bounds: Some(bounds), .. } = &mut self.states[c].phase {
+            *clear_until = self.time_s + bounds.safe_time(link, (overlap, rate), bend, noise, motion);
+        }
     }
 
     fn rotate(&mut self, level: i32) {
@@ -690,12 +707,12 @@ impl<'a, L: ContactLaw> March<'a, L> {
         enclosed: bool,
     ) -> Judgement {
         let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
+        let pulls = self.pulls(&contacts[..closed]);
         for (i, &c) in contacts.iter().enumerate() {
             let state = &self.states[c];
             let mut rho = [0.0; 3];
             if enclosed {
-                let steady = |k: usize| self.steady(contacts, closed, k);
-                rho = of_panel(self.system, &self.loads, c, h, self.motion(), steady);
+                rho = of_panel(self.system, &self.loads, c, h, self.motion(), &pulls);
             }
             let noise = self.panel_noise(c, h);
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
@@ -743,21 +760,15 @@ impl<'a, L: ContactLaw> March<'a, L> {
         }
     }
 
-    /// Where the contact forces at the start of a panel hold an elastic mode, and how fast they move it there.
-    fn steady(&self, contacts: &[usize], closed: usize, k: usize) -> (f64, f64) {
-        let square = self.system.modes[k].omega_rad_s.powi(2);
-        let (mut held, mut moved) = (0.0, 0.0);
-        for &c in &contacts[..closed] {
-            let Some((force, h)) = self.states[c].touch().and_then(|touch| touch.previous) else { continue };
-            for span in self.system.links[c].spans.iter().filter(|span| span.modes.contains(&k)) {
-                let psi = span.psi[k - span.modes.start];
-                held -= psi * evaluate(&force, 1.0) / square;
-                // P_n' is n (n+1) at the end of [0, 1]
-                let slope: f64 = force.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
-                moved -= psi * slope / h / square;
-            }
-        }
-        (held, moved)
+    /// The forces of closed contacts at the start of a panel.
+    fn pulls(&self, closed: &[usize]) -> Vec<Pull<'a>> {
+        let pull = |c: &usize| {
+            let (force, h) = self.states[*c].touch()?.previous?;
+            // P_n' is n (n+1) at the end of [0, 1]
+            let slope: f64 = force.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
+            Some(Pull { link: &self.system.links[*c], force_n: evaluate(&force, 1.0), rate_n_s: slope / h })
+        };
+        closed.iter().filter_map(pull).collect()
     }
 
     fn commit(&mut self, level: i32, contacts: &[usize], closed: usize, trial: Trial) {
@@ -789,8 +800,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
                 state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate);
-            } else if let Phase::Open { clear_until, .. } = &mut state.phase {
-                *clear_until = now;
+            } else if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
+                (*clear_until, *bounds) = (now, None);
             }
             (state.overlap, state.rate) = end(i);
         }
@@ -986,7 +997,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 let state = &mut self.states[c];
                 // the surfaces part where the law says so, not where the sum over the modes puts them
                 state.reference += state.overlap - overlap;
-                state.phase = Phase::Open { memory, clear_until: now };
+                state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.forget_horizons();
                 self.event();
             }

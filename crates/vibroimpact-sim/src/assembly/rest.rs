@@ -133,7 +133,7 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
     };
     let mut energy: f64 = march.rate.iter().map(|b| 0.5 * b * b).sum();
     for (k, mode) in system.modes.iter().enumerate().filter(|(_, mode)| !mode.is_rigid()) {
-        let held: f64 = at.closed.iter().zip(&at.force).map(|(&c, force)| weight(march, c, k) * force).sum();
+        let held: f64 = at.closed.iter().zip(&at.force).map(|(&c, force)| system.links[c].weight(k) * force).sum();
         energy += 0.5 * (mode.omega_rad_s * march.amplitude[k] + held / mode.omega_rad_s).powi(2);
     }
     let mut yielding = Vec::with_capacity(at.closed.len());
@@ -152,12 +152,6 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
             .all(|(c, state)| stays_open(march, at, c, state, energy, &yielding))
 }
 
-/// `psi` of an elastic mode in a contact.
-fn weight<L>(march: &March<L>, c: usize, k: usize) -> f64 {
-    let span = march.system.links[c].spans.iter().find(|span| span.modes.contains(&k));
-    span.map_or(0.0, |span| span.psi[k - span.modes.start])
-}
-
 fn stays_open<L: ContactLaw>(
     march: &March<L>,
     at: &Equilibrium,
@@ -172,7 +166,8 @@ fn stays_open<L: ContactLaw>(
     let speed = (2.0 * energy).sqrt();
     for &(k, psi) in &link.elastic {
         let omega = system.modes[k].omega_rad_s;
-        let held: f64 = at.closed.iter().zip(&at.force).map(|(&other, force)| weight(march, other, k) * force).sum();
+        let held: f64 =
+            at.closed.iter().zip(&at.force).map(|(&other, force)| system.links[other].weight(k) * force).sum();
         overlap -= psi * held / omega.powi(2);
         reach += psi.abs() * speed / omega;
     }

@@ -1,5 +1,6 @@
 //! The contacts as the march carries them.
 
+use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
 use crate::modal::contact::Peak;
 use crate::modal::legendre::{BASIS, Nodal, Q};
@@ -29,6 +30,8 @@ pub(super) enum Phase {
         memory: Memory,
         /// It is certain that the contact stays open until then (s), if its bodies meet no force.
         clear_until: f64,
+        /// What that rests on, while its bodies meet no force.
+        bounds: Option<Box<FlightBounds>>,
     },
     Closed(Box<Touch>),
 }

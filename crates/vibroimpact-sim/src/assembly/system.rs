@@ -36,6 +36,12 @@ impl Link {
         self.spans.iter().map(|span| span.sum(values)).sum()
     }
 
+    /// `psi_k`.
+    pub fn weight(&self, k: usize) -> f64 {
+        let span = self.spans.iter().find(|span| span.modes.contains(&k));
+        span.map_or(0.0, |span| span.psi[k - span.modes.start])
+    }
+
     /// Modes that this link and another both move, with the product of their weights.
     pub fn shared<'a>(&'a self, other: &'a Link) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.spans.iter().flat_map(move |span| {
