@@ -226,8 +226,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Whether surfaces that touch begin to part: the first derivative that is not zero says so.
     fn parts_from_here(&self, c: usize) -> bool {
-        let series = series_of(self.system, &self.loads, c, self.moment());
         let reach = self.reach.min(self.settings.end_s);
+        let series = series_of(self.system, &self.loads, c, self.moment(), reach);
         let mut power = 1.0;
         let terms = series.map(|term| {
             power *= reach;
@@ -377,7 +377,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
     fn first_level(&self, c: usize) -> i32 {
         let Some(touch) = self.states[c].touch() else { return J_MIN };
-        let mut series = series_of(self.system, &self.loads, c, self.moment());
+        let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);
         series[0] = self.states[c].overlap;
         let law = self.law(c);
         let allowed = self.impulse_tolerance(c) / SINGULAR;
@@ -433,7 +433,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 }
                 let curvature = self.bounds(c).map_or(0.0, FlightBounds::curvature)
                     + bend_of_loads(&self.loads, c, self.time_s, lasting);
-                let mut series = series_of(self.system, &self.loads, c, self.moment());
+                let mut series = series_of(self.system, &self.loads, c, self.moment(), window);
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
                 if let Some(time) = first_root(&series, curvature, window, self.noise(c))
                     && first.is_none_or(|(_, earlier)| time < earlier)
@@ -810,16 +810,16 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     // ---- terminal panels ----
 
-    fn window(&mut self, contacts: &[usize], closed: usize) -> Window {
+    fn window(&mut self, contacts: &[usize], closed: usize, reach: f64) -> Window {
         let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        Window::new(self.system, self.tables, &self.loads, (contacts.to_vec(), closed), &overlaps, moment)
+        Window::new(self.system, self.tables, &self.loads, (contacts.to_vec(), closed), (&overlaps, reach), moment)
     }
 
     /// Goes on to the next break of the loads or the end, `length` away.
     fn land_at(&mut self, length: f64) {
         let (contacts, closed) = self.involved(length);
-        let window = self.window(&contacts, closed);
+        let window = self.window(&contacts, closed, length);
         let mut unknowns = self.unknowns(&contacts[..closed], length, |_| [0.0; Q]);
         let Some(landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
@@ -852,7 +852,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let Some(at) = contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
-        let window = self.window(&contacts, closed);
+        let window = self.window(&contacts, closed, (1.0 + CARRIED) * longest);
         let Some(landed) = self.locate(&window, target, at, expected, longest) else {
             // not so near after all: go on, until a panel meets the event again
             return self.refine((self.level + 1).max(level_within(longest)));

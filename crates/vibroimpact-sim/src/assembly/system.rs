@@ -63,6 +63,11 @@ impl Link {
 pub(super) struct System {
     /// The modes, body by body, each by rising frequency.
     pub modes: Vec<Mode>,
+    /// `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and the fastest motion of the modes up to this one of the same body
+    /// (rad/s).
+    pub drag: Vec<f64>,
+    pub square: Vec<f64>,
+    pub turning: Vec<f64>,
     /// The modes of each body.
     pub bodies: Vec<Range<usize>>,
     /// Where each mode of each body, as the user counts them, has its place.
@@ -88,7 +93,18 @@ impl System {
             bodies.push(first..modes.len());
             place.push(places);
         }
-        let mut system = System { modes, bodies, place, links: Vec::new(), neighbours: Vec::new() };
+        let drag: Vec<f64> = modes.iter().map(|mode| 2.0 * mode.damping_ratio * mode.omega_rad_s).collect();
+        let square = modes.iter().map(|mode| mode.omega_rad_s * mode.omega_rad_s).collect();
+        let mut turning = Vec::with_capacity(modes.len());
+        for body in &bodies {
+            let mut fastest = 0.0f64;
+            for k in Range::clone(body) {
+                fastest = fastest.max(modes[k].omega_rad_s + drag[k]);
+                turning.push(fastest);
+            }
+        }
+        let (links, neighbours) = (Vec::new(), Vec::new());
+        let mut system = System { modes, drag, square, turning, bodies, place, links, neighbours };
         system.links = assembly.contacts.iter().map(|contact| system.link(&contact.sides)).collect();
         let links = &system.links;
         let sharing = |one: &Link| (0..links.len()).filter(|&c| one.touches(&links[c])).collect();

@@ -42,17 +42,17 @@ pub(super) struct Landed {
 }
 
 impl Window {
-    /// `overlaps` are those of the contacts now.
+    /// `overlaps` are those of the contacts now; the panel will be no longer than `reach` (s).
     pub fn new(
         system: &System,
         tables: &mut Tables,
         loads: &Loads,
         (contacts, closed): (Vec<usize>, usize),
-        overlaps: &[f64],
+        (overlaps, reach): (&[f64], f64),
         (time_s, amplitude, rate): (f64, &[f64], &[f64]),
     ) -> Window {
         let series = |(&c, overlap): (&usize, &f64)| {
-            let mut series = series_of(system, loads, c, (time_s, amplitude, rate));
+            let mut series = series_of(system, loads, c, (time_s, amplitude, rate), reach);
             series[0] = *overlap;
             series
         };
@@ -177,25 +177,35 @@ fn add_end(kernel: &Series, length: f64, nodal: &Nodal, force: &Nodal, end: &mut
     }
 }
 
-/// `g^(p)/p!` of the free motion of a contact's overlap under the loads; its value is that of the modes alone.
+/// `g^(p)/p!` of the free motion of a contact's overlap under the loads, to be used up to `reach` (s); its value is that of
+/// the modes alone.
 pub(super) fn series_of(
     system: &System,
     loads: &Loads,
     contact: usize,
     (time_s, amplitude, rate): (f64, &[f64], &[f64]),
+    reach: f64,
 ) -> Series {
-    let mut series = [0.0; TAYLOR];
+    let mut sums = [[0.0; LANES]; TAYLOR];
     for Span { modes, psi } in &system.links[contact].spans {
-        for (k, psi) in modes.clone().zip(psi) {
-            let mode = &system.modes[k];
-            let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
-            let (mut here, mut next) = (psi * amplitude[k], psi * rate[k]);
-            for value in &mut series {
-                *value += here;
-                (here, next) = (next, -drag * next - square * here);
+        let mut terms = 2;
+        for k in (0..psi.len()).step_by(LANES) {
+            let at = modes.start + k;
+            terms = BASIS.terms::<TAYLOR>(turning(system, at, modes.end) * reach, terms);
+            let [drag, square, a, b] =
+                [&system.drag, &system.square, amplitude, rate].map(|of: &[f64]| lanes(&of[..modes.end], at));
+            let psi = lanes(psi, k);
+            let (mut here, mut next): ([f64; LANES], [f64; LANES]) =
+                (array::from_fn(|l| psi[l] * a[l]), array::from_fn(|l| psi[l] * b[l]));
+            for sum in &mut sums[..terms] {
+                for l in 0..LANES {
+                    sum[l] += here[l];
+                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                }
             }
         }
     }
+    let mut series = sums.map(|sum| sum.iter().sum());
     let mut divided = 1.0;
     for (p, value) in series.iter_mut().enumerate().skip(2) {
         divided *= RECIPROCAL[p];
@@ -205,29 +215,51 @@ pub(super) fn series_of(
     series
 }
 
+/// Modes taken at a time, for the vector units.
+const LANES: usize = 2;
+
+/// One value of each of the modes from `k` on; zeros beyond the last.
+fn lanes(values: &[f64], k: usize) -> [f64; LANES] {
+    array::from_fn(|l| values.get(k + l).copied().unwrap_or(0.0))
+}
+
+/// The fastest motion (rad/s) of the modes up to those taken from `k` on, of a body whose modes end at `end`.
+fn turning(system: &System, k: usize, end: usize) -> f64 {
+    system.turning[(k + LANES).min(end) - 1]
+}
+
 /// Free motion of all modes over `length`.
 pub(super) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
-    for (k, mode) in system.modes.iter().enumerate() {
-        if mode.is_rigid() {
-            amplitude[k] += length * rate[k];
-            continue;
+    let powers = powers(length);
+    for body in &system.bodies {
+        let mut terms = 2;
+        for k in body.clone().step_by(LANES) {
+            terms = BASIS.terms::<TAYLOR>(turning(system, k, body.end) * length, terms);
+            let (drag, square) = (lanes(&system.drag[..body.end], k), lanes(&system.square[..body.end], k));
+            let (mut here, mut next) = (lanes(&amplitude[..body.end], k), lanes(&rate[..body.end], k));
+            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
+            for power in &powers[..terms] {
+                for l in 0..LANES {
+                    a[l] += power * here[l];
+                    b[l] += power * next[l];
+                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                }
+            }
+            for l in 0..LANES.min(body.end - k) {
+                (amplitude[k + l], rate[k + l]) = (a[l], b[l]);
+            }
         }
-        let terms = terms(mode.omega_rad_s, mode.damping_ratio, length);
-        let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
-        let (mut here, mut next) = (amplitude[k], rate[k]);
-        let (mut a, mut b, mut power) = (0.0, 0.0, 1.0);
-        for p in 0..terms {
-            a += power * here;
-            b += power * next;
-            (here, next) = (next, -drag * next - square * here);
-            power *= length * RECIPROCAL[p + 1];
-        }
-        (amplitude[k], rate[k]) = (a, b);
     }
 }
 
-fn terms(omega: f64, zeta: f64, length: f64) -> usize {
-    BASIS.terms::<TAYLOR>((1.0 + 2.0 * zeta) * omega * length, 2)
+/// `length^p/p!`.
+fn powers(length: f64) -> Series {
+    let mut power = 1.0;
+    array::from_fn(|p| {
+        let this = power;
+        power *= length * RECIPROCAL[p + 1];
+        this
+    })
 }
 
 /// Adds what nodal contact forces do to the modes within a panel of `length`.
@@ -240,19 +272,24 @@ pub(super) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amp
         moment
     });
     for Span { modes, psi } in &link.spans {
-        for (k, psi) in modes.clone().zip(psi) {
-            let mode = &system.modes[k];
-            let terms = terms(mode.omega_rad_s, mode.damping_ratio, length);
-            let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
-            let (mut here, mut next) = (0.0, 1.0);
-            let (mut a, mut b) = (0.0, 0.0);
+        let mut terms = 2;
+        for k in (0..psi.len()).step_by(LANES) {
+            let at = modes.start + k;
+            terms = BASIS.terms::<TAYLOR>(turning(system, at, modes.end) * length, terms);
+            let (drag, square) = (lanes(&system.drag[..modes.end], at), lanes(&system.square[..modes.end], at));
+            let (mut here, mut next) = ([0.0; LANES], [1.0; LANES]);
+            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
             for moment in &moments[..terms] {
-                a += here * moment;
-                b += next * moment;
-                (here, next) = (next, -drag * next - square * here);
+                for l in 0..LANES {
+                    a[l] += here[l] * moment;
+                    b[l] += next[l] * moment;
+                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                }
             }
-            amplitude[k] -= psi * a;
-            rate[k] -= psi * b;
+            for l in 0..LANES.min(psi.len() - k) {
+                amplitude[at + l] -= psi[k + l] * a[l];
+                rate[at + l] -= psi[k + l] * b[l];
+            }
         }
     }
 }
