@@ -117,6 +117,29 @@ impl Modes {
         Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].derivative(0, x)).collect())
     }
 
+    /// Participation `int m phi_k dx` of every mode in a uniform acceleration, kg^(1/2): the modal force of the weight
+    /// over the acceleration of gravity. The squares of all of them add up to the mass; of a structure that is free to
+    /// translate, rigid-body motions alone have any.
+    ///
+    /// ```
+    /// use beam_modes::{Beam, End, Segment};
+    /// let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 275.0, mass_per_length_kg_m: 2.0 };
+    /// let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
+    /// let participation = beam.modes(2)?.participation_kg0_5();
+    /// // a half sine of amplitude sqrt(2 / (m L)), and a whole one
+    /// assert!((participation[0] - 2.0 * 2.0 / std::f64::consts::PI).abs() < 1e-14);
+    /// assert!(participation[1].abs() < 1e-14);
+    /// # Ok::<(), beam_modes::InvalidInput>(())
+    /// ```
+    pub fn participation_kg0_5(&self) -> Vec<f64> {
+        let Units { length_m, mass_per_length_kg_m, .. } = self.units;
+        let unit = length_m.sqrt() * mass_per_length_kg_m.sqrt();
+        let whole = |mode: &[Piece]| -> f64 {
+            self.spans.iter().zip(mode).map(|(span, piece)| span.mass * piece.integral()).sum()
+        };
+        self.pieces.chunks(self.spans.len()).map(|mode| unit * whole(mode)).collect()
+    }
+
     fn derivative(&self, order: usize, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         if k >= self.len() {
             return Err(InvalidInput::new("k", k, "the number of a mode, from 0 to len() - 1"));

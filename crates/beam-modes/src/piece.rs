@@ -109,6 +109,18 @@ impl Piece {
         }
     }
 
+    /// Integral over the span, in closed form for a long piece.
+    pub fn integral(&self) -> f64 {
+        match *self {
+            Piece::Long { k, length, wave: [a, b, c, d] } => {
+                let (half_sin, half_cos) = (0.5 * k * length).sin_cos();
+                let oscillation = 2.0 * half_sin * (a * half_cos + b * half_sin);
+                (oscillation - (c + d) * (-k * length).exp_m1()) / k
+            }
+            Piece::Short { length, .. } => gauss(length, |x| self.derivative(0, x)),
+        }
+    }
+
     /// Integral of the product over the span. Two long pieces: closed form. Otherwise, `k l` is at most about 1 and
     /// Gauss's rule, of degree 19, is exact to rounding.
     pub fn product(&self, other: &Self) -> f64 {
