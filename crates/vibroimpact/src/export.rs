@@ -40,6 +40,11 @@ impl Files {
         ]))
     }
 
+    /// These files, by their names.
+    pub fn of(files: Vec<(&'static str, Vec<u8>)>) -> Files {
+        Files(files)
+    }
+
     /// `result.json` alone, for a model without a course in time.
     pub fn result(json: String) -> Files {
         Files(vec![("result.json", json.into_bytes())])

@@ -48,6 +48,7 @@
 mod impact;
 mod input;
 
+pub mod assembly;
 pub mod export;
 pub mod infinite;
 pub mod model;

@@ -1,5 +1,6 @@
 //! The commands, a file each: arguments, help, and what is printed.
 
+pub mod bodies;
 pub mod choice;
 pub mod infinite_beam;
 pub mod modes;

@@ -17,7 +17,7 @@ pub struct Products {
     pub json: bool,
     /// Write histories, picture and result into this folder
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Draw the impact into this file, .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     plot: Option<PathBuf>,
@@ -79,6 +79,11 @@ impl Products {
             told += &write_single(path, &content, self.json)?;
         }
         Ok(told)
+    }
+
+    /// Whether pictures or tables of the course in time are asked for.
+    pub fn want_course(&self) -> bool {
+        self.out.is_some() || self.plot.is_some() || self.report.is_some()
     }
 
     /// Writes the folder alone, if one is asked for.

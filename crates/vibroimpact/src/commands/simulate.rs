@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::model::{self, Answer};
 use vibroimpact::simulate::{Resolved, Simulation};
 use vibroimpact::{Scene, pictures, report, text};
 
+use super::bodies;
 use super::headline;
 use super::infinite_beam;
 use super::products::Products;
@@ -19,6 +21,10 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
   vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
 
+A scene with bodies in place of structure and striker is followed until its end_s or until it rests; progress is shown
+on long runs, and Ctrl-C keeps what was found. Then --out writes history.csv, intervals.csv and .parquet, run.svg,
+report.html, result.json, and section.csv where a load is harmonic.
+
 The exit code is 0 for every result, sustained contact and a limit reached among them, 2 for a scene that cannot be
 used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
 
@@ -27,13 +33,19 @@ used (the message names the field, its value and what is allowed; nothing is wri
 pub struct Arguments {
     /// The scene file
     scene: PathBuf,
+    /// List at most so many intervals of contact of a scene of bodies, the first ones; files hold all
+    #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
+    intervals: usize,
     #[command(flatten)]
     products: Products,
 }
 
 /// Carries the command out and returns what is to be printed.
-pub fn run(Arguments { scene, products }: Arguments) -> Result<String, Failure> {
-    let scene = Scene::read(&scene)?;
+pub fn run(Arguments { scene, intervals, products }: Arguments) -> Result<String, Failure> {
+    let scene = match AnyScene::read(&scene)? {
+        AnyScene::Impact(scene) => *scene,
+        AnyScene::Bodies(scene) => return bodies::simulate(&scene, intervals, &products),
+    };
     let found = scene.simulate()?;
     match &found {
         Simulation::Modal(resolved) => in_modes(&scene, &found, resolved, &products),

@@ -126,7 +126,7 @@ pub fn merge(arguments: MergeArguments) -> Result<String, Failure> {
 }
 
 /// The first signal asks for an orderly end, the second is one.
-fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
+pub fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&stop);
     ctrlc::set_handler(move || {

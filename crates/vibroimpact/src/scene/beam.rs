@@ -137,6 +137,11 @@ pub(crate) struct BeamModes {
 }
 
 impl BeamModes {
+    /// Participation of the modes in a uniform acceleration (kg^1/2).
+    pub(crate) fn participation_kg0_5(&self) -> Vec<f64> {
+        self.modes.participation_kg0_5()
+    }
+
     /// The modes as a striker at a place on the beam meets them.
     pub(crate) fn seen_from(&self, location_m: f64) -> Result<Vec<modal::Mode>, InvalidInput> {
         let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.as_str() {

@@ -96,7 +96,7 @@ const FIELDS: &[(&str, &str)] = &[
 
 /// What the field at the end of this path may hold.
 pub(crate) fn allowed(path: &str) -> Option<&'static str> {
-    look_up(FIELDS, path)
+    look_up(FIELDS, path).or_else(|| look_up(crate::assembly::fields::FIELDS, path))
 }
 
 /// What a table of fields says of the one at the end of this path. (`name[]` are the items of a list.)

@@ -37,7 +37,7 @@ mod materials;
 mod modal;
 mod modes_file;
 pub mod schema;
-mod sets;
+pub(crate) mod sets;
 mod start;
 mod striker;
 mod structure;
@@ -65,7 +65,8 @@ pub use striker::Striker;
 pub use structure::Structure;
 
 use crate::input::read_bytes;
-use structure::Place;
+pub(crate) use modes_file::table_path;
+pub(crate) use structure::{Place, require_count};
 
 /// The newest version of the scene format that is understood; a file without a version has version 1.
 pub const FORMAT_VERSION: u64 = 1;
@@ -185,6 +186,11 @@ impl Scene {
     /// As [`Scene::from_json`], text aside.
     pub fn from_value(value: &Value) -> Result<Scene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
+        if let Some(bodies) = value.get("bodies") {
+            let allowed = "left out: this asks for a scene of one impact, with structure and striker; `vibroimpact \
+                           simulate` takes scenes of bodies";
+            return Err(InvalidInput::new("bodies", json::quote(bodies), allowed));
+        }
         let outline: Outline = json::read(value)?;
         let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Scene {
@@ -240,18 +246,23 @@ impl Scene {
     }
 
     fn tree(&self) -> Value {
-        let mut tree = serde_json::to_value(self).unwrap_or_default();
-        drop_nulls(&mut tree);
-        if let Value::Object(entries) = &mut tree {
-            entries.insert("version".to_owned(), FORMAT_VERSION.into());
-        }
-        tree
+        versioned_tree(self)
     }
 
     /// Where the structure is struck.
     pub(crate) fn place(&self) -> Place<'_> {
         Place { location_m: self.location_m, location: self.location.as_deref() }
     }
+}
+
+/// A scene as a tree, with its version and without the fields that are left out.
+pub(crate) fn versioned_tree(scene: &impl Serialize) -> Value {
+    let mut tree = serde_json::to_value(scene).unwrap_or_default();
+    drop_nulls(&mut tree);
+    if let Value::Object(entries) = &mut tree {
+        entries.insert("version".to_owned(), FORMAT_VERSION.into());
+    }
+    tree
 }
 
 /// The tree of a file, which should hold `what`: TOML if its name ends in `.toml`, JSON otherwise.

@@ -38,13 +38,8 @@ const NEEDED: &str = "a table of comma-separated values whose line of names hold
 
 impl ModesFile {
     /// Reads the table, from a scene that stands in `folder`.
-    pub(super) fn load(&self, folder: &Path) -> Result<Modal, SceneError> {
-        let path = Path::new(&self.file);
-        let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        if self.file.is_empty() || !below {
-            let allowed = fields::allowed("file").unwrap_or_default();
-            return Err(InvalidInput::new("structure.file", format!("{:?}", self.file), allowed).into());
-        }
+    pub(crate) fn load(&self, folder: &Path) -> Result<Modal, SceneError> {
+        let path = table_path("structure.file", &self.file)?;
         let in_table = |fault: InvalidInput| InvalidInput { field: format!("{}, {}", self.file, fault.field), ..fault };
         let mut modal = parse(&read_bytes(&folder.join(path))?).map_err(in_table)?;
         for (name, compliance) in &self.static_compliances_m_n {
@@ -56,6 +51,17 @@ impl ModesFile {
         }
         Ok(modal)
     }
+}
+
+/// The path of a table that a scene names, which stands in the folder of the scene or below.
+pub(crate) fn table_path<'a>(field: &str, file: &'a str) -> Result<&'a Path, InvalidInput> {
+    let path = Path::new(file);
+    let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if file.is_empty() || !below {
+        let allowed = fields::allowed("file").unwrap_or_default();
+        return Err(InvalidInput::new(field, format!("{file:?}"), allowed));
+    }
+    Ok(path)
 }
 
 fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {

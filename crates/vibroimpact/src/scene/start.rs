@@ -116,7 +116,7 @@ impl MovingMode {
     }
 
     /// The mode's index, and its shape at the place from which `modes` are seen.
-    fn shape(&self, modes: &[Mode]) -> Result<(usize, f64), InvalidInput> {
+    pub(crate) fn shape(&self, modes: &[Mode]) -> Result<(usize, f64), InvalidInput> {
         for (field, value) in [("displacement_m", self.displacement_m), ("velocity_m_s", self.velocity_m_s)] {
             if !value.is_finite() {
                 return Err(InvalidInput::new(field, number(value), fields::allowed(field).unwrap_or_default()));

@@ -174,7 +174,7 @@ impl Structure {
 /// Largest number of modes that a scene may ask for.
 const MAX_MODES: usize = 10_000;
 
-pub(super) fn require_count(count: usize) -> Result<(), InvalidInput> {
+pub(crate) fn require_count(count: usize) -> Result<(), InvalidInput> {
     if count <= MAX_MODES {
         Ok(())
     } else {

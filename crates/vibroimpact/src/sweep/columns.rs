@@ -6,7 +6,8 @@ use super::Status;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::folder::Part;
-use super::row::{Kind, Row, columns};
+use super::row::{Row, columns};
+use super::table::Kind;
 use super::threads::{self, Sink};
 use crate::scene::InvalidInput;
 

@@ -8,7 +8,7 @@ use super::error::SweepError;
 use super::folder::{Folder, Part, RESULTS, json, read_json, settle, write_durably};
 use super::pictures::Pictures;
 use super::report;
-use super::row::Row;
+use super::row::{Row, columns};
 use super::table::Table;
 use super::tally::Tally;
 
@@ -25,11 +25,11 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     }
     let file = folder.path().join(TABLE);
     let unfinished = file.with_extension("part");
-    let mut table = Table::create(&unfinished, sweep)?;
+    let mut table = Table::create(&unfinished, "results", columns(sweep))?;
     let mut pictures = Pictures::new(sweep);
     let tally = each_row(sweep, part, folder, |point, row| {
         pictures.add(point, row);
-        table.add(row, &unfinished)
+        table.add(row.cells(), &unfinished)
     })?;
     table.close(&unfinished)?;
     settle(&unfinished, &file).map_err(SweepError::io(&file))?;

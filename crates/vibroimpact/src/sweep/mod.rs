@@ -47,7 +47,7 @@ mod pictures;
 mod report;
 mod row;
 mod schema;
-mod table;
+pub(crate) mod table;
 mod tally;
 mod threads;
 mod values;

@@ -5,21 +5,9 @@ use serde_json::Value;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::evaluate::evaluate;
+use super::table::Kind;
 use crate::model::{Answer, Kept};
 use crate::scene::json::number;
-
-/// The kind of what a column holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// A whole number, or nothing.
-    Whole,
-    /// A number, or nothing.
-    Number,
-    /// `true` or `false`, or nothing.
-    Truth,
-    /// A text.
-    Text,
-}
 
 /// The columns after the varied fields.
 const RESULTS: [(&str, Kind); 19] = [

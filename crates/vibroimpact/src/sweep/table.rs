@@ -1,4 +1,4 @@
-//! The results as a Parquet file: the columns of the CSV file, typed, in groups of rows.
+//! A table as a Parquet file: the columns of a CSV file, typed, in groups of rows.
 
 use std::fs::File;
 use std::io;
@@ -12,12 +12,23 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use super::definition::Sweep;
 use super::error::SweepError;
-use super::row::{Kind, Row, columns};
 
 /// Rows that are held in memory and become one group of the file.
 const GROUP: usize = 1 << 18;
+
+/// The kind of what a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A whole number, or nothing.
+    Whole,
+    /// A number, or nothing.
+    Number,
+    /// `true` or `false`, or nothing.
+    Truth,
+    /// A text.
+    Text,
+}
 
 /// A column of the group that is being filled. Where a definition level is 0, there is no value.
 enum Column {
@@ -65,18 +76,18 @@ impl Column {
 }
 
 /// A Parquet file in the making.
-pub(super) struct Table {
+pub(crate) struct Table {
     writer: SerializedFileWriter<File>,
     columns: Vec<(Kind, Column)>,
     rows: usize,
 }
 
 impl Table {
-    pub(super) fn create(path: &Path, sweep: &Sweep) -> Result<Table, SweepError> {
+    /// Begins a table of this name with these columns.
+    pub(crate) fn create(path: &Path, name: &str, columns: Vec<(String, Kind)>) -> Result<Table, SweepError> {
         let make = || {
-            let columns = columns(sweep);
             let fields = columns.iter().map(|(name, kind)| Column::field(name, *kind)).collect::<Result<_, _>>()?;
-            let schema = Arc::new(Type::group_type_builder("results").with_fields(fields).build()?);
+            let schema = Arc::new(Type::group_type_builder(name).with_fields(fields).build()?);
             // the bytes depend on the rows alone
             let properties = WriterProperties::builder()
                 .set_created_by(concat!("vibroimpact version ", env!("CARGO_PKG_VERSION")).to_owned())
@@ -89,8 +100,9 @@ impl Table {
         make().map_err(blame(path))
     }
 
-    pub(super) fn add(&mut self, row: &Row, path: &Path) -> Result<(), SweepError> {
-        for ((_, column), cell) in self.columns.iter_mut().zip(row.cells()) {
+    /// Adds a row of cells in the order of the columns.
+    pub(crate) fn add<'c>(&mut self, cells: impl Iterator<Item = &'c str>, path: &Path) -> Result<(), SweepError> {
+        for ((_, column), cell) in self.columns.iter_mut().zip(cells) {
             column.push(cell);
         }
         self.rows += 1;
@@ -121,7 +133,7 @@ impl Table {
     }
 
     /// Writes the last group and the index of the file, and waits until all is on the disk.
-    pub(super) fn close(mut self, path: &Path) -> Result<(), SweepError> {
+    pub(crate) fn close(mut self, path: &Path) -> Result<(), SweepError> {
         let mut close = || {
             if self.rows > 0 {
                 self.write_group()?;

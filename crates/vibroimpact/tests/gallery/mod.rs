@@ -6,6 +6,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use vibroimpact::Scene;
+use vibroimpact::assembly::AssemblyScene;
 
 /// A path in the folder of data sets.
 pub fn datasets(path: &str) -> PathBuf {
@@ -29,6 +30,24 @@ pub fn gallery() -> Vec<(String, Scene)> {
         .iter()
         .map(|path| (name(path), Scene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}"))))
         .collect()
+}
+
+/// Scenes of bodies, likewise.
+pub fn assemblies() -> Vec<(String, AssemblyScene)> {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(datasets("assemblies")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
+    paths.sort();
+    let name = |path: &PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+    paths
+        .iter()
+        .map(|path| (name(path), AssemblyScene::read(path).unwrap_or_else(|fault| panic!("{path:?}: {fault}"))))
+        .collect()
+}
+
+/// One scene of bodies.
+pub fn assembly(name: &str) -> AssemblyScene {
+    assemblies().into_iter().find(|(other, _)| other == name).map(|(_, scene)| scene).unwrap()
 }
 
 /// One scene of the gallery.

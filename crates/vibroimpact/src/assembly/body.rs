@@ -1,0 +1,173 @@
+//! The bodies of an assembly.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::fields::KINDS;
+use super::rod::Rod;
+use crate::scene::json::{quote, read};
+use crate::scene::{InvalidInput, MovingMode, Structure};
+
+/// A body; `"kind"` tells which.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+#[non_exhaustive]
+pub enum Body {
+    /// `"mass"`: a compact body.
+    Mass(Mass),
+    /// Any structure that has modes.
+    Elastic(Box<Elastic>),
+}
+
+/// A compact body, which moves along `x` and does not vibrate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mass {
+    /// `"mass"`.
+    pub kind: MassKind,
+    /// Mass (kg).
+    pub mass_kg: f64,
+    /// Displacement at the start (m); 0 when left out.
+    #[serde(default)]
+    pub position_m: f64,
+    /// Velocity at the start (m/s); 0 when left out.
+    #[serde(default)]
+    pub velocity_m_s: f64,
+}
+
+/// The name of the kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MassKind {
+    /// `"mass"`
+    Mass,
+}
+
+/// A structure with modes, and its motion when the clock starts: undeformed and at rest, plus what is given.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Elastic {
+    /// The structure: `rod`, or any kind that is struck in a scene of one impact and has modes.
+    #[serde(flatten)]
+    pub structure: Elastics,
+    /// Number of modes, from the lowest; required where they are computed. When left out: all that are listed.
+    pub modes: Option<usize>,
+    /// Whether the modes left out answer with their static compliance; `false` when left out.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub residual_compliance: bool,
+    /// Uniform velocity at the start of a body that is free to translate (m/s); 0 when left out.
+    #[serde(default)]
+    pub velocity_m_s: f64,
+    /// Motion of single modes at the start.
+    pub start: Option<Start>,
+    /// Participation `int m phi dx` of each mode in a uniform acceleration (kg^1/2), which gravity and a motion of the
+    /// ground need where the modes are given and not computed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gravity_participation_kg0_5: Vec<f64>,
+}
+
+/// The structures that a body may be.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Elastics {
+    /// A rod in axial vibration.
+    Rod(Rod),
+    /// A structure of a scene of one impact.
+    Structure(Structure),
+}
+
+/// Motion of single modes when the clock starts; what is given adds up.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub amplitude_m_kg0_5: Vec<f64>,
+    /// Their rates (m kg^1/2 / s); those of the rest are 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rate_m_kg0_5_s: Vec<f64>,
+    /// Modes given by how they move at a place, which is named in each.
+    #[serde(default, deserialize_with = "crate::scene::json::objects", skip_serializing_if = "Vec::is_empty")]
+    pub moving_modes: Vec<MovingMode>,
+}
+
+/// What stands beside the fields of the structure.
+#[derive(Deserialize)]
+struct Beside {
+    modes: Option<usize>,
+    #[serde(default)]
+    residual_compliance: bool,
+    #[serde(default)]
+    velocity_m_s: f64,
+    start: Option<Value>,
+    #[serde(default)]
+    gravity_participation_kg0_5: Vec<f64>,
+}
+
+const BESIDE: [&str; 5] = ["modes", "residual_compliance", "velocity_m_s", "start", "gravity_participation_kg0_5"];
+
+impl Body {
+    pub(super) fn from_value(value: &Value) -> Result<Body, InvalidInput> {
+        let Some(entries) = value.as_object() else {
+            return Err(InvalidInput::new("", quote(value), "an object with the field kind"));
+        };
+        match entries.get("kind").and_then(Value::as_str) {
+            Some("mass") => read(value).map(Body::Mass),
+            Some(kind) => Elastic::from_entries(kind, entries).map(|body| Body::Elastic(Box::new(body))),
+            None => {
+                Err(InvalidInput { field: "kind".into(), value: entries.get("kind").map(quote), allowed: KINDS.into() })
+            }
+        }
+    }
+
+    /// The value of `"kind"`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Body::Mass(_) => "mass",
+            Body::Elastic(body) => match &body.structure {
+                Elastics::Rod(_) => "rod",
+                Elastics::Structure(structure) => structure.kind(),
+            },
+        }
+    }
+}
+
+impl Elastic {
+    /// A structure at rest with its first `modes` modes.
+    pub fn new(structure: impl Into<Structure>, modes: Option<usize>) -> Elastic {
+        Elastic {
+            structure: Elastics::Structure(structure.into()),
+            modes,
+            residual_compliance: false,
+            velocity_m_s: 0.0,
+            start: None,
+            gravity_participation_kg0_5: Vec::new(),
+        }
+    }
+
+    fn from_entries(kind: &str, entries: &Map<String, Value>) -> Result<Elastic, InvalidInput> {
+        let (beside, own): (Map<String, Value>, Map<String, Value>) =
+            entries.clone().into_iter().partition(|(field, _)| BESIDE.contains(&field.as_str()));
+        let own = Value::Object(own);
+        let Beside { modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 } =
+            read(&Value::Object(beside))?;
+        let structure = match kind {
+            "rod" => Elastics::Rod(Rod::from_value(&own)?),
+            _ => Elastics::Structure(Structure::from_value(&own).map_err(|fault| match fault.field.as_str() {
+                "kind" => InvalidInput { allowed: KINDS.into(), ..fault },
+                _ => also(fault),
+            })?),
+        };
+        let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
+        Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })
+    }
+}
+
+/// A slip among the fields of the structure is told of those that stand beside them, too.
+fn also(fault: InvalidInput) -> InvalidInput {
+    if fault.allowed.starts_with("no such field") && !fault.field.contains(['.', '[']) {
+        let allowed = format!("{}, {}", fault.allowed, BESIDE.join(", "));
+        return InvalidInput { allowed, ..fault };
+    }
+    fault
+}

@@ -1,0 +1,318 @@
+//! From the fields of a scene of bodies to the terms of the solver, and back again in its errors.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use contact_models::Law;
+use vibroimpact_sim::assembly::{self, Assembly, Force, Settings};
+
+use super::AssemblyScene;
+use super::body::{Body, Elastic};
+use super::contact::{Contact, Point, Side};
+use super::load::require_finite;
+use super::seen::Seen;
+use crate::scene::fields::NOT_NEGATIVE;
+use crate::scene::json::number;
+use crate::scene::{InvalidInput, Place};
+
+/// An assembly in the terms of [`vibroimpact_sim::assembly`], and the names of its parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posed {
+    /// What is to be solved.
+    pub assembly: Assembly<Law>,
+    /// How far and how accurately.
+    pub settings: Settings,
+    /// Names of the bodies, in the order of the assembly.
+    pub bodies: Vec<String>,
+    /// Names of the contacts, likewise; a two-sided contact is two of them.
+    pub contacts: Vec<String>,
+    /// For each contact of the assembly the number of that of the scene.
+    of_scene: Vec<usize>,
+    /// How many loads the scene has; those of gravity and of the ground follow.
+    loads: usize,
+}
+
+impl AssemblyScene {
+    /// The scene in the terms of the solver.
+    ///
+    /// # Errors
+    /// A value out of range, a name that names nothing, or fields of which too few or too many are given.
+    ///
+    /// ```
+    /// use vibroimpact::assembly::AssemblyScene;
+    ///
+    /// let scene = AssemblyScene::from_json(r#"{
+    ///     "bodies": { "ball": { "kind": "mass", "mass_kg": 0.1, "velocity_m_s": -1 } },
+    ///     "contacts": [{ "name": "floor", "between": [{ "body": "ball" }, "ground"], "gap_m": 0.01,
+    ///                    "law": "hertz", "stiffness_n_m1_5": 1e9 }],
+    ///     "gravity_m_s2": 9.81, "end_s": 1
+    /// }"#)?;
+    /// let posed = scene.pose()?;
+    /// assert_eq!((posed.assembly.bodies.len(), posed.contacts[0].as_str()), (1, "floor"));
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn pose(&self) -> Result<Posed, InvalidInput> {
+        let settings = self.settings()?;
+        let mut bodies = Bodies::new(&self.bodies)?;
+        let (mut contacts, mut names, mut of_scene) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, contact) in self.contacts.iter().enumerate() {
+            let posed = bodies.contact(contact).map_err(|fault| beside(fault, &format!("contacts[{i}]")))?;
+            for (name, posed) in posed {
+                if name.is_empty() || names.contains(&name) {
+                    let allowed = "a text that names no other contact";
+                    return Err(InvalidInput::new(format!("contacts[{i}].name"), format!("{name:?}"), allowed));
+                }
+                names.push(name);
+                of_scene.push(i);
+                contacts.push(posed);
+            }
+        }
+        let mut loads = Vec::new();
+        for (i, load) in self.loads.iter().enumerate() {
+            let within = |fault| beside(fault, &format!("loads[{i}]"));
+            let (body, shape) = bodies.point(&load.point()).map_err(within)?;
+            loads.push(assembly::Load { body, shape, force: load.to_force().map_err(within)? });
+        }
+        let of_scene_loads = loads.len();
+        loads.extend(self.weight(&mut bodies)?);
+        loads.extend(self.inertia(&mut bodies)?);
+
+        let mut start = bodies.start()?;
+        if self.static_start {
+            sag(&mut start, &loads);
+        }
+        let posed = Posed {
+            assembly: Assembly { bodies: start, contacts, loads },
+            settings,
+            bodies: self.bodies.keys().cloned().collect(),
+            contacts: names,
+            of_scene,
+            loads: of_scene_loads,
+        };
+        posed.assembly.check().map_err(|fault| posed.in_scene(fault))?;
+        Ok(posed)
+    }
+
+    fn settings(&self) -> Result<Settings, InvalidInput> {
+        const LONGEST_S: f64 = 1e12;
+        let mut settings = Settings::until(self.end_s);
+        settings.tolerance = self.tolerance.unwrap_or(settings.tolerance);
+        if !(self.end_s > 0.0 && self.end_s <= LONGEST_S) {
+            let allowed = "a number greater than 0 and not greater than 1e12";
+            return Err(InvalidInput::new("end_s", number(self.end_s), allowed));
+        }
+        if !(1e-13..=0.1).contains(&settings.tolerance) {
+            return Err(InvalidInput::new("tolerance", number(settings.tolerance), "a number from 1e-13 to 0.1"));
+        }
+        Ok(settings)
+    }
+
+    /// Gravity along `-x` on every body.
+    fn weight(&self, bodies: &mut Bodies) -> Result<Vec<assembly::Load>, InvalidInput> {
+        let gravity = self.gravity_m_s2;
+        if !(gravity >= 0.0 && gravity.is_finite()) {
+            return Err(InvalidInput::new("gravity_m_s2", number(gravity), NOT_NEGATIVE));
+        }
+        require_finite("gravity_m_s2", gravity)?;
+        if gravity == 0.0 {
+            return Ok(Vec::new());
+        }
+        bodies.field("gravity_m_s2", &Force::Constant { force_n: -gravity })
+    }
+
+    /// The inertial load of the ground's acceleration on every body.
+    fn inertia(&self, bodies: &mut Bodies) -> Result<Vec<assembly::Load>, InvalidInput> {
+        let Some(motion) = &self.ground_motion else { return Ok(Vec::new()) };
+        let opposite = match motion.to_acceleration().map_err(|fault| fault.within("ground_motion"))? {
+            Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
+                Force::Harmonic { force_n: -force_n, omega_rad_s, phase_rad }
+            }
+            Force::Sampled { times_s, forces_n } => {
+                Force::Sampled { times_s, forces_n: forces_n.into_iter().map(|value| -value).collect() }
+            }
+            other => other,
+        };
+        bodies.field("ground_motion", &opposite)
+    }
+}
+
+/// A fault of a place or a field of an object under the object's path; that of a body has its own path already.
+fn beside(fault: InvalidInput, path: &str) -> InvalidInput {
+    if fault.field.starts_with("bodies.") { fault } else { fault.within(path) }
+}
+
+/// Elastic modes start where the constant loads hold them.
+fn sag(bodies: &mut [assembly::Body], loads: &[assembly::Load]) {
+    for load in loads {
+        let Force::Constant { force_n } = load.force else { continue };
+        let assembly::Body { modes, amplitude, .. } = &mut bodies[load.body];
+        for ((mode, shape), amplitude) in modes.iter().zip(&load.shape).zip(amplitude) {
+            if mode.omega_rad_s > 0.0 {
+                *amplitude += shape * force_n / (mode.omega_rad_s * mode.omega_rad_s);
+            }
+        }
+    }
+}
+
+/// The bodies by their names, with their modes.
+struct Bodies<'a> {
+    given: &'a BTreeMap<String, Body>,
+    seen: Vec<Seen<'a>>,
+}
+
+impl<'a> Bodies<'a> {
+    fn new(given: &'a BTreeMap<String, Body>) -> Result<Bodies<'a>, InvalidInput> {
+        if given.is_empty() {
+            return Err(InvalidInput::new("bodies", "{}", "an object with at least one named body"));
+        }
+        if let Some(name) = given.keys().find(|name| ["", "ground"].contains(&name.as_str())) {
+            return Err(InvalidInput::new("bodies", format!("{name:?}"), "bodies with names other than \"ground\""));
+        }
+        let seen = given.iter().map(|(name, body)| Seen::new(name, body)).collect::<Result<_, _>>()?;
+        Ok(Bodies { given, seen })
+    }
+
+    /// Number of the body, and its shapes at the point.
+    fn point(&mut self, point: &Point) -> Result<(usize, Vec<f64>), InvalidInput> {
+        let Some(body) = self.given.keys().position(|name| *name == point.body) else {
+            let names = self.given.keys().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
+            return Err(InvalidInput::new("body", format!("{:?}", point.body), format!("one of the bodies, {names}")));
+        };
+        let place = Place { location_m: point.location_m, location: point.location.as_deref() };
+        Ok((body, self.seen[body].shape(place)?))
+    }
+
+    /// A contact under its name; a two-sided one is two.
+    fn contact(&mut self, contact: &Contact) -> Result<Vec<(String, assembly::Contact<Law>)>, InvalidInput> {
+        require_finite("gap_m", contact.gap_m)?;
+        let mut side = |i: usize| match &contact.between[i] {
+            Side::Ground(_) => Ok(assembly::Point::Ground),
+            Side::Body(point) => self
+                .point(point)
+                .map(|(body, shape)| assembly::Point::OfBody { body, shape })
+                .map_err(|fault| beside(fault, &format!("between[{i}]"))),
+        };
+        let sides = [side(0)?, side(1)?];
+        if sides == [assembly::Point::Ground, assembly::Point::Ground] {
+            return Err(InvalidInput::new(
+                "between[1]",
+                "\"ground\"",
+                "a point of a body where the other side is the ground",
+            ));
+        }
+        let (gap_m, law) = (contact.gap_m, contact.to_law()?);
+        if !contact.two_sided {
+            return Ok(vec![(contact.name.clone(), assembly::Contact { sides, gap_m, law })]);
+        }
+        let [a, b] = sides.clone();
+        Ok(vec![
+            (format!("{}+", contact.name), assembly::Contact { sides, gap_m, law }),
+            (format!("{}-", contact.name), assembly::Contact { sides: [b, a], gap_m, law }),
+        ])
+    }
+
+    /// A uniform acceleration on every body.
+    fn field(&mut self, needed_for: &str, acceleration: &Force) -> Result<Vec<assembly::Load>, InvalidInput> {
+        let load = |(body, seen): (usize, &mut Seen)| {
+            Ok(assembly::Load { body, shape: seen.participation(needed_for)?, force: acceleration.clone() })
+        };
+        self.seen.iter_mut().enumerate().map(load).collect()
+    }
+
+    /// The modes and their motion at the start.
+    fn start(&mut self) -> Result<Vec<assembly::Body>, InvalidInput> {
+        let body = |(body, seen): (&Body, &mut Seen)| match body {
+            Body::Mass(mass) => Ok(assembly::Body::mass(mass.mass_kg, mass.position_m, mass.velocity_m_s)),
+            Body::Elastic(body) => moving(body, seen),
+        };
+        self.given.values().zip(&mut self.seen).map(body).collect()
+    }
+}
+
+/// An elastic body in the motion that is given.
+fn moving(body: &Elastic, seen: &mut Seen) -> Result<assembly::Body, InvalidInput> {
+    let mut moving = assembly::Body::at_rest(seen.modes.clone());
+    if let Some(start) = &body.start {
+        let count = seen.modes.len();
+        for (field, first, all) in [
+            ("start.amplitude_m_kg0_5", &start.amplitude_m_kg0_5, &mut moving.amplitude),
+            ("start.rate_m_kg0_5_s", &start.rate_m_kg0_5_s, &mut moving.rate),
+        ] {
+            if first.len() > count {
+                let allowed = format!("at most {count} values, the number of modes");
+                return Err(seen.of_body(InvalidInput::new(field, format!("{} values", first.len()), allowed)));
+            }
+            for (k, value) in first.iter().enumerate() {
+                require_finite(&format!("{field}[{k}]"), *value).map_err(|fault| seen.of_body(fault))?;
+                all[k] = *value;
+            }
+        }
+        for (i, mode) in start.moving_modes.iter().enumerate() {
+            let path = format!("start.moving_modes[{i}]");
+            let place = Place { location_m: mode.location_m, location: mode.location.as_deref() };
+            let shape = seen.modes_at(place).and_then(|modes| mode.shape(&modes));
+            let (k, shape) = shape.map_err(|fault| {
+                if fault.field.starts_with("bodies.") { fault } else { seen.of_body(fault.within(&path)) }
+            })?;
+            moving.amplitude[k] += mode.displacement_m / shape;
+            moving.rate[k] += mode.velocity_m_s / shape;
+        }
+    }
+    if body.velocity_m_s != 0.0 {
+        require_finite("velocity_m_s", body.velocity_m_s).map_err(|fault| seen.of_body(fault))?;
+        let participation = seen.participation("velocity_m_s")?;
+        if !is_free(seen, &participation) {
+            let allowed = "0, or left out: the body is not free to translate";
+            let value = number(body.velocity_m_s);
+            return Err(seen.of_body(InvalidInput::new("velocity_m_s", value, allowed)));
+        }
+        for ((rate, share), mode) in moving.rate.iter_mut().zip(participation).zip(&seen.modes) {
+            if mode.omega_rad_s == 0.0 {
+                *rate += share * body.velocity_m_s;
+            }
+        }
+    }
+    Ok(moving)
+}
+
+/// Whether a uniform motion is one of the rigid-body modes alone.
+fn is_free(seen: &Seen, participation: &[f64]) -> bool {
+    const ROUNDING: f64 = 1e-6;
+    let largest = |rigid: bool| {
+        let modes = seen.modes.iter().zip(participation).filter(|(mode, _)| (mode.omega_rad_s == 0.0) == rigid);
+        modes.map(|(_, share)| share.abs()).fold(0.0, f64::max)
+    };
+    largest(true) > 0.0 && largest(false) <= ROUNDING * largest(true)
+}
+
+impl Posed {
+    /// The solver's fault under the names that scenes use.
+    pub(super) fn in_scene(&self, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
+        let fault = InvalidInput::from(fault);
+        let indexed = |list: &str| {
+            let (index, rest) = fault.field.strip_prefix(list)?.strip_prefix('[')?.split_once(']')?;
+            Some((index.parse::<usize>().ok()?, rest.to_owned()))
+        };
+        if let Some((i, rest)) = indexed("bodies")
+            && let Some(name) = self.bodies.get(i)
+        {
+            return InvalidInput { field: format!("bodies.{name}{rest}"), ..fault };
+        }
+        if let Some((i, rest)) = indexed("contacts")
+            && let Some(i) = self.of_scene.get(i)
+        {
+            return InvalidInput { field: format!("contacts[{i}]{}", rest.replace("sides", "between")), ..fault };
+        }
+        if let Some((i, rest)) = indexed("loads") {
+            let path = if i < self.loads { format!("loads[{i}]") } else { "ground_motion".to_owned() };
+            let name = rest.trim_start_matches(".force.").trim_start_matches('.');
+            if name == "omega_rad_s" {
+                let hertz = fault.value.as_deref().and_then(|value| value.parse::<f64>().ok()).map(|omega| omega / TAU);
+                let value = hertz.map(number).or(fault.value);
+                return InvalidInput { field: format!("{path}.frequency_hz"), value, ..fault };
+            }
+            return InvalidInput { field: format!("{path}.{name}"), ..fault };
+        }
+        fault
+    }
+}

@@ -1,0 +1,162 @@
+//! A body as its points see it: modes and their shapes.
+
+use beam_modes::Modes;
+use vibroimpact_sim::assembly::BodyMode;
+use vibroimpact_sim::modal::Mode;
+
+use super::body::{Body, Elastic, Elastics};
+use super::load::require_finite;
+use super::rod::Rod;
+use crate::scene::{InvalidInput, KnownModes, Place, Structure, fields};
+
+/// A body whose modes have been computed, to be seen from any of its points.
+pub(super) struct Seen<'a> {
+    path: String,
+    body: &'a Body,
+    known: KnownModes,
+    rod: Option<Modes>,
+    /// The modes.
+    pub modes: Vec<BodyMode>,
+}
+
+impl<'a> Seen<'a> {
+    /// The modes of the body with this name.
+    pub fn new(name: &str, body: &'a Body) -> Result<Seen<'a>, InvalidInput> {
+        let path = format!("bodies.{name}");
+        let mut seen = Seen { path, body, known: KnownModes::default(), rod: None, modes: Vec::new() };
+        seen.modes = match body {
+            Body::Mass(mass) => {
+                InvalidInput::require_positive("mass_kg", mass.mass_kg).map_err(|fault| seen.of_body(fault))?;
+                for (field, value) in
+                    [("mass_kg", mass.mass_kg), ("position_m", mass.position_m), ("velocity_m_s", mass.velocity_m_s)]
+                {
+                    require_finite(field, value).map_err(|fault| seen.of_body(fault))?;
+                }
+                vec![BodyMode { omega_rad_s: 0.0, damping_ratio: 0.0 }]
+            }
+            Body::Elastic(body) => {
+                if body.residual_compliance {
+                    let allowed = "false: a body of a scene of bodies answers with its modes alone";
+                    return Err(seen.of_body(InvalidInput::new("residual_compliance", "true", allowed)));
+                }
+                if let (Elastics::Rod(rod), count) = (&body.structure, body.modes) {
+                    seen.rod = Some(modes_of(rod, count).map_err(|fault| seen.of_body(fault))?);
+                }
+                let anywhere = anywhere(body);
+                let modes = seen.elastic(body, Place { location_m: anywhere.0, location: anywhere.1.as_deref() })?;
+                modes
+                    .iter()
+                    .map(|&Mode { omega_rad_s, damping_ratio, .. }| BodyMode { omega_rad_s, damping_ratio })
+                    .collect()
+            }
+        };
+        Ok(seen)
+    }
+
+    /// A fault of the body under its path.
+    pub fn of_body(&self, fault: InvalidInput) -> InvalidInput {
+        let field = fault.field.trim_start_matches("structure.").to_owned();
+        InvalidInput { field, ..fault }.within(&self.path)
+    }
+
+    /// Shapes of the modes at a place (kg^-1/2). A fault of the place has the field `location_m` or `location`, any other
+    /// its whole path.
+    pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
+        Ok(self.modes_at(place)?.into_iter().map(|mode| mode.shape).collect())
+    }
+
+    /// The modes as seen from a place; faults as in [`Seen::shape`].
+    pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
+        match self.body {
+            Body::Mass(mass) => {
+                place.require_none("left out: a mass moves as a whole")?;
+                Ok(vec![Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: mass.mass_kg.sqrt().recip() }])
+            }
+            Body::Elastic(body) => self.elastic(body, place),
+        }
+    }
+
+    fn elastic(&mut self, body: &Elastic, place: Place) -> Result<Vec<Mode>, InvalidInput> {
+        match &body.structure {
+            Elastics::Rod(rod) => {
+                place.require_no_name("left out: the place on a rod is location_m")?;
+                let needed = "a finite number from 0 to the length of the rod";
+                let location_m = place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?;
+                let Some(modes) = &self.rod else { return Ok(Vec::new()) };
+                let shapes = modes
+                    .shapes_at(location_m)
+                    .map_err(|fault| InvalidInput { field: "location_m".to_owned(), ..fault.into() })?;
+                let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: rod.damping_ratio, shape };
+                Ok(modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
+            }
+            Elastics::Structure(structure) => {
+                let needs_count = matches!(structure, Structure::Beam(_)) && body.modes.is_none();
+                if needs_count {
+                    return Err(self.of_body(InvalidInput::missing("modes", "a whole number from 0 to 10000")));
+                }
+                structure
+                    .modes_with(place, body.modes, &mut self.known)
+                    .map_err(|fault| if fault.field.starts_with("location") { fault } else { self.of_body(fault) })
+            }
+        }
+    }
+
+    /// Participation of the modes in a uniform acceleration along `x` (kg^1/2), which `needed_for` needs.
+    pub fn participation(&mut self, needed_for: &str) -> Result<Vec<f64>, InvalidInput> {
+        let body = match self.body {
+            Body::Mass(mass) => return Ok(vec![mass.mass_kg.sqrt()]),
+            Body::Elastic(body) => body,
+        };
+        let given = &body.gravity_participation_kg0_5;
+        let field = "gravity_participation_kg0_5";
+        let computed = match &body.structure {
+            Elastics::Rod(_) => self.rod.as_ref().map(Modes::participation_kg0_5),
+            Elastics::Structure(Structure::Beam(beam)) => {
+                let count = body.modes.unwrap_or_default();
+                let modes = self.known.first(beam, count).map(|modes| modes.participation_kg0_5());
+                Some(modes.map_err(|fault| self.of_body(fault))?)
+            }
+            Elastics::Structure(_) => None,
+        };
+        let values = || format!("{} values", given.len());
+        match computed {
+            Some(_) if !given.is_empty() => {
+                Err(self.of_body(InvalidInput::new(field, values(), "left out: it is computed for this kind")))
+            }
+            Some(computed) => Ok(computed),
+            None if given.is_empty() => {
+                let allowed = format!("needed for {needed_for}: a list of finite numbers, one a mode");
+                Err(self.of_body(InvalidInput::missing(field, allowed)))
+            }
+            None if given.len() < self.modes.len() => {
+                let allowed = format!("one value a mode, which is {}", self.modes.len());
+                Err(self.of_body(InvalidInput::new(field, values(), allowed)))
+            }
+            None => {
+                for (k, value) in given.iter().enumerate() {
+                    require_finite(&format!("{field}[{k}]"), *value).map_err(|fault| self.of_body(fault))?;
+                }
+                Ok(given[..self.modes.len()].to_vec())
+            }
+        }
+    }
+}
+
+/// Some place of the structure.
+fn anywhere(body: &Elastic) -> (Option<f64>, Option<String>) {
+    match &body.structure {
+        Elastics::Rod(_) | Elastics::Structure(Structure::Beam(_)) => (Some(0.0), None),
+        Elastics::Structure(Structure::Modal(listed)) => (None, listed.points.keys().next().cloned()),
+        Elastics::Structure(_) => (None, None),
+    }
+}
+
+fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
+    let count = count.ok_or_else(|| InvalidInput::missing("modes", "a whole number from 0 to 10000"))?;
+    crate::scene::require_count(count)?;
+    if !(rod.damping_ratio >= 0.0 && rod.damping_ratio.is_finite()) {
+        let value = crate::scene::json::number(rod.damping_ratio);
+        return Err(InvalidInput::new("damping_ratio", value, fields::NOT_NEGATIVE));
+    }
+    Ok(rod.to_rod()?.modes(count)?)
+}

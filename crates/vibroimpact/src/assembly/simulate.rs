@@ -1,0 +1,105 @@
+//! A scene of bodies solved.
+
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use vibroimpact_sim::assembly::{Force, Interval, Run, run};
+
+use super::files::IntervalFiles;
+use super::watch::{Course, Sink, Watch};
+use super::{AssemblyScene, Posed};
+use crate::export::Failure;
+
+/// Most intervals of contact that are kept in memory unless the caller says otherwise; about 60 MB.
+pub const MOST_INTERVALS: usize = 1_000_000;
+
+/// What is wanted of a run.
+pub struct Wanted<'a> {
+    /// Intervals of contact that are kept in memory, the first of all contacts together; the rest are counted.
+    pub intervals: usize,
+    /// Whether samples of the motion are kept, for histories and pictures.
+    pub course: bool,
+    /// A folder into which all intervals go as they are found.
+    pub folder: Option<&'a Path>,
+    /// Ends the run when it becomes true; what was found is kept.
+    pub stop: &'a AtomicBool,
+    /// Hears now and then how far the run has come (s).
+    pub tell: &'a mut dyn FnMut(f64),
+}
+
+/// What [`AssemblyScene::simulate`] found.
+pub struct Simulation {
+    /// What was solved.
+    pub posed: Posed,
+    /// The result.
+    pub run: Run,
+    /// Intervals of contact, contact by contact, as many as were wanted.
+    pub intervals: Vec<Vec<Interval>>,
+    /// How many more there were.
+    pub left_out: Vec<u64>,
+    /// Samples of the motion, if they were wanted.
+    pub course: Option<Course>,
+}
+
+impl AssemblyScene {
+    /// Solves the scene and keeps every interval of contact up to [`MOST_INTERVALS`].
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::pose`].
+    ///
+    /// ```
+    /// let scene = vibroimpact::assembly::AssemblyScene::from_json(r#"{
+    ///     "bodies": { "ball": { "kind": "mass", "mass_kg": 0.1, "position_m": 0.01 } },
+    ///     "contacts": [{ "name": "floor", "between": [{ "body": "ball" }, "ground"],
+    ///                    "law": "linear-spring", "stiffness_n_m": 1e7 }],
+    ///     "gravity_m_s2": 9.81, "end_s": 0.2
+    /// }"#)?;
+    /// let found = scene.simulate()?;
+    /// // it falls for 45 ms and is back every 90 ms
+    /// assert_eq!(found.intervals[0].len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+    /// ```
+    pub fn simulate(&self) -> Result<Simulation, Failure> {
+        self.simulate_with(Wanted {
+            intervals: MOST_INTERVALS,
+            course: false,
+            folder: None,
+            stop: &AtomicBool::new(false),
+            tell: &mut |_| (),
+        })
+    }
+
+    /// Solves the scene and keeps what is wanted.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::pose`], or a folder that cannot be written.
+    pub fn simulate_with(&self, wanted: Wanted) -> Result<Simulation, Failure> {
+        let posed = self.pose()?;
+        let mut files = wanted.folder.map(|folder| IntervalFiles::create(folder, &posed.contacts)).transpose()?;
+        let course = wanted.course.then(|| Course::new(posed.settings.end_s, period_s(&posed)));
+        let mut take = |contact: usize, interval: &Interval| match &mut files {
+            Some(files) => files.add(contact, interval),
+            None => Ok(()),
+        };
+        let sink: Sink = &mut take;
+        let mut watch =
+            Watch::new(posed.contacts.len(), wanted.intervals, Some(sink), course, wanted.stop, wanted.tell);
+        let run = run(&posed.assembly, &posed.settings, &mut watch).map_err(|fault| posed.in_scene(fault))?;
+        let Watch { intervals, left_out, fault, course, .. } = watch;
+        if let Some(fault) = fault {
+            return Err(fault);
+        }
+        if let Some(files) = files {
+            files.close()?;
+        }
+        Ok(Simulation { posed, run, intervals, left_out, course })
+    }
+}
+
+/// The period of the first harmonic load (s).
+fn period_s(posed: &Posed) -> Option<f64> {
+    posed.assembly.loads.iter().find_map(|load| match load.force {
+        Force::Harmonic { omega_rad_s, .. } => Some(std::f64::consts::TAU / omega_rad_s),
+        _ => None,
+    })
+}

@@ -1,0 +1,200 @@
+//! The result of a scene of bodies as programs read it.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use vibroimpact_sim::assembly::{self, Outcome};
+
+use super::Simulation;
+
+/// What `simulate --json` prints for a scene of bodies: one object, every name with its unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// `end`, `rest` or `stopped`.
+    pub outcome: &'static str,
+    /// Why it stopped; null if it did not.
+    pub reason: Option<&'static str>,
+    /// When it ended (s).
+    pub end_s: f64,
+    /// The contacts by their names.
+    pub contacts: BTreeMap<String, Statistics>,
+    /// Either side of each contact at the end.
+    pub points: Vec<Point>,
+    /// Where the energy went; null if it was not followed.
+    pub energy: Option<Energy>,
+    /// What the computation cost.
+    pub counts: Cost,
+}
+
+/// What a contact did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Intervals of contact in order of time.
+    pub intervals: Vec<Interval>,
+    /// How many more there were than are listed.
+    pub intervals_left_out: u64,
+    /// Number of intervals.
+    pub count: u64,
+    /// Share of the time in contact.
+    pub time_share: f64,
+    /// Impulse (N s).
+    pub impulse_n_s: f64,
+    /// Largest force (N).
+    pub largest_force_n: f64,
+    /// Root mean square of the force over the whole time (N).
+    pub rms_force_n: f64,
+    /// Work of compression over the whole time (W).
+    pub contact_work_rate_w: f64,
+}
+
+/// One interval of contact, from touch to release in the law's own sense.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// First touch (s).
+    pub start_s: f64,
+    /// Release (s); null if the contact was under way at the end.
+    pub end_s: Option<f64>,
+    /// Impulse (N s).
+    pub impulse_n_s: f64,
+    /// Largest force (N).
+    pub peak_force_n: f64,
+    /// Largest compression (m).
+    pub peak_compression_m: f64,
+    /// Rate of compression at the touch (m/s).
+    pub approach_speed_m_s: f64,
+    /// Rate of opening at the release (m/s); null if the contact was under way at the end.
+    pub separation_speed_m_s: Option<f64>,
+}
+
+/// A side of a contact at the end.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Point {
+    /// Name of the contact.
+    pub contact: String,
+    /// 0 for the first of `between`, 1 for the second.
+    pub side: usize,
+    /// Displacement (m).
+    pub displacement_m: f64,
+    /// Velocity (m/s).
+    pub velocity_m_s: f64,
+}
+
+/// Where the energy went (J). At the start plus `load_work_j` is at the end plus the losses plus the residual, which is a
+/// measure of accuracy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Energy {
+    /// Kinetic and elastic energy of each body.
+    pub bodies: BTreeMap<String, BodyEnergy>,
+    /// Stored in the contacts at the end.
+    pub contacts_stored_j: f64,
+    /// Work of the loads.
+    pub load_work_j: f64,
+    /// Lost in modal damping.
+    pub modal_damping_j: f64,
+    /// Lost in the contacts.
+    pub contact_loss_j: f64,
+    /// Not accounted for.
+    pub residual_j: f64,
+}
+
+/// Energy of a body (J).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BodyEnergy {
+    /// At the start.
+    pub start_j: f64,
+    /// At the end.
+    pub end_j: f64,
+}
+
+/// Deterministic counts of the solver's work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Cost {
+    /// Steps accepted with a closed contact.
+    pub contact_steps: u64,
+    /// Steps tried and taken back.
+    pub rejected_steps: u64,
+    /// Newton iterations.
+    pub newton_iterations: u64,
+    /// Evaluations of contact laws.
+    pub law_evaluations: u64,
+    /// Steps without a closed contact.
+    pub flight_steps: u64,
+    /// Transitions of contacts between the branches of their laws.
+    pub events: u64,
+}
+
+impl Interval {
+    pub(super) fn new(interval: &assembly::Interval) -> Interval {
+        Interval {
+            start_s: interval.start_s,
+            end_s: interval.end_s,
+            impulse_n_s: interval.impulse_n_s,
+            peak_force_n: interval.peak_force_n,
+            peak_compression_m: interval.peak_compression_m,
+            approach_speed_m_s: interval.approach_speed_m_s,
+            separation_speed_m_s: interval.separation_speed_m_s,
+        }
+    }
+}
+
+impl Summary {
+    /// Gathers a result for printing.
+    pub fn new(found: &Simulation) -> Summary {
+        let run = &found.run;
+        let end_s = run.end_s;
+        let per_time = |value: f64| if end_s > 0.0 { value / end_s } else { 0.0 };
+        let contact = |(c, name): (usize, &String)| {
+            let statistics = &run.contacts[c].statistics;
+            let contact = Statistics {
+                intervals: found.intervals[c].iter().map(Interval::new).collect(),
+                intervals_left_out: found.left_out[c],
+                count: statistics.intervals,
+                time_share: per_time(statistics.contact_time_s),
+                impulse_n_s: statistics.impulse_n_s,
+                largest_force_n: statistics.largest_force_n,
+                rms_force_n: per_time(statistics.squared_force_n2_s).sqrt(),
+                contact_work_rate_w: per_time(statistics.compression_work_j),
+            };
+            (name.clone(), contact)
+        };
+        let names = &found.posed.contacts;
+        let point = |(c, name): (usize, &String)| {
+            let end = &run.contacts[c];
+            [0, 1].map(|side| Point {
+                contact: name.clone(),
+                side,
+                displacement_m: end.displacement_m[side],
+                velocity_m_s: end.velocity_m_s[side],
+            })
+        };
+        let counts = run.counts;
+        Summary {
+            outcome: run.outcome.as_str(),
+            reason: match run.outcome {
+                Outcome::Stopped(reason) => Some(reason.as_str()),
+                _ => None,
+            },
+            end_s,
+            contacts: names.iter().enumerate().map(contact).collect(),
+            points: names.iter().enumerate().flat_map(point).collect(),
+            energy: run.energy.as_ref().map(|ledger| Energy {
+                bodies: (found.posed.bodies.iter().cloned())
+                    .zip(ledger.bodies_j.iter().map(|[start_j, end_j]| BodyEnergy { start_j: *start_j, end_j: *end_j }))
+                    .collect(),
+                contacts_stored_j: run.contacts.iter().map(|contact| contact.stored_j).sum(),
+                load_work_j: ledger.load_work_j,
+                modal_damping_j: ledger.modal_damping_j,
+                contact_loss_j: ledger.contact_loss_j,
+                residual_j: ledger.unaccounted_j,
+            }),
+            counts: Cost {
+                contact_steps: counts.contact_steps,
+                rejected_steps: counts.rejected_steps,
+                newton_iterations: counts.newton_iterations,
+                law_evaluations: counts.law_evaluations,
+                flight_steps: counts.flight_steps,
+                events: counts.events,
+            },
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! The result of a scene of bodies as a person reads it in a terminal.
+
+use std::fmt::Write;
+
+use super::summary::{BodyEnergy, Interval, Statistics, Summary};
+use super::{AssemblyScene, Posed};
+use crate::text::quantity;
+
+/// Intervals of contact that are listed one by one; the rest are counted.
+const LISTED: usize = 20;
+
+/// A scene in a line.
+pub fn headline(scene: &AssemblyScene, posed: &Posed) -> String {
+    let count = |count: usize, what: &str| match count {
+        1 => format!("1 {what}"),
+        0 => format!("no {what}s"),
+        _ => format!("{count} {what}s"),
+    };
+    let modes = posed.assembly.bodies.iter().map(|body| body.modes.len()).sum();
+    let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
+    let mut line = format!("{bodies} with {}, {}", count(modes, "mode"), count(posed.contacts.len(), "contact"));
+    if !scene.loads.is_empty() {
+        line += &format!(", {}", count(scene.loads.len(), "load"));
+    }
+    if scene.gravity_m_s2 > 0.0 {
+        line += ", gravity";
+    }
+    if scene.ground_motion.is_some() {
+        line += ", moving ground";
+    }
+    line
+}
+
+/// How the run ended, in words.
+pub(super) fn outcome(summary: &Summary) -> String {
+    let end = quantity(summary.end_s, "s");
+    match (summary.outcome, summary.reason) {
+        ("end", _) => format!("end: the time asked for was reached, {end}"),
+        ("rest", _) => format!("rest at {end}: nothing can open or close a contact any more"),
+        (_, Some(reason)) => format!("stopped at {end}: {reason}"),
+        (other, None) => format!("{other} at {end}"),
+    }
+}
+
+/// The names of the columns of an interval, and an interval in them.
+pub(super) const INTERVAL: [&str; 7] = ["contact", "from", "to", "impulse", "largest force", "approach", "separation"];
+
+pub(super) fn interval_cells(name: &str, interval: &Interval) -> [String; 7] {
+    let or_under_way = |value: Option<f64>, unit: &str| value.map_or_else(|| "-".to_owned(), |v| quantity(v, unit));
+    [
+        name.to_owned(),
+        quantity(interval.start_s, "s"),
+        interval.end_s.map_or_else(|| "under way".to_owned(), |end| quantity(end, "s")),
+        quantity(interval.impulse_n_s, "N s"),
+        quantity(interval.peak_force_n, "N"),
+        quantity(interval.approach_speed_m_s, "m/s"),
+        or_under_way(interval.separation_speed_m_s, "m/s"),
+    ]
+}
+
+/// The first intervals of all contacts together, in order of time, with the names of their contacts.
+pub(super) fn first_intervals(summary: &Summary, most: usize) -> Vec<(&str, &Interval)> {
+    let of = |(name, contact)| -> Vec<(&str, &Interval)> {
+        let (name, contact): (&String, &Statistics) = (name, contact);
+        contact.intervals.iter().take(most).map(|interval| (name.as_str(), interval)).collect()
+    };
+    let mut all: Vec<(&str, &Interval)> = summary.contacts.iter().flat_map(of).collect();
+    all.sort_by(|a, b| a.1.start_s.total_cmp(&b.1.start_s));
+    all.truncate(most);
+    all
+}
+
+/// Contacts in rows under [`CONTACT`].
+pub(super) const CONTACT: [&str; 6] =
+    ["contact", "intervals", "time in contact", "largest force", "RMS force", "work rate"];
+
+pub(super) fn contact_rows(summary: &Summary) -> Vec<Vec<String>> {
+    let row = |(name, contact): (&String, &Statistics)| {
+        vec![
+            name.clone(),
+            contact.count.to_string(),
+            format!("{:.3} %", 100.0 * contact.time_share),
+            quantity(contact.largest_force_n, "N"),
+            quantity(contact.rms_force_n, "N"),
+            quantity(contact.contact_work_rate_w, "W"),
+        ]
+    };
+    summary.contacts.iter().map(row).collect()
+}
+
+/// Energies in rows: where, and how much.
+pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
+    let Some(energy) = &summary.energy else { return Vec::new() };
+    let body = |(name, body): (&String, &BodyEnergy)| {
+        [
+            name.clone(),
+            format!("{} at the start, {} at the end", quantity(body.start_j, "J"), quantity(body.end_j, "J")),
+        ]
+    };
+    let parts = [
+        ("stored in contacts", energy.contacts_stored_j),
+        ("work of the loads", energy.load_work_j),
+        ("lost to modal damping", energy.modal_damping_j),
+        ("lost in contacts", energy.contact_loss_j),
+    ];
+    let part = |(name, value): (&str, f64)| [name.to_owned(), quantity(value, "J")];
+    let residual = ["unaccounted".to_owned(), format!("{:.0e} J", energy.residual_j)];
+    energy.bodies.iter().map(body).chain(parts.map(part)).chain([residual]).collect()
+}
+
+/// The result of a run.
+pub fn result(summary: &Summary) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // a String does not fail to be written
+        let _ = writeln!(text, "  {name:<22}{value}");
+    };
+    line("outcome", outcome(summary));
+    let counts = &summary.counts;
+    line("cost", format!("{} steps in contact, {} in flight", counts.contact_steps, counts.flight_steps));
+    text += &columns(&CONTACT, contact_rows(summary).into_iter());
+    if summary.energy.is_some() {
+        text += "\n  energy\n";
+        for [name, value] in energy_rows(summary) {
+            let _ = writeln!(text, "    {name:<24}{value}");
+        }
+    }
+    let listed = first_intervals(summary, LISTED);
+    let all: u64 = summary.contacts.values().map(|contact| contact.count).sum();
+    if !listed.is_empty() {
+        text += &columns(&INTERVAL, listed.iter().map(|(name, interval)| interval_cells(name, interval).to_vec()));
+    }
+    if all > listed.len() as u64 {
+        let _ = writeln!(text, "  ... and {} more (with --json or --out)", all - listed.len() as u64);
+    }
+    text
+}
+
+/// A table whose first column stands on the left and whose others stand on the right.
+fn columns(headers: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let headers = headers.iter().map(|name| (*name).to_owned()).collect();
+    let rows: Vec<Vec<String>> = std::iter::once(headers).chain(rows).collect();
+    let width = |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max();
+    let mut text = String::from("\n");
+    for row in &rows {
+        text += " ";
+        for (column, cell) in row.iter().enumerate() {
+            let width = width(column).unwrap_or(0);
+            let _ = match column {
+                0 => write!(text, " {cell:<width$}"),
+                _ => write!(text, "   {cell:>width$}"),
+            };
+        }
+        text += "\n";
+    }
+    text
+}

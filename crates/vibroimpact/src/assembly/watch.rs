@@ -1,0 +1,153 @@
+//! What is kept of a run while it goes on: intervals of contact, samples of the motion, a Poincare section.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use vibroimpact_sim::assembly::{ContactSample, Interval, Motion, Observer};
+
+use crate::export::Failure;
+
+/// Equal intervals of a history.
+pub(super) const HISTORY_INTERVALS: usize = 4096;
+/// Samples in contact on top of these, as long as there are no more than this many.
+const MOST_IN_CONTACT: usize = 40_000;
+/// Samples within a stretch of contact.
+const WITHIN: usize = 4;
+/// Most points of a section.
+const MOST_SECTIONS: usize = 100_000;
+
+/// Takes the intervals one after the other.
+pub(super) type Sink<'a> = &'a mut dyn FnMut(usize, &Interval) -> Result<(), Failure>;
+
+/// All contacts at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Time (s).
+    pub time_s: f64,
+    /// The contacts, in the order of the assembly.
+    pub contacts: Vec<ContactSample>,
+}
+
+/// The course of a run, sampled.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Course {
+    /// Samples in order of time: at equal distances, and more while contacts are closed.
+    pub rows: Vec<Row>,
+    /// For each row whether it is one of those at equal distances.
+    pub even: Vec<bool>,
+    /// Distance of these (s).
+    pub step_s: f64,
+    /// Once in each period of the loads, where they have one.
+    pub section: Vec<Row>,
+    /// This period (s).
+    pub period_s: Option<f64>,
+    in_contact: usize,
+}
+
+impl Course {
+    pub(super) fn new(end_s: f64, period_s: Option<f64>) -> Course {
+        Course { step_s: end_s / HISTORY_INTERVALS as f64, period_s, ..Course::default() }
+    }
+
+    fn add(&mut self, panel: &dyn Motion, contacts: usize) {
+        let (start, end) = (panel.start_s(), panel.end_s());
+        let row = |time_s: f64| Row { time_s, contacts: (0..contacts).map(|c| panel.contact(c, time_s)).collect() };
+        let closed = (0..contacts).any(|c| panel.contact(c, 0.5 * (start + end)).closed);
+        let mut times: Vec<(f64, bool)> = multiples(start, end, self.step_s).map(|time_s| (time_s, true)).collect();
+        if closed && self.in_contact < MOST_IN_CONTACT {
+            self.in_contact += WITHIN;
+            times.extend((0..WITHIN).map(|i| (start + (end - start) * i as f64 / WITHIN as f64, false)));
+            times.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        for (time_s, even) in times {
+            self.rows.push(row(time_s));
+            self.even.push(even);
+        }
+        if let Some(period_s) = self.period_s
+            && self.section.len() < MOST_SECTIONS
+        {
+            self.section.extend(multiples(start, end, period_s).map(row));
+        }
+    }
+
+    /// The samples at equal distances.
+    pub fn even_rows(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().zip(&self.even).filter(|(_, even)| **even).map(|(row, _)| row)
+    }
+}
+
+/// The multiples of a step in `[start, end)`.
+fn multiples(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
+    let first = (start / step).ceil().max(0.0) as u64;
+    (first..).map(move |i| i as f64 * step).take_while(move |time| *time < end)
+}
+
+/// Follows a run.
+pub(super) struct Watch<'a> {
+    /// Intervals that are kept, contact by contact.
+    pub intervals: Vec<Vec<Interval>>,
+    /// How many more there were.
+    pub left_out: Vec<u64>,
+    /// How many may still be kept.
+    room: usize,
+    /// Where all intervals go.
+    sink: Option<Sink<'a>>,
+    /// Why they could not go there.
+    pub fault: Option<Failure>,
+    /// Samples of the motion, if they are wanted.
+    pub course: Option<Course>,
+    stop: &'a AtomicBool,
+    tell: &'a mut dyn FnMut(f64),
+    time_s: f64,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(
+        contacts: usize,
+        room: usize,
+        sink: Option<Sink<'a>>,
+        course: Option<Course>,
+        stop: &'a AtomicBool,
+        tell: &'a mut dyn FnMut(f64),
+    ) -> Watch<'a> {
+        let (intervals, left_out) = (vec![Vec::new(); contacts], vec![0; contacts]);
+        Watch { intervals, left_out, room, sink, fault: None, course, stop, tell, time_s: 0.0 }
+    }
+}
+
+impl Observer for Watch<'_> {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.time_s = interval.end_s.unwrap_or(interval.start_s).max(self.time_s);
+        if let Some(sink) = &mut self.sink
+            && self.fault.is_none()
+        {
+            self.fault = sink(contact, interval).err();
+        }
+        if self.room > 0 {
+            self.room -= 1;
+            self.intervals[contact].push(*interval);
+        } else {
+            self.left_out[contact] += 1;
+        }
+    }
+
+    fn panel(&mut self, panel: &dyn Motion) {
+        self.time_s = panel.end_s();
+        let contacts = self.intervals.len();
+        if let Some(course) = &mut self.course {
+            course.add(panel, contacts);
+        }
+    }
+
+    fn wants_panels(&self) -> bool {
+        self.course.is_some()
+    }
+
+    fn wants_energy(&self) -> bool {
+        true
+    }
+
+    fn interrupts(&mut self) -> bool {
+        (self.tell)(self.time_s);
+        self.fault.is_some() || self.stop.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,86 @@
+//! The command `simulate` for a scene of bodies.
+
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use vibroimpact::assembly::{self, AssemblyScene, Summary, Wanted};
+use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::text::quantity;
+
+use super::products::Products;
+use super::sweep::stop_on_signal;
+
+/// Solves the scene and returns what is to be printed; at most `intervals` intervals of contact are listed.
+pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) -> Result<String, Failure> {
+    // a fault of the scene is told before anything is written
+    let headline = assembly::headline(scene, &scene.pose()?);
+    let stop = stop_on_signal()?;
+    let mut progress = Progress::new(scene.end_s);
+    let wanted = Wanted {
+        intervals,
+        course: products.want_course(),
+        folder: products.out.as_deref(),
+        stop: &stop,
+        tell: &mut |time_s| progress.tell(time_s),
+    };
+    let found = scene.simulate_with(wanted)?;
+    progress.finish();
+    let summary = Summary::new(&found);
+    let printed = match products.json {
+        true => export::json(&summary)?,
+        false => format!("{headline}\n\n{}", assembly::result(&summary)),
+    };
+    let told = products.write(
+        || assembly::picture(&headline, &found),
+        |figure| assembly::report(&headline, scene, &summary, figure),
+        || Ok(Files::of(assembly::files(&headline, scene, &found, &summary)?)),
+    )?;
+    Ok(printed + &told)
+}
+
+/// Progress on the standard error: a bar on a terminal, elsewhere a line now and then.
+struct Progress {
+    end_s: f64,
+    begun: Instant,
+    told: Instant,
+    bar: Option<ProgressBar>,
+}
+
+/// Before this nobody wonders.
+const FIRST: Duration = Duration::from_secs(1);
+/// Between two lines where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(30);
+/// Steps of the bar.
+const STEPS: f64 = 1000.0;
+
+impl Progress {
+    fn new(end_s: f64) -> Progress {
+        let now = Instant::now();
+        Progress { end_s, begun: now, told: now, bar: None }
+    }
+
+    fn tell(&mut self, time_s: f64) {
+        if self.begun.elapsed() < FIRST {
+            return;
+        }
+        if stderr().is_terminal() {
+            let bar = self.bar.get_or_insert_with(|| {
+                let bar = ProgressBar::new(STEPS as u64);
+                ProgressStyle::with_template("{wide_bar} {msg}, {eta} left").map(|style| bar.set_style(style)).ok();
+                bar
+            });
+            bar.set_position((STEPS * (time_s / self.end_s).clamp(0.0, 1.0)) as u64);
+            bar.set_message(format!("{} of {}", quantity(time_s, "s"), quantity(self.end_s, "s")));
+        } else if self.told.elapsed() >= BETWEEN_LINES {
+            self.told = Instant::now();
+            eprintln!("simulate: {} of {}", quantity(time_s, "s"), quantity(self.end_s, "s"));
+        }
+    }
+
+    fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

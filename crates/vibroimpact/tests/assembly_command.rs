@@ -1,0 +1,107 @@
+//! The program with scenes of bodies: text, JSON, files, exit codes.
+
+mod gallery;
+mod program;
+
+use std::fs;
+
+use gallery::datasets;
+use program::{run, stdout};
+use serde_json::Value;
+
+fn scene(name: &str) -> String {
+    datasets(&format!("assemblies/{name}.json")).display().to_string()
+}
+
+#[test]
+fn simulate_prints_one_json_object_with_the_promised_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = stdout(&run(folder.path(), &["simulate", &scene("sdnl105"), "--json"]));
+    let result: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!((result["outcome"].as_str(), result["end_s"].as_f64()), (Some("end"), Some(1.0)));
+    let contact = &result["contacts"]["1-2"];
+    assert_eq!(contact["count"], contact["intervals"].as_array().unwrap().len());
+    let last = contact["intervals"].as_array().unwrap().last().unwrap();
+    assert!(last["end_s"].is_null() && last["separation_speed_m_s"].is_null(), "{last}");
+    let first = &contact["intervals"][0];
+    for key in ["start_s", "end_s", "impulse_n_s", "peak_force_n", "approach_speed_m_s", "separation_speed_m_s"] {
+        assert!(first[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {first}");
+    }
+    for key in ["time_share", "rms_force_n", "largest_force_n", "contact_work_rate_w"] {
+        assert!(contact[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {contact}");
+    }
+    let points = result["points"].as_array().unwrap();
+    assert_eq!(points.len(), 4);
+    assert_eq!((points[1]["contact"].as_str(), points[1]["side"].as_u64()), (Some("1-2"), Some(1)));
+    assert!(points[1]["displacement_m"].as_f64().unwrap() > 0.016);
+    // the list is cut where it is told to be, and the statistics are not
+    let short = stdout(&run(folder.path(), &["simulate", &scene("sdnl105"), "--json", "--intervals", "1"]));
+    let short: Value = serde_json::from_str(&short).unwrap();
+    // the first to end is listed
+    assert_eq!(short["contacts"]["2-3"]["intervals"].as_array().unwrap().len(), 1);
+    assert_eq!(short["contacts"]["2-3"]["intervals_left_out"], 3);
+    assert_eq!(short["contacts"]["1-2"]["intervals_left_out"], 2);
+    assert_eq!(short["contacts"]["2-3"]["rms_force_n"], result["contacts"]["2-3"]["rms_force_n"]);
+}
+
+#[test]
+fn simulate_without_json_is_for_readers() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stdout(&run(folder.path(), &["simulate", &scene("sdnd102")]));
+    for part in ["1 body with 1 mode, 1 contact, moving ground", "the time asked for was reached", "wall", "RMS force"]
+    {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn out_writes_intervals_histories_picture_and_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = stdout(&run(folder.path(), &["simulate", &scene("rattling-gear"), "--json", "--out", "a"]));
+    let result: Value = serde_json::from_str(&printed).unwrap();
+    let read = |name: &str| fs::read(folder.path().join("a").join(name)).unwrap();
+    assert_eq!(read("result.json"), printed.as_bytes());
+    assert!(read("run.svg").starts_with(b"<svg") && read("report.html").starts_with(b"<!DOCTYPE html>"));
+    assert!(read("intervals.parquet").starts_with(b"PAR1"));
+    let rows = |name: &str| -> Vec<Vec<String>> {
+        let table = read(name);
+        let mut rows = csv::Reader::from_reader(table.as_slice());
+        rows.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect()
+    };
+    let intervals = rows("intervals.csv");
+    let counts = ["flank+", "flank-"].map(|name| result["contacts"][name]["count"].as_u64().unwrap());
+    assert_eq!(intervals.len() as u64, counts[0] + counts[1]);
+    let listed = result["contacts"]["flank+"]["intervals"].as_array().unwrap();
+    let of_flank: Vec<_> = intervals.iter().filter(|row| row[0] == "flank+").collect();
+    for (number, (row, listed)) in of_flank.iter().zip(listed).enumerate() {
+        assert_eq!(row[1], (number + 1).to_string());
+        assert_eq!(row[2].parse::<f64>().unwrap(), listed["start_s"].as_f64().unwrap());
+    }
+    // a force where the gap is negative, none where it is open beyond rounding; once a period in the section
+    let history = rows("history.csv");
+    assert!(history.len() > 4096);
+    let number = |cell: &String| cell.parse::<f64>().unwrap();
+    assert!(history.windows(2).all(|pair| number(&pair[0][0]) <= number(&pair[1][0])));
+    assert!(history.iter().all(|row| number(&row[1]) <= 1e-15 || number(&row[3]) == 0.0));
+    assert!(history.iter().any(|row| number(&row[3]) > 100.0));
+    assert_eq!(rows("section.csv").len(), 25);
+    assert_eq!(fs::read_dir(folder.path().join("a")).unwrap().count(), 7);
+}
+
+#[test]
+fn a_scene_that_cannot_be_used_is_refused_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(scene("sdnl104")).unwrap().replace("\"location_m\": 1 ", "\"location_m\": 1.5 ");
+    fs::write(folder.path().join("scene.json"), text).unwrap();
+    let output = run(folder.path(), &["simulate", "scene.json", "--out", "a", "--plot", "b.svg"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("contacts[0].between[0].location_m = 1.5 is not allowed"), "{message}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    // commands for one impact say where such a scene belongs
+    let output = run(folder.path(), &["plan", &scene("sdnl104")]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(message.contains("vibroimpact simulate"), "{message}");
+}

@@ -1,0 +1,279 @@
+//! Scenes of bodies against published figures, closed forms and second methods.
+
+mod gallery;
+
+use std::f64::consts::{PI, TAU};
+
+use beam_modes::fem;
+use gallery::{assemblies, assembly};
+use serde_json::json;
+use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation};
+use vibroimpact::scene::Structure;
+use vibroimpact::vibroimpact_sim::assembly::Outcome;
+
+fn until(scene: &AssemblyScene, end_s: f64) -> Simulation {
+    AssemblyScene { end_s, ..scene.clone() }.simulate().unwrap()
+}
+
+/// Asserts that a number is the expected one to a relative tolerance.
+#[track_caller]
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    assert!((found / expected - 1.0).abs() <= tolerance, "{found} against {expected}");
+}
+
+#[test]
+fn sdnl104_has_the_exact_figures_of_its_modes() {
+    let with_modes = |modes: usize| {
+        let mut scene = assembly("sdnl104");
+        let Some(Body::Elastic(beam)) = scene.bodies.get_mut("beam") else { panic!() };
+        beam.modes = Some(modes);
+        scene
+    };
+    // five modes, exact in time by a second method, which agrees to 5 digits in displacements and times, 3 in velocities
+    let five = with_modes(5);
+    assert_near(until(&five, 0.1315).run.contacts[0].displacement_m[0], -1.7360e-6, 1e-4);
+    assert_near(until(&five, 0.1566).run.contacts[0].velocity_m_s[0], -4.44e-3, 1e-3);
+    let whole = until(&five, 0.16);
+    assert_near(whole.intervals[0][0].start_s, 0.036196, 2e-5);
+    assert_near(whole.intervals[0][0].end_s.unwrap(), 0.092458, 2e-5);
+    let kinetic = |found: &Simulation| -> f64 { found.run.rate[0].iter().map(|rate| 0.5 * rate * rate).sum() };
+    assert_near(kinetic(&whole), 0.05161, 1e-4);
+    // with more modes, what 40 of them and their residual compliance give
+    let forty = with_modes(40);
+    let tip = until(&forty, 0.1315).run.contacts[0].displacement_m[0];
+    // the digits of the second method are those of the tip's range, 1e-4 m
+    assert!((tip + 1.841e-6).abs() < 1e-8, "{tip}");
+    let whole = until(&forty, 0.16);
+    assert_near(whole.intervals[0][0].start_s, 0.03614, 1e-4);
+    assert_near(whole.intervals[0][0].end_s.unwrap(), 0.09256, 1e-4);
+    assert_near(kinetic(&whole), 0.05138, 2e-4);
+}
+
+#[test]
+fn sdnl105_is_met_by_the_modes_of_its_mesh() {
+    let scene = assembly("sdnl105");
+    let Body::Elastic(tube) = &scene.bodies["tube-1"] else { panic!() };
+    let Elastics::Structure(Structure::Beam(beam)) = &tube.structure else { panic!() };
+    // ten elements, modes up to 35 Hz, as the test has them
+    let modes = fem::Model::new(&beam.to_beam().unwrap(), 10).unwrap().modes().unwrap();
+    let omega: Vec<f64> = modes.omega_rad_s().iter().copied().filter(|omega| *omega < TAU * 35.0).collect();
+    let shape = modes.shapes_at(0.5).unwrap()[..omega.len()].to_vec();
+    let body = json!({ "kind": "modal", "omega_rad_s": omega, "points": { "middle": { "shape": shape } } });
+    let mut meshed: serde_json::Value = serde_json::from_str(&scene.to_json()).unwrap();
+    for name in ["tube-1", "tube-2", "tube-3"] {
+        meshed["bodies"][name] = body.clone();
+    }
+    let text = meshed.to_string().replace("\"location_m\":0.5", "\"location\":\"middle\"");
+    let found = AssemblyScene::from_json(&text).unwrap().simulate().unwrap();
+    // the contact 1-2 has tube 2 first
+    let [first, second] = [&found.run.contacts[0], &found.run.contacts[1]];
+    let displacement = [first.displacement_m[1], first.displacement_m[0], second.displacement_m[0]];
+    // the range of the three integrators, widened by its own width
+    for (found, [low, high]) in
+        displacement.into_iter().zip([[0.016426, 0.016429], [0.011163, 0.011168], [0.005887, 0.005898]])
+    {
+        let width: f64 = high - low;
+        assert!(found > low - width && found < high + width, "{displacement:?}");
+    }
+    // energy can only have come from the load, and each contact opens and closes in turn
+    assert_eq!(found.run.outcome, Outcome::End);
+}
+
+#[test]
+fn sdnd101_is_a_half_sine_after_the_other() {
+    let found = assembly("sdnd101").simulate().unwrap();
+    let (swing, contact) = (10.0, (1.01e6f64 / 100.0).sqrt());
+    for (n, interval) in found.intervals[0].iter().enumerate() {
+        assert!((interval.start_s - n as f64 * (PI / swing + PI / contact)).abs() < 1e-9);
+        assert_near(interval.end_s.unwrap() - interval.start_s, PI / contact, 1e-8);
+        assert_near(interval.peak_force_n, 1e6 / contact, 1e-8);
+        assert_near(interval.impulse_n_s, 2e6 / contact.powi(2), 1e-8);
+    }
+    assert_eq!(found.intervals[0].len(), 3);
+    // as stated, with the instants of the largest forces
+    let second = &found.intervals[0][1];
+    assert_near(0.5 * PI / contact, 0.01563, 1e-3);
+    assert_near(second.start_s + 0.5 * PI / contact, 0.361, 1e-3);
+    assert_near(second.impulse_n_s, 198.05, 1e-3);
+    assert_near(second.peak_force_n, 9950.0, 1e-3);
+}
+
+#[test]
+fn sdnd102_is_the_same_against_a_wall_and_against_its_mirror_image() {
+    let wall = assembly("sdnd102");
+    let mut pair: serde_json::Value = serde_json::from_str(&wall.to_json()).unwrap();
+    let mass = pair["bodies"]["mass"].clone();
+    pair["bodies"] = json!({ "mass": mass, "image": mass });
+    pair["contacts"] = json!([{ "name": "wall",
+        "between": [{ "body": "image", "location": "mass" }, { "body": "mass", "location": "mass" }],
+        "gap_m": 1e-3, "law": "linear-spring", "stiffness_n_m": 0.5 * 5.76e7 }]);
+    pair["loads"] = json!([
+        { "body": "mass", "location": "mass", "force_n": -25, "frequency_hz": 10 },
+        { "body": "image", "location": "mass", "force_n": 25, "frequency_hz": 10 }]);
+    pair.as_object_mut().unwrap().remove("ground_motion");
+    let [one, two] = [wall, AssemblyScene::from_value(&pair).unwrap()].map(|scene| scene.simulate().unwrap());
+    assert_eq!((one.intervals[0].len(), two.intervals[0].len()), (10, 10));
+    for (a, b) in one.intervals[0].iter().zip(&two.intervals[0]) {
+        assert_near(a.start_s, b.start_s, 1e-7);
+        assert_near(a.impulse_n_s, b.impulse_n_s, 1e-5);
+    }
+}
+
+#[test]
+fn sdnd125_is_the_same_seen_from_the_other_side() {
+    let scene = assembly("sdnd125");
+    let mut mirrored = scene.clone();
+    mirrored.loads[0].force_n = scene.loads[0].force_n.map(|force| -force);
+    for contact in &mut mirrored.contacts {
+        contact.between.reverse();
+    }
+    let [one, other] = [scene, mirrored].map(|scene| scene.simulate().unwrap());
+    for (c, intervals) in one.intervals.iter().enumerate() {
+        assert_eq!(intervals.len(), other.intervals[c].len());
+        for (a, b) in intervals.iter().zip(&other.intervals[c]) {
+            assert!((a.start_s - b.start_s).abs() < 1e-8 && (a.impulse_n_s - b.impulse_n_s).abs() < 1e-6);
+        }
+    }
+    // impulses and the load's turn the middle mass: m v = int F dt + I_left - I_right
+    let impulse = |c: usize| one.run.contacts[c].statistics.impulse_n_s;
+    let load = 60.0 / (4.0 * PI) * (1.0 - (4.0 * PI).cos());
+    let velocity = one.run.contacts[0].velocity_m_s[0];
+    assert!((10.0 * velocity - (load + impulse(0) - impulse(1))).abs() < 1e-7, "{velocity}");
+}
+
+#[test]
+fn a_dropped_ball_lies_on_the_beam_at_last() {
+    let found = assembly("dropped-ball").simulate().unwrap();
+    let contact = &found.run.contacts[0];
+    assert!(found.intervals[0].len() > 10);
+    assert!(found.intervals[0].last().is_some_and(|last| last.end_s.is_none()));
+    // what is left is the ball's weight, which bends the beam at rest
+    assert_near(contact.force_n, 0.11027 * 9.81, 1e-2);
+    assert!(contact.velocity_m_s.iter().all(|velocity| velocity.abs() < 1e-4), "{:?}", contact.velocity_m_s);
+    // the first touch: 5 mm of free fall onto the sagged beam
+    let sag = found.posed.assembly.bodies[1].amplitude.iter().zip(shape(&found)).map(|(a, phi)| a * phi).sum::<f64>();
+    assert_near(found.intervals[0][0].start_s, (2.0 * (0.005 - sag) / 9.81).sqrt(), 1e-9);
+}
+
+/// Shapes of the second side of the first contact.
+fn shape(found: &Simulation) -> Vec<f64> {
+    match &found.posed.assembly.contacts[0].sides[1] {
+        vibroimpact::vibroimpact_sim::assembly::Point::OfBody { shape, .. } => shape.clone(),
+        ground => panic!("{ground:?}"),
+    }
+}
+
+#[test]
+fn a_ball_on_a_shaken_table_keeps_to_one_impact_a_period() {
+    let found = assembly("shaken-table").simulate().unwrap();
+    let (period, e) = (0.05, 0.5);
+    // it flies for a period: approach and separation differ by g T, and their ratio is the restitution
+    let approach = 9.81 * period / (1.0 + e);
+    let last = &found.intervals[0][found.intervals[0].len() - 20..];
+    for pair in last.windows(2) {
+        assert_near(pair[1].start_s - pair[0].start_s, period, 1e-9);
+        // the contact takes 0.2 % of the period
+        assert_near(pair[1].approach_speed_m_s, approach, 2e-3);
+        assert_near(pair[1].separation_speed_m_s.unwrap(), e * approach, 2e-3);
+    }
+    // beyond the closed-form threshold (1.5268 at this restitution) the period doubles
+    let mut faster = assembly("shaken-table");
+    let motion = faster.ground_motion.as_mut().unwrap();
+    motion.displacement_m = Some(1.57 * 9.81 / (TAU * 20.0f64).powi(2));
+    let found = until(&faster, 8.0);
+    let speeds: Vec<f64> = found.intervals[0].iter().rev().take(8).map(|i| i.approach_speed_m_s).collect();
+    for (i, speed) in speeds.iter().enumerate().skip(2) {
+        assert_near(*speed, speeds[i - 2], 1e-5);
+    }
+    assert!((speeds[0] / speeds[1] - 1.0).abs() > 0.02, "{speeds:?}");
+}
+
+#[test]
+fn newtons_cradle_is_that_of_a_general_integrator() {
+    let found = assembly("newtons-cradle").simulate().unwrap();
+    let ours: Vec<f64> = found.run.rate.iter().map(|rate| rate[0] / 0.1f64.sqrt()).collect();
+    // classical Runge-Kutta on the five masses
+    let acceleration = |u: &[f64; 5]| {
+        let mut forces = [0.0; 5];
+        for i in 0..4 {
+            let force = 1e10 * (u[i] - u[i + 1]).max(0.0).powf(1.5);
+            forces[i] -= force;
+            forces[i + 1] += force;
+        }
+        forces.map(|force| force / 0.1)
+    };
+    let (mut u, mut v) = ([0.0; 5], [1.0, 0.0, 0.0, 0.0, 0.0]);
+    let steps = 20_000;
+    let h = 1e-3 / f64::from(steps);
+    let moved = |a: &[f64; 5], b: &[f64; 5], h: f64| std::array::from_fn(|i| a[i] + h * b[i]);
+    for _ in 0..steps {
+        let (u1, v1, a1): ([f64; 5], [f64; 5], _) = (u, v, acceleration(&u));
+        let (u2, v2): ([f64; 5], [f64; 5]) = (moved(&u1, &v1, 0.5 * h), moved(&v1, &a1, 0.5 * h));
+        let a2 = acceleration(&u2);
+        let (u3, v3): ([f64; 5], [f64; 5]) = (moved(&u1, &v2, 0.5 * h), moved(&v1, &a2, 0.5 * h));
+        let a3 = acceleration(&u3);
+        let (u4, v4): ([f64; 5], [f64; 5]) = (moved(&u1, &v3, h), moved(&v1, &a3, h));
+        let a4 = acceleration(&u4);
+        for i in 0..5 {
+            u[i] += h / 6.0 * (v1[i] + 2.0 * v2[i] + 2.0 * v3[i] + v4[i]);
+            v[i] += h / 6.0 * (a1[i] + 2.0 * a2[i] + 2.0 * a3[i] + a4[i]);
+        }
+    }
+    for (ours, theirs) in ours.iter().zip(v) {
+        assert!((ours - theirs).abs() < 1e-7, "{ours} {theirs}");
+    }
+    assert!((ours.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!((ours.iter().map(|v| v * v).sum::<f64>() - 1.0).abs() < 1e-7);
+    assert!(ours[4] < 0.99 && ours[0] < 0.0);
+}
+
+#[test]
+fn rods_change_speeds_while_a_wave_runs_there_and_back() {
+    let found = assembly("two-rods").simulate().unwrap();
+    let contact = &found.intervals[0][0];
+    assert_eq!(found.intervals[0].len(), 1);
+    // Saint-Venant: 2 L / c, here with a joint of finite stiffness
+    assert_near(contact.end_s.unwrap(), 2.0 * 0.5 / (2e11f64 / 7800.0).sqrt(), 2e-2);
+    let root = (7800.0 * PI / 4.0 * 0.02f64.powi(2) * 0.5).sqrt();
+    let [first, second] = [0, 1].map(|body| found.run.rate[body][0] / root);
+    assert!(first.abs() < 5e-3 && (second - 1.0).abs() < 5e-3, "{first} {second}");
+    assert_near(first + second, 1.0, 1e-12);
+    assert_near(contact.impulse_n_s, root * root * second, 1e-9);
+}
+
+#[test]
+fn impulses_balance_momentum_between_stops() {
+    // whole periods of the ground leave no impulse of the inertial load
+    let scene = assembly("rattling-gear");
+    let found = scene.simulate().unwrap();
+    assert_eq!(found.posed.contacts, ["flank+", "flank-"]);
+    let impulse = |c: usize| found.run.contacts[c].statistics.impulse_n_s;
+    let velocity = found.run.contacts[0].velocity_m_s[0];
+    assert!((0.5 * velocity - (impulse(0) - impulse(1))).abs() < 1e-8, "{velocity}");
+    assert!(found.intervals.iter().all(|intervals| intervals.len() > 20));
+}
+
+#[test]
+fn an_impact_damper_holds_its_oscillator_down() {
+    let scene = assembly("impact-damper");
+    let largest = |scene: &AssemblyScene| {
+        let ends = (0..20).map(|i| until(scene, 8.0 + 0.0125 * f64::from(i)).run.contacts[0].displacement_m[1].abs());
+        ends.fold(0.0, f64::max)
+    };
+    let damped = largest(&scene);
+    let mut free = scene.clone();
+    free.contacts.clear();
+    let posed = free.simulate().unwrap();
+    // at its frequency of 10 Hz, almost the static response over twice the damping ratio
+    let amplitude = posed.run.amplitude[1][0].hypot(posed.run.rate[1][0] / (TAU * 10.0));
+    assert!(amplitude > 0.02 && damped < 0.25 * amplitude, "{damped} {amplitude}");
+}
+
+#[test]
+fn every_scene_of_bodies_runs() {
+    for (name, scene) in assemblies() {
+        assert!(scene.description.as_ref().is_some_and(|text| !text.is_empty()), "{name}");
+        let found = AssemblyScene { end_s: scene.end_s.min(0.02), ..scene }.simulate().unwrap();
+        assert!(matches!(found.run.outcome, Outcome::End | Outcome::Rest), "{name}: {:?}", found.run.outcome);
+    }
+}
