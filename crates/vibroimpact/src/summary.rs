@@ -1,6 +1,6 @@
 //! The result of a scene as files and people read it.
 
-use crate::model::Answer;
+use crate::model::{Answer, Uncertainty};
 use serde::Serialize;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
@@ -11,8 +11,10 @@ pub struct Summary {
     pub outcome: &'static str,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution.
+    /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
     pub restitution_uncertainty: Option<f64>,
+    /// Its parts; null where a part cannot be known, which `choice.not_known` explains.
+    pub uncertainty: Uncertainty,
     /// Number of separate contacts.
     pub sub_impact_count: usize,
     /// The contacts in order of time.
@@ -94,6 +96,7 @@ impl Summary {
             outcome: solution.outcome.as_str(),
             restitution: solution.restitution,
             restitution_uncertainty: solution.restitution_uncertainty,
+            uncertainty: Uncertainty { solver: solution.restitution_uncertainty, ..Uncertainty::default() },
             sub_impact_count: solution.sub_impacts.len(),
             sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
@@ -116,7 +119,12 @@ impl Summary {
 
     /// The same with the choice that led to it, whose uncertainty counts.
     pub fn chosen(self, choice: Answer) -> Summary {
-        Summary { restitution_uncertainty: choice.restitution_uncertainty, choice: Some(choice), ..self }
+        Summary {
+            restitution_uncertainty: choice.restitution_uncertainty,
+            uncertainty: choice.uncertainty,
+            choice: Some(choice),
+            ..self
+        }
     }
 }
 

@@ -120,6 +120,7 @@ pub fn result(summary: &Summary) -> String {
     line("outcome", outcome.to_owned());
     if let Some(value) = summary.restitution {
         line("restitution", restitution(value, summary.restitution_uncertainty));
+        line("as modelled", restitution(value, summary.uncertainty.solver));
     }
     line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"));
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));

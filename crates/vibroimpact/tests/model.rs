@@ -117,8 +117,7 @@ fn the_uncertainty_covers_the_error() {
             let found = answer(&with(&[&changes[..], &[("/tolerance", json!(tolerance))]].concat()));
             let error = (found.restitution.unwrap() - exact).abs();
             let uncertainty = found.restitution_uncertainty.unwrap();
-            // an estimate, not a bound: three times is the most that it is ever short here
-            assert!(error <= 3.0 * uncertainty + 1e-8, "{changes:?} {tolerance}: {error:e}, {found:?}");
+            assert!(error <= uncertainty + 1e-8, "{changes:?} {tolerance}: {error:e}, {found:?}");
             assert!(!found.settled || uncertainty <= tolerance);
         }
     }
@@ -126,13 +125,21 @@ fn the_uncertainty_covers_the_error() {
 
 #[test]
 fn what_does_not_settle_is_said_to() {
-    // thesis 3.3.2: undamped, many sub-impacts
-    let scene =
-        with(&[("/structure/damping_ratio", json!(0)), ("/location_m", json!(0.4)), ("/tolerance", json!(1e-5))]);
+    // undamped, and too heavy a ball for the accuracy that rounding leaves after many sub-impacts
+    let mut scene = with(&[("/tolerance", json!(1e-10)), ("/striker/radius_m", json!(0.03))]);
+    let omega: Vec<f64> = (1..=30).map(|k| 163.0 * f64::from(k * k)).collect();
+    let shape: Vec<f64> = (1..=30).map(|k| 1.414 * (PI * f64::from(k) * 0.4).sin()).collect();
+    scene["structure"] = json!({ "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape,
+        "static_compliance_m_n": (0.4f64 * 0.6).powi(2) / 3.0 / (163.0 / PI.powi(2)).powi(2) });
+    scene.as_object_mut().unwrap().remove("location_m");
     let found = answer(&scene);
-    assert!(!found.settled && found.spread.is_some_and(|spread| spread > 1e-5), "{found:?}");
+    assert!(!found.settled && found.spread.is_some_and(|spread| spread > 1e-10), "{found:?}");
     assert!(found.restitution_uncertainty >= found.spread, "{found:?}");
-    assert!(found.reason.contains("does not settle") && found.reason.contains("nothing damps"), "{}", found.reason);
+    assert!(
+        found.reason.contains("before the restitution settles") && found.reason.contains("nothing damps"),
+        "{}",
+        found.reason
+    );
 }
 
 #[test]
@@ -156,7 +163,7 @@ fn stated_modes_stay_as_they_are() {
     let (answer, solution) = (scene.answer().unwrap(), scene.impact().unwrap().solve().unwrap());
     assert_eq!((answer.model, answer.modes, answer.tolerance), (Model::Modal, 40, 1e-9));
     assert_eq!(answer.restitution, solution.restitution);
-    assert_eq!(answer.restitution_uncertainty, solution.restitution_uncertainty);
+    assert_eq!(answer.uncertainty.solver, solution.restitution_uncertainty);
     assert_eq!(answer.residual_compliance_m_n, 0.0);
     // 0.17739 at N = 40 with plain truncation, where the limit of many modes is 0.1425
     assert!((answer.restitution.unwrap() - 0.17739).abs() < 1e-3, "{answer:?}");
@@ -183,7 +190,8 @@ fn a_structure_known_by_its_modes_says_what_is_not_known() {
     };
     let unknown = listed(None);
     assert_eq!((unknown.model, unknown.modes, unknown.tolerance), (Model::Modal, 40, 1e-9));
-    assert!(unknown.reason.contains("not known"), "{}", unknown.reason);
+    assert_eq!((unknown.uncertainty.modes_left_out, unknown.uncertainty.beam_theory), (None, None));
+    assert!(unknown.not_known.iter().any(|why| why.contains("static compliance")), "{:?}", unknown.not_known);
     // G = x^2 (1-x)^2 / (3 EI) with EI = (169/pi^2)^2
     let whole = (0.3f64 * 0.7).powi(2) / 3.0 / (169.0 / PI.powi(2)).powi(2);
     let known = listed(Some(whole));

@@ -280,10 +280,10 @@ fn motion_before_the_impact_can_be_told_in_two_ways() {
     for (start, field) in [
         (Start { gap_m: -1.0, ..Start::default() }, "start.gap_m"),
         (Start { gap_m: f64::NAN, ..Start::default() }, "start.gap_m"),
-        (Start { rate_m_kg0_5_s: vec![0.0; 41], ..Start::default() }, "start.rate_m_kg0_5_s"),
+        (Start { rate_m_kg0_5_s: vec![0.0; 101], ..Start::default() }, "start.rate_m_kg0_5_s"),
         (Start { amplitude_m_kg0_5: vec![f64::INFINITY], ..Start::default() }, "start.amplitude[0]"),
         (moving(MovingMode { mode: 0, ..one.clone() }), "start.moving_modes[0].mode"),
-        (moving(MovingMode { mode: 41, ..one.clone() }), "start.moving_modes[0].mode"),
+        (moving(MovingMode { mode: 101, ..one.clone() }), "start.moving_modes[0].mode"),
         (moving(MovingMode { mode: 2, location_m: Some(0.5), ..one.clone() }), "start.moving_modes[0].mode"),
         (moving(MovingMode { location_m: Some(2.0), ..one.clone() }), "start.moving_modes[0].location_m"),
         (moving(MovingMode { location: Some("tip".into()), ..one.clone() }), "start.moving_modes[0].location"),

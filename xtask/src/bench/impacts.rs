@@ -93,7 +93,9 @@ pub fn on_modes(root: &Path) -> Result<Vec<Problem>, Failure> {
     problems.push(modal("undamped N=25 hertz".into(), undamped.impact()?, 1e-9).rounding(1e-7));
 
     for name in ["stepped-cantilever", "cantilever-tip"] {
-        problems.push(modal(format!("{name} N=40 hertz"), scene(name)?.impact()?, 1e-9));
+        let truncated =
+            Scene { modes: Modes::Count(40), residual_compliance: Some(false), tolerance: None, ..scene(name)? };
+        problems.push(modal(format!("{name} N=40 hertz"), truncated.impact()?, 1e-9));
     }
     problems.push(dropped_rod());
     Ok(problems)

@@ -1,7 +1,7 @@
 //! Which model a scene is given to.
 
 use super::pose::{Pose, chooses_modes, modal_only};
-use super::{Answer, Cost, Kept, Model, infinite, rigid, settle};
+use super::{Answer, Cost, Kept, Model, infinite, rigid, settle, stated};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene};
 
@@ -68,7 +68,7 @@ impl Scene {
         }
         let mut cost = Cost::default();
         let mut choice = match (self.model, modal_only(self)) {
-            (Model::Auto | Model::Modal, Some(_)) => settle::stated(self, kept, &mut cost)?,
+            (Model::Auto | Model::Modal, Some(_)) => stated::stated(self, kept, &mut cost)?,
             (forced, Some(why)) => return Err(refused(forced, format!("auto or modal: {why}"))),
             (Model::Auto, None) => auto(&mut Pose::new(self, kept)?, &mut cost)?,
             (forced, None) => forced_tier(forced, &mut Pose::new(self, kept)?, &mut cost)?
@@ -103,7 +103,7 @@ impl Scene {
 /// The cheapest tier that is certain to reach the tolerance.
 fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {
-        return settle::stated(pose.scene, pose.kept, cost);
+        return stated::stated(pose.scene, pose.kept, cost);
     }
     for tier in [rigid::certified, super::emoc::certified, infinite::certified] {
         if let Ok(choice) = tier(pose, cost)? {
@@ -126,7 +126,7 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
     if chooses_modes(pose.scene) && pose.approaches() {
         settle::settle(pose, cost)
     } else {
-        settle::stated(pose.scene, pose.kept, cost)
+        stated::stated(pose.scene, pose.kept, cost)
     }
 }
 

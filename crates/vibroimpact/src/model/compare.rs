@@ -18,6 +18,14 @@ pub struct Comparison {
     pub tiers: Vec<Tier>,
 }
 
+impl Comparison {
+    /// Whether it is not known what the modes left out change in the best tier.
+    pub(super) fn best_leaves_modes_out(&self) -> bool {
+        let best = self.tiers.iter().filter(|tier| tier.model == self.best);
+        best.filter_map(|tier| tier.answer.as_ref()).any(|answer| answer.uncertainty.modes_left_out.is_none())
+    }
+}
+
 /// One tier.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tier {

@@ -14,6 +14,7 @@ use super::attached::largest_share;
 use super::choose::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
+use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
 
@@ -116,7 +117,10 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let restitution = law(VALIDATED.c, VALIDATED.q, mass_kg, duration_s, modes);
     let count = modes.len();
     cost.solves += 1;
-    let uncertainty = class.is_ok().then_some(VALIDATED.error_95);
+    let known = match &class {
+        Ok(()) => Known::new(pose.scene, Some(CLOSED_FORM), Ok(VALIDATED.error_95)),
+        Err(why) => Known::nothing(&format!("no part: {why}")),
+    };
     let reason = match class {
         Ok(()) => format!(
             "emoc: a net law; of predictions for beams that it was not fitted to, 95 in 100 err by less than {}, and \
@@ -127,18 +131,9 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
         Err(why) => format!("emoc: a net law, whose error is not known here: {why}"),
     };
     let answer = Answer {
-        model: Model::Emoc,
-        outcome: "rebound",
         restitution: Some(restitution),
-        restitution_uncertainty: uncertainty,
-        tolerance: pose.tolerance,
-        sub_impact_count: None,
         modes: count,
-        residual_compliance_m_n: 0.0,
-        settled: uncertainty.is_some_and(|u| u <= pose.tolerance),
-        spread: None,
-        reason,
-        cost: Cost::default(),
+        ..Answer::new(Model::Emoc, pose.tolerance, known, reason)
     };
     Ok(Ok(Choice { answer, impact: None }))
 }

@@ -31,6 +31,7 @@ use vibroimpact_sim::modal::Mode;
 use super::choose::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
+use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::scene::{End, InvalidInput, Scene};
 
@@ -40,6 +41,8 @@ const LEAST_Z: f64 = 2.0;
 const WAVES: f64 = 10.0;
 /// Above this `S` the striker does not leave an infinite beam after one contact (thesis 2.2.6: 1.559).
 const CRITICAL_S: f64 = 1.560;
+/// Error of the infinite beam's own solution, as a share of the change of speed.
+const SOLVER: f64 = 1e-7;
 /// Modes summed one by one for the reach of the place.
 const SUMMED: usize = 24;
 
@@ -253,9 +256,11 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     // relative to the rigid-body motion of the beam, as elsewhere
     let relative = 1.0 + mass * rigid;
     let restitution = ratio.map(|ratio| (1.0 + ratio) * relative - 1.0);
-    const SOLVER: f64 = 1e-7;
-    let uncertainty = restitution.filter(|_| free).map(|_| relative * (bound + SOLVER)).filter(|u| u.is_finite());
-    let settled = uncertainty.is_some_and(|u| u <= pose.tolerance);
+    let known = match restitution.filter(|_| free && bound.is_finite()) {
+        Some(_) => Known::new(pose.scene, Some(relative * SOLVER), Ok(relative * bound)),
+        None => Known::nothing("no part: what the ends of the beam send back is not bounded"),
+    };
+    let uncertainty = known.uncertainty.whole();
     let evidence = format!(
         "one contact, S = {}; {}; faster ones are back within it from an end (z = {}), which changes the restitution by \
          {} at most",
@@ -284,18 +289,10 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
         ),
     };
     let answer = Answer {
-        model: Model::InfiniteBeam,
         outcome: outcome(solution.outcome),
         restitution,
-        restitution_uncertainty: uncertainty,
-        tolerance: pose.tolerance,
         sub_impact_count: Some(solution.contacts.len()),
-        modes: 0,
-        residual_compliance_m_n: 0.0,
-        settled,
-        spread: None,
-        reason,
-        cost: Cost::default(),
+        ..Answer::new(Model::InfiniteBeam, pose.tolerance, known, reason)
     };
     Ok(Ok((Choice { answer, impact: None }, uncertainty)))
 }
@@ -323,19 +320,16 @@ pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInpu
     let uncertainty = restitution.zip(solution.error).map(|(e, error)| error * (1.0 + e)).filter(|u| u.is_finite());
     let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
     let kind = scene.structure.kind().replace('-', " ");
+    let reason = format!("the structure is an {kind}: S = {}", small(groups.s));
+    // no mode is left out
+    let known = Known::new(scene, uncertainty, Ok(0.0)).of(restitution);
     let answer = Answer {
-        model: Model::InfiniteBeam,
         outcome: outcome(solution.outcome),
         restitution,
-        restitution_uncertainty: uncertainty,
-        tolerance: super::DEFAULT_TOLERANCE,
         sub_impact_count: Some(solution.contacts.len()),
-        modes: 0,
-        residual_compliance_m_n: 0.0,
         settled: settled || solution.outcome == Outcome::Sustained,
-        spread: None,
-        reason: format!("the structure is an {kind}: S = {}", small(groups.s)),
         cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
+        ..Answer::new(Model::InfiniteBeam, super::DEFAULT_TOLERANCE, known, reason)
     };
     Ok(Choice { answer, impact: None })
 }

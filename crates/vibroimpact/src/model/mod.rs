@@ -14,13 +14,16 @@ mod attached;
 mod choose;
 mod compare;
 mod emoc;
+mod guess;
 mod infinite;
 mod kept;
 mod plan;
 mod pose;
 mod rigid;
 mod settle;
+mod stated;
 mod text;
+mod uncertainty;
 
 use std::borrow::Cow;
 
@@ -38,6 +41,7 @@ pub use kept::Kept;
 pub use plan::{Estimate, Plan};
 pub(crate) use pose::chooses_modes;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
+pub use uncertainty::Uncertainty;
 
 #[cfg(doc)]
 use crate::Scene;
@@ -151,9 +155,12 @@ pub struct Answer {
     pub outcome: &'static str,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution. Where the program chooses the modes of a beam, against the same beam with
-    /// infinitely many modes; where the modes are stated, against the exact motion of those modes.
+    /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
     pub restitution_uncertainty: Option<f64>,
+    /// Its parts; null where a part cannot be known.
+    pub uncertainty: Uncertainty,
+    /// Why parts of the uncertainty are not known, a sentence each that begins with the part.
+    pub not_known: Vec<String>,
     /// Accuracy that was wanted.
     pub tolerance: f64,
     /// Number of separate contacts; null for a model that does not resolve them.
@@ -162,8 +169,8 @@ pub struct Answer {
     pub modes: usize,
     /// Static compliance of all other modes, in series with the contact (m/N); 0 where they were left out.
     pub residual_compliance_m_n: f64,
-    /// Whether the tolerance was reached (for stated modes: whether the solver's own estimate is within ten times the
-    /// tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
+    /// Whether the tolerance was reached (for stated modes: whether the solver's part of the uncertainty is within ten
+    /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
     pub settled: bool,
     /// If it was not: largest less smallest restitution over the last numbers of modes tried.
     pub spread: Option<f64>,
@@ -171,6 +178,28 @@ pub struct Answer {
     pub reason: String,
     /// What the answer cost.
     pub cost: Cost,
+}
+
+impl Answer {
+    /// A rebound without anything resolved, to be filled in.
+    fn new(model: Model, tolerance: f64, known: uncertainty::Known, reason: String) -> Answer {
+        Answer {
+            model,
+            outcome: "rebound",
+            restitution: None,
+            restitution_uncertainty: known.uncertainty.whole(),
+            uncertainty: known.uncertainty,
+            not_known: known.not_known,
+            tolerance,
+            sub_impact_count: None,
+            modes: 0,
+            residual_compliance_m_n: 0.0,
+            settled: known.uncertainty.whole().is_some_and(|whole| whole <= tolerance),
+            spread: None,
+            reason,
+            cost: Cost::default(),
+        }
+    }
 }
 
 /// Deterministic counts of the work, summed over every solve, those that were not kept included.

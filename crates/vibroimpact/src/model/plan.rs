@@ -3,9 +3,10 @@
 use serde::Serialize;
 
 use super::choose::{Choice, Tried, forced_tier, refused};
+use super::guess::guess;
 use super::pose::{Pose, chooses_modes, modal_only};
 use super::text::small;
-use super::{Cost, Kept, Model, emoc, infinite, rigid, settle};
+use super::{Cost, Kept, Model, emoc, infinite, rigid};
 use crate::scene::{InvalidInput, Scene};
 
 /// Steps of an ordinary impact, in contact and in flight.
@@ -158,7 +159,7 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
     if !(chooses_modes(pose.scene) && pose.approaches()) {
         return Ok(Estimate::of_stated(pose.scene.modes.count().unwrap_or(pose.source.most()), pose.tolerance));
     }
-    let (first, second) = settle::guess(pose, cost)?;
+    let (first, second) = guess(pose, cost)?;
     let reason = format!(
         "begins with {first} and {second} modes and raises their number until the restitution has settled within {}",
         small(pose.tolerance)

@@ -14,6 +14,9 @@ const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 /// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
 const UNEXCITED: f64 = 1e-6;
 
+/// Listed modes that leave less than this share of their static compliance to others are all that the structure has.
+pub(super) const COMPLETE: f64 = 1e-9;
+
 /// Modes of a beam are computed in multiples of this.
 const SIZES: usize = 16;
 
@@ -160,18 +163,31 @@ impl<'a> Pose<'a> {
         self.striker.speed_m_s > 0.0
     }
 
-    /// The first `count` modes that a force at the place excites, and how many of them there are in all (at most
-    /// `count`); what the others add to the static compliance, if that is wanted and known.
+    /// Those of the first `count` modes that a force at the place excites, and the static compliance of the modes beyond
+    /// `count`, if that is wanted and known. A slow mode that is hardly excited is left out altogether: it stands still
+    /// during the contact, whereas its static compliance would answer at once.
     pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<Structure, InvalidInput> {
         let least = UNEXCITED * self.tolerance / (4.0 * self.striker.mass_kg);
         let residual_wanted = self.scene.residual_compliance != Some(false);
         let modes = self.first(count, cost)?;
         let kept: Vec<Mode> = modes.iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
+        let answered_m_n = compliance(modes);
         let residual_compliance_m_n = match self.source.whole_m_n() {
-            Some(whole_m_n) if residual_wanted => residual(&self.scene.structure, whole_m_n, compliance(&kept))?,
+            Some(whole_m_n) if residual_wanted => residual(&self.scene.structure, whole_m_n, answered_m_n)?,
             _ => 0.0,
         };
         Ok(Structure { modes: kept, residual_compliance_m_n })
+    }
+
+    /// Whether the modes listed are all that the structure has: they make up its static compliance.
+    pub fn is_complete(&self) -> bool {
+        match &self.source {
+            Source::Listed { modes, whole_m_n: Some(whole_m_n) } => {
+                let listed = compliance(modes);
+                whole_m_n - listed <= COMPLETE * listed
+            }
+            _ => false,
+        }
     }
 
     /// The first `count` modes, or all of a list.
@@ -195,7 +211,7 @@ impl Source<'_> {
     /// How many modes there are at most.
     pub fn most(&self) -> usize {
         match self {
-            Source::Beam { .. } => super::settle::MOST_MODES,
+            Source::Beam { .. } => super::guess::MOST_MODES,
             Source::Listed { modes, .. } => modes.len(),
         }
     }

@@ -17,6 +17,7 @@
 use super::choose::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
+use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
 
@@ -94,19 +95,14 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
         }
         None => "rigid: asked for; how much the structure changes is not bounded".to_owned(),
     };
+    let known = match bound {
+        Some(bound) => Known::new(pose.scene, Some(CLOSED_FORM), Ok(bound)),
+        None => Known::nothing("no part: how much the structure changes is not bounded"),
+    };
     let answer = Answer {
-        model: Model::Rigid,
-        outcome: "rebound",
         restitution: Some(restitution),
-        restitution_uncertainty: bound,
-        tolerance: pose.tolerance,
         sub_impact_count: Some(1),
-        modes: 0,
-        residual_compliance_m_n: 0.0,
-        settled: bound.is_some_and(|bound| bound <= pose.tolerance),
-        spread: None,
-        reason,
-        cost: Cost::default(),
+        ..Answer::new(Model::Rigid, pose.tolerance, known, reason)
     };
     Ok(Choice { answer, impact: None })
 }

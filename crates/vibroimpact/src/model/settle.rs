@@ -1,69 +1,61 @@
 //! Modes, as many as the restitution needs to settle.
 //!
-//! With the static compliance of all other modes in series with the contact, the restitution converges in the number
-//! `N` of modes, fast once mode `N` is fast against the contact: with `k` the contact's stiffness and `c_N` the
-//! compliance left out, once
-//!
-//! ```text
-//! R(N) = omega_N^2 / ( k (1/m + 3 c_N omega_N^2) )
-//! ```
-//!
-//! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the place). The first
-//! guess is the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
-//! Then `N` is raised by steps of a factor of about 1.4. Restitutions alone may agree by accident while the courses
-//! of two impacts do not, and then differ again at the next `N`; so the striker's speed in every flight between two
-//! contacts is compared as well, and after more than one contact a third number of modes is asked.
+//! The number of modes begins at a guess (`guess.rs`) and is raised by steps of a factor of about 1.4. Restitutions
+//! alone may agree by accident while the courses of two impacts do not, and then differ again at the next number; so
+//! the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
+//! number of modes is asked.
 //!
 //! Every contact amplifies what came before it, the solver's error too, and a solver too coarse for an impact may find the
-//! same wrong course at every `N`. So from the third number of modes on, the solver is asked for an accuracy that rises
-//! from one to the next: its errors are part of the differences, and restitutions agree when both have become small.
+//! same wrong course with every number of modes. So from the third number on, the solver is asked for an accuracy that
+//! rises from one to the next: its errors are part of the differences, and restitutions agree when both have become small.
+//!
+//! Only a difference between two *different* numbers of modes says anything of the modes left out. Where a list of modes
+//! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
 
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
-use super::pose::{Pose, Source, chooses_modes};
+use super::guess::{fewer, guess};
+use super::pose::{Pose, Source};
 use super::text::small;
-use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
-use crate::impact::{Impact, compliance, in_scene};
-use crate::scene::{InvalidInput, Scene};
+use super::uncertainty::Known;
+use super::{Answer, Cost, Model};
+use crate::impact::{Impact, in_scene};
+use crate::scene::InvalidInput;
 
-/// More modes than this are not tried.
-pub(super) const MOST_MODES: usize = 400;
-/// `R` at the first guess: `FIRST / tolerance^ORDER`.
-const FIRST: f64 = 0.4;
-const ORDER: f64 = 0.47;
 /// From one number of modes to the next.
-const RAISE: f64 = std::f64::consts::SQRT_2;
-/// The last number of modes that a list allows counts if it is this many times the one before; what a smaller step
-/// changes says little about the rest.
-const LEAST_RAISE: f64 = 1.25;
-/// Fewest modes to begin with, besides rigid-body motions.
-const FEWEST: usize = 4;
-/// The uncertainty: this many times the largest of three differences, weighted below.
+pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
+/// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
+/// says little about the rest.
+pub(super) const LEAST_RAISE: f64 = 1.25;
+/// The uncertainty from modes left out: this many times the larger of two changes, weighted below.
 const CAUTION: f64 = 2.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
-/// Weight of the difference before the last.
-const EARLIER: f64 = 0.1;
-/// The same from the third number of modes on: of many pairs one may agree by accident.
-const EARLIER_LATE: f64 = 0.5;
+/// Weight of the change before the last.
+const EARLIER: f64 = 0.5;
 /// Tolerance of the solver with the first two numbers of modes, as a share of the tolerance wanted; and its range. Below
 /// it, rounding is all that steps can show.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
 /// From the third on: as a share of the tolerance with the number before.
 const TIGHTER: f64 = 1.0 / 30.0;
+/// The solver's own part: this share of its tolerance, and of the change that a tolerance thirty times as wide was part
+/// of.
+const SOLVER_FLOOR: f64 = 0.5;
+const SOLVER_CHANGE: f64 = 0.1;
+/// Beyond this many modes the number is raised only while changes fall: the last is to be smaller than this share of the
+/// one two steps before.
+const PATIENCE: usize = 400;
+const FALLING: f64 = 0.5;
 /// How many of the last results make up the spread where they do not settle.
 const SPREAD: usize = 4;
 
-/// The solver's settings for a tolerance wanted, after so many numbers of modes.
-fn settings(tolerance: f64, rungs: usize) -> Settings {
-    let tightened = (1..rungs).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
-    Settings {
-        tolerance: tightened.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1),
-        estimate_uncertainty: false,
-        ..Settings::default()
-    }
+/// The solver's settings for a tolerance wanted, tightened so many times.
+fn settings(tolerance: f64, tightened: usize) -> Settings {
+    let share = (0..tightened).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
+    let tolerance = share.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1);
+    Settings { tolerance, estimate_uncertainty: false, ..Settings::default() }
 }
 
 /// One number of modes and what came of it.
@@ -83,18 +75,49 @@ impl Rung {
         cost.add(&solution.counts, structure.modes.len());
         Ok(Rung { count, structure, settings, solution })
     }
+}
 
-    /// Impulse up to each separation, over the striker's momentum.
-    fn flights(&self, momentum: f64) -> Vec<f64> {
-        let mut sum = 0.0;
-        let separations = self.solution.sub_impacts.iter();
-        separations
-            .map(|contact| {
-                sum += contact.impulse_n_s;
-                sum / momentum
-            })
-            .collect()
+/// What differs between two solutions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Change {
+    /// In the restitution; 1 where only one of them has any.
+    pub restitution: f64,
+    /// In the speed of a flight between two contacts, as a share of the speed of impact.
+    pub flights: f64,
+}
+
+impl Change {
+    pub fn between(a: &Solution, b: &Solution, momentum_n_s: f64) -> Change {
+        let pair = a.restitution.zip(b.restitution);
+        let flights = if momentum_n_s > 0.0 && momentum_n_s.is_finite() {
+            distance(&flights(a, momentum_n_s), &flights(b, momentum_n_s))
+        } else {
+            0.0
+        };
+        Change { restitution: pair.map_or(1.0, |(a, b)| (a - b).abs()), flights }
     }
+
+    /// As an error of the restitution.
+    pub fn size(self) -> f64 {
+        self.restitution.max(FLIGHTS * self.flights)
+    }
+
+    /// What modes left out may change after this change from fewer modes.
+    pub fn left_out(self, before: Option<Change>) -> f64 {
+        CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
+    }
+}
+
+/// Impulse up to each separation, over the striker's momentum.
+fn flights(solution: &Solution, momentum_n_s: f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let separations = solution.sub_impacts.iter();
+    separations
+        .map(|contact| {
+            sum += contact.impulse_n_s;
+            sum / momentum_n_s
+        })
+        .collect()
 }
 
 /// How far the flights of one impact are from the nearest of another, at most.
@@ -104,130 +127,171 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
-/// `R(N)` where the modes up to `omega_N` add so much to the inverse mass of the striker. The stiffness is that at the
-/// compression which the contact reaches on both together.
-fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
-    let (wall, striker) = (&pose.wall, &pose.striker);
-    let square = omega_rad_s * omega_rad_s;
-    let inverse_mass = 1.0 / striker.mass_kg + added;
-    // k ~ xi^(n-1) and xi = v / sqrt(k inverse_mass): a power law, in closed form
-    let alone = striker.speed_m_s / (wall.stiffness_n_m * inverse_mass).sqrt();
-    let softer = (alone / wall.compression_m).powf(2.0 / (wall.exponent + 1.0)).min(1.0);
-    square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
+/// The numbers of modes tried so far.
+struct Rungs {
+    earlier: Vec<Rung>,
+    last: Rung,
+    momentum_n_s: f64,
+    /// The number of modes, if there is one, that leaves nothing of the static compliance out.
+    complete: Option<usize>,
 }
 
-/// The number of modes that is expected to do, before any is computed: on average over a beam's length, the modes up
-/// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
-fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
-    let Source::Beam { beam, location_m, .. } = &pose.source else { return Ok(pose.source.most()) };
-    let segments = beam.to_beam().map_err(|fault| fault.within("structure"))?.segments;
-    let slowness = |s: &beam_modes::Segment| (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25);
-    let phase: f64 = segments.iter().map(|s| s.length_m * slowness(s)).sum();
-    let mut ends_m = 0.0;
-    let here = segments.iter().find(|s| {
-        ends_m += s.length_m;
-        ends_m >= *location_m
-    });
-    let Some(here) = here.or(segments.last()) else { return Ok(FEWEST) };
-    let enough = (FEWEST + 1..MOST_MODES).find(|&n| {
-        let root = n as f64 * std::f64::consts::PI / phase;
-        let added = root * slowness(here) / (std::f64::consts::PI * here.mass_per_length_kg_m);
-        resolution(pose, root * root, added) >= target
-    });
-    Ok(enough.unwrap_or(MOST_MODES))
-}
+impl Rungs {
+    fn push(&mut self, next: Rung) {
+        self.earlier.push(std::mem::replace(&mut self.last, next));
+    }
 
-/// The number of modes with which to begin, and the one that is expected to do.
-pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
-    let target = FIRST * pose.tolerance.powf(-ORDER);
-    let most = pose.source.most();
-    let mut computed = (expected(pose, target)? + 2).min(most);
-    let found = loop {
-        let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
-        let modes = pose.first(computed, cost)?.to_vec();
-        let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
-        let enough = (rigid + FEWEST + 1..=modes.len()).find(|&count| {
-            let rest = (whole - compliance(&modes[..count])).max(0.0);
-            let omega = modes[count - 1].omega_rad_s;
-            resolution(pose, omega, 3.0 * rest * omega * omega) >= target
-        });
-        match enough {
-            Some(count) => break count,
-            None if computed >= most => break most,
-            None => computed = (computed + computed / 4 + 1).min(most),
+    /// All, the latest first.
+    fn all(&self) -> impl Iterator<Item = &Rung> {
+        std::iter::once(&self.last).chain(self.earlier.iter().rev())
+    }
+
+    fn is_complete(&self) -> bool {
+        self.complete == Some(self.last.count)
+    }
+
+    /// Changes between neighbours with different numbers of modes, the latest first.
+    fn changes(&self) -> impl Iterator<Item = (Change, [usize; 2])> {
+        let pairs = self.all().zip(self.all().skip(1)).filter(|(next, last)| next.count != last.count);
+        pairs.map(|(next, last)| {
+            (Change::between(&last.solution, &next.solution, self.momentum_n_s), [last.count, next.count])
+        })
+    }
+
+    /// Whether changes fall as the number of modes rises, as far as there are enough to tell.
+    fn falls(&self) -> bool {
+        let sizes: Vec<f64> = self.changes().take(3).map(|(change, _)| change.size()).collect();
+        sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
+    }
+
+    /// What modes left out may change.
+    fn left_out(&self) -> f64 {
+        let mut changes = self.changes().map(|(change, _)| change);
+        match changes.next() {
+            _ if self.is_complete() => 0.0,
+            None => 1.0,
+            Some(latest) => latest.left_out(changes.next()),
         }
-    };
-    Ok((((found as f64 / RAISE).round() as usize).max(1).min(found), found))
+    }
+
+    /// What the solver may be off with the last number of modes.
+    fn solver(&self) -> f64 {
+        let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
+        let change = match wider {
+            Some(wider) => Change::between(&wider.solution, &self.last.solution, self.momentum_n_s).size(),
+            None if self.earlier.len() > 1 => self.changes().next().map_or(1.0, |(change, _)| change.size()),
+            None => 0.0,
+        };
+        SOLVER_FLOOR * self.last.settings.tolerance + SOLVER_CHANGE * change
+    }
+
+    fn counts(&self) -> String {
+        let mut counts: Vec<usize> = self.all().map(|rung| rung.count).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Largest less smallest of the last restitutions, and how many they are.
+    fn spread(&self) -> Option<(f64, usize)> {
+        let values: Vec<f64> = self.all().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
+        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
+        (values.len() > 1).then_some((high - low, values.len()))
+    }
 }
 
 /// Raises the number of modes until the restitution has settled, or there are no more.
 pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    let momentum = pose.striker.mass_kg * pose.striker.speed_m_s;
     let most = pose.source.most();
     let (first, mut count) = guess(pose, cost)?;
-    let mut rungs = vec![Rung::new(pose, first, settings(pose.tolerance, 0), cost)?];
-    let mut before = 0.0;
+    let listed = matches!(pose.source, Source::Listed { .. });
+    let complete = (listed && pose.is_complete()).then_some(most);
+    let mut tightened = 0;
+    let first = if complete == Some(count) { count } else { first };
+    let mut rungs = Rungs {
+        last: Rung::new(pose, first, settings(pose.tolerance, tightened), cost)?,
+        earlier: Vec::new(),
+        momentum_n_s: pose.striker.mass_kg * pose.striker.speed_m_s,
+        complete,
+    };
+    // the same modes again tell of the solver only if it is asked for more
+    tightened += usize::from(first == count);
     loop {
-        let next = Rung::new(pose, count, settings(pose.tolerance, rungs.len()), cost)?;
-        let last = &rungs[rungs.len() - 1];
-        let pair = last.solution.restitution.zip(next.solution.restitution);
-        let flights = distance(&last.flights(momentum), &next.flights(momentum));
-        let step = pair.map_or(1.0, |(a, b)| (a - b).abs());
-        let weight = if rungs.len() < 2 { EARLIER } else { EARLIER_LATE };
-        let change = step.max(FLIGHTS * flights);
-        let mut uncertainty = CAUTION * change.max(weight * before) + 0.5 * next.settings.tolerance;
-        before = change;
+        let before = rungs.last.solution.restitution;
+        rungs.push(Rung::new(pose, count, settings(pose.tolerance, tightened), cost)?);
+        let (solver, left_out) = (rungs.solver(), rungs.left_out());
+        let next = &rungs.last;
+        let both = before.is_some() && next.solution.restitution.is_some();
         // after several contacts, two impacts may agree and lack the same further contact: ask a third
-        let several = next.solution.sub_impacts.len() > 1 && rungs.len() < 2;
-        let settled = uncertainty <= pose.tolerance && pair.is_some() && !several;
+        let several = next.solution.sub_impacts.len() > 1 && rungs.earlier.len() < 2;
+        let settled = solver + left_out <= pose.tolerance && both && !several;
         let limit = next.solution.outcome == Outcome::LimitReached;
-        let tolerance = next.settings.tolerance;
-        rungs.push(next);
-        let raised = ((count as f64 * RAISE).round() as usize).min(most);
-        // with all modes of a list, the solver alone is in doubt
-        let solver_left = matches!(pose.source, Source::Listed { .. }) && tolerance > SOLVER_RANGE.0;
-        if !settled && !limit && (raised as f64 >= LEAST_RAISE * count as f64 || solver_left) {
-            count = raised;
-            continue;
+        if settled || limit {
+            return Ok(finish(pose, rungs, settled));
         }
-        let values: Vec<f64> = rungs.iter().rev().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
-        let spread = (!settled && values.len() > 1).then_some(high - low);
-        let counts: Vec<String> = rungs.iter().map(|rung| rung.count.to_string()).collect();
-        let counts = counts.join(", ");
-        let (Some(last), size) = (rungs.pop(), values.len()) else { continue };
-        let reason = match spread {
-            _ if settled => format!(
-                "modal: with {counts} modes the last change of the restitution is {} and no flight between contacts \
-                 changes its speed by more than {} of the speed of impact",
-                small(step),
-                small(flights)
-            ),
-            Some(spread) => format!(
-                "modal: the restitution does not settle within {} with {counts} modes{}; over the last {size} it \
-                 spreads by {}",
-                small(pose.tolerance),
-                lightly_damped(pose),
-                small(spread)
-            ),
-            None => format!("modal: the computation reached its limit of steps with {counts} modes"),
-        };
-        if let Some(spread) = spread {
-            uncertainty = uncertainty.max(spread);
+        let tighter = next.settings.tolerance > SOLVER_RANGE.0;
+        if count >= PATIENCE && !rungs.falls() {
+            return Ok(finish(pose, rungs, false));
+        } else if LEAST_RAISE * count as f64 <= most as f64 {
+            let raised = (count as f64 * RAISE).round() as usize;
+            count = if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised };
+            tightened += 1;
+        } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(pose.tolerance)) {
+            // the list is at its end, and the solver's error may be part of what changed
+            tightened += 1;
+            if !rungs.is_complete() {
+                rungs.push(Rung::new(pose, fewer(most), settings(pose.tolerance, tightened), cost)?);
+            }
+        } else {
+            return Ok(finish(pose, rungs, false));
         }
-        let impact = Impact {
-            structure: last.structure,
-            striker: pose.striker,
-            law: pose.law,
-            start: None,
-            settings: last.settings,
-        };
-        let known = Known { uncertainty: Some(uncertainty.min(1.0)), settled, spread };
-        return Ok(Choice::modal(pose.tolerance, impact, last.solution, known, reason));
     }
 }
 
-fn lightly_damped(pose: &mut Pose) -> &'static str {
+fn finish(pose: &mut Pose, rungs: Rungs, settled: bool) -> Choice {
+    let (solver, left_out) = (rungs.solver(), rungs.left_out());
+    let spread = rungs.spread().filter(|_| !settled);
+    let reason = reason(pose, &rungs, settled, spread);
+    let spread = spread.map(|(spread, _)| spread);
+    let left_out = if rungs.is_complete() { 0.0 } else { left_out.max(spread.unwrap_or(0.0)) };
+    let Rung { structure, settings, solution, .. } = rungs.last;
+    let impact = Impact { structure, striker: pose.striker, law: pose.law, start: None, settings };
+    let known = Known::new(pose.scene, Some(solver.min(1.0)), Ok(left_out.min(1.0)));
+    Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason })
+}
+
+/// Which numbers of modes were tried, and what came of it.
+fn reason(pose: &Pose, rungs: &Rungs, settled: bool, spread: Option<(f64, usize)>) -> String {
+    let counts = rungs.counts();
+    let reached = rungs.last.count;
+    let (wanted, damping) = (small(pose.tolerance), lightly_damped(pose));
+    let exhausted = matches!(pose.source, Source::Listed { .. }) && reached == pose.source.most();
+    let changed = match rungs.changes().next() {
+        _ if rungs.is_complete() => "they make up the whole static compliance".to_owned(),
+        Some((change, [from, to])) => format!(
+            "from {from} to {to} modes the restitution changes by {}, and the speed of a flight between contacts by at \
+             most {} of the speed of impact",
+            small(change.restitution),
+            small(change.flights)
+        ),
+        None => "nothing tells what further modes would change".to_owned(),
+    };
+    match spread {
+        _ if settled => format!("modal: with {counts} modes the restitution has settled; {changed}"),
+        Some(_) if exhausted => format!(
+            "modal: the list of {reached} modes is at its end before the restitution settles within {wanted}{damping}; \
+             {changed}"
+        ),
+        Some((spread, size)) => format!(
+            "modal: the restitution does not settle within {wanted} with {counts} modes{damping}; {changed}; over the \
+             last {size} tries it spreads by {}",
+            small(spread)
+        ),
+        None => format!("modal: the computation reached its limit of steps with {counts} modes"),
+    }
+}
+
+fn lightly_damped(pose: &Pose) -> &'static str {
     let modes = match &pose.source {
         Source::Beam { modes, .. } | Source::Listed { modes, .. } => modes,
     };
@@ -238,57 +302,26 @@ fn lightly_damped(pose: &mut Pose) -> &'static str {
     }
 }
 
-/// The modes as they are stated, or all that a list has.
-pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    let chosen = chooses_modes(scene);
-    // without an approach the number of modes does not matter
-    let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
-    let solver = kept.solver(&impact.structure)?;
-    let start = impact.start.as_ref();
-    let solution = solver.solve(&impact.striker, &impact.law, start, &impact.settings).map_err(in_scene)?;
-    let count = impact.structure.modes.len();
-    cost.add(&solution.counts, count);
-    let reason = match scene.modes {
-        Modes::Count(_) => format!("modal: the {count} modes stated"),
-        Modes::Auto if chosen => "modal: the striker does not approach".to_owned(),
-        Modes::Auto if impact.structure.residual_compliance_m_n > 0.0 => {
-            format!("modal: all {count} modes listed, and the static compliance of the others")
-        }
-        Modes::Auto => format!(
-            "modal: all {count} modes listed; what further modes would change is not known without the \
-             structure's static compliance"
-        ),
-    };
-    let tolerance = impact.settings.tolerance;
-    let uncertainty = solution.restitution_uncertainty;
-    let wanted = scene.tolerance.map_or(DEFAULT_TOLERANCE, |tolerance| 10.0 * tolerance);
-    let settled = uncertainty.is_some_and(|u| u <= wanted);
-    let known = Known { uncertainty, settled, spread: uncertainty.filter(|_| !settled) };
-    Ok(Choice::modal(tolerance, impact, solution, known, reason))
-}
-
-/// How well the restitution is known.
-struct Known {
-    uncertainty: Option<f64>,
-    settled: bool,
-    spread: Option<f64>,
+/// What is known of a restitution, and how the modes were chosen.
+pub(super) struct Conclusion {
+    pub known: Known,
+    pub settled: bool,
+    pub spread: Option<f64>,
+    pub reason: String,
 }
 
 impl Choice {
-    fn modal(tolerance: f64, impact: Impact, solution: Solution, known: Known, reason: String) -> Choice {
+    pub(super) fn modal(tolerance: f64, impact: Impact, solution: Solution, conclusion: Conclusion) -> Choice {
+        let Conclusion { known, settled, spread, reason } = conclusion;
         let answer = Answer {
-            model: Model::Modal,
             outcome: solution.outcome.as_str(),
             restitution: solution.restitution,
-            restitution_uncertainty: known.uncertainty.filter(|_| solution.restitution.is_some()),
-            tolerance,
             sub_impact_count: Some(solution.sub_impacts.len()),
             modes: impact.structure.modes.len(),
             residual_compliance_m_n: impact.structure.residual_compliance_m_n,
-            settled: known.settled,
-            spread: known.spread,
-            reason,
-            cost: Cost::default(),
+            settled,
+            spread,
+            ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)
         };
         Choice { answer, impact: Some(impact) }
     }

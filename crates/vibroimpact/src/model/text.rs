@@ -25,20 +25,48 @@ fn against_tolerance(answer: &Answer) -> String {
         (Some(u), true) if u <= answer.tolerance => {
             format!("wanted within {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
         }
-        (Some(u), settled) => {
-            let not = if settled { "" } else { "; NOT SETTLED" };
+        (Some(u), true) => {
+            let solver = answer.uncertainty.solver.unwrap_or(u);
+            format!("wanted within {wanted} for the modes as stated, whose motion is solved within {}", small(solver))
+        }
+        (Some(u), false) => {
             let spread = answer.spread.map_or(String::new(), |s| format!(", spread {}", small(s)));
-            format!("wanted within {wanted}, known within {}{not}{spread}", small(u))
+            format!("wanted within {wanted}, known within {}; NOT SETTLED{spread}", small(u))
         }
         (None, _) => format!("wanted within {wanted}, known to no stated accuracy"),
     }
+}
+
+/// What each part of the uncertainty is.
+fn meaning(part: &str) -> &'static str {
+    match part {
+        "solver" => "how exactly the equations of this model are solved",
+        "modes left out" => "what the structure with all its modes would change",
+        _ => "what a finer theory of the beam would change",
+    }
+}
+
+/// The parts of the uncertainty, and what is not known.
+fn parts(answer: &Answer) -> String {
+    let mut text = String::new();
+    for (name, part) in answer.uncertainty.parts() {
+        let why = answer.not_known.iter().find_map(|why| why.strip_prefix(name)?.strip_prefix(": "));
+        let told = match (part, why) {
+            (Some(part), _) => format!("{}: {}", small(part), meaning(name)),
+            (None, Some(why)) => format!("not known: {why}"),
+            (None, None) => continue,
+        };
+        let _ = writeln!(text, "    {name:<20}{}", wrapped(&told, 24));
+    }
+    if text.is_empty() { text } else { format!("  uncertainty\n{text}") }
 }
 
 /// What was done, and how far the estimate of the error is from the tolerance.
 pub fn answer_text(answer: &Answer) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "  {:<22}{}", "model", wrapped(&answer.reason, 24));
-    let _ = writeln!(text, "  {:<22}{}", "accuracy", against_tolerance(answer));
+    text += &parts(answer);
+    let _ = writeln!(text, "  {:<22}{}", "accuracy", wrapped(&against_tolerance(answer), 24));
     let cost = &answer.cost;
     let _ = writeln!(text, "  {:<22}{} solves, {} mode-steps", "cost", cost.solves, cost.mode_steps);
     text
@@ -119,6 +147,11 @@ pub fn comparison_text(comparison: &Comparison) -> String {
             )
         );
     }
-    let _ = writeln!(text, "\n  Differences are from {}, the best known.", comparison.best.as_str());
+    let _ = writeln!(
+        text,
+        "\n  Differences are from {}, whose uncertainty is the smallest{}.",
+        comparison.best.as_str(),
+        if comparison.best_leaves_modes_out() { " as far as it is known; what it leaves out is not" } else { "" }
+    );
     text
 }

@@ -10,10 +10,13 @@ use crate::model::{Answer, Kept};
 use crate::scene::json::number;
 
 /// The columns after the varied fields.
-const RESULTS: [(&str, Kind); 19] = [
+const RESULTS: [(&str, Kind); 22] = [
     ("outcome", Kind::Text),
     ("restitution", Kind::Number),
     ("restitution_uncertainty", Kind::Number),
+    ("uncertainty_solver", Kind::Number),
+    ("uncertainty_modes_left_out", Kind::Number),
+    ("uncertainty_beam_theory", Kind::Number),
     ("settled", Kind::Truth),
     ("spread", Kind::Number),
     ("sub_impact_count", Kind::Whole),
@@ -78,6 +81,9 @@ fn cells(answer: &Answer) -> [String; RESULTS.len()] {
         answer.outcome.to_owned(),
         known(answer.restitution),
         known(answer.restitution_uncertainty),
+        known(answer.uncertainty.solver),
+        known(answer.uncertainty.modes_left_out),
+        known(answer.uncertainty.beam_theory),
         answer.settled.to_string(),
         known(answer.spread),
         answer.sub_impact_count.map_or_else(String::new, |count| count.to_string()),

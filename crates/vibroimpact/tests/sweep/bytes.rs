@@ -36,8 +36,8 @@ fn rows_hold_the_results_of_their_scenes() {
     let header = String::from_utf8(bench.read("out/results.csv")).unwrap();
     assert!(header.starts_with(
         "index,striker.mass_kg,modes,striker.speed_m_s,structure.shape_at_location[1],outcome,restitution,\
-         restitution_uncertainty,settled,spread,sub_impact_count,model,mode_count,residual_compliance_m_n,solves,\
-         modes_computed,contact_steps,rejected_steps,newton_iterations,law_evaluations,flight_steps,mode_steps,panels,\
+         restitution_uncertainty,uncertainty_solver,uncertainty_modes_left_out,uncertainty_beam_theory,settled,spread,\
+         sub_impact_count,model,mode_count,residual_compliance_m_n,solves,modes_computed,contact_steps,rejected_steps,newton_iterations,law_evaluations,flight_steps,mode_steps,panels,\
          error\n"
     ));
     let mut failed = 0;
@@ -63,11 +63,13 @@ fn rows_hold_the_results_of_their_scenes() {
             assert_eq!(&row[5], answer.outcome);
             assert_eq!(row[6].parse::<f64>().ok(), answer.restitution);
             assert_eq!(row[7].parse::<f64>().ok(), answer.restitution_uncertainty);
-            assert_eq!(row[8], answer.settled.to_string());
-            assert_eq!(row[9].parse::<f64>().ok(), answer.spread);
-            assert_eq!(row[10].parse::<usize>().ok(), answer.sub_impact_count);
-            assert_eq!((&row[11], &row[12]), ("modal", &*modes.to_string()));
-            let counts = [14, 15, 16, 17, 18, 19, 20, 21, 22].map(|column| row[column].parse::<u64>().unwrap());
+            let parts = [8, 9, 10].map(|column| row[column].parse::<f64>().ok());
+            assert_eq!(parts, answer.uncertainty.parts().map(|(_, part)| part));
+            assert_eq!(row[11], answer.settled.to_string());
+            assert_eq!(row[12].parse::<f64>().ok(), answer.spread);
+            assert_eq!(row[13].parse::<usize>().ok(), answer.sub_impact_count);
+            assert_eq!((&row[14], &row[15]), ("modal", &*modes.to_string()));
+            let counts = [17, 18, 19, 20, 21, 22, 23, 24, 25].map(|column| row[column].parse::<u64>().unwrap());
             let cost = answer.cost;
             let expected = [
                 cost.solves,
@@ -90,9 +92,9 @@ fn rows_hold_the_results_of_their_scenes() {
     assert_eq!(summary["outcomes"]["rebound"], 400);
     assert_eq!(summary["first_failures"][0]["index"], 40);
     assert_eq!(summary["computed_points"], 600);
-    let unsettled = rows.iter().filter(|row| &row[8] == "false").count();
+    let unsettled = rows.iter().filter(|row| &row[11] == "false").count();
     assert_eq!(summary["unsettled"], unsettled);
-    let mode_steps: u64 = rows.iter().filter_map(|row| row[21].parse::<u64>().ok()).sum();
+    let mode_steps: u64 = rows.iter().filter_map(|row| row[24].parse::<u64>().ok()).sum();
     assert_eq!(summary["mode_steps"], mode_steps);
     let restitutions = || rows.iter().filter_map(|row| row[6].parse::<f64>().ok());
     assert_eq!(summary["restitution"]["least"].as_f64().unwrap(), restitutions().fold(f64::INFINITY, f64::min));
@@ -138,7 +140,7 @@ fn infinite_structures_can_be_swept() {
     }));
     bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
     let rows = bench.rows("out");
-    assert!(rows.iter().all(|row| &row[8] == "infinite-beam" && row[19].parse::<u64>().unwrap() > 0));
+    assert!(rows.iter().all(|row| &row[11] == "infinite-beam" && row[22].parse::<u64>().unwrap() > 0));
     // a small ball rebounds, that of S = 15 stays
     assert_eq!((&rows[0][2], &rows[5][2]), ("rebound", "sustained"));
     assert!(rows[0][4].parse::<f64>().unwrap() < 1e-6);
@@ -171,17 +173,17 @@ fn the_model_is_the_programs_choice_unless_the_scene_says_which() {
     }));
     bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
     let rows = bench.rows("out");
-    let models: Vec<&str> = rows.iter().map(|row| &row[9]).collect();
+    let models: Vec<&str> = rows.iter().map(|row| &row[12]).collect();
     assert_eq!(models, ["rigid", "modal", "rigid", "rigid", "emoc", "emoc"]);
     // on the support: exact; between them: as well as the default tolerance asks, or as the wall is bounded
-    assert_eq!((&rows[0][4], &rows[0][6]), ("1.0", "true"));
-    assert_eq!(&rows[1][6], "true");
+    assert_eq!((&rows[0][4], &rows[0][9]), ("1.0", "true"));
+    assert_eq!(&rows[1][9], "true");
     assert!(rows[1][5].parse::<f64>().unwrap() <= vibroimpact::model::DEFAULT_TOLERANCE);
-    assert_eq!(&rows[3][6], "false");
+    assert_eq!(&rows[3][9], "false");
     let mut scene = beam;
     scene["location_m"] = json!(0.4);
     let answer = Scene::from_value(&scene).unwrap().answer().unwrap();
     assert_eq!(rows[1][4].parse::<f64>().ok(), answer.restitution);
-    assert_eq!(rows[1][10], answer.modes.to_string());
-    assert_eq!(rows[1][11].parse::<f64>().unwrap(), answer.residual_compliance_m_n);
+    assert_eq!(rows[1][13], answer.modes.to_string());
+    assert_eq!(rows[1][14].parse::<f64>().unwrap(), answer.residual_compliance_m_n);
 }

@@ -81,7 +81,7 @@ fn a_scene_may_be_toml_and_name_a_table_of_modes() {
     fs::write(bench.path("sweep.json"), within.to_string()).unwrap();
     bench.succeeds(&["sweep", "sweep.json", "--out", "within", "--quiet"]);
     assert_same(&bench.path("named"), &bench.path("within"));
-    assert!(bench.rows("named").iter().all(|row| &row[2] == "rebound" && &row[9] == "2"), "{:?}", bench.rows("named"));
+    assert!(bench.rows("named").iter().all(|row| &row[2] == "rebound" && &row[12] == "2"), "{:?}", bench.rows("named"));
     // the folder holds the numbers, so that a part goes on without the table
     assert!(String::from_utf8(bench.read("named/sweep.json")).unwrap().contains("1.5"));
     fs::write(bench.path("modes.csv"), "middle,omega_rad_s\n1.5,-300\n").unwrap();

@@ -1,0 +1,90 @@
+//! How many modes will do, before any impact is solved.
+//!
+//! With the static compliance of all other modes in series with the contact, the restitution converges in the number
+//! `N` of modes, fast once mode `N` is fast against the contact: with `k` the contact's stiffness and `c_N` the
+//! compliance left out, once
+//!
+//! ```text
+//! R(N) = omega_N^2 / ( k (1/m + 3 c_N omega_N^2) )
+//! ```
+//!
+//! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the place). The guess is
+//! the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
+
+use super::Cost;
+use super::pose::{Pose, Source};
+use super::settle::{LEAST_RAISE, RAISE};
+use crate::impact::compliance;
+use crate::scene::InvalidInput;
+
+/// More modes than this are not tried.
+pub(super) const MOST_MODES: usize = 1500;
+/// `R` at the guess: `FIRST / tolerance^ORDER`.
+const FIRST: f64 = 0.4;
+const ORDER: f64 = 0.47;
+/// Fewest modes to begin with, besides rigid-body motions.
+const FEWEST: usize = 4;
+
+/// `R(N)` where the modes up to `omega_N` add so much to the inverse mass of the striker. The stiffness is that at the
+/// compression which the contact reaches on both together.
+fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
+    let (wall, striker) = (&pose.wall, &pose.striker);
+    let square = omega_rad_s * omega_rad_s;
+    let inverse_mass = 1.0 / striker.mass_kg + added;
+    // k ~ xi^(n-1) and xi = v / sqrt(k inverse_mass): a power law, in closed form
+    let alone = striker.speed_m_s / (wall.stiffness_n_m * inverse_mass).sqrt();
+    let softer = (alone / wall.compression_m).powf(2.0 / (wall.exponent + 1.0)).min(1.0);
+    square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
+}
+
+/// The number of modes that is expected to do, before any is computed: on average over a beam's length, the modes up
+/// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
+fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
+    let Source::Beam { beam, location_m, .. } = &pose.source else { return Ok(pose.source.most()) };
+    let segments = beam.to_beam().map_err(|fault| fault.within("structure"))?.segments;
+    let slowness = |s: &beam_modes::Segment| (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25);
+    let phase: f64 = segments.iter().map(|s| s.length_m * slowness(s)).sum();
+    let mut ends_m = 0.0;
+    let here = segments.iter().find(|s| {
+        ends_m += s.length_m;
+        ends_m >= *location_m
+    });
+    let Some(here) = here.or(segments.last()) else { return Ok(FEWEST) };
+    let enough = (FEWEST + 1..MOST_MODES).find(|&n| {
+        let root = n as f64 * std::f64::consts::PI / phase;
+        let added = root * slowness(here) / (std::f64::consts::PI * here.mass_per_length_kg_m);
+        resolution(pose, root * root, added) >= target
+    });
+    Ok(enough.unwrap_or(MOST_MODES))
+}
+
+/// The number of modes with which to begin, and the one that is expected to do.
+pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
+    let target = FIRST * pose.tolerance.powf(-ORDER);
+    let most = pose.source.most();
+    let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
+    let mut computed = (expected(pose, target)? + 2).min(most);
+    let found = loop {
+        let modes = pose.first(computed, cost)?.to_vec();
+        let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
+        let mut answered = compliance(modes.get(..rigid + FEWEST).unwrap_or_default());
+        let enough = (rigid + FEWEST..modes.len()).find(|&k| {
+            answered += compliance(&modes[k..=k]);
+            let omega = modes[k].omega_rad_s;
+            resolution(pose, omega, 3.0 * (whole - answered).max(0.0) * omega * omega) >= target
+        });
+        match enough {
+            Some(k) => break k + 1,
+            None if computed >= most => break most,
+            None => computed = (computed + computed / 4 + 1).min(most),
+        }
+    };
+    // a last step that is too small would say little: then all of them
+    let found = if found as f64 * LEAST_RAISE > most as f64 { most } else { found };
+    Ok((fewer(found), found))
+}
+
+/// A number of modes one step below.
+pub(super) fn fewer(count: usize) -> usize {
+    ((count as f64 / RAISE).round() as usize).min(count.saturating_sub(1))
+}

@@ -1,0 +1,147 @@
+//! Modes as they are stated, and what those left out would change.
+//!
+//! The impact is solved with the modes stated, and the solver's own estimate tells how exactly. How far these modes are
+//! from the whole structure is judged apart: the same impact with more modes and the static compliance of all others,
+//! for two numbers of modes,
+//!
+//! ```text
+//! u = |e - e_M| + caution |e_M - e_(M/1.4)|,
+//! ```
+//!
+//! `M` as many as a loose tolerance is expected to need, but not so many that this would cost more than the impact.
+
+use vibroimpact_sim::modal::{Settings, Solution};
+
+use super::choose::Choice;
+use super::guess::{fewer, guess};
+use super::pose::{COMPLETE, Pose, chooses_modes, modal_only};
+use super::settle::{Change, Conclusion, RAISE};
+use super::uncertainty::Known;
+use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
+use crate::impact::{Impact, compliance, in_scene};
+use crate::scene::{InvalidInput, Scene, Structure};
+
+/// The comparison begins with the modes that this tolerance is expected to need.
+const LOOSE: f64 = 3e-3;
+/// The solver's tolerance in it, and how many times as many modes cost as much as the impact, which is solved twice and
+/// far more tightly.
+const SOLVER: f64 = 1e-6;
+const RICHER: usize = 2;
+
+/// The modes as they are stated, or all that a list has.
+pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+    let chosen = chooses_modes(scene);
+    // without an approach the number of modes does not matter
+    let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
+    let solution = solve(&impact, kept, cost)?;
+    let count = impact.structure.modes.len();
+    let reason = match scene.modes {
+        Modes::Count(_) => format!("modal: the {count} modes stated"),
+        Modes::Auto if chosen => "modal: the striker does not approach".to_owned(),
+        Modes::Auto if impact.structure.residual_compliance_m_n > 0.0 => {
+            format!("modal: all {count} modes listed, and the static compliance of the others")
+        }
+        Modes::Auto => format!("modal: all {count} modes listed"),
+    };
+    let tolerance = impact.settings.tolerance;
+    let solver = solution.restitution_uncertainty;
+    let known = if solution.restitution.is_some() {
+        Known::new(scene, solver, left_out(scene, kept, &impact, &solution, cost)?)
+    } else {
+        Known::default()
+    };
+    let wanted = scene.tolerance.map_or(DEFAULT_TOLERANCE, |tolerance| 10.0 * tolerance);
+    let settled = solver.is_some_and(|u| u <= wanted);
+    let conclusion = Conclusion { known, settled, spread: solver.filter(|_| !settled), reason };
+    Ok(Choice::modal(tolerance, impact, solution, conclusion))
+}
+
+fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, InvalidInput> {
+    let solver = kept.solver(&impact.structure)?;
+    let Impact { striker, law, start, settings, structure } = impact;
+    let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?;
+    cost.add(&solution.counts, structure.modes.len());
+    Ok(solution)
+}
+
+/// What the modes left out would change; `Err` inside says why that is not known.
+fn left_out(
+    scene: &Scene,
+    kept: &mut Kept,
+    impact: &Impact,
+    solution: &Solution,
+    cost: &mut Cost,
+) -> Result<Result<f64, String>, InvalidInput> {
+    let (count, most) = match &scene.structure {
+        Structure::Beam(_) => (impact.structure.modes.len(), usize::MAX),
+        Structure::DroppedRod(rod) => (rod.bending_modes + rod.axial_modes, usize::MAX),
+        Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
+            (impact.structure.modes.len(), listed.omega_rad_s.len())
+        }
+        _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
+    };
+    let wanted = needed(scene, kept, cost)?.unwrap_or(count).clamp(count, RICHER * count.max(1)).min(most);
+    let (fewer, more) = match &scene.start {
+        // the motion before the impact may need every mode stated
+        Some(_) if count < most => (count, ((count as f64 * RAISE).ceil() as usize).min(most)),
+        _ => (fewer(wanted), wanted),
+    };
+    let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
+    let complete = |of: &Impact| of.structure.residual_compliance_m_n <= COMPLETE * compliance(&of.structure.modes);
+    let mut with = |modes: usize| -> Result<(Solution, bool), InvalidInput> {
+        if whole && modes == count {
+            return Ok((solution.clone(), complete(impact)));
+        }
+        let other = Impact {
+            settings: Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings },
+            ..posed(&with_modes(scene, count, modes), kept)?
+        };
+        Ok((solve(&other, kept, cost)?, complete(&other)))
+    };
+    let (richer, nothing_left) = with(more)?;
+    let momentum_n_s = impact.striker.mass_kg * impact.striker.speed_m_s;
+    let rest = if nothing_left {
+        0.0
+    } else {
+        let Ok((less, _)) = with(fewer) else {
+            return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
+        };
+        Change::between(&less, &richer, momentum_n_s).left_out(None)
+    };
+    Ok(Ok((Change::between(solution, &richer, momentum_n_s).restitution + rest).min(1.0)))
+}
+
+fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
+    scene.impact_of(scene.modes.count(), kept)
+}
+
+/// The number of modes that a loose tolerance is expected to need, where it can be told.
+fn needed(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usize>, InvalidInput> {
+    if modal_only(scene).is_some() {
+        return Ok(None);
+    }
+    let chosen = Scene {
+        model: Model::Auto,
+        modes: Modes::Auto,
+        residual_compliance: Some(true),
+        tolerance: Some(LOOSE),
+        ..scene.clone()
+    };
+    Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?.1))
+}
+
+/// The scene with so many modes in place of `count`, and the static compliance of the others.
+fn with_modes(scene: &Scene, count: usize, modes: usize) -> Scene {
+    let mut other = scene.clone();
+    match &mut other.structure {
+        Structure::DroppedRod(rod) => {
+            let scaled = |kept: usize| (kept * modes).div_ceil(count.max(1));
+            (rod.bending_modes, rod.axial_modes) = (scaled(rod.bending_modes), scaled(rod.axial_modes));
+        }
+        _ => {
+            other.modes = Modes::Count(modes);
+            other.residual_compliance = Some(true);
+        }
+    }
+    other
+}

@@ -1,0 +1,95 @@
+//! How well a restitution is known, part by part.
+
+use serde::Serialize;
+
+use crate::scene::{Scene, Structure};
+
+/// The solver's part where nothing is solved: the restitution has a closed form.
+pub(super) const CLOSED_FORM: f64 = 0.0;
+
+/// What stands between a restitution and its true value, in parts that add up. A part is null where it cannot be known;
+/// [`Answer::not_known`](super::Answer::not_known) then says why.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Uncertainty {
+    /// How exactly the equations of the model are solved. For modes: against the exact motion of the modes that were
+    /// integrated.
+    pub solver: Option<f64>,
+    /// What the modes left out would change: the model against the same structure with all its modes. For the models
+    /// that put something else in the place of modes (`rigid`, `infinite-beam`, `emoc`): what that changes.
+    pub modes_left_out: Option<f64>,
+    /// How far the theory by which a beam has these modes may be off.
+    pub beam_theory: Option<f64>,
+}
+
+impl Uncertainty {
+    /// The whole of what can be estimated: the sum of the parts that are known; `None` if no part is.
+    pub fn whole(&self) -> Option<f64> {
+        let known: Vec<f64> = self.parts().into_iter().filter_map(|(_, part)| part).collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>().min(f64::MAX))
+    }
+
+    /// The parts under their names.
+    pub fn parts(&self) -> [(&'static str, Option<f64>); 3] {
+        [("solver", self.solver), ("modes left out", self.modes_left_out), ("beam theory", self.beam_theory)]
+    }
+}
+
+/// The uncertainty of a restitution, and why parts of it are not known.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Known {
+    pub uncertainty: Uncertainty,
+    pub not_known: Vec<String>,
+}
+
+impl Known {
+    /// What is known where an impact on the structure of `scene` has been solved so exactly; `modes_left_out` may say
+    /// why it is not known.
+    pub fn new(scene: &Scene, solver: Option<f64>, modes_left_out: Result<f64, String>) -> Known {
+        let mut not_known = Vec::new();
+        if solver.is_none() {
+            not_known.push("solver: the impact was not solved a second time".to_owned());
+        }
+        let modes_left_out =
+            modes_left_out.map_err(|why| not_known.push(format!("modes left out: {why}"))).ok().filter(|u| !u.is_nan());
+        not_known.push(format!("beam theory: {}", theory(&scene.structure)));
+        Known { uncertainty: Uncertainty { solver, modes_left_out, beam_theory: None }, not_known }
+    }
+
+    /// Nothing, for one reason.
+    pub fn nothing(why: &str) -> Known {
+        Known { uncertainty: Uncertainty::default(), not_known: vec![why.to_owned()] }
+    }
+
+    /// The same if there is a restitution that it could be of.
+    pub fn of(self, restitution: Option<f64>) -> Known {
+        if restitution.is_some() { self } else { Known::default() }
+    }
+}
+
+/// Why it is not known how far the theory of the structure is off.
+fn theory(structure: &Structure) -> &'static str {
+    match structure {
+        Structure::Modal(_) | Structure::ModesFile(_) => {
+            "the modes are given; how well they describe the structure is not known here"
+        }
+        Structure::InfinitePlate(_) => {
+            "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
+        }
+        _ => {
+            "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \
+             thicknesses"
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Uncertainty;
+
+    #[test]
+    fn the_whole_is_the_sum_of_what_is_known() {
+        assert_eq!(Uncertainty::default().whole(), None);
+        let some = Uncertainty { solver: Some(0.25), modes_left_out: None, beam_theory: Some(0.5) };
+        assert_eq!(some.whole(), Some(0.75));
+    }
+}

@@ -1,0 +1,205 @@
+//! What an answer says of its own error holds: near supports, at the end of a list of modes, for truncated models.
+
+mod gallery;
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use gallery::named;
+use serde_json::{Value, json};
+use vibroimpact::Scene;
+use vibroimpact::model::{Answer, Model, Modes};
+
+fn answer(scene: &Scene) -> Answer {
+    scene.answer().unwrap()
+}
+
+/// The beam of a scene with so many modes and the static compliance of the others.
+fn converged(scene: &Scene, modes: usize, tolerance: f64) -> f64 {
+    let scene = Scene {
+        model: Model::Modal,
+        modes: Modes::Count(modes),
+        residual_compliance: Some(true),
+        tolerance: Some(tolerance),
+        ..scene.clone()
+    };
+    scene.impact().unwrap().solve().unwrap().restitution.unwrap()
+}
+
+fn near_the_root() -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/near_the_root_of_a_cantilever.json");
+    Scene::read(&path).unwrap()
+}
+
+/// Slow modes that hardly move near a support: their static compliance does not answer at once.
+#[test]
+fn slow_modes_are_no_spring() {
+    let found = answer(&near_the_root());
+    // with 1,000 and with 2,000 modes
+    assert!(found.settled && (found.restitution.unwrap() - 0.3675).abs() < 0.01, "{found:?}");
+}
+
+/// Small balls near supports, where hundreds of slow modes are hardly excited.
+#[test]
+fn small_balls_near_supports_are_within_their_tolerance() {
+    let ends = [["clamped", "free"], ["pinned", "pinned"], ["free", "pinned"], ["clamped", "clamped"]];
+    let mut settled = 0;
+    for (i, ends) in ends.iter().enumerate() {
+        for (j, place) in [1e-3, 3e-3, 0.01, 0.03].iter().enumerate() {
+            let mut scene: Value = serde_json::from_str(&near_the_root().to_json()).unwrap();
+            scene["structure"]["ends"] = json!(ends);
+            scene["structure"]["segments"][0]["thickness_m"] = json!(0.004 + 0.001 * i as f64);
+            scene["structure"]["segments"][0]["length_m"] = json!(2.0);
+            scene["striker"]["radius_m"] = json!(0.004 + 0.001 * j as f64);
+            scene["location_m"] = json!(2.0 * if i == 2 { 1.0 - place } else { *place });
+            let reference = converged(&Scene::from_value(&scene).unwrap(), 600, 1e-6);
+            for tolerance in [1e-2, 1e-3, 1e-4] {
+                scene["tolerance"] = json!(tolerance);
+                let found = answer(&Scene::from_value(&scene).unwrap());
+                let error = (found.restitution.unwrap() - reference).abs();
+                let stated = found.restitution_uncertainty.unwrap();
+                assert!(error <= stated + 3e-6, "{ends:?} {place} {tolerance}: {error:e} {found:?}");
+                assert!(!found.settled || error <= tolerance, "{ends:?} {place} {tolerance}: {error:e} {found:?}");
+                settled += usize::from(found.settled);
+            }
+        }
+    }
+    assert!(settled >= 44, "{settled} of 48");
+}
+
+/// The plate of the gallery with the shapes of its first `count` modes at the centre, by the closed form.
+fn plate(count: usize) -> Value {
+    let (a, b, mass) = (0.4, 0.3, 7800.0 * 0.005 * 0.4 * 0.3);
+    let rigidity = 2e11 * 0.005f64.powi(3) / (12.0 * (1.0 - 0.09));
+    let mut modes: Vec<(f64, f64)> = Vec::new();
+    for m in 1..400 {
+        for n in 1..400 {
+            let waves = (f64::from(m) / a).powi(2) + (f64::from(n) / b).powi(2);
+            let sine = |k: i32| [0.0, 1.0, 0.0, -1.0][k as usize % 4];
+            modes.push((
+                PI * PI * waves * (rigidity / (7800.0 * 0.005)).sqrt(),
+                2.0 / f64::sqrt(mass) * sine(m) * sine(n),
+            ));
+        }
+    }
+    modes.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let whole: f64 = modes.iter().map(|(omega, shape)| (shape / omega).powi(2)).sum();
+    let (omega, shape): (Vec<f64>, Vec<f64>) = modes.into_iter().take(count).unzip();
+    json!({ "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape, "damping_ratios": vec![0.01; count],
+            "static_compliance_m_n": whole })
+}
+
+/// The pinned beam of chapter 3 as a list of its first modes with its static compliance.
+fn listed_beam(count: usize) -> Value {
+    let (mass, rigidity) = (7800.0 * 0.011323f64.powi(2), 2e11 * 0.011323f64.powi(4) / 12.0);
+    let place = 0.6180339887498949;
+    let omega: Vec<f64> = (1..=count).map(|k| (k as f64 * PI).powi(2) * (rigidity / mass).sqrt()).collect();
+    let shape: Vec<f64> = (1..=count).map(|k| (2.0 / mass).sqrt() * (k as f64 * PI * place).sin()).collect();
+    let whole = (place * (1.0 - place)).powi(2) / (3.0 * rigidity);
+    json!({ "structure": { "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape,
+                           "damping_ratios": vec![0.02; count], "static_compliance_m_n": whole },
+            "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
+            "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } })
+}
+
+/// The same modes twice say nothing of the modes that are not there.
+#[test]
+fn a_list_at_its_end_says_so_and_states_the_last_real_change() {
+    let plate_of_40 = named("simply-supported-plate");
+    let mut whole: Value = serde_json::from_str(&plate_of_40.to_json()).unwrap();
+    whole["structure"] = plate(700);
+    whole.as_object_mut().unwrap().remove("location");
+    let exact = answer(&Scene::from_value(&whole).unwrap());
+    assert!(exact.settled && (exact.restitution.unwrap() - 0.0828).abs() < 1e-3, "{exact:?}");
+    let mut scenes = vec![(plate_of_40, exact.restitution.unwrap())];
+    for count in [6, 10, 14, 20] {
+        scenes.push((Scene::from_value(&listed_beam(count)).unwrap(), 0.14255));
+    }
+    for (scene, exact) in scenes {
+        let found = answer(&scene);
+        let error = (found.restitution.unwrap() - exact).abs();
+        assert!(error > 0.005 && error <= found.restitution_uncertainty.unwrap(), "{error:e} {found:?}");
+        assert!(!found.settled && found.reason.contains("is at its end"), "{found:?}");
+        let last = found.reason.split("changes by ").nth(1).unwrap().split(',').next().unwrap();
+        assert!(last.parse::<f64>().is_ok_and(|change| change > 1e-3), "{}", found.reason);
+    }
+}
+
+/// A list that makes up the whole static compliance leaves nothing out, and the solver alone is in doubt.
+#[test]
+fn a_complete_list_leaves_nothing_out() {
+    let mut scene = listed_beam(3);
+    let sum: f64 = (0..3)
+        .map(|k| {
+            let of = |list: &str| scene["structure"][list][k].as_f64().unwrap();
+            (of("shape_at_location") / of("omega_rad_s")).powi(2)
+        })
+        .sum();
+    scene["structure"]["static_compliance_m_n"] = json!(sum);
+    let found = answer(&Scene::from_value(&scene).unwrap());
+    assert!(found.settled && found.uncertainty.modes_left_out == Some(0.0), "{found:?}");
+    scene["modes"] = json!(3);
+    scene["residual_compliance"] = json!(true);
+    let stated = answer(&Scene::from_value(&scene).unwrap());
+    assert_eq!(stated.uncertainty.modes_left_out, Some(0.0));
+    let apart = (found.restitution.unwrap() - stated.restitution.unwrap()).abs();
+    assert!(apart <= found.uncertainty.solver.unwrap(), "{apart:e}");
+}
+
+/// Modes stated and truncated: what they leave out is judged, and shown.
+#[test]
+fn truncated_models_state_what_they_leave_out() {
+    for name in
+        ["pinned-beam", "pinned-beam-small-ball", "pinned-beam-undamped", "hysteretic", "viscous", "stepped-cantilever"]
+    {
+        let scene = named(name);
+        let count = scene.modes.count().unwrap_or(40);
+        let truncated = Scene { modes: Modes::Count(count), residual_compliance: None, tolerance: None, ..scene };
+        let found = answer(&truncated);
+        let exact = converged(&truncated, 300, 1e-9);
+        let error = (found.restitution.unwrap() - exact).abs();
+        let (solver, left_out) = (found.uncertainty.solver.unwrap(), found.uncertainty.modes_left_out.unwrap());
+        assert!(error <= left_out && left_out > 100.0 * solver, "{name}: {error:e} {found:?}");
+        assert_eq!(found.restitution_uncertainty, Some(solver + left_out));
+        assert!(left_out <= 6.0 * error.max(0.05), "{name}: {error:e} {left_out:e}");
+    }
+}
+
+/// Judging the modes left out costs no more than the impact.
+#[test]
+fn judging_costs_no_more_than_the_impact() {
+    for (name, scene) in gallery::gallery().into_iter().filter(|(_, scene)| scene.modes.count().is_some()) {
+        let solution = scene.impact().unwrap().solve().unwrap();
+        let counts = solution.counts;
+        let steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
+        let own = steps * solution.amplitude.len() as u64;
+        let all = answer(&scene).cost.mode_steps;
+        assert!(all <= 2 * own, "{name}: {} beside {own}", all - own);
+    }
+}
+
+/// The models in every file: null is written as null, and the program shows as many digits as the whole allows.
+#[test]
+fn what_is_printed_has_the_digits_that_are_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.json");
+    let scene = Scene { modes: Modes::Count(40), ..named("pinned-beam") };
+    fs::write(&path, scene.to_json()).unwrap();
+    let run = |options: &[&str]| {
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_vibroimpact"));
+        let output = program.arg("simulate").arg(&path).args(options).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = run(&[]);
+    let line = |name: &str| text.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
+    let digits = line("restitution").split_whitespace().nth(1).unwrap().len();
+    assert!(digits <= 4 && line("as modelled").contains("0.17738"), "{text}");
+    assert!(text.contains("modes left out") && text.contains("beam theory         not known"), "{text}");
+    let result: Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    assert!(result["uncertainty"]["beam_theory"].is_null() && result["uncertainty"]["solver"].is_f64(), "{result}");
+    assert!(result["restitution_uncertainty"].as_f64().unwrap() > 0.03);
+    let best = serde_json::to_value(scene.compare().unwrap()).unwrap();
+    let modal = best["tiers"].as_array().unwrap().iter().find(|tier| tier["model"] == "modal").unwrap();
+    assert!(modal["answer"]["restitution_uncertainty"].as_f64().unwrap() > 0.03);
+}
