@@ -57,7 +57,7 @@ pub(super) struct Loads {
     force: Vec<f64>,
     force_rate: Vec<f64>,
     /// Modes that are rigid and loaded.
-    rigid: Vec<usize>,
+    pub rigid: Vec<usize>,
     contacts: Vec<Line>,
 }
 
@@ -153,8 +153,19 @@ impl Loads {
         line
     }
 
+    /// Modal force of the straight lines at `time_s`, and its rate.
+    pub fn line(&self, k: usize, time_s: f64) -> (f64, f64) {
+        if self.force.is_empty() {
+            return (0.0, 0.0);
+        }
+        (self.force[k] + self.force_rate[k] * (time_s - self.since_s), self.force_rate[k])
+    }
+
     /// Where the straight lines hold an elastic mode, at the last break, and the rate of that.
-    fn shift(&self, system: &System, k: usize) -> (f64, f64) {
+    pub fn shift(&self, system: &System, k: usize) -> (f64, f64) {
+        if self.force.is_empty() {
+            return (0.0, 0.0);
+        }
         let (omega, zeta) = (system.modes[k].omega_rad_s, system.modes[k].damping_ratio);
         let rate = self.force_rate[k] / (omega * omega);
         (self.force[k] / (omega * omega) - 2.0 * zeta / omega * rate, rate)
@@ -197,9 +208,9 @@ impl Loads {
     /// What the straight lines do to the rigid modes over `h` seconds from `time_s` on.
     pub fn push_rigid(&self, time_s: f64, h: f64, amplitude: &mut [f64], rate: &mut [f64]) {
         for &k in &self.rigid {
-            let force = self.force[k] + self.force_rate[k] * (time_s - self.since_s);
-            amplitude[k] += h * h * (0.5 * force + h * self.force_rate[k] / 6.0);
-            rate[k] += h * (force + 0.5 * h * self.force_rate[k]);
+            let (force, slope) = self.line(k, time_s);
+            amplitude[k] += h * h * (0.5 * force + h * slope / 6.0);
+            rate[k] += h * (force + 0.5 * h * slope);
         }
     }
 
@@ -259,9 +270,9 @@ impl Loads {
         self.harmonics.is_empty() && self.next == self.breaks.len() && self.force_rate.iter().all(|rate| *rate == 0.0)
     }
 
-    /// The straight-line load on a rigid mode at the last break (N kg^-1/2).
-    pub fn on_mode(&self, k: usize) -> f64 {
-        self.force.get(k).copied().unwrap_or(0.0)
+    /// Whether there are any.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty() && self.harmonics.is_empty()
     }
 
     /// The fastest of the loads (rad/s).

@@ -9,8 +9,9 @@ use super::collocate::{Collocated, Unknown, collocate};
 use super::dense::Panel;
 use super::enclosure::{FlightBounds, Pull, bend_of_loads, of_panel};
 use super::event::{EventFunction, Verdict};
+use super::ledger::{Account, Moment};
 use super::load::Loads;
-use super::problem::{Assembly, Settings};
+use super::problem::{Assembly, Contact, Settings};
 use super::rest;
 use super::solution::{Counts, Interval, Observer, Outcome, Reason};
 use super::state::{Phase, State, Touch};
@@ -82,6 +83,8 @@ pub(super) struct March<'a, L> {
     pub rate: Vec<f64>,
     pub states: Vec<State>,
     pub counts: Counts,
+    /// The energy ledger, where it is wanted.
+    pub account: Option<Account>,
     level: i32,
     horizon: Option<Horizon>,
     /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
@@ -136,6 +139,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             rate,
             states,
             counts: Counts::default(),
+            account: None,
             level: J_MIN,
             horizon: None,
             landing: f64::INFINITY,
@@ -151,6 +155,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// From the start to the end of the time asked for.
     pub fn follow(&mut self) -> Outcome {
         self.begin();
+        if self.observer.wants_energy() {
+            self.account = Some(Account::open(&self.assembly.bodies, &self.here(), self.stored_j()));
+        }
         let outcome = loop {
             if let Some(reason) = self.stop {
                 break Outcome::Stopped(reason);
@@ -159,8 +166,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 break Outcome::End;
             }
             if self.time_s >= self.loads.next_break_s() {
-                self.loads.pass_break(self.system, self.time_s, &mut self.amplitude, &mut self.rate);
-                self.forget_horizons();
+                self.pass_break();
             }
             if !self.states.iter().any(State::is_closed) {
                 self.fly();
@@ -185,6 +191,34 @@ impl<'a, L: ContactLaw> March<'a, L> {
             self.ask_rest_at = self.counts.contact_steps + REST;
         }
         now
+    }
+
+    /// A straight line of the loads ends, another one begins.
+    fn pass_break(&mut self) {
+        let mut account = self.account.take();
+        if let Some(account) = &mut account {
+            account.end_piece(&self.here());
+        }
+        self.loads.pass_break(self.system, self.time_s, &mut self.amplitude, &mut self.rate);
+        if let Some(account) = &mut account {
+            account.begin_piece(&self.here());
+        }
+        self.account = account;
+        self.forget_horizons();
+    }
+
+    /// What is carried now.
+    pub fn here(&self) -> Moment<'_> {
+        let (amplitude, rate) = (&self.amplitude, &self.rate);
+        Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate }
+    }
+
+    /// Energy that the closed contacts store (J).
+    pub fn stored_j(&self) -> f64 {
+        let of = |(state, contact): (&State, &Contact<L>)| {
+            state.touch().map_or(0.0, |touch| contact.law.stored_energy_j(&touch.branch, state.overlap))
+        };
+        self.states.iter().zip(&self.assembly.contacts).map(of).sum()
     }
 
     fn limit(&mut self) -> Option<Reason> {
@@ -329,8 +363,11 @@ impl<'a, L: ContactLaw> March<'a, L> {
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
         };
+        // of surfaces that overlap at the start, what their compression will push
+        let stored_j = if beyond > 0.0 { law.stored_energy_j(&touch.branch, state.overlap) } else { 0.0 };
+        let speed = approach_speed_m_s.abs().max((2.0 * stored_j * inverse).sqrt());
+        let momentum = if inverse > 0.0 { speed / inverse } else { 0.0 };
         state.phase = Phase::Closed(Box::new(touch));
-        let momentum = if inverse > 0.0 { approach_speed_m_s.abs() / inverse } else { 0.0 };
         state.momentum = state.momentum.max(momentum);
         let of_others = |states: &[State]| states.iter().map(|state| state.momentum).fold(0.0, f64::max);
         if state.momentum == 0.0 {
@@ -799,7 +836,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let state = &mut self.states[c];
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
-                state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate);
+                state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate, end(i).0);
             } else if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
                 (*clear_until, *bounds) = (now, None);
             }
@@ -1004,8 +1041,13 @@ impl<'a, L: ContactLaw> March<'a, L> {
         }
     }
 
-    /// Shows the observer a panel that is about to be committed.
+    /// Shows the energy ledger and the observer a panel that is about to be committed.
     fn show(&mut self, h: f64, contacts: &[usize], force: &[Nodal]) {
+        if let Some(account) = &mut self.account {
+            let (amplitude, rate) = (&self.amplitude, &self.rate);
+            let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
+            account.panel(&start, self.tables, h, contacts, force);
+        }
         if self.observer.wants_panels() && h > 0.0 {
             let forces: Vec<(usize, Nodal)> = contacts.iter().copied().zip(force.iter().copied()).collect();
             let panel = Panel {

@@ -38,15 +38,19 @@
 //!
 //! Without closed contact a panel is as long as the bound on the motion of the open ones allows.
 //!
+//! Where it is wanted, an energy ledger is kept panel by panel (`ledger.rs`, `damping.rs`).
+//!
 //! # Limits
 //! Bodies are linear, contacts are points that move along one axis; there is no friction. A harmonic load at the frequency
 //! of an undamped mode is refused. Errors grow along a chaotic motion: compare with a run at another tolerance to see up
 //! to when event times agree.
 
 mod collocate;
+mod damping;
 mod dense;
 mod enclosure;
 mod event;
+mod ledger;
 mod load;
 mod march;
 mod problem;

@@ -72,7 +72,7 @@ fn equilibrium<L: ContactLaw>(march: &March<L>, closed: Vec<usize>) -> Option<Eq
     let mut force: DVector<f64> =
         DVector::from_fn(n, |i, _| law_at(march, closed[i], march.states[closed[i]].overlap).0);
     let mut amplitude: DVector<f64> = DVector::from_fn(m, |r, _| march.amplitude[rigid[r]]);
-    let load = DVector::from_fn(m, |r, _| march.loads.on_mode(rigid[r]));
+    let load = DVector::from_fn(m, |r, _| march.loads.line(rigid[r], march.time_s).0);
     for _ in 0..ITERATIONS_MAX {
         let compression = DVector::from_column_slice(&unloaded) - &flexibility * &force + &rigid_part * &amplitude;
         let laws: Vec<(f64, f64)> = (0..n).map(|i| law_at(march, closed[i], compression[i])).collect();

@@ -109,11 +109,15 @@ pub struct ContactEnd {
     pub stored_j: f64,
 }
 
-/// Where the energy went. `start + load_work = bodies + stored + modal_damping + contact_loss + unaccounted`.
+/// Where the energy went: the bodies' and the stored energy at the start and the work of the loads are the bodies' and the
+/// stored energy at the end, the losses, and what is unaccounted for. Every part is an integral of its own, so the last one
+/// is a check of all the others.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ledger {
     /// Kinetic and elastic energy of each body at the start and at the end (J).
     pub bodies_j: Vec<[f64; 2]>,
+    /// Energy that closed contacts store at the start, where bodies interfere, and at the end (J).
+    pub stored_j: [f64; 2],
     /// Work of the loads (J).
     pub load_work_j: f64,
     /// Lost in modal damping (J).

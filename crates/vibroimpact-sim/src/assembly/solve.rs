@@ -67,7 +67,9 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
         settings.check()?;
         let mut march = March::new(self.assembly, &self.system, &mut self.tables, *settings, observer);
         let outcome = march.follow();
-        let contacts = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
+        let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
+        let work_j = contacts.iter().map(|contact| contact.statistics.work_j).sum();
+        let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), work_j));
         let (mut amplitude, mut rate) = (march.amplitude, march.rate);
         march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
         let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
@@ -78,7 +80,7 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
             amplitude: by_body(&amplitude),
             rate: by_body(&rate),
             contacts,
-            energy: None,
+            energy,
             counts: march.counts,
         })
     }

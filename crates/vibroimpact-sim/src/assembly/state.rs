@@ -3,7 +3,7 @@
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
 use crate::modal::contact::Peak;
-use crate::modal::legendre::{BASIS, Nodal, Q};
+use crate::modal::legendre::{BASIS, Nodal, Q, apply, evaluate};
 use contact_models::{Branch, Memory};
 
 /// A contact at a moment.
@@ -73,8 +73,9 @@ impl State {
         }
     }
 
-    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression.
-    pub fn book(&mut self, h: f64, nodal: &Nodal, coefficients: Nodal, compression: &Nodal, rate: &Nodal) {
+    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression there
+    /// and at the end.
+    pub fn book(&mut self, h: f64, nodal: &Nodal, coefficients: Nodal, compression: &Nodal, rate: &Nodal, end: f64) {
         let Phase::Closed(touch) = &mut self.phase else { return };
         touch.previous = Some((coefficients, h));
         touch.interval.impulse_n_s += h * coefficients[0];
@@ -88,8 +89,13 @@ impl State {
         for i in 0..Q {
             let (weight, power) = (h * weights[i], nodal[i] * rate[i]);
             statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];
-            statistics.work_j += weight * power;
             statistics.compression_work_j += weight * power.max(0.0);
+        }
+        // by parts: the compression is known at the nodes and at the end, better than its rate between
+        let slope = apply(&BASIS.derivatives[1], &coefficients);
+        statistics.work_j += evaluate(&coefficients, 1.0) * (end - self.overlap);
+        for i in 0..Q {
+            statistics.work_j -= weights[i] * slope[i] * (compression[i] - self.overlap);
         }
     }
 

@@ -1,6 +1,7 @@
 //! Tables of panels `h = 2^-j` s: free motion and forced response of every mode, and the response of every contact to
 //! the force of another. All of them are filled as they are first asked for.
 
+use super::damping::Damping;
 use super::system::{Link, Span, System};
 use crate::modal::forcing::{Compliance, Terms, part};
 use crate::modal::ladder::{J_MAX, J_MIN, Rotation, step_s};
@@ -30,6 +31,7 @@ struct Forced {
 struct Level {
     rotation: Option<Box<Rotation>>,
     forced: Option<Box<Forced>>,
+    damping: Option<Box<Damping>>,
 }
 
 pub(super) struct Tables {
@@ -51,6 +53,12 @@ impl Tables {
     pub fn rotation(&mut self, system: &System, j: i32) -> &Rotation {
         let level = &mut self.levels[(j - J_MIN) as usize];
         level.rotation.get_or_insert_with(|| Box::new(Rotation::new(&system.modes, step_s(j))))
+    }
+
+    /// What modal damping takes on level `j`; only the energy ledger asks.
+    pub fn damping(&mut self, system: &System, j: i32) -> &mut Damping {
+        let level = &mut self.levels[(j - J_MIN) as usize];
+        level.damping.get_or_insert_with(|| Box::new(Damping::new(system, j)))
     }
 
     /// Makes sure that everything about level `j` is there for these contacts and these forces.

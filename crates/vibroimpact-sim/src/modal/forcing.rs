@@ -90,7 +90,7 @@ pub(crate) fn part(
 }
 
 /// `|lambda|`, of the faster root if there are two (rad/s).
-fn rate(mode: &Mode) -> f64 {
+pub(crate) fn rate(mode: &Mode) -> f64 {
     mode.omega_rad_s * if mode.damping_ratio < NEARLY_CRITICAL { 1.0 } else { 2.0 * mode.damping_ratio }
 }
 

@@ -122,7 +122,7 @@ pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
 }
 
 /// A Gauss-Legendre rule on (0, 1).
-fn rule(n: NonZeroUsize) -> Vec<(f64, f64)> {
+pub(crate) fn rule(n: NonZeroUsize) -> Vec<(f64, f64)> {
     let mut rule: Vec<(f64, f64)> = GaussLegendre::new(n).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();
     rule.sort_by(|a, b| a.0.total_cmp(&b.0));
     rule

@@ -95,7 +95,7 @@ fn response_by_quadrature(mode: &Mode, h: f64) -> (Nodal, Nodal) {
 /// `int_0^1 P_n(2s-1) e^{z(1-s)} ds` for `n < Q`: `(-1)^n e^w i_n(w)` with `w = z/2` and `i_n` the modified
 /// spherical Bessel function. The recurrence `i_{n-1} = i_{n+1} + (2n+1)/w i_n` is run downwards from the power series
 /// of the last two up to `|w| = Q`, and upwards beyond, where that is stable. Needs `Re z <= 0`.
-fn exponential_moments(z: Complex64) -> [Complex64; Q] {
+pub(crate) fn exponential_moments(z: Complex64) -> [Complex64; Q] {
     let w = 0.5 * z;
     let size = w.norm();
     let mut moments = [Complex64::ZERO; Q];

@@ -1,0 +1,422 @@
+//! What modal damping takes within a panel, as a quadratic form of what moves the modes there.
+//!
+//! On a panel of `h` a mode starts at `(a, b)` and is driven by `g(t) = sum g_n P_n(2 t/h - 1)`. A displacement `a` acts
+//! like a force `-omega^2 a` that is constant, so with `S` the impulse response its rate is
+//!
+//! ```text
+//! a'(t) = b S'(t) + sum_n q_n v_n(t),   q_0 = g_0 - omega^2 a,   q_n = g_n,   v_n(t) = int_0^t S'(t-s) P_n(2 s/h - 1) ds
+//! ```
+//!
+//! and the loss `int 2 zeta omega a'^2 dt` a form in `(b, q_0 .. q_7)` ([`Form`]). Its numbers are integrals of products of
+//! the nine rates themselves, by three ways:
+//!
+//! - a mode that turns by at most [`SLOW`] rad: Gauss quadrature, with the rates from their power series;
+//! - a faster one: `S' = Re(c e^{z x})`, and `v_n` is a polynomial and a multiple of the same exponential (integration by
+//!   parts, as in [`crate::modal::forcing`]), so each product has a closed integral;
+//! - a faster one that does not vibrate or hardly: quadrature on panels that grow away from the start.
+//!
+//! A contact drives all modes of a body by the same polynomial, `g_nk = -psi_k F_n`: what is quadratic in the force is
+//! summed over the modes once and for all, and a panel costs a few operations a mode.
+
+use super::system::{Link, System};
+use crate::modal::forcing::rate;
+use crate::modal::ladder::step_s;
+use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, apply, dot, legendre, rule};
+use crate::modal::oscillator::{NEARLY_CRITICAL, propagate, response};
+use crate::modal::problem::Mode;
+use num_complex::Complex64;
+use std::array;
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::sync::LazyLock;
+
+/// A mode that turns by at most this much (rad) needs the coarser rule only.
+const GENTLE: f64 = 1.0;
+/// Terms of the power series that serve for it.
+const TERMS: usize = 20;
+
+/// Nodes of that rule.
+const COARSE_NODES: usize = 12;
+
+static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
+static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
+
+/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Form {
+    bb: f64,
+    bq: Nodal,
+    qq: Matrix,
+}
+
+impl Form {
+    const NONE: Form = Form { bb: 0.0, bq: [0.0; Q], qq: [[0.0; Q]; Q] };
+
+    fn of(mode: &Mode, h: f64) -> Form {
+        let turned = rate(mode) * h;
+        if mode.damping_ratio * mode.omega_rad_s == 0.0 {
+            return Form::NONE;
+        }
+        if turned <= GENTLE {
+            COARSE.form(mode, h)
+        } else if turned <= SLOW {
+            FINE.form(mode, h)
+        } else if mode.damping_ratio < NEARLY_CRITICAL {
+            by_parts(mode, h)
+        } else {
+            by_quadrature(mode, h)
+        }
+    }
+
+    /// Adds the products of the rates at one place, which are those to a unit rate and to unit Legendre forces over `h`.
+    fn add(&mut self, weight: f64, by_rate: f64, by_force: &Nodal) {
+        self.bb += weight * by_rate * by_rate;
+        for n in 0..Q {
+            self.bq[n] += weight * by_rate * by_force[n];
+            for m in 0..Q {
+                self.qq[n][m] += weight * by_force[n] * by_force[m];
+            }
+        }
+    }
+
+    /// From a mean over the panel of products of rates, those to forces divided by `h`, to the loss.
+    fn scaled(mut self, mode: &Mode, h: f64) -> Form {
+        let scale = 2.0 * mode.damping_ratio * mode.omega_rad_s * h;
+        self.bb *= scale;
+        self.bq = self.bq.map(|value| value * scale * h);
+        self.qq = self.qq.map(|row| row.map(|value| value * scale * h * h));
+        self
+    }
+}
+
+/// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
+struct Series<const M: usize> {
+    weights: [f64; M],
+    /// `x^p/p!`.
+    powers: Vec<[f64; M]>,
+    /// `[p][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
+    forced: Vec<[[f64; M]; Q]>,
+}
+
+impl<const M: usize> Series<M> {
+    fn new() -> Series<M> {
+        let rule = rule(const { NonZeroUsize::new(M).unwrap() });
+        let mut powers = vec![[1.0; M]; SERIES];
+        let mut forced = vec![[[0.0; M]; Q]; SERIES];
+        for (q, &(x, _)) in rule.iter().enumerate() {
+            for p in 1..SERIES {
+                powers[p][q] = powers[p - 1][q] * x / p as f64;
+            }
+            for &(y, w) in &BASIS.fine {
+                let values = legendre(x * y);
+                let mut kernel = w * x;
+                for (p, row) in forced.iter_mut().enumerate() {
+                    if p > 0 {
+                        kernel *= x * (1.0 - y) / p as f64;
+                    }
+                    for n in 0..Q {
+                        row[n][q] += kernel * values[n];
+                    }
+                }
+            }
+        }
+        Series { weights: array::from_fn(|q| rule[q].1), powers, forced }
+    }
+
+    /// `S'^(p)(0) h^p`.
+    fn derivatives(mode: &Mode, h: f64) -> impl Iterator<Item = f64> {
+        let angle = mode.omega_rad_s * h;
+        let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
+        let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
+        let (mut here, mut next) = (1.0, -drag);
+        (0..terms).map(move |_| {
+            let value = here;
+            (here, next) = (next, -drag * next - square * here);
+            value
+        })
+    }
+
+    fn form(&self, mode: &Mode, h: f64) -> Form {
+        let (mut by_rate, mut by_force) = ([0.0; M], [[0.0; M]; Q]);
+        for (derivative, (powers, forced)) in Self::derivatives(mode, h).zip(self.powers.iter().zip(&self.forced)) {
+            for q in 0..M {
+                by_rate[q] += derivative * powers[q];
+            }
+            for n in 0..Q {
+                for q in 0..M {
+                    by_force[n][q] += derivative * forced[n][q];
+                }
+            }
+        }
+        let mut form = Form::NONE;
+        for q in 0..M {
+            form.add(self.weights[q], by_rate[q], &by_force.map(|values| values[q]));
+        }
+        form.scaled(mode, h)
+    }
+}
+
+/// Below critical damping, for a mode that turns by more than a few radians.
+fn by_parts(mode: &Mode, h: f64) -> Form {
+    let sigma = mode.damping_ratio * mode.omega_rad_s;
+    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
+    let lambda = Complex64::new(-sigma, omega_d);
+    let (z, inverse) = (lambda * h, (lambda * h).inv());
+
+    // Q_n = sum_k P_n^(k)/z^(k+1) by Legendre coefficients: v_n/h = Re(scale (e^{z x} Q_n(0) - Q_n(x)))
+    let mut sums = [[Complex64::ZERO; Q]; Q];
+    sums[0][0] = inverse;
+    (sums[1][0], sums[1][1]) = (2.0 * inverse * inverse, inverse);
+    for n in 1..Q - 1 {
+        let factor = (4 * n + 2) as f64 * inverse;
+        for d in 0..=n {
+            sums[n + 1][d] = sums[n - 1][d] + factor * sums[n][d];
+        }
+        sums[n + 1][n + 1] += inverse;
+        sums[n + 1][n - 1] -= inverse;
+    }
+    let sign = |d: usize| if d.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let at_start = sums.map(|sum| sum.iter().enumerate().map(|(d, value)| sign(d) * value).sum::<Complex64>());
+    let at_end = sums.map(|sum| sum.iter().sum::<Complex64>());
+    let scale = -Complex64::i() * lambda / omega_d;
+
+    // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}); the first is that to a unit rate
+    let polynomial: [Nodal; Q + 1] =
+        array::from_fn(|i| if i == 0 { [0.0; Q] } else { sums[i - 1].map(|value| -(scale * value).re) });
+    let exponential: [Complex64; Q + 1] = array::from_fn(|i| if i == 0 { scale } else { scale * at_start[i - 1] });
+
+    // means of P_d e^{z x}, of e^{2 z x} and of |e^{z x}|^2
+    let whole = z.exp();
+    let moments: [Complex64; Q] = array::from_fn(|d| sign(d) * (whole * at_start[d] - at_end[d]));
+    let turned = (whole * whole - 1.0) * 0.5 * inverse;
+    let decay = 2.0 * sigma * h;
+    let decayed = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
+    let mixed = polynomial.map(|values| values.iter().zip(&moments).map(|(value, m)| value * m).sum::<Complex64>());
+    let product = |i: usize, j: usize| {
+        let plain: f64 = (0..Q).map(|d| polynomial[i][d] * polynomial[j][d] / (2 * d + 1) as f64).sum();
+        let (one, other) = (exponential[i], exponential[j]);
+        let crossed = (other * mixed[i] + one * mixed[j]).re;
+        plain + crossed + 0.5 * ((one * other * turned).re + (one * other.conj()).re * decayed)
+    };
+    let form = Form {
+        bb: product(0, 0),
+        bq: array::from_fn(|n| product(0, n + 1)),
+        qq: array::from_fn(|n| array::from_fn(|m| product(n + 1, m + 1))),
+    };
+    form.scaled(mode, h)
+}
+
+/// Any damping, on panels that grow away from the start.
+fn by_quadrature(mode: &Mode, h: f64) -> Form {
+    let mut form = Form::NONE;
+    let mut from = 0.0;
+    let mut to = (2.0 / (2.0 * mode.damping_ratio * mode.omega_rad_s * h)).clamp(1e-18, 1.0);
+    while from < 1.0 {
+        for &(y, w) in &BASIS.fine {
+            let x = from + (to - from) * y;
+            let (_, velocity) = response(mode, x * h);
+            // P_n on [0, x] in the polynomials of that part
+            let values = BASIS.nodes.map(|node| legendre(x * node));
+            let by_force = array::from_fn(|n| dot(&BASIS.coefficients(&values.map(|value| value[n])), &velocity) / h);
+            form.add(w * (to - from), propagate(mode, x * h).p22, &by_force);
+        }
+        from = to;
+        to = (2.0 * to).min(1.0);
+    }
+    form.scaled(mode, h)
+}
+
+/// The forms of all damped modes on one level.
+pub(super) struct Damping {
+    /// Loss by `a^2`, `a b` and `b^2`, mode by mode.
+    free: Vec<[f64; 3]>,
+    /// Loss by `a g_n` and `b g_n`.
+    cross: Vec<(Nodal, Nodal)>,
+    /// Loss by `g_n g_m`.
+    forced: Vec<Matrix>,
+    /// `[c][c']`, where asked for: loss by `F_n F'_m`, summed over the modes.
+    pairs: Vec<Option<Box<Matrix>>>,
+    contacts: usize,
+}
+
+impl Damping {
+    pub fn new(system: &System, j: i32) -> Damping {
+        let (mut free, mut cross, mut forced) = (Vec::new(), Vec::new(), Vec::new());
+        for (mode, &square) in system.modes.iter().zip(&system.square) {
+            let Form { bb, bq, qq } = Form::of(mode, step_s(j));
+            free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
+            cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
+            forced.push(qq);
+        }
+        let contacts = system.links.len();
+        let pairs = std::iter::repeat_with(|| None).take(contacts * contacts).collect();
+        Damping { free, cross, forced, pairs, contacts }
+    }
+
+    /// What damping takes from these bodies within a panel (J).
+    pub fn lost(
+        &mut self,
+        system: &System,
+        damped: &[Range<usize>],
+        (amplitude, rate): (&[f64], &[f64]),
+        contacts: &[usize],
+        force: &[Nodal],
+    ) -> f64 {
+        let mut lost = 0.0;
+        for body in damped {
+            let motion = amplitude[body.clone()].iter().zip(&rate[body.clone()]);
+            for ([aa, ab, bb], (a, b)) in self.free[body.clone()].iter().zip(motion) {
+                lost += (aa * a + ab * b) * a + bb * b * b;
+            }
+        }
+        for (i, &c) in contacts.iter().enumerate() {
+            let mut by_motion = [0.0; Q];
+            for span in system.links[c].spans.iter().filter(|span| damped.contains(&span.modes)) {
+                let motion = amplitude[span.modes.clone()].iter().zip(&rate[span.modes.clone()]);
+                let table = self.cross[span.modes.clone()].iter();
+                for (((from_a, from_b), psi), (a, b)) in table.zip(&span.psi).zip(motion) {
+                    let (a, b) = (psi * a, psi * b);
+                    for n in 0..Q {
+                        by_motion[n] += from_a[n] * a + from_b[n] * b;
+                    }
+                }
+            }
+            lost -= dot(&by_motion, &force[i]);
+            for (j, &other) in contacts[..=i].iter().enumerate() {
+                if system.neighbours[c].contains(&other) {
+                    let twice = if j < i { 2.0 } else { 1.0 };
+                    lost += twice * dot(&force[i], &apply(self.pair(system, c, other), &force[j]));
+                }
+            }
+        }
+        lost
+    }
+
+    fn pair(&mut self, system: &System, c: usize, other: usize) -> &Matrix {
+        let forced = &self.forced;
+        self.pairs[c * self.contacts + other].get_or_insert_with(|| {
+            let mut sum = [[0.0; Q]; Q];
+            for (k, weight) in system.links[c].shared(&system.links[other]) {
+                for n in 0..Q {
+                    for m in 0..Q {
+                        sum[n][m] += weight * forced[k][n][m];
+                    }
+                }
+            }
+            Box::new(sum)
+        })
+    }
+}
+
+/// What damping takes from these bodies within a panel of any length on which no mode turns by more than a radian (J).
+pub(super) fn lost_within(
+    system: &System,
+    damped: &[Range<usize>],
+    h: f64,
+    (amplitude, rate): (&[f64], &[f64]),
+    contacts: &[usize],
+    force: &[Nodal],
+) -> f64 {
+    let rule = &*COARSE;
+    // what a contact's force does to a mode of unit weight, term by term
+    let push = |force: &Nodal| -> Vec<[f64; COARSE_NODES]> {
+        let term = |rows: &[[f64; COARSE_NODES]; Q]| array::from_fn(|q| (0..Q).map(|n| rows[n][q] * force[n]).sum());
+        rule.forced.iter().take(TERMS).map(term).collect()
+    };
+    let pushes: Vec<(&Link, Vec<_>)> =
+        contacts.iter().zip(force).map(|(c, force)| (&system.links[*c], push(force))).collect();
+    let mut lost = 0.0;
+    for body in damped {
+        let on_body = |(link, push): &(&Link, Vec<_>)| {
+            let span = link.spans.iter().position(|span| span.modes == *body)?;
+            Some((link.spans[span].psi.clone(), push.clone()))
+        };
+        let here: Vec<(Vec<f64>, Vec<[f64; COARSE_NODES]>)> = pushes.iter().filter_map(on_body).collect();
+        for k in body.clone() {
+            let mode = &system.modes[k];
+            let drag = system.drag[k];
+            if drag == 0.0 {
+                continue;
+            }
+            let (held, b) = (h * system.square[k] * amplitude[k], rate[k]);
+            let mut values = [0.0; COARSE_NODES];
+            for (p, derivative) in Series::<COARSE_NODES>::derivatives(mode, h).take(TERMS).enumerate() {
+                // a constant force and a rate act by the next power and by this one
+                let (powers, next) = (&rule.powers[p], &rule.powers[p + 1]);
+                for q in 0..COARSE_NODES {
+                    values[q] += derivative * (b * powers[q] - held * next[q]);
+                }
+                for (psi, push) in &here {
+                    let scale = derivative * h * psi[k - body.start];
+                    for q in 0..COARSE_NODES {
+                        values[q] -= scale * push[p][q];
+                    }
+                }
+            }
+            let square: f64 = rule.weights.iter().zip(&values).map(|(w, value)| w * value * value).sum();
+            lost += drag * h * square;
+        }
+    }
+    lost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By composite Gauss quadrature of the rates as [`crate::modal::oscillator`] has them.
+    fn reference(mode: &Mode, h: f64) -> Form {
+        let mut form = Form::NONE;
+        let panels = (4.0 * rate(mode) * h).ceil().max(4.0) as usize;
+        for i in 0..panels {
+            for &(y, w) in &BASIS.fine {
+                let x = (i as f64 + y) / panels as f64;
+                let (_, velocity) = response(mode, x * h);
+                let part = |n: usize| BASIS.coefficients(&BASIS.nodes.map(|node| legendre(x * node)[n]));
+                let by_force = array::from_fn(|n| dot(&part(n), &velocity) / h);
+                form.add(w / panels as f64, propagate(mode, x * h).p22, &by_force);
+            }
+        }
+        form.scaled(mode, h)
+    }
+
+    #[test]
+    fn every_form_is_the_integral_of_the_squared_rate() {
+        let h = 1e-3;
+        for zeta in [1e-3, 0.02, 0.6, 0.98, 0.995, 1.0, 1.3, 20.0] {
+            for turned in [1e-3, 0.3, 1.0, 1.1, 6.0, 6.1, 12.0, 40.0] {
+                let unit = Mode { omega_rad_s: 1.0, damping_ratio: zeta, shape: 1.0 };
+                let mode = Mode { omega_rad_s: turned / h / rate(&unit), ..unit };
+                let (found, known) = (Form::of(&mode, h), reference(&mode, h));
+                // nearly equal roots cancel, and by parts so does the response to high polynomials
+                let roots = if zeta < NEARLY_CRITICAL { ((1.0 - zeta) * (1.0 + zeta)).recip() } else { 1.0 };
+                let grown = |n: usize| (1..=n).map(|j| (4 * j - 2) as f64 / turned.max(SLOW)).product::<f64>().max(1.0);
+                let close = |found: f64, known: f64, unit: f64, floor: f64| {
+                    let error = (found - known).abs() / unit;
+                    let what = format!("zeta {zeta}, turned {turned}: {found:e} and {known:e}, {error:e}");
+                    assert!(error < 2e-14 * (10.0 + turned) * roots * floor, "{what}");
+                };
+                close(found.bb, known.bb, known.bb, 1.0);
+                for n in 0..Q {
+                    close(found.bq[n], known.bq[n], (known.bb * known.qq[0][0]).sqrt(), grown(n));
+                    for m in 0..Q {
+                        close(found.qq[n][m], known.qq[n][m], known.qq[0][0], grown(n) * grown(m));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn forms_are_finite_for_any_mode_and_panel() {
+        for omega_rad_s in [1e-15, 1e-3, 1e9, 1e15] {
+            for damping_ratio in [1e-9, 0.5, 1.0, 1e6] {
+                for h in [1e-50, 1.0, 1e30] {
+                    let Form { bb, bq, qq } = Form::of(&Mode { omega_rad_s, damping_ratio, shape: 1.0 }, h);
+                    let all = bq.iter().chain(qq.iter().flatten()).chain([&bb]).all(|value| value.is_finite());
+                    assert!(all, "{omega_rad_s} {damping_ratio} {h}");
+                }
+            }
+        }
+    }
+}

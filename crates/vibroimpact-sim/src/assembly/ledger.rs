@@ -1,0 +1,349 @@
+//! The energy ledger of a run: where the energy came from and where it went, part by part.
+//!
+//! # Parts
+//! - Energy of a body, of the whole motion: `sum (a'^2 + omega^2 a^2)/2` over its modes.
+//! - Work of a contact: `int F xi' dt` as the contacts book it; what of it is not stored when the run ends is lost.
+//! - Modal damping: `int 2 zeta omega a'^2 dt`.
+//! - Work of the loads: `int f a' dt`.
+//!
+//! A mode is what is carried of it (`a_c`, with rate `b_c`) and its steady motion under straight-line and harmonic loads
+//! (`load.rs`), `a' = b_c + s + sum_j Re(i Omega_j G_j e^{i Omega_j t})` with `s` the slope of the straight line. So the
+//! damping is that of `b_c` alone and a rest.
+//!
+//! # Panel by panel
+//! - Carried motion that is free, `int 2 zeta omega b_c^2 dt`: the carried energy where the flight begins less that where it
+//!   ends, exactly.
+//! - The same under contact forces: the forms of `damping.rs`.
+//! - Straight-line loads on rigid modes, which carry their whole motion: with `a'' = sum_n g_n P_n + f_0 + f_1 tau` on a panel
+//!   of `h`, `int a' d tau = h a'_0 + h^2 (g_0/2 - g_1/6 + f_0/2 + f_1 h/6)` and
+//!   `int tau a' d tau = h^2 a'_0/2 + h^3 (g_0/3 - g_1/12 - g_2/60 + f_0/3 + f_1 h/8)`.
+//!
+//! # Piece by piece
+//! Between breaks of the loads everything else follows from the carried motion at the two ends and from `int F dt` and
+//! `int F e^{i Omega t} dt` of each contact, whatever happens between:
+//!
+//! ```text
+//! omega^2 int a_c = int g - [b_c + 2 zeta omega a_c]
+//! K int b_c e^{i Omega t} = [(omega^2 a_c + i Omega b_c) e^{i Omega t}] - i Omega int g e^{i Omega t}
+//! K = omega^2 - Omega^2 - 2 i zeta omega Omega
+//! ```
+//!
+//! (the modal equation times 1 and times `e^{i Omega t}`, by parts; `g` is the force of the contacts, on a rigid mode with
+//! that of the straight lines). Products of two sinusoids are elementary, and taken once for the whole run.
+//!
+//! # What it is not
+//! Nothing is found as the difference of the others but `unaccounted_j`. It holds the rounding of all parts and what the
+//! quadrature of a contact's work misses.
+
+use super::damping::lost_within;
+use super::load::Loads;
+use super::problem::Body;
+use super::solution::Ledger;
+use super::system::System;
+use super::tables::Tables;
+use crate::modal::ladder::{level_within, step_s};
+use crate::modal::legendre::{Nodal, Q};
+use crate::modal::oscillator::exponential_moments;
+use num_complex::Complex64;
+use std::ops::Range;
+
+/// What is carried of the modes at a moment.
+#[derive(Clone, Copy)]
+pub(super) struct Moment<'a> {
+    pub system: &'a System,
+    pub loads: &'a Loads,
+    pub time_s: f64,
+    pub amplitude: &'a [f64],
+    pub rate: &'a [f64],
+}
+
+/// The books while a run goes on.
+pub(super) struct Account {
+    bodies_j: Vec<f64>,
+    stored_j: f64,
+    /// Bodies with damped modes.
+    damped: Vec<Range<usize>>,
+    /// Carried energy of the damped modes where the flight began (J).
+    flying_j: Option<f64>,
+    damping_j: f64,
+    load_work_j: f64,
+    piece: Piece,
+}
+
+/// Since the last break of the loads.
+#[derive(Default)]
+struct Piece {
+    since_s: f64,
+    amplitude: Vec<f64>,
+    rate: Vec<f64>,
+    /// `int F dt`, and `int F e^{i Omega t} dt` by frequency, of each contact.
+    impulse: Vec<f64>,
+    turned: Vec<Vec<Complex64>>,
+}
+
+impl Account {
+    /// Opens the books at the start; `stored_j` is in the contacts.
+    pub fn open(bodies: &[Body], start: &Moment, stored_j: f64) -> Account {
+        let drags = |body: &&Range<usize>| (*body).clone().any(|k| start.system.drag[k] > 0.0);
+        let mut account = Account {
+            bodies_j: bodies.iter().map(energy).collect(),
+            stored_j,
+            damped: start.system.bodies.iter().filter(drags).cloned().collect(),
+            flying_j: None,
+            damping_j: 0.0,
+            load_work_j: 0.0,
+            piece: Piece::default(),
+        };
+        account.begin_piece(start);
+        account
+    }
+
+    /// Books a panel of `h` that is about to be made, with Legendre coefficients of the contacts' forces.
+    pub fn panel(&mut self, start: &Moment, tables: &mut Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
+        let system = start.system;
+        if !self.damped.is_empty() {
+            if contacts.is_empty() {
+                self.flying_j.get_or_insert_with(|| carried_energy(&self.damped, start));
+            } else {
+                self.land(start);
+                let motion = (start.amplitude, start.rate);
+                let level = level_within(h);
+                self.damping_j += if step_s(level) == h {
+                    tables.damping(system, level).lost(system, &self.damped, motion, contacts, force)
+                } else {
+                    lost_within(system, &self.damped, h, motion, contacts, force)
+                };
+            }
+        }
+        if start.loads.is_empty() {
+            return;
+        }
+        for &k in &start.loads.rigid {
+            self.load_work_j += work_on_rigid(start, h, k, contacts, force);
+        }
+        for (&c, force) in contacts.iter().zip(force) {
+            self.piece.impulse[c] += h * force[0];
+            for (harmonic, turned) in start.loads.harmonics.iter().zip(&mut self.piece.turned) {
+                turned[c] += harmonic.turn(start.time_s) * h * turned_mean(harmonic.omega_rad_s * h, force);
+            }
+        }
+    }
+
+    /// A flight ends.
+    fn land(&mut self, now: &Moment) {
+        if let Some(energy) = self.flying_j.take() {
+            self.damping_j += energy - carried_energy(&self.damped, now);
+        }
+    }
+
+    /// A new piece begins with what is now carried.
+    pub fn begin_piece(&mut self, now: &Moment) {
+        if now.loads.is_empty() {
+            return;
+        }
+        let contacts = now.system.links.len();
+        self.piece = Piece {
+            since_s: now.time_s,
+            amplitude: now.amplitude.to_vec(),
+            rate: now.rate.to_vec(),
+            impulse: vec![0.0; contacts],
+            turned: vec![vec![Complex64::ZERO; contacts]; now.loads.harmonics.len()],
+        };
+    }
+
+    /// The piece ends: a straight line does, or the run.
+    pub fn end_piece(&mut self, now: &Moment) {
+        self.land(now);
+        if now.loads.is_empty() {
+            return;
+        }
+        let (system, loads) = (now.system, now.loads);
+        let impulse = on_modes(system, &self.piece.impulse, 0.0);
+        let waves: Vec<Wave> = loads
+            .harmonics
+            .iter()
+            .map(|harmonic| Wave::over(harmonic.omega_rad_s, self.piece.since_s, now.time_s))
+            .collect();
+        let turned: Vec<Vec<Complex64>> =
+            self.piece.turned.iter().map(|moments| on_modes(system, moments, Complex64::ZERO)).collect();
+        for k in 0..system.modes.len() {
+            let (a, b) = ([self.piece.amplitude[k], now.amplitude[k]], [self.piece.rate[k], now.rate[k]]);
+            let (damping, work) = self.of_piece(now, k, (a, b), impulse[k], &waves, |j| turned[j][k]);
+            self.damping_j += damping;
+            self.load_work_j += work;
+        }
+    }
+
+    /// What a piece adds to the damping and to the work of the loads, mode by mode, beyond what its panels did.
+    fn of_piece(
+        &self,
+        now: &Moment,
+        k: usize,
+        (a, b): ([f64; 2], [f64; 2]),
+        impulse: f64,
+        waves: &[Wave],
+        turned: impl Fn(usize) -> Complex64,
+    ) -> (f64, f64) {
+        let mode = &now.system.modes[k];
+        let (square, drag) = (now.system.square[k], now.system.drag[k]);
+        let length = now.time_s - self.piece.since_s;
+        let (f0, slope) = now.loads.line(k, self.piece.since_s);
+        let (f1, _) = now.loads.line(k, now.time_s);
+        let rising = if mode.is_rigid() { 0.0 } else { now.loads.shift(now.system, k).1 };
+        let (mut damping, mut work) = (0.0, 0.0);
+        if !mode.is_rigid() && (f0 != 0.0 || slope != 0.0) {
+            let moved = a[1] - a[0];
+            damping += drag * rising * (2.0 * moved + rising * length);
+            work += if slope == 0.0 {
+                f0 * moved
+            } else {
+                let integral = (impulse - (b[1] - b[0]) - drag * moved) / square;
+                f1 * a[1] - f0 * a[0] - slope * integral + 0.5 * (f0 + f1) * length * rising
+            };
+        }
+        for (j, (harmonic, wave)) in now.loads.harmonics.iter().zip(waves).enumerate() {
+            let (gain, omega, [from, to]) = (harmonic.modes[k], harmonic.omega_rad_s, wave.ends);
+            if gain == Complex64::ZERO {
+                continue;
+            }
+            let i_omega = Complex64::new(0.0, omega);
+            let stiffness = Complex64::new((mode.omega_rad_s - omega) * (mode.omega_rad_s + omega), drag * omega);
+            // the force of the straight lines is a part of what carries a rigid mode
+            let by_lines = if mode.is_rigid() { f0 * wave.mean + slope * wave.first } else { Complex64::ZERO };
+            let at = |i: usize| square * a[i] + i_omega * b[i];
+            let seen = (at(1) * to - at(0) * from - i_omega * (turned(j) + by_lines)) / stiffness.conj();
+            // rate times `e^{i Omega t}`, of all but the harmonic motion
+            let seen = seen + rising * wave.mean;
+            damping += 2.0 * drag * (i_omega * gain * seen).re;
+            work += (stiffness * gain * seen).re;
+            // straight lines on the harmonic motion
+            work += f1 * (gain * to).re - f0 * (gain * from).re - slope * (gain * wave.mean).re;
+        }
+        (damping, work)
+    }
+
+    /// Closes the books at the end: `stored_j` is in the contacts, `contact_work_j` went there.
+    pub fn close(mut self, end: &Moment, stored_j: f64, contact_work_j: f64) -> Ledger {
+        self.end_piece(end);
+        let (damping, work) = of_harmonics(end);
+        let modal_damping_j = self.damping_j + damping;
+        let load_work_j = self.load_work_j + work;
+        let bodies_j: Vec<[f64; 2]> =
+            self.bodies_j.iter().zip(energies(end)).map(|(start, end)| [*start, end]).collect();
+        let gained: f64 = bodies_j.iter().map(|[start, end]| end - start).sum();
+        Ledger {
+            bodies_j,
+            stored_j: [self.stored_j, stored_j],
+            load_work_j,
+            modal_damping_j,
+            contact_loss_j: contact_work_j + self.stored_j - stored_j,
+            unaccounted_j: load_work_j - gained - modal_damping_j - contact_work_j,
+        }
+    }
+}
+
+/// Energy of a body at the start.
+fn energy(body: &Body) -> f64 {
+    let motion = body.amplitude.iter().zip(&body.rate);
+    body.modes.iter().zip(motion).map(|(mode, (a, b))| 0.5 * (b.powi(2) + (mode.omega_rad_s * a).powi(2))).sum()
+}
+
+/// Energy of each body now, by the whole motion.
+fn energies(now: &Moment) -> Vec<f64> {
+    let (mut amplitude, mut rate) = (now.amplitude.to_vec(), now.rate.to_vec());
+    now.loads.shift_modes(now.system, now.time_s, 1.0, &mut amplitude, &mut rate);
+    let of = |k: usize| 0.5 * (rate[k].powi(2) + now.system.square[k] * amplitude[k].powi(2));
+    now.system.bodies.iter().map(|body| body.clone().map(of).sum()).collect()
+}
+
+/// Energy of what is carried of the damped modes.
+fn carried_energy(damped: &[Range<usize>], now: &Moment) -> f64 {
+    let of = |k: usize| 0.5 * (now.rate[k].powi(2) + now.system.square[k] * now.amplitude[k].powi(2));
+    damped.iter().cloned().flatten().filter(|&k| now.system.drag[k] > 0.0).map(of).sum()
+}
+
+/// Work of the straight lines on a rigid mode within a panel of `h`.
+fn work_on_rigid(start: &Moment, h: f64, k: usize, contacts: &[usize], force: &[Nodal]) -> f64 {
+    let (f0, slope) = start.loads.line(k, start.time_s);
+    let mut pushed = [0.0; 3];
+    for (&c, force) in contacts.iter().zip(force) {
+        for span in start.system.links[c].spans.iter().filter(|span| span.modes.contains(&k)) {
+            let psi = span.psi[k - span.modes.start];
+            pushed.iter_mut().zip(force).for_each(|(pushed, force)| *pushed -= psi * force);
+        }
+    }
+    let [g0, g1, g2] = pushed;
+    let rate = start.rate[k];
+    let moved = h * (rate + h * (g0 / 2.0 - g1 / 6.0 + f0 / 2.0 + slope * h / 6.0));
+    let later = h * h * (rate / 2.0 + h * (g0 / 3.0 - g1 / 12.0 - g2 / 60.0 + f0 / 3.0 + slope * h / 8.0));
+    f0 * moved + slope * later
+}
+
+/// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
+fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
+    // seen from the other end, where odd polynomials change their sign
+    let moments = exponential_moments(Complex64::new(0.0, angle));
+    (0..Q).map(|n| if n % 2 == 0 { force[n] * moments[n] } else { -force[n] * moments[n] }).sum()
+}
+
+/// `-sum_c psi_kc values_c`.
+fn on_modes<T>(system: &System, values: &[T], zero: T) -> Vec<T>
+where
+    T: Copy + std::ops::SubAssign + std::ops::Mul<f64, Output = T>,
+{
+    let mut sums = vec![zero; system.modes.len()];
+    for (link, value) in system.links.iter().zip(values) {
+        for span in &link.spans {
+            sums[span.modes.clone()].iter_mut().zip(&span.psi).for_each(|(sum, psi)| *sum -= *value * *psi);
+        }
+    }
+    sums
+}
+
+/// `e^{i Omega t}` over a stretch of time.
+struct Wave {
+    /// At its ends.
+    ends: [Complex64; 2],
+    /// `int e^{i Omega t} dt`.
+    mean: Complex64,
+    /// `int (t - start) e^{i Omega t} dt`.
+    first: Complex64,
+}
+
+impl Wave {
+    fn over(omega: f64, from_s: f64, to_s: f64) -> Wave {
+        let ends = [from_s, to_s].map(|time| Complex64::cis(omega * time));
+        let length = to_s - from_s;
+        let mean = integral(omega, from_s, to_s);
+        let i_omega = Complex64::new(0.0, omega);
+        Wave { ends, mean, first: (length * ends[1] - mean) / i_omega }
+    }
+}
+
+/// `int e^{i Omega t} dt`, for any `Omega`.
+fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
+    let (half, length) = (0.5 * omega * (to_s - from_s), to_s - from_s);
+    let mean = if half.abs() < 1e-9 { 1.0 } else { half.sin() / half };
+    Complex64::cis(omega * 0.5 * (from_s + to_s)) * (length * mean)
+}
+
+/// Damping and load work of the harmonic steady motion by itself, over the whole run.
+fn of_harmonics(end: &Moment) -> (f64, f64) {
+    let (mut damping, mut work) = (0.0, 0.0);
+    for one in &end.loads.harmonics {
+        for other in &end.loads.harmonics {
+            let sum = integral(one.omega_rad_s + other.omega_rad_s, 0.0, end.time_s);
+            let difference = integral(one.omega_rad_s - other.omega_rad_s, 0.0, end.time_s);
+            let product = |x: Complex64, y: Complex64| 0.5 * (x * y * sum + x * y.conj() * difference).re;
+            for (k, mode) in end.system.modes.iter().enumerate() {
+                let drag = end.system.drag[k];
+                let square = (mode.omega_rad_s - one.omega_rad_s) * (mode.omega_rad_s + one.omega_rad_s);
+                let force = Complex64::new(square, drag * one.omega_rad_s) * one.modes[k];
+                let [first, second] = [one, other].map(|wave| Complex64::new(0.0, wave.omega_rad_s) * wave.modes[k]);
+                damping += drag * product(first, second);
+                work += product(force, second);
+            }
+        }
+    }
+    (damping, work)
+}
