@@ -1,8 +1,9 @@
 //! The pages of the chapters (`docs/chapters`): their tables are made from `statements.csv` beside them, which is that of
 //! a run of all chapters, and their figures are those of the run.
 
-use crate::chapters::{CHAPTERS, Failure, run_all};
-use serde::Deserialize;
+use crate::chapters::statement::Verdict;
+use crate::chapters::tally::{Row, Tally, tell};
+use crate::chapters::{Failure, Part, run_all};
 use std::fs;
 use std::path::{Path, PathBuf};
 use vibroimpact::report::{Report, significant, write_whole};
@@ -10,29 +11,23 @@ use vibroimpact::report::{Report, significant, write_whole};
 /// Between these two lines of a page stands its table.
 const BEGIN: &str = "<!-- from statements.csv; `cargo xtask book --write` writes it -->";
 const END: &str = "<!-- end -->";
-/// A page's figures are linked so, followed by the chapter's number, a hyphen and the run's name of the figure.
-const FIGURE: &str = "(../figures/chapter-";
+/// A page's figures are linked so, followed by the part's folder, a hyphen and the run's name of the figure.
+const FIGURE: &str = "(../figures/";
 /// Two runs agree to this share of a number, or to this in total: differences between solvers near rounding are among
 /// the numbers, and machines round differently.
 const SHARE: f64 = 1e-4;
 const TOTAL: f64 = 1e-7;
 
-/// What the pages need of a row of `statements.csv`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-struct Statement {
-    chapter: u32,
-    quantity: String,
-    source: String,
-    stated: String,
-    ours: f64,
-    agrees: bool,
+/// The chapters that have a page.
+fn chapters() -> impl Iterator<Item = u32> {
+    Part::ALL.into_iter().filter(|part| *part == Part::Chapter(part.chapter())).map(Part::chapter)
 }
 
 fn folder(root: &Path) -> PathBuf {
     root.join("docs/chapters")
 }
 
-fn statements(path: &Path) -> Result<Vec<Statement>, Failure> {
+fn statements(path: &Path) -> Result<Vec<Row>, Failure> {
     Ok(csv::Reader::from_path(path)?.deserialize().collect::<Result<_, _>>()?)
 }
 
@@ -43,16 +38,26 @@ pub fn write(root: &Path) -> Result<(), Failure> {
     let table = folder(root).join("statements.csv");
     write_whole(&table, &fs::read(run.path().join("statements.csv"))?)?;
     let all = statements(&table)?;
-    for chapter in CHAPTERS {
+    let summary = summary_page(root);
+    write_whole(&summary, with(&fs::read_to_string(&summary)?, &differing(&all))?.as_bytes())?;
+    for chapter in chapters() {
         let path = folder(root).join(format!("chapter-{chapter}.md"));
         let page = fs::read_to_string(&path)?;
         write_whole(&path, with_table(&page, &of(&all, chapter))?.as_bytes())?;
-        for name in figures(&page, chapter) {
-            let svg = fs::read(run.path().join(format!("chapter-{chapter}/figures/{name}")))?;
-            write_whole(&root.join(format!("docs/figures/chapter-{chapter}-{name}")), &svg)?;
+        for part in Part::ALL {
+            let part = part.folder();
+            for name in figures(&page, &part) {
+                let svg = fs::read(run.path().join(format!("{part}/figures/{name}")))?;
+                write_whole(&root.join(format!("docs/figures/{part}-{name}")), &svg)?;
+            }
         }
     }
     Ok(())
+}
+
+/// The page of all chapters, which has the headline and what differs.
+fn summary_page(root: &Path) -> PathBuf {
+    root.join("docs/reproduction.md")
 }
 
 /// Checks that the pages' tables are those of `statements.csv`, and that a run of all chapters still gives its numbers.
@@ -67,7 +72,11 @@ pub fn check(root: &Path) -> Result<(), Failure> {
 
 fn tables_are_current(root: &Path) -> Result<(), Failure> {
     let all = statements(&folder(root).join("statements.csv"))?;
-    for chapter in CHAPTERS {
+    let page = fs::read_to_string(summary_page(root))?;
+    if with(&page, &differing(&all))? != page {
+        return Err("docs/reproduction.md is not what `cargo xtask book --write` makes".into());
+    }
+    for chapter in chapters() {
         let page = fs::read_to_string(folder(root).join(format!("chapter-{chapter}.md")))?;
         if with_table(&page, &of(&all, chapter))? != page {
             return Err(
@@ -79,56 +88,71 @@ fn tables_are_current(root: &Path) -> Result<(), Failure> {
 }
 
 /// What of a run is not as recorded.
-fn differences(recorded: &[Statement], found: &[Statement]) -> Vec<String> {
+fn differences(recorded: &[Row], found: &[Row]) -> Vec<String> {
     if recorded.len() != found.len() {
         return vec![format!("statements.csv has {} rows, a run gives {}", recorded.len(), found.len())];
     }
-    let same = |a: &Statement, b: &Statement| {
-        let close = (a.ours - b.ours).abs() <= TOTAL + SHARE * a.ours.abs();
-        close && Statement { ours: a.ours, ..b.clone() } == *a
+    let close = |a: f64, b: f64| a == b || (a - b).abs() <= TOTAL + SHARE * a.abs();
+    let same = |a: &Row, b: &Row| {
+        let numbers = [(a.ours, b.ours), (a.uncertainty, b.uncertainty)];
+        // what follows from the numbers, and remarks with numbers in them, may differ with them
+        let Row { ours, uncertainty, difference, ref note, .. } = *a;
+        let alike = Row { ours, uncertainty, difference, note: note.clone(), ..b.clone() };
+        alike == *a && numbers.into_iter().all(|(a, b)| close(a, b))
     };
     let pairs = recorded.iter().zip(found).filter(|(a, b)| !same(a, b));
     pairs.map(|(a, b)| format!("statements.csv has {a:?}, a run gives {b:?}")).collect()
 }
 
-fn of(all: &[Statement], chapter: u32) -> Vec<Statement> {
+fn of(all: &[Row], chapter: u32) -> Vec<Row> {
     all.iter().filter(|statement| statement.chapter == chapter).cloned().collect()
 }
 
 /// The page with its table made anew.
-fn with_table(page: &str, statements: &[Statement]) -> Result<String, Failure> {
-    let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
-    let (before, after) = parts.ok_or_else(|| format!("the page has no lines `{BEGIN}` and `{END}`"))?;
-    Ok(format!("{before}{BEGIN}\n\n{}\n{END}{after}", table(statements)))
+fn with_table(page: &str, statements: &[Row]) -> Result<String, Failure> {
+    with(page, &table(statements))
 }
 
-fn table(statements: &[Statement]) -> String {
+/// The page with what stands between the two lines made anew.
+fn with(page: &str, made: &str) -> Result<String, Failure> {
+    let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+    let (before, after) = parts.ok_or_else(|| format!("the page has no lines `{BEGIN}` and `{END}`"))?;
+    Ok(format!("{before}{BEGIN}\n\n{made}\n{END}{after}"))
+}
+
+fn table(statements: &[Row]) -> String {
     let mut table = Report::new("");
-    let agree = statements.iter().filter(|statement| statement.agrees).count();
-    table.text(&format!("{agree} of {} statements agree within their tolerance.", statements.len()));
-    let row = |statement: &Statement| {
-        let Statement { quantity, source, stated, ours, agrees, .. } = statement.clone();
-        vec![quantity, source, stated, significant(ours, 5), if agrees { "✓" } else { "✗" }.to_owned()]
+    tell(&mut table, statements);
+    table.markdown().trim_start_matches(['#', ' ', '\n']).to_owned()
+}
+
+/// The headline of all chapters, and the statements that differ.
+fn differing(all: &[Row]) -> String {
+    let mut page = Report::new("");
+    page.text(&Tally::of(all).headline());
+    let differ = all.iter().filter(|row| row.verdict == Verdict::Differs);
+    let line = |row: &Row| {
+        let texts = [&row.quantity, &row.source, &row.stated];
+        let ours = significant(row.ours, 5);
+        [&row.chapter.to_string()].into_iter().chain(texts).chain([&ours]).cloned().collect()
     };
-    let rows: Vec<_> = statements.iter().map(row).collect();
-    table.table(&["quantity", "where", "thesis", "ours", ""], &rows);
-    let markdown = table.markdown();
-    markdown.trim_start_matches(['#', ' ', '\n']).to_owned()
+    page.table(&["chapter", "quantity", "where", "the thesis", "ours"], &differ.map(line).collect::<Vec<_>>());
+    page.markdown().trim_start_matches(['#', ' ', '\n']).to_owned()
 }
 
 /// Names, in the run, of the figures that a page shows.
-fn figures(page: &str, chapter: u32) -> Vec<&str> {
-    let beginning = format!("{FIGURE}{chapter}-");
+fn figures<'a>(page: &'a str, part: &str) -> Vec<&'a str> {
+    let beginning = format!("{FIGURE}{part}-");
     page.split(&beginning).skip(1).filter_map(|rest| rest.split(')').next()).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chapters::statement::Statement;
 
-    fn statement(ours: f64) -> Statement {
-        let text = str::to_owned;
-        Statement { chapter: 2, quantity: text("S"), source: text("2.5"), stated: text("1.559"), ours, agrees: true }
+    fn statement(ours: f64) -> Row {
+        Row::new(2, &Statement::printed("S", "2.5", "1.56", ours))
     }
 
     #[test]
@@ -141,24 +165,27 @@ mod tests {
         let page = format!("# A\n\n{BEGIN}\nold\n{END}\n\nend\n");
         let new = with_table(&page, &[statement(1.560_52)]).unwrap();
         assert!(new.starts_with("# A\n") && new.ends_with("\n\nend\n") && !new.contains("old"));
-        assert!(new.contains("| S | 2.5 | 1.559 | 1.5605 | ✓ |") && new.contains("1 of 1 statements"));
+        assert!(new.contains("| S | 2.5 | 1.56 | 1.5605 | ± 0.005 | half a unit of the last digit | ✓ agrees |"));
+        assert!(new.contains("Printed numbers (1): 1 agrees."));
         assert_eq!(with_table(&new, &[statement(1.560_52)]).unwrap(), new);
         assert!(with_table("# A\n", &[]).is_err());
+        assert!(differing(&[statement(1.57)]).contains("| 2 | S | 2.5 | 1.56 | 1.57 |"));
     }
 
     #[test]
     fn a_number_that_moved_is_found() {
-        let recorded = [statement(1.5)];
-        assert!(differences(&recorded, &[statement(1.5 + 1e-5)]).is_empty());
-        assert_eq!(differences(&recorded, &[statement(1.501)]).len(), 1);
-        assert_eq!(differences(&recorded, &[Statement { agrees: false, ..statement(1.5) }]).len(), 1);
+        let recorded = [statement(1.5605)];
+        assert!(differences(&recorded, &[statement(1.5605 + 1e-5)]).is_empty());
+        assert_eq!(differences(&recorded, &[statement(1.561)]).len(), 1);
+        // a verdict that turned is a difference, however little the number moved
+        assert_eq!(differences(&[statement(1.564_99)], &[statement(1.565_01)]).len(), 1);
         assert_eq!(differences(&recorded, &[]).len(), 1);
     }
 
     #[test]
     fn figures_are_named_as_in_the_run() {
         assert_eq!(
-            figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](../figures/chapter-3-x.svg)", 2),
+            figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](../figures/chapter-3-x.svg)", "chapter-2"),
             ["fig-2-03.svg"]
         );
     }

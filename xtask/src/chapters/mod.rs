@@ -6,17 +6,22 @@ mod beam;
 mod chapter2;
 mod chapter3;
 mod chapter4;
+mod chapter5;
 mod chapter6;
 mod chapter7;
 mod chapter8;
 mod choice;
+mod ensemble;
 mod figures;
 mod impact;
+pub mod statement;
 mod study;
+pub mod tally;
 
 use std::error::Error;
 use std::fmt;
 use std::path::Path;
+use std::str::FromStr;
 
 pub use all::run_all;
 pub use study::Finished;
@@ -32,7 +37,7 @@ pub struct BadInput(String);
 impl BadInput {
     /// A chapter that there is not.
     pub fn chapter(found: &str) -> BadInput {
-        BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 6, 7, 8 or all"))
+        BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble or all"))
     }
 }
 
@@ -44,32 +49,89 @@ impl fmt::Display for BadInput {
 
 impl Error for BadInput {}
 
-/// The chapters that can be reproduced.
-pub const CHAPTERS: [u32; 6] = [2, 3, 4, 6, 7, 8];
+/// What can be reproduced on its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// A chapter by its number.
+    Chapter(u32),
+    /// What is our choice in chapter 4, varied.
+    Ensemble,
+}
 
-/// Runs a chapter and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
+impl Part {
+    /// All parts, in the order of the thesis.
+    pub const ALL: [Part; 8] = [
+        Part::Chapter(2),
+        Part::Chapter(3),
+        Part::Chapter(4),
+        Part::Ensemble,
+        Part::Chapter(5),
+        Part::Chapter(6),
+        Part::Chapter(7),
+        Part::Chapter(8),
+    ];
+
+    /// The chapter on whose page its statements and figures stand.
+    pub const fn chapter(self) -> u32 {
+        match self {
+            Part::Chapter(number) => number,
+            Part::Ensemble => 4,
+        }
+    }
+
+    /// Name of its folder.
+    pub fn folder(self) -> String {
+        match self {
+            Part::Chapter(number) => format!("chapter-{number}"),
+            Part::Ensemble => "ensemble".to_owned(),
+        }
+    }
+
+    fn title(self) -> String {
+        match self {
+            Part::Chapter(number) => format!("Chapter {number} of the thesis, computed anew"),
+            Part::Ensemble => "What is our choice in chapter 4, varied".to_owned(),
+        }
+    }
+}
+
+impl FromStr for Part {
+    type Err = BadInput;
+
+    fn from_str(text: &str) -> Result<Part, BadInput> {
+        let named = |part: &Part| match part {
+            Part::Chapter(number) => text.parse() == Ok(*number),
+            Part::Ensemble => text == "ensemble",
+        };
+        Part::ALL.into_iter().find(named).ok_or_else(|| BadInput::chapter(text))
+    }
+}
+
+/// Runs a part and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
 /// for chapter 8.
-pub fn run(chapter: u32, out: &Path, quick: bool, data: Option<&Path>) -> Result<Finished, Failure> {
-    if data.is_some() && chapter != 8 {
-        let fault = format!("--data is not allowed with chapter {chapter}: only chapter 8 takes measured points");
+pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<Finished, Failure> {
+    if data.is_some() && part != Part::Chapter(8) {
+        let fault = format!("--data is not allowed with {}: only chapter 8 takes measured points", part.folder());
         return Err(BadInput(fault).into());
     }
-    let mut study = Study::new(out, quick)?;
-    let introduction = match chapter {
-        2 => chapter2::run(&mut study)?,
-        3 => chapter3::run(&mut study)?,
-        4 => chapter4::run(&mut study)?,
-        6 => chapter6::run(&mut study)?,
-        7 => chapter7::run(&mut study)?,
-        8 => chapter8::run(&mut study, data)?,
-        other => return Err(BadInput::chapter(&other.to_string()).into()),
+    let mut study = Study::new(part.chapter(), out, quick)?;
+    let introduction = match part {
+        Part::Chapter(2) => chapter2::run(&mut study)?,
+        Part::Chapter(3) => chapter3::run(&mut study)?,
+        Part::Chapter(4) => chapter4::run(&mut study)?,
+        Part::Ensemble => ensemble::run(&mut study)?,
+        Part::Chapter(5) => chapter5::run(&mut study)?,
+        Part::Chapter(6) => chapter6::run(&mut study)?,
+        Part::Chapter(7) => chapter7::run(&mut study)?,
+        Part::Chapter(8) => chapter8::run(&mut study, data)?,
+        Part::Chapter(other) => return Err(BadInput::chapter(&other.to_string()).into()),
     };
-    study.finish(&format!("Chapter {chapter} of the thesis, computed anew"), introduction)
+    study.finish(&part.title(), introduction)
 }
 
 /// Puts the automatic choice of the model to the test, from a scene of the row on, and writes the folder of that study.
 pub fn study_auto(out: &Path, quick: bool, first: u64) -> Result<String, Failure> {
-    let mut study = Study::new(out, quick)?;
+    let mut study = Study::new(0, out, quick)?;
     study.claims("Targets, and what was found");
     let introduction = choice::run(&mut study, first)?;
     Ok(study.finish("The automatic choice of the model", introduction)?.summary)

@@ -2,13 +2,15 @@
 
 use super::Failure;
 use super::figures::Course;
+use super::statement::Statement;
+use super::tally::{Row, Tally, tell};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use vibroimpact::plot::Figure;
-use vibroimpact::report::{Comparison, Report, Verdict, write_whole};
+use vibroimpact::report::{Comparison, Report, write_whole};
 
 /// The list of files, written last.
 const MANIFEST: &str = "manifest.json";
@@ -18,10 +20,11 @@ pub(super) struct Study {
     out: PathBuf,
     /// Whether to take fewer points.
     pub quick: bool,
+    chapter: u32,
     body: Report,
-    statements: Vec<Comparison>,
-    /// The heading above them.
-    claims: &'static str,
+    statements: Vec<Statement>,
+    /// Targets of a study of our own, with the heading above them.
+    targets: Option<(&'static str, Vec<Comparison>)>,
     files: Vec<String>,
     timings: Vec<Timing>,
     remarks: Vec<String>,
@@ -34,12 +37,24 @@ pub(super) struct Study {
 pub struct Finished {
     /// Title of its report.
     pub title: String,
+    chapter: u32,
     /// The thesis's statements beside our numbers.
-    pub statements: Vec<Comparison>,
+    pub statements: Vec<Statement>,
     /// Number of impacts solved.
     pub impacts: usize,
     /// Impacts, time, agreement and the report's place, in a few lines.
     pub summary: String,
+}
+
+impl Finished {
+    /// The statements as rows of `statements.csv`.
+    pub fn rows(&self) -> Vec<Row> {
+        rows(self.chapter, &self.statements)
+    }
+}
+
+fn rows(chapter: u32, statements: &[Statement]) -> Vec<Row> {
+    statements.iter().map(|statement| Row::new(chapter, statement)).collect()
 }
 
 /// Cost of one section.
@@ -60,9 +75,9 @@ struct Manifest<'a> {
 }
 
 impl Study {
-    /// A study that will write into `out`.
+    /// A study of statements of a chapter that will write into `out`.
     /// A manifest of an earlier run is removed, so that a folder with one is complete.
-    pub fn new(out: &Path, quick: bool) -> Result<Study, Failure> {
+    pub fn new(chapter: u32, out: &Path, quick: bool) -> Result<Study, Failure> {
         match std::fs::remove_file(out.join(MANIFEST)) {
             Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => return Err(failure.into()),
             _ => {}
@@ -75,9 +90,10 @@ impl Study {
         Ok(Study {
             out: out.into(),
             quick,
+            chapter,
             body: Report::new(""),
             statements: Vec::new(),
-            claims: "What the thesis states, beside ours",
+            targets: None,
             files: Vec::new(),
             timings: Vec::new(),
             remarks: Vec::new(),
@@ -86,9 +102,9 @@ impl Study {
         })
     }
 
-    /// Heads the list of statements differently.
+    /// Heads a list of targets of our own, which comes in the place of the thesis's statements.
     pub fn claims(&mut self, heading: &'static str) {
-        self.claims = heading;
+        self.targets = Some((heading, Vec::new()));
     }
 
     /// Begins a section of the report.
@@ -153,8 +169,13 @@ impl Study {
     }
 
     /// Adds a statement of the thesis to the list at the head of the report.
-    pub fn state(&mut self, statement: Comparison) {
+    pub fn claim(&mut self, statement: Statement) {
         self.statements.push(statement);
+    }
+
+    /// Adds a target of our own to the list at the head of the report.
+    pub fn state(&mut self, target: Comparison) {
+        self.targets.get_or_insert(("Targets", Vec::new())).1.push(target);
     }
 
     /// Writes the course of an impact.
@@ -194,8 +215,19 @@ impl Study {
         if self.quick {
             report.text("**This is the quick form, with fewer points.**");
         }
-        report.heading(self.claims);
-        report.comparisons(&self.statements);
+        let rows = rows(self.chapter, &self.statements);
+        let counted = match &self.targets {
+            Some((heading, targets)) => {
+                report.heading(heading);
+                report.comparisons(targets);
+                String::new()
+            }
+            None => {
+                report.heading("What the thesis states, beside ours");
+                tell(&mut report, &rows);
+                format!("{}\n", Tally::of(&rows).headline())
+            }
+        };
         report.append(self.body.clone());
         for path in report.write(&self.out)? {
             let name = path.strip_prefix(&self.out).unwrap_or(&path);
@@ -207,17 +239,15 @@ impl Study {
         self.file(MANIFEST, serde_json::to_string_pretty(&manifest)?.as_bytes())?;
         self.bar.finish_and_clear();
 
-        let agree = self.statements.iter().filter(|s| s.verdict() == Verdict::Agrees).count();
         let summary = format!(
-            "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}\
-             {agree} of {} statements of the text agree within their tolerance.\nReport: {}",
+            "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}{counted}Report: {}",
             total,
             self.started.elapsed().as_secs_f64(),
             self.remarks.iter().map(|line| format!("{line}\n")).collect::<String>(),
-            self.statements.len(),
             self.out.join("report.html").display()
         );
-        Ok(Finished { title: title.to_owned(), statements: self.statements, impacts, summary })
+        let (chapter, statements) = (self.chapter, self.statements);
+        Ok(Finished { title: title.to_owned(), chapter, statements, impacts, summary })
     }
 }
 

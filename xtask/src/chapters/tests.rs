@@ -1,3 +1,4 @@
+use super::statement::{Statement, Verdict};
 use super::study::{Study, slug};
 use super::*;
 use std::collections::BTreeMap;
@@ -18,15 +19,32 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-fn on_threads(count: usize, chapter: u32, out: &Path) -> String {
+fn on_threads(count: usize, part: Part, out: &Path) -> Finished {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-    pool.install(|| run(chapter, out, true, None)).unwrap().summary
+    pool.install(|| run(part, out, true, None)).unwrap()
 }
 
-fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
+/// A statement that no number of ours could contradict would say nothing.
+fn every_statement_that_counts_can_be_turned(statements: &[Statement]) {
+    assert!(!statements.is_empty());
+    for statement in statements.iter().filter(|statement| statement.missing.is_empty()) {
+        let with = |ours: f64| {
+            let mut other = statement.clone();
+            other.ours = ours;
+            other.verdict()
+        };
+        assert!([-1e12, 1e12].into_iter().any(|ours| with(ours) == Verdict::Differs), "{statement:?}");
+        assert_eq!(with(f64::NAN), Verdict::Differs, "{statement:?}");
+        assert!(!statement.reason.is_empty() && statement.ours.is_finite(), "{statement:?}");
+    }
+}
+
+fn check_chapter(part: Part, figures: &[&str], tables: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
-    let summary = on_threads(1, chapter, folder.path());
-    assert!(summary.contains("statements of the text agree"), "{summary}");
+    let finished = on_threads(1, part, folder.path());
+    every_statement_that_counts_can_be_turned(&finished.statements);
+    let summary = finished.summary;
+    assert!(summary.contains("agree") && summary.contains("impacts in"), "{summary}");
     let first = contents(folder.path());
     let manifest = String::from_utf8(first[&folder.path().join("manifest.json")].clone()).unwrap();
     for name in figures {
@@ -43,7 +61,7 @@ fn check_chapter(chapter: u32, figures: &[&str], tables: &[&str]) {
     assert!(html.contains("✓ agrees"));
 
     // a second run, on three threads, over what the first left: the same bytes
-    on_threads(3, chapter, folder.path());
+    on_threads(3, part, folder.path());
     assert_eq!(first, contents(folder.path()));
 }
 
@@ -63,7 +81,7 @@ fn chapter_2_is_complete_and_the_same_on_any_number_of_threads() {
     ];
     let tables =
         ["fig-2-03-s-1.5e1.csv", "fig-2-06b.csv", "fig-2-08.csv", "fig-a-01.csv", "turning-points.csv", "methods.csv"];
-    check_chapter(2, &figures, &tables);
+    check_chapter(Part::Chapter(2), &figures, &tables);
 }
 
 #[test]
@@ -87,7 +105,7 @@ fn chapter_3_is_complete_and_the_same_on_any_number_of_threads() {
         "residual-compliance-damped",
         "residual-compliance-undamped",
     ];
-    check_chapter(3, &figures, &["fig-3-04.csv", "fig-3-15.csv", "residual-compliance-damped.csv"]);
+    check_chapter(Part::Chapter(3), &figures, &["fig-3-04.csv", "fig-3-15.csv", "residual-compliance-damped.csv"]);
 }
 
 #[test]
@@ -103,12 +121,31 @@ fn chapter_4_is_complete_and_the_same_on_any_number_of_threads() {
         "restitution-stepped-clamped-pinned.csv",
         "settled-cantilever.csv",
     ];
-    check_chapter(4, &figures, &tables);
+    check_chapter(Part::Chapter(4), &figures, &tables);
+}
+
+#[test]
+fn the_ensemble_is_complete_and_the_same_on_any_number_of_threads() {
+    let figures = ["choices-stepped-cantilever", "choices-stepped-clamped-pinned"];
+    check_chapter(Part::Ensemble, &figures, &["trends.csv", "speeds.csv"]);
+}
+
+#[test]
+fn five_lists_of_twelve_balls_hold_the_masses_that_chapter_4_names() {
+    let case = chapter4::Case::load().unwrap();
+    let lists = case.parameters.our_choice.ensemble.ball_lists();
+    assert_eq!(lists.iter().map(|list| list[0]).collect::<Vec<_>>(), [9, 13, 17, 21, 25]);
+    assert!(lists.iter().all(|list| list.len() == 12 && list.windows(2).all(|pair| pair[1] - pair[0] == 4)));
+}
+
+#[test]
+fn chapter_5_is_complete_and_the_same_on_any_number_of_threads() {
+    check_chapter(Part::Chapter(5), &["laws", "fig-5-01"], &["laws.csv", "predictions.csv", "fig-5-01.csv"]);
 }
 
 #[test]
 fn chapter_6_is_complete_and_the_same_on_any_number_of_threads() {
-    check_chapter(6, &["agreement", "energy", "closed-form"], &["agreement.csv"]);
+    check_chapter(Part::Chapter(6), &["agreement", "energy", "closed-form"], &["agreement.csv"]);
 }
 
 #[test]
@@ -123,12 +160,16 @@ fn chapter_7_is_complete_and_the_same_on_any_number_of_threads() {
         "attached-modes-cantilever",
         "attached-modes-pinned-pinned",
     ];
-    check_chapter(7, &figures, &["fits.csv", "fig-7-03.csv", "fig-7-07.csv", "laws.csv", "attached-modes.csv"]);
+    check_chapter(
+        Part::Chapter(7),
+        &figures,
+        &["fits.csv", "fig-7-03.csv", "fig-7-07.csv", "laws.csv", "attached-modes.csv"],
+    );
 }
 
 #[test]
 fn chapter_8_is_complete_and_the_same_on_any_number_of_threads() {
-    check_chapter(8, &["drops", "fig-8-02", "fig-8-03"], &["drops.csv", "upright.csv", "fig-8-02.csv"]);
+    check_chapter(Part::Chapter(8), &["drops", "fig-8-02", "fig-8-03"], &["drops.csv", "upright.csv", "fig-8-02.csv"]);
 }
 
 #[test]
@@ -137,7 +178,7 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
     let (points, out) = (folder.path().join("points.csv"), folder.path().join("out"));
     let header = "rod,restitution,angle_deg,length_m\n";
     fs::write(&points, format!("{header}a,0.7,10,0.6\na,0.6,50,0.6\nb,0.9,85,0.3\nb,0.7,0,0.3\n")).unwrap();
-    run(8, &out, true, Some(&points)).unwrap();
+    run(Part::Chapter(8), &out, true, Some(&points)).unwrap();
     let table = fs::read_to_string(out.join("measured.csv")).unwrap();
     assert_eq!(table.lines().count(), 5);
     assert!(fs::read_to_string(out.join("figures/measured.svg")).unwrap().contains("300 mm"));
@@ -152,11 +193,11 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
         (header.to_string(), "0 points are not allowed"),
     ] {
         fs::write(&points, text).unwrap();
-        let message = run(8, &refused, true, Some(&points)).unwrap_err().to_string();
+        let message = run(Part::Chapter(8), &refused, true, Some(&points)).unwrap_err().to_string();
         assert!(message.contains(part), "{part}: {message}");
         assert!(!refused.exists());
     }
-    assert!(run(7, &refused, true, Some(&points)).unwrap_err().to_string().contains("--data"));
+    assert!(run(Part::Chapter(7), &refused, true, Some(&points)).unwrap_err().to_string().contains("--data"));
 }
 
 #[test]
@@ -173,21 +214,25 @@ fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(run(5, folder.path(), true, None).unwrap_err().to_string().contains("2, 3, 4, 6, 7, 8 or all"));
+    assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble or all"));
+    assert!(run(Part::Chapter(9), folder.path(), true, None).is_err());
+    assert!(
+        Part::ALL.iter().all(|part| part.folder().trim_start_matches("chapter-").parse::<Part>().unwrap() == *part)
+    );
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
-    assert!(run(3, &file.join("below"), true, None).is_err());
+    assert!(run(Part::Chapter(3), &file.join("below"), true, None).is_err());
 }
 
 #[test]
 fn a_quick_study_keeps_both_ends_of_a_list() {
     let folder = tempfile::tempdir().unwrap();
     let all: Vec<usize> = (1..=65).collect();
-    let quick = Study::new(folder.path(), true).unwrap().thin(&all, 13);
+    let quick = Study::new(0, folder.path(), true).unwrap().thin(&all, 13);
     assert_eq!((quick.len(), quick[0], quick[12]), (13, 1, 65));
     assert!(quick.windows(2).all(|pair| pair[0] < pair[1]));
-    assert_eq!(Study::new(folder.path(), false).unwrap().thin(&all, 13), all);
-    assert_eq!(Study::new(folder.path(), true).unwrap().thin(&all[..4], 13), all[..4]);
+    assert_eq!(Study::new(0, folder.path(), false).unwrap().thin(&all, 13), all);
+    assert_eq!(Study::new(0, folder.path(), true).unwrap().thin(&all[..4], 13), all[..4]);
 }
 
 #[test]

@@ -2,16 +2,18 @@
 
 use super::{Parameters, in_ratio, solved};
 use crate::chapters::Failure;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
-use vibroimpact::report::{Comparison, significant};
+use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::FirstContact;
 
 /// The thesis's number of functions.
 const THESIS: usize = 6;
-/// What the thesis's "essentially complete" agreement is taken to mean for `v_f / v`: a line's width.
-const VISIBLE: f64 = 0.01;
+/// A line's width in a printed figure, as a share of its height.
+const VISIBLE: f64 = 0.02;
+const WHY_VISIBLE: &str = "a line's width, a fiftieth of a figure's height";
 
 /// Just below the first turning point, above which there is no separation.
 const LARGEST: f64 = 3.4e4;
@@ -90,7 +92,7 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
     for (pair, letter) in parameters.first_contact.iter().zip(["c", "d"]) {
         let contact = FirstContact::at_speed(pair.speed, THESIS)?;
         let quantity = format!("m for v = {}, N = 6", pair.speed);
-        study.state(Comparison::printed(quantity, "Fig. 2.6", &pair.mass, contact.mass));
+        study.claim(Statement::printed(quantity, "Fig. 2.6", &pair.mass, contact.mass));
         marks.0.push(pair.speed);
         marks.1.push(contact.mass);
         let full = solved(contact.s, 0.0)?;
@@ -106,11 +108,12 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
             .collect();
         let largest = rows.iter().map(|row| row.force).fold(0.0, f64::max);
         let worst = rows.iter().map(|row| (row.force - row.force_semi_analytical).abs()).fold(0.0, f64::max);
-        study.state(Comparison::range(
+        study.claim(Statement::trend(
             format!("largest difference of the forces for v = {}, over the largest force", pair.speed),
             "Fig. 2.6",
             "near-identical",
-            (0.0, 0.03),
+            (0.0, VISIBLE),
+            WHY_VISIBLE,
             worst / largest,
         ));
         let column = |of: fn(&ForceRow) -> f64| rows.iter().map(of).collect::<Vec<f64>>();
@@ -172,22 +175,24 @@ fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), 
     );
     study.table(&["N", "S ≤ 1", "1 to 100", "100 to 1.2×10⁴", "above"], &table);
     let good = of(THESIS).filter(|row| row.s <= parameters.semi_analytical_until).map(|row| row.error.unwrap_or(1.0));
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "largest error of v_f / v for S ≤ 1.2×10⁴, N = 6",
         "2.3",
         "good for S ≲ 1.2×10⁴",
         (0.0, VISIBLE),
+        WHY_VISIBLE,
         good.fold(0.0, f64::max),
     ));
     let fine = in_ratio(1e3, LARGEST, 50);
     let reached = study.sweep(&fine, 1, |&s| Ok(FirstContact::at_s(s, THESIS).is_ok()))?;
     let reach = fine.iter().zip(reached).filter(|(_, reached)| *reached).map(|(s, _)| *s).fold(0.0, f64::max);
-    study.state(
-        Comparison::range(
+    study.claim(
+        Statement::trend(
             "largest S to which the solution with N = 6 can be followed while its force pushes",
             "2.3",
             "good for S ≲ 1.2×10⁴, for even larger S eventually deteriorates",
             (parameters.semi_analytical_until, LARGEST),
+            "from the printed limit to the last S with a separation",
             reach,
         )
         .note("A pull of up to 3 % of the largest force counts as none."),

@@ -2,15 +2,13 @@
 
 use super::{Parameters, Units, solved};
 use crate::chapters::Failure;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
-use vibroimpact::report::{Comparison, significant};
 use vibroimpact_sim::infinite::{Groups, Impact, Material, Structure};
 
-/// Printed numbers have three to five digits and follow from printed numbers with as many.
-const PRINTED: f64 = 0.005;
 /// Samples of a curve.
 const SAMPLES: usize = 400;
 
@@ -28,14 +26,8 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     study.section("One number (Table 2.1, Table A.1, Fig. A.1)");
     for row in &parameters.table_2_1 {
         let impact = Impact::sphere_on_beam(Material::STEEL, row.side_m, row.side_m, row.radius_m, row.speed_m_s)?;
-        study.state(Comparison::about(
-            format!("S for b = {} m, R = {} m, v = {} m/s", row.side_m, row.radius_m, row.speed_m_s),
-            "Table 2.1",
-            &significant(row.s, 5),
-            row.s,
-            PRINTED * row.s,
-            impact.groups()?.s,
-        ));
+        let quantity = format!("S for b = {} m, R = {} m, v = {} m/s", row.side_m, row.radius_m, row.speed_m_s);
+        study.claim(Statement::printed(quantity, "Table 2.1", &row.s, impact.groups()?.s));
     }
     let mut rows = Vec::new();
     let mut curves = Vec::new();
@@ -43,13 +35,14 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     for (set, units) in parameters.table_a_1.iter().enumerate().map(|(i, units)| (i + 1, units)) {
         let groups = groups(units)?;
         for (name, printed, ours) in [
-            ("S", parameters.table_a_1_s, groups.s),
-            ("F", units.force, groups.force_n),
-            ("T", units.time, groups.time_s),
+            ("S", &parameters.table_a_1_s, groups.s),
+            ("F", &units.force, groups.force_n),
+            ("T", &units.time, groups.time_s),
         ] {
-            let quantity = format!("{name} of parameter set {set}");
-            let tolerance = PRINTED * printed;
-            study.state(Comparison::about(quantity, "Table A.1", &significant(printed, 5), printed, tolerance, ours));
+            let statement = Statement::printed(format!("{name} of parameter set {set}"), "Table A.1", printed, ours);
+            // Eqs. 2.49 to 2.51 make the third set's units of time and force 1
+            let reason = "exactly 1 by Eqs. 2.49 to 2.51, from inputs of four digits";
+            study.claim(if printed == "1" { statement.held_to(5e-4, reason) } else { statement });
         }
         let (curve, difference) = in_own_units(set, units, &groups)?;
         largest = largest.max(difference);
@@ -57,11 +50,10 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         curves.push(curve);
     }
     study.csv("fig-a-01.csv", &rows)?;
-    study.state(
-        Comparison::range(
+    study.claim(
+        Statement::identity(
             "largest difference of the nondimensional forces, over the largest force",
-            "Fig. A.1",
-            "the same graph",
+            ["Fig. A.1", "the same graph", "two methods, each exact to ten digits"],
             (0.0, 1e-6),
             largest,
         )

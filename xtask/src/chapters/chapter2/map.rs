@@ -2,15 +2,13 @@
 
 use super::{Parameters, in_ratio, solved};
 use crate::chapters::Failure;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use serde::Serialize;
 use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
-use vibroimpact::report::{Comparison, significant};
 use vibroimpact_sim::infinite::{Contact, CriticalS, Outcome, TurningPoint, critical_s, turning_points};
 
-/// Agreement that the thesis's turning points are worth.
-const AGREEMENT: f64 = 1e-3;
 /// How close to a turning point its curves are drawn, as a share of the distance from the critical `S`.
 const CLOSE: f64 = 1e-6;
 /// Longest time that Fig. 2.8 shows (units of `T`).
@@ -38,7 +36,7 @@ struct TurningRow {
     n: usize,
     s: f64,
     uncertainty: f64,
-    s_thesis: Option<f64>,
+    s_thesis: Option<String>,
 }
 
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
@@ -73,18 +71,20 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     };
     study.csv("fig-2-08.csv", &points.iter().flat_map(row).collect::<Vec<_>>())?;
     turning_table(study, parameters, critical, &turnings)?;
+    inset(study)?;
     regimes(study, &points, critical, &turnings)?;
 
     let first = points.iter().filter_map(|point| point.contacts.first()?.end.filter(|_| point.s > critical.s));
-    study.state(Comparison::about(
+    let shortest = first.fold(f64::INFINITY, f64::min);
+    let statement = Statement::loose(
         "shortest time of a separation above the critical S (T)",
         "2.5",
-        "about 0.5",
-        0.5,
-        0.05,
-        first.fold(f64::INFINITY, f64::min),
-    )
-    .note("The shortest first contact ends a little below the first turning point. The thesis reads its number from a logarithmic axis."));
+        "durations range from about 0.5",
+        (0.5, 0.05),
+        "half a unit of the only digit",
+        shortest,
+    );
+    study.claim(statement.note("The shortest first contact ends a little below the first turning point."));
 
     // the curves close at their turning points
     let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
@@ -99,41 +99,40 @@ fn turning_table(
     critical: CriticalS,
     turnings: &[TurningPoint],
 ) -> Result<(), Failure> {
-    let printed = |n: usize| parameters.turning_points.get(n - 1).copied();
+    let printed = |n: usize| parameters.turning_points.get(n - 1).cloned();
     let rows: Vec<TurningRow> = turnings
         .iter()
         .map(|t| TurningRow { n: t.n, s: t.s, uncertainty: t.uncertainty, s_thesis: printed(t.n) })
         .collect();
     study.csv("turning-points.csv", &rows)?;
     for row in &rows {
-        let Some(thesis) = row.s_thesis else { continue };
+        let Some(thesis) = &row.s_thesis else { continue };
         let quantity = format!("turning point {}", row.n);
-        study.state(Comparison::about(quantity, "2.5", &significant(thesis, 6), thesis, AGREEMENT * thesis, row.s));
+        study.claim(Statement::printed(quantity, "2.5", thesis, row.s).uncertain(row.uncertainty));
     }
-    let thesis = parameters.critical_s;
-    study.state(
-        Comparison::about(
-            "S at which the first rebound velocity vanishes",
-            "2.5",
-            &significant(thesis, 4),
-            thesis,
-            AGREEMENT * thesis,
-            critical.s,
-        )
-        .note(format!("Ours: {:.13} ± {:.0e}.", critical.s, critical.uncertainty)),
-    );
+    for (row, rounded) in rows.iter().zip(["3.53e4", "5.22e2"]) {
+        let quantity = format!("turning point {}, to three digits", row.n);
+        study.claim(Statement::printed(quantity, "2.5", rounded, row.s).uncertain(row.uncertainty));
+    }
+    for (source, thesis) in [("2.5, last of the list", parameters.critical_s.as_str()), ("2.3, 2.5, 9", "1.56")] {
+        let statement =
+            Statement::printed("S at which the first rebound velocity vanishes", source, thesis, critical.s);
+        let note = format!("Ours: {:.13} ± {:.0e}.", critical.s, critical.uncertainty);
+        study.claim(statement.uncertain(critical.uncertainty).note(note));
+    }
     study.text(&format!(
         "Critical S: {:.14} ± {:.0e}. The n-th separation exists for S below the n-th turning point; the numbers go on \
          for ever towards the critical value.",
         critical.s, critical.uncertainty
     ));
+    let thesis = |row: &TurningRow| row.s_thesis.as_ref()?.parse::<f64>().ok();
     let cells = |row: &TurningRow| {
         vec![
             row.n.to_string(),
             format!("{:.13e}", row.s),
             format!("{:.0e}", row.uncertainty),
-            row.s_thesis.map_or_else(String::new, |thesis| significant(thesis, 6)),
-            row.s_thesis.map_or_else(String::new, |thesis| format!("{:+.3} %", 100.0 * (thesis / row.s - 1.0))),
+            row.s_thesis.clone().unwrap_or_default(),
+            thesis(row).map_or_else(String::new, |thesis| format!("{:+.3} %", 100.0 * (thesis / row.s - 1.0))),
         ]
     };
     study.table(&["n", "turning point", "±", "thesis", "thesis − ours"], &rows.iter().map(cells).collect::<Vec<_>>());
@@ -148,10 +147,13 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
         let counted = point.s < critical.s || beyond == turnings.len() || point.separations == beyond;
         point.outcome != expected || (point.s < critical.s && point.separations != 1) || !counted
     });
-    study.state(Comparison::range(
+    study.claim(Statement::self_check(
         "values of S at which outcome or separations contradict critical S and turning points",
-        "Fig. 2.4",
-        "rebound after one contact; separations, then sustained contact; sustained contact at once",
+        [
+            "Fig. 2.4",
+            "rebound after one contact; separations, then sustained contact; sustained contact at once",
+            "our map against our own turning points",
+        ],
         (0.0, 0.0),
         wrong.count() as f64,
     ));
@@ -182,6 +184,28 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
     )
 }
 
+/// The place of the inset of Fig. 2.8: late contacts at S = 1.72.
+fn inset(study: &mut Study) -> Result<(), Failure> {
+    let solution = solved(1.72, 0.0)?;
+    let last = solution.contacts.iter().take(TRACKED).filter_map(|contact| contact.end).fold(0.0, f64::max);
+    let statement = Statement::loose(
+        format!("end of contact {TRACKED} at S = 1.72 (10⁵ T)"),
+        "2.5, Fig. 2.8",
+        "inset at t_nd ≈ 3 and S ≈ 1.72",
+        (3.0, 0.5),
+        "half a unit of the only digit",
+        1e-5 * last,
+    );
+    study.claim(statement.note(
+        "The text does not print the factor of the axis; the curves of late contacts crowd there in units of 10⁵, and none \
+         runs at 3 or at 3 times another power of ten.",
+    ));
+    Ok(())
+}
+
+/// Separations that the thesis has followed.
+const TRACKED: usize = 18;
+
 /// Fig. 2.8.
 fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Result<(), Failure> {
     let s: Vec<f64> = points.iter().map(|point| point.s).collect();
@@ -189,11 +213,17 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
     let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
     let time = Axis::new("time").unit("T").log().limits(0.3, LATEST);
-    let mut upper = Panel::new(Axis::new("S").log().limits(1e-2, 2e5), time).title("(a)").height(320.0);
+    let mut upper = Panel::new(Axis::new("S").log().limits(1e-10, 2e5), time).title("(a)").height(320.0);
     let x = Axis::new("S above its critical value").log().limits(0.02, 1e3);
     let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
         .title("(b) the later contacts, magnified")
         .height(360.0);
+    let time = Axis::new("time").unit("10⁵ T");
+    let mut linear = Panel::new(Axis::new("S").limits(1.6, 2.2), time.clone().limits(0.0, 5.0))
+        .title("(c) linear axes, as in the printed figure")
+        .height(260.0);
+    let mut inset =
+        Panel::new(Axis::new("S").limits(1.71, 1.73), time.limits(2.3, 3.3)).title("(d) its inset").height(260.0);
     for k in 0..most {
         // start and end of a contact in one colour
         let colour = if k == 0 { Colour::Purple } else { Colour::of_series(k - 1) };
@@ -207,12 +237,18 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         upper = upper.with(start(&s, &starts)).with(end(&s, &ends));
         let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
         lower = lower.with(start(&distance, &relative(&starts))).with(end(&distance, &relative(&ends)));
+        // the printed figure has both axes linear there
+        let scaled = |times: &[f64]| times.iter().map(|t| 1e-5 * t).collect::<Vec<f64>>();
+        let (starts, ends) = (scaled(&starts), scaled(&ends));
+        linear = linear.with(start(&s, &starts)).with(end(&s, &ends));
+        inset = inset.with(start(&s, &starts)).with(end(&s, &ends));
     }
     study.figure(
         "fig-2-08",
         &Figure::new("Fig. 2.8  Starts (dashed) and ends (solid) of contacts against S")
             .row([upper.with(Series::vertical_rule(critical.s))])
-            .row([lower]),
+            .row([lower])
+            .row([linear, inset]),
         "A curve of separation and the next curve of touch meet at a turning point. Colours repeat. All curves approach \
          the critical S, where the second contact comes after infinite time.",
     )

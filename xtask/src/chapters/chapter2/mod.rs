@@ -5,6 +5,7 @@ mod invariance;
 mod map;
 mod methods;
 mod motion;
+mod relatives;
 mod sustained;
 
 use super::Failure;
@@ -31,12 +32,12 @@ struct Parameters {
     motion: Vec<Motion>,
     table_2_1: Vec<Steel>,
     table_a_1: Vec<Units>,
-    table_a_1_s: f64,
+    table_a_1_s: String,
     first_contact: Vec<FirstContact>,
     semi_analytical_until: f64,
     sustained: Vec<Motion>,
-    turning_points: Vec<f64>,
-    critical_s: f64,
+    turning_points: Vec<String>,
+    critical_s: String,
     our_choice: Choice,
 }
 
@@ -49,17 +50,17 @@ struct Motion {
     until: f64,
 }
 
-/// A row of Table 2.1.
+/// A row of Table 2.1; the result as printed.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Steel {
     side_m: f64,
     radius_m: f64,
     speed_m_s: f64,
-    s: f64,
+    s: String,
 }
 
-/// A row of Table A.1, in any consistent units.
+/// A row of Table A.1, in any consistent units; the results as printed.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Units {
@@ -67,8 +68,8 @@ struct Units {
     stiffness: f64,
     mass: f64,
     speed: f64,
-    force: f64,
-    time: f64,
+    force: String,
+    time: String,
 }
 
 /// A pair of Fig. 2.6; the mass as printed.
@@ -156,6 +157,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     first_contact::run(study, &parameters)?;
     sustained::run(study, &parameters)?;
     map::run(study, &parameters)?;
+    relatives::run(study)?;
     methods::run(study)?;
     Ok(INTRODUCTION)
 }

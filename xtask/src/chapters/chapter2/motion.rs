@@ -2,10 +2,11 @@
 
 use super::{Course, Motion, Parameters, solved};
 use crate::chapters::Failure;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use vibroimpact::infinite::samples;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
-use vibroimpact::report::{Comparison, significant};
+use vibroimpact::report::significant;
 
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
     study.section("Three regimes (Fig. 2.3)");
@@ -26,11 +27,10 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let force =
             Panel::new(time, force).height(150.0).with(Series::line(&course.time, &course.force).colour(Colour::Black));
         figure = figure.row([motion, force]);
-        study.state(Comparison::range(
+        study.claim(Statement::printed(
             format!("separations at S = {}", significant(*s, 3)),
-            "2.2.5",
+            "2.2.5, Fig. 2.3",
             &separations.to_string(),
-            (*separations as f64, *separations as f64),
             solution.separations() as f64,
         ));
     }

@@ -2,19 +2,20 @@
 //! against the location: Fig. 3.15.
 
 use super::Case;
+use super::scatter::{self, MANY, extremes, reduction, scatter};
 use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution, restitution_and_sub_impacts};
 use crate::chapters::impact::{Ball, Row, Setup};
+use crate::chapters::statement::Statement;
 use crate::chapters::study::{Study, slug};
 use vibroimpact::plot::Axis;
-use vibroimpact::report::Comparison;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let damped = case.parameters.damping_ratio;
     study.section("Pure Hertzian contact (Fig. 3.4)");
     let hertz = at_both_locations(study, case, |s| s)?;
     pair(study, case, "3.4", "Hertzian contact, no dissipation", [("Hertz", &hertz), ("", &none())])?;
-    hertz_statements(study, &hertz);
+    scatter::without_dissipation(study, &hertz);
 
     study.section("Viscous contact dissipation (Fig. 3.7)");
     let law = case.viscous()?;
@@ -26,7 +27,8 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "With and without viscous contact dissipation",
         [("Hertz", &hertz), ("viscous", &viscous)],
     )?;
-    scatter_remains(study, "viscous", "3.3.3", &hertz, &viscous);
+    scatter::remains(study, "viscous", "3.3.3", &hertz, &viscous);
+    scatter::lower(study, &hertz, &viscous);
 
     study.section("Hysteretic contact dissipation (Fig. 3.10)");
     let law = case.hysteretic()?;
@@ -38,35 +40,20 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "With and without hysteretic contact dissipation",
         [("Hertz", &hertz), ("hysteretic", &hysteretic)],
     )?;
-    scatter_remains(study, "hysteretic", "3.3.4", &hertz, &hysteretic);
+    scatter::remains(study, "hysteretic", "3.3.4", &hertz, &hysteretic);
 
     study.section("Modal damping (Fig. 3.11)");
     let modal = at_both_locations(study, case, |s| Setup { damping_ratio: damped, ..s })?;
     pair(study, case, "3.11", "With and without modal damping", [("ζ = 0", &hertz), ("ζ = 0.02", &modal)])?;
-    for (place, k) in [("b = 0.4", 0), ("b = 0.618", 1)] {
-        let ratio = scatter(&modal[k], 25) / scatter(&hertz[k], 25);
-        study.state(Comparison::range(
-            format!("scatter of e for N ≥ 25, damped over undamped, {place}"),
-            "3.3.5",
-            "a significant reduction in variability",
-            (0.0, 0.5),
-            ratio,
-        ));
-        study.state(Comparison::range(
-            format!("scatter of e for N ≥ 25, damped, {place}"),
-            "3.5",
-            "within several percent",
-            (0.0, 0.1),
-            scatter(&modal[k], 25),
-        ));
-    }
+    scatter::damped(study, &hertz, &modal);
 
     speeds(study, case)?;
-    balls(study, case)?;
+    balls(study, case, scatter(&modal[1], MANY))?;
     scan(study, case)
 }
 
-type AtBoth = [Vec<Row>; 2];
+/// A curve at each of the two locations.
+pub(super) type AtBoth = [Vec<Row>; 2];
 
 fn none() -> AtBoth {
     [Vec::new(), Vec::new()]
@@ -136,109 +123,6 @@ fn rows_of(columns: &[Column]) -> Vec<Row> {
     columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect()
 }
 
-/// Restitutions of the rows with at least so many modes.
-fn from(rows: &[Row], least: usize) -> impl Iterator<Item = f64> + '_ {
-    rows.iter().filter(move |r| r.modes >= least).map(Row::e)
-}
-
-/// Standard deviation of the restitution from so many modes on.
-fn scatter(rows: &[Row], least: usize) -> f64 {
-    let centre = mean(from(rows, least));
-    mean(from(rows, least).map(|e| (e - centre).powi(2))).sqrt()
-}
-
-fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), e| (low.min(e), high.max(e)))
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), e| (sum + e, count + 1.0));
-    sum / count
-}
-
-fn hertz_statements(study: &mut Study, hertz: &AtBoth) {
-    let find = |n: usize| hertz[0].iter().find(|r| r.modes == n).map(Row::e);
-    let pairs = (1..=13).filter_map(|k| find(5 * k - 1).zip(find(5 * k)));
-    let unequal = pairs.map(|(a, b)| (a - b).abs()).fold(f64::NAN, f64::max);
-    if unequal.is_finite() {
-        study.state(Comparison::range(
-            "largest |e(N) − e(N+1)| for N = 4, 9, 14, …, b = 0.4",
-            "3.3.2",
-            "identical",
-            (0.0, 1e-9),
-            unequal,
-        ));
-    }
-    let few = hertz[0].iter().zip(&hertz[1]).filter(|(a, _)| a.modes < 8).map(|(a, b)| (a.e() - b.e()).abs());
-    study.state(Comparison::range(
-        "largest difference of e between the locations for N < 8",
-        "3.3.2",
-        "similar",
-        (0.0, 0.15),
-        few.fold(0.0, f64::max),
-    ));
-    let many = hertz[0].iter().zip(&hertz[1]).filter(|(a, _)| a.modes >= 20).map(|(a, b)| (a.e() - b.e()).abs());
-    study.state(Comparison::range(
-        "largest difference of e between the locations for N ≥ 20",
-        "3.3.2",
-        "differ significantly",
-        (0.15, 1.0),
-        many.fold(0.0, f64::max),
-    ));
-
-    let window = || hertz[1].iter().filter(|r| (30..=40).contains(&r.modes)).map(Row::e);
-    let (low, high) = extremes(window());
-    let chaotic = "These impacts amplify every disturbance; the extremes of eleven of them are a matter of luck.";
-    study.state(Comparison::about("smallest e for N from 30 to 40, b = 0.618", "3.5", "about 0.1", 0.1, 0.05, low));
-    study.state(
-        Comparison::about("largest e for N from 30 to 40, b = 0.618", "3.5", "about 0.6", 0.6, 0.05, high)
-            .note(chaotic),
-    );
-    study.state(Comparison::about(
-        "largest e over smallest e, N from 30 to 40, b = 0.618",
-        "3.5",
-        "a factor of 6",
-        6.0,
-        2.0,
-        high / low,
-    ));
-    for (rows, place) in hertz.iter().zip(["b = 0.4", "b = 0.618"]) {
-        let third = rows.len() / 3;
-        let fall = mean(rows[..third].iter().map(Row::e)) - mean(rows[rows.len() - third..].iter().map(Row::e));
-        study.state(Comparison::range(
-            format!("mean of e over the first third of N less that over the last, {place}"),
-            "3.1",
-            "on average a decreasing trend",
-            (0.0, 1.0),
-            fall,
-        ));
-    }
-}
-
-/// Dissipation in the contact leaves the scatter: the ratio of scatters with and without.
-fn scatter_remains(study: &mut Study, name: &str, source: &str, hertz: &AtBoth, with: &AtBoth) {
-    for (k, place) in ["b = 0.4", "b = 0.618"].into_iter().enumerate() {
-        let ratio = scatter(&with[k], 25) / scatter(&hertz[k], 25);
-        study.state(Comparison::range(
-            format!("scatter of e for N ≥ 25, {name} over Hertz, {place}"),
-            source,
-            "convergence is not improved",
-            (0.5, f64::INFINITY),
-            ratio,
-        ));
-    }
-    if name == "viscous" {
-        let lower = mean(with.iter().flatten().map(Row::e)) - mean(hertz.iter().flatten().map(Row::e));
-        study.state(Comparison::range(
-            "mean of e with viscous dissipation less mean without",
-            source,
-            "on average some indication of lower rebound",
-            (-1.0, 0.0),
-            lower,
-        ));
-    }
-}
-
 /// The curves of one setup without and with modal damping.
 fn undamped_and_damped(study: &mut Study, case: &Case, setup: Setup) -> Result<Vec<Curve>, Failure> {
     let damping_ratio = case.parameters.damping_ratio;
@@ -250,18 +134,13 @@ fn undamped_and_damped(study: &mut Study, case: &Case, setup: Setup) -> Result<V
 /// Fig. 3.13: slower balls.
 fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.section("Other speeds (Fig. 3.13)");
-    let mut columns = Vec::new();
+    let (mut columns, mut ratios) = (Vec::new(), Vec::new());
     for &speed_m_s in &case.parameters.other_speeds_m_s {
         let setup = Setup { speed_m_s, ..case.setup(case.golden_m(), 0) };
         let curves = undamped_and_damped(study, case, setup)?;
-        let ratio = scatter(&curves[1].rows, 25) / scatter(&curves[0].rows, 25);
-        study.state(Comparison::range(
-            format!("scatter of e for N ≥ 25, damped over undamped, {speed_m_s} m/s"),
-            "3.4.2",
-            "distinctly less variation",
-            (0.0, 0.7),
-            ratio,
-        ));
+        let quantity = format!("scatter of e for N ≥ 25, damped over undamped, {speed_m_s} m/s");
+        let ratio = reduction(study, quantity, "3.4.2, Fig. 3.13", "distinctly less variation", &curves);
+        ratios.push((speed_m_s, ratio));
         columns.push((format!("{speed_m_s} m/s"), curves));
     }
     let figure = restitution(
@@ -270,12 +149,23 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
         |r| r.modes as f64,
         &columns,
     );
+    let of = |chosen: &dyn Fn(f64) -> bool| {
+        ratios.iter().filter(|(speed, _)| chosen(*speed)).map(|(_, ratio)| *ratio).fold(0.0, f64::max)
+    };
+    study.claim(Statement::trend(
+        "that ratio at 0.25 m/s less the larger of those at 0.5 and 0.1 m/s",
+        "3.4.2, Fig. 3.13",
+        "for the 0.25 m/s case the convergence appears relatively a little slower",
+        (0.0, 1.0),
+        "any amount",
+        of(&|speed| speed == 0.25) - of(&|speed| speed != 0.25),
+    ));
     study.figure("fig-3-13", &figure.width(960.0), "A ball of 3 cm at three speeds.")?;
     study.csv("fig-3-13.csv", &rows_of(&columns))
 }
 
-/// Fig. 3.14: a larger and a smaller ball.
-fn balls(study: &mut Study, case: &Case) -> Result<(), Failure> {
+/// Fig. 3.14: a larger and a smaller ball; `usual` is the damped scatter of the chapter's.
+fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
     study.section("Other balls (Fig. 3.14)");
     let mut columns = Vec::new();
     for &diameter_m in &case.parameters.other_diameters_m {
@@ -293,28 +183,50 @@ fn balls(study: &mut Study, case: &Case) -> Result<(), Failure> {
 
     let [large, small] = [&columns[0].1, &columns[1].1];
     let contacts = small.iter().flat_map(|c| &c.rows).map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.state(Comparison::range(
+    study.claim(Statement::printed(
         "most contacts of the 2 cm ball, any N, with and without damping",
         "3.4.2",
-        "just one single impact",
-        (1.0, 1.0),
+        "1",
         contacts as f64,
     ));
     let apart = small[0].rows.iter().zip(&small[1].rows).map(|(a, b)| (a.e() - b.e()).abs()).fold(0.0, f64::max);
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "largest change of the 2 cm ball's e by damping",
         "3.4.2",
         "damping plays essentially no role",
         (0.0, 0.02),
+        "a line's width, a fiftieth of a figure's height",
         apart,
     ));
-    study.state(Comparison::range(
-        "scatter of e for N ≥ 25, 4 cm ball, damped",
-        "3.4.2",
-        "convergence is more convincing",
-        (0.0, 0.05),
-        scatter(&large[1].rows, 25),
+    study.claim(Statement::trend(
+        "scatter of e for N ≥ 25, damped: 4 cm ball over 3 cm ball",
+        "3.4.2, Fig. 3.14",
+        "for the ball diameter of 4 cm the convergence is more convincing",
+        (0.0, 1.0),
+        "any amount",
+        scatter(&large[1].rows, MANY) / usual,
     ));
+    heavy(study, case, scatter(&large[0].rows, MANY))
+}
+
+/// A ball so heavy that the beam is a spring under it.
+fn heavy(study: &mut Study, case: &Case, of_4_cm: f64) -> Result<(), Failure> {
+    let ball = Ball::new(&case.parameters.material, case.parameters.our_choice.heavy_diameter_m)?;
+    let rows = curve(study, case, Setup { ball, law: ball.hertz(), ..case.setup(case.golden_m(), 0) })?;
+    let statement = Statement::trend(
+        "scatter of e for N ≥ 25, undamped: 20 cm ball over 4 cm ball",
+        "3.4.2",
+        "for extremely massive balls the behavior would be regular again",
+        (0.0, 0.1),
+        "a tenth",
+        scatter(&rows, MANY) / of_4_cm,
+    );
+    study.claim(statement.note(format!(
+        "{:.1} kg on a beam of 1 kg: restitution {:.4} with {} modes.",
+        ball.mass_kg,
+        rows.last().map_or(f64::NAN, Row::e),
+        rows.last().map_or(0, |row| row.modes)
+    )));
     Ok(())
 }
 
@@ -346,11 +258,12 @@ fn scan(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let figure =
         restitution_and_sub_impacts("Fig. 3.15  A ball of 4 cm, N = 40, ζ = 0.02", &axis, |r| r.location_m, &columns);
     study.figure("fig-3-15", &figure.width(560.0), "Above: restitution; below: sub-impacts; against the location.")?;
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "change of e for b from 0.60 to 0.62 m, 4 cm ball",
-        "3.4.2",
-        "visible, though not dramatic",
-        (0.01, 0.2),
+        "3.4.2, Fig. 3.15",
+        "visibly (though not dramatically)",
+        (0.02, 0.2),
+        "from a line's width to a fifth of the range from 0 to 1",
         high - low,
     ));
     Ok(())

@@ -4,12 +4,12 @@ use super::Case;
 use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::{Study, slug};
 use contact_models::{Hysteretic, Law, trace};
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibroimpact::plot::{Axis, Figure, Panel, Series};
-use vibroimpact::report::Comparison;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     prescribed(study, case)?;
@@ -18,6 +18,10 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     wall(study, case, "3.8", "hysteretic", case.hysteretic()?)?;
     many_modes(study, case, "3.9", "hysteretic", case.hysteretic()?)
 }
+
+/// "About 0.95".
+const NEAR_95: (f64, f64) = (0.95, 0.005);
+const LAST_DIGIT: &str = "half a unit of the last digit";
 
 #[derive(Serialize)]
 struct LoopRow {
@@ -58,23 +62,22 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
 
     let silent = |r: &&LoopRow| r.force_n == 0.0;
     let deepest = rows.iter().filter(silent).map(|r| r.compression_m).fold(f64::NEG_INFINITY, f64::max);
-    let pulls = rows.iter().map(|r| r.force_n).fold(f64::INFINITY, f64::min);
-    study.state(
-        Comparison::range(
-            "largest compression without force, hysteretic law (Fig. 3.2)",
-            "3.2.1",
-            "F = 0 only when ξ ≤ 0",
-            (f64::NEG_INFINITY, 1e-200),
-            deepest,
-        )
-        .note("A compression below 10⁻²⁰⁰ gives a force below the smallest number."),
-    );
-    study.state(Comparison::range(
-        "smallest force of the hysteretic law (Fig. 3.2)",
-        "3.2.1",
-        "never negative",
-        (0.0, f64::INFINITY),
-        pulls,
+    let reason = "a smaller one gives a force below the smallest number";
+    study.claim(Statement::identity(
+        "largest compression without force, hysteretic law (Fig. 3.2)",
+        ["3.2.1", "F = 0 only when ξ ≤ 0", reason],
+        (f64::NEG_INFINITY, 1e-200),
+        deepest,
+    ));
+    // where the compression is not lost in rounding
+    let pressed = rows.iter().filter(|r| r.compression_m > 1e-6);
+    let theta = pressed.map(|r| r.force_n / (p.stiffness_n_m1_5.unwrap_or(1.0) * r.compression_m.powf(1.5)) - 1.0);
+    let beyond = theta.map(|theta| (theta - p.theta_m).abs() - p.beta).fold(f64::NEG_INFINITY, f64::max);
+    study.claim(Statement::identity(
+        "farthest that θ leaves θ_m ± β, hysteretic law (Fig. 3.2)",
+        ["3.2.1", "θ varies between θ_m ± β", "rounding"],
+        (f64::NEG_INFINITY, 1e-9),
+        beyond,
     ));
     Ok(())
 }
@@ -111,38 +114,42 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
     )?;
 
     let at_one = Setup { law, ..case.setup(case.golden_m(), 0) }.solve()?;
-    study.state(Comparison::about(
+    study.claim(Statement::loose(
         format!("restitution of the {name} law at 1 m/s, N = 0"),
-        &format!("Fig. {figure}"),
+        &format!("3.3, Fig. {figure}"),
         "about 0.95",
-        0.95,
-        0.005,
+        NEAR_95,
+        LAST_DIGIT,
         at_one.e(),
     ));
     let contacts = rows.iter().map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.state(Comparison::range(
+    study.claim(Statement::identity(
         format!("contacts of the {name} law, N = 0"),
-        &format!("Fig. {figure}"),
-        "a single contact in each case",
+        [
+            &format!("Fig. {figure}"),
+            "a single contact in each case",
+            "nothing brings the ball back to an immovable beam",
+        ],
         (1.0, 1.0),
         contacts as f64,
     ));
     if let (true, [fast, .., slow]) = (name == "hysteretic", rows.as_slice()) {
         for row in &rows {
-            study.state(Comparison::about(
+            study.claim(Statement::loose(
                 format!("restitution of the hysteretic law at {} m/s, N = 0", row.speed_m_s),
                 "Fig. 3.8",
                 "close to 0.95",
-                0.95,
-                0.005,
+                NEAR_95,
+                LAST_DIGIT,
                 row.e(),
             ));
         }
-        study.state(Comparison::range(
+        study.claim(Statement::trend(
             "fall of the hysteretic law's restitution from 0.6 to 1.2 m/s",
             "Fig. 3.8",
             "decreasing very slightly",
             (1e-6, 0.005),
+            "beyond the solver's error, and too little for the last digit of 0.95",
             slow.e() - fast.e(),
         ));
     }
@@ -167,22 +174,24 @@ fn many_modes(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law
     study.figure(&format!("fig-{}", slug(figure)), &Figure::new(title).row([whole, loops]), &caption)?;
 
     let several = solution.sub_impacts.len() as f64;
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         format!("sub-impacts with the {name} law, N = 27, b = 0.4"),
         &format!("Fig. {figure}"),
         "multiple",
         (2.0, f64::INFINITY),
+        "more than one",
         several,
     ));
     if let Law::Viscous(viscous) = law {
         let rates = course.structure_m_s.iter().zip(&course.striker_m_s).zip(&course.force_n);
         let in_contact = rates.filter(|(_, force)| **force > 0.0).map(|((beam, ball), _)| (beam - ball).abs());
         let largest = viscous.damping_s_m * in_contact.fold(0.0, f64::max);
-        study.state(Comparison::range(
+        study.claim(Statement::trend(
             "largest |c dξ/dt| in contact, N = 27",
             "3.2.1",
             "below 1 at all times",
             (0.0, 1.0),
+            "as stated",
             largest,
         ));
     }

@@ -3,9 +3,11 @@
 
 mod convergence;
 mod dissipation;
+mod luck;
 mod motion;
 mod numbers;
 mod residual;
+mod scatter;
 
 use super::Failure;
 use super::beam::{Beam, End, segment};
@@ -79,7 +81,18 @@ struct Choice {
     most_modes: usize,
     scan_places: usize,
     energy_modes: Vec<usize>,
+    heavy_diameter_m: f64,
+    stiffness_scan: StiffnessScan,
     residual_modes: Vec<usize>,
+}
+
+/// Contact stiffnesses as multiples of the printed one.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StiffnessScan {
+    from: f64,
+    to: f64,
+    values: usize,
 }
 
 /// The chapter's beam and ball with everything that its sections vary.
@@ -141,6 +154,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     dissipation::run(study, &case)?;
     motion::run(study, &case)?;
     convergence::run(study, &case)?;
+    luck::run(study, &case)?;
     residual::run(study, &case)?;
     Ok(INTRODUCTION)
 }

@@ -4,9 +4,9 @@ use super::Case;
 use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
-use vibroimpact::report::Comparison;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     one_impact(study, case)?;
@@ -41,32 +41,38 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let (median, largest) = (peaks.get(peaks.len() / 2), peaks.last());
     let few_hundred = |name: &str, peak: Option<&f64>| {
         let peak = peak.copied().unwrap_or(f64::NAN);
-        Comparison::range(
+        Statement::loose(
             format!("{name} peak of the contact force, N = 25, b = 0.4 (N)"),
-            "3.3.2",
+            "3.3.2, Fig. 3.3",
             "of the order of a few hundred",
-            (100.0, 1000.0),
+            (550.0, 450.0),
+            "from one hundred to ten",
             peak,
         )
     };
-    study.state(few_hundred("median", median));
-    study.state(
+    study.claim(few_hundred("median", median));
+    study.claim(
         few_hundred("largest", largest).note("The first contact is the hardest; the thesis's phrase fits the others."),
     );
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "sub-impacts, N = 25, b = 0.4",
         "3.3.2",
         "several",
         (3.0, f64::INFINITY),
+        "more than a couple",
         solution.sub_impacts.len() as f64,
     ));
-    study.state(Comparison::about(
-        "net time of the interaction, N = 25, b = 0.4 (s)",
+    let net = Statement::printed("net time of the interaction, N = 25, b = 0.4 (s)", "3.3.2", "0.025", solution.end_s);
+    study.claim(net.note("The text does not say which impact its 0.025 s are of; Fig. 3.3 is the one before it."));
+    // the beam upright, the ball level: gravity's share of the way
+    let travel_mm = 1e3 * 0.5 * 9.81 * solution.end_s.powi(2);
+    study.claim(Statement::loose(
+        "fall of the ball by its weight in the net time (mm)",
         "3.3.2",
-        "0.025",
-        0.025,
-        0.005,
-        solution.end_s,
+        "about 3",
+        (3.0, 0.5),
+        "half a unit of the only digit",
+        travel_mm,
     ));
     Ok(())
 }
@@ -119,11 +125,12 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
         e[0], e[1]
     );
     study.figure("fig-3-12", &figure, &caption)?;
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "difference of the restitutions without and with damping, N = 40, b = 0.618",
         "Fig. 3.12",
         "significantly different",
-        (0.05, 1.0),
+        (0.1, 1.0),
+        "a tenth of the range from 0 to 1",
         (e[0] - e[1]).abs(),
     ));
 
@@ -149,10 +156,13 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
         &Figure::new("Fig. A.2  Energy of single modes, N = 40, b = 0.618 m").row(panels),
         "Each contact shows as a jump. Damping empties the high modes between contacts.",
     )?;
-    study.state(Comparison::range(
+    study.claim(Statement::identity(
         "energy of mode 40 at the end, damped over undamped",
-        "A.3",
-        "the higher modes damp out more quickly",
+        [
+            "A.3",
+            "the higher modes damp out more quickly",
+            "one damping ratio for all: the rate goes with the frequency",
+        ],
         (0.0, 0.01),
         at_end[1] / at_end[0],
     ));

@@ -4,10 +4,10 @@ use super::{Case, Histories};
 use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::{Study, slug};
 use contact_models::Law;
 use vibroimpact::plot::{Figure, Panel};
-use vibroimpact::report::Comparison;
 use vibroimpact_sim::modal::{History, Solution};
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
@@ -57,11 +57,12 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
         study.course(&format!("fig-4-05-{letter}.csv"), course)?;
     }
     let fewest = found.iter().map(|(s, _)| s.sub_impacts.len()).min().unwrap_or(0);
-    study.state(Comparison::range(
+    study.claim(Statement::trend(
         "fewest sub-impacts of the four cases",
-        "Fig. 4.5",
+        "4.2, Fig. 4.5",
         "multiple",
         (2.0, f64::INFINITY),
+        "more than one",
         fewest as f64,
     ));
     Ok(())
@@ -91,11 +92,12 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
         "Beam at the contact and ball. The more compliant the place, the deeper the beam yields.",
     )?;
     if let [first, .., last] = deepest.as_slice() {
-        study.state(Comparison::range(
+        study.claim(Statement::trend(
             format!("deepest displacement at the largest b over that at the smallest, {}", beam.name),
-            &format!("Fig. {}", p.figure),
-            "increases with b",
+            &format!("4.2, Fig. {}", p.figure),
+            "for the larger b's, the magnitudes of the displacements increase",
             (1.0, f64::INFINITY),
+            "any amount",
             last / first,
         ));
     }

@@ -6,7 +6,6 @@ use crate::chapters::beam::Beam;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
-use vibroimpact::report::Comparison;
 
 /// The table of one beam: rows of places, in each one result a ball.
 pub(in crate::chapters) struct Table<'a> {
@@ -40,9 +39,22 @@ impl Table<'_> {
         ))
     }
 
-    fn mean(&self, chosen: impl Fn(&Row) -> bool) -> f64 {
-        let chosen: Vec<f64> = self.all().filter(|r| chosen(r)).map(Row::e).collect();
+    /// Mean of a number over the results chosen; NaN if there are none.
+    pub fn mean(&self, value: impl Fn(&Row) -> f64, chosen: impl Fn(&Row) -> bool) -> f64 {
+        let chosen: Vec<f64> = self.all().filter(|r| chosen(r)).map(value).collect();
         chosen.iter().sum::<f64>() / chosen.len() as f64
+    }
+
+    /// The same table with some of the balls.
+    pub fn with_balls(&self, chosen: impl Fn(&Ball) -> bool) -> Table<'_> {
+        let kept: Vec<usize> = (0..self.balls.len()).filter(|&j| chosen(&self.balls[j])).collect();
+        let of = |place: &Vec<Row>| kept.iter().map(|&j| place[j].clone()).collect();
+        Table {
+            beam: self.beam,
+            places_m: self.places_m.clone(),
+            balls: kept.iter().map(|&j| self.balls[j]).collect(),
+            rows: self.rows.iter().map(of).collect(),
+        }
     }
 }
 
@@ -81,7 +93,6 @@ pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>
         let caption = "Above: restitution and number of sub-impacts over place and ball. Below: restitution of every other \
                        ball along the beam.";
         study.figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
-        statements(study, table, number);
     }
     Ok(tables)
 }
@@ -99,77 +110,4 @@ fn figure(table: &Table, number: usize) -> Figure {
         panel.with(Series::line_points(&table.places_m, &by_ball[j], marker).label(label))
     });
     Figure::new(format!("Fig. 4.{number}  {}", table.beam.title)).row([e, contacts]).row([lines]).width(960.0)
-}
-
-/// The trends that section 4.2 observes, beam by beam.
-fn statements(study: &mut Study, table: &Table, number: usize) {
-    let (source, name) = (format!("4.2, Fig. 4.{number}"), &table.beam.name);
-    let length = table.beam.model.length_m();
-    let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
-    let (Some(lightest), Some(heaviest)) = (table.balls.first(), table.balls.last()) else { return };
-    let light = |r: &Row| inner(r) && r.mass_kg == lightest.mass_kg;
-    let most = table.all().filter(|r| light(r)).map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.state(Comparison::range(
-        format!("most contacts of the lightest ball away from the ends, {name}"),
-        &source,
-        "a single contact event",
-        (1.0, 1.0),
-        most as f64,
-    ));
-
-    let means: Vec<f64> = table.balls.iter().map(|b| table.mean(|r| inner(r) && r.mass_kg == b.mass_kg)).collect();
-    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
-    let fall = means.first().map_or(f64::NAN, |first| first - least);
-    let rise = means.last().map_or(f64::NAN, |last| last - least);
-    study.state(Comparison::range(
-        format!("mean e away from the ends: lightest ball less the least of all balls, {name}"),
-        &source,
-        "high for very small m, then low",
-        (0.1, 1.0),
-        fall,
-    ));
-    study.state(Comparison::range(
-        format!("mean e away from the ends: heaviest ball less the least of all balls, {name}"),
-        &source,
-        "increases again",
-        (0.05, 1.0),
-        rise,
-    ));
-
-    if let ([.., before, _, _], beam_modes::End::Free) = (table.places_m.as_slice(), table.beam.model.ends[1]) {
-        let rise = |least_kg: f64| {
-            let at = |place_m: f64| table.mean(|r| r.location_m == place_m && r.mass_kg > least_kg);
-            at(length) - at(*before)
-        };
-        let row = |balls: &str, rise: f64| {
-            let quantity = format!("mean e at the free end less mean e two places before, {balls}, {name}");
-            Comparison::range(quantity, &source, "a general rising trend", (0.0, 1.0), rise)
-        };
-        let note = "Light balls lose more at the free end itself, where a beam is far more mobile than inside; that can \
-                    outweigh the rise of the others in the mean over all balls.";
-        study.state(row("all balls", rise(0.0)).note(note));
-        study.state(row("balls above 0.06 kg", rise(0.06)));
-    }
-    if let [_, near, further, ..] = table.places_m.as_slice() {
-        let rise = table.mean(|r| r.location_m == *near) - table.mean(|r| r.location_m == *further);
-        study.state(Comparison::range(
-            format!("mean e one place from the held end less two places from it, {name}"),
-            &source,
-            "a sudden rise very close to fixed or pinned ends",
-            (0.0, 1.0),
-            rise,
-        ));
-    }
-    if let [thick, _, ..] = table.beam.model.segments.as_slice() {
-        let heavy = |r: &Row| inner(r) && r.mass_kg > 0.3 * heaviest.mass_kg;
-        let slim = table.mean(|r| heavy(r) && r.location_m > thick.length_m)
-            - table.mean(|r| heavy(r) && r.location_m < thick.length_m);
-        study.state(Comparison::range(
-            format!("mean e of heavy balls on the slim part less that on the thick part, {name}"),
-            &source,
-            "greater rebound from the thinner portion",
-            (0.0, 1.0),
-            slim,
-        ));
-    }
 }

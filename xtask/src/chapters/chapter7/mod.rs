@@ -23,25 +23,25 @@ thesis's own form the report asks where it fails and why, how one beam's paramet
 two parameters beside it that does better on every count.";
 
 /// Modes in the law (thesis 7.2).
-const LAW_MODES: usize = 50;
+pub(super) const LAW_MODES: usize = 50;
 /// Modes of the converged tables.
 const SETTLED_MODES: usize = 100;
 
 /// The table of one beam with what the laws need to know of each impact.
-struct Dataset<'a> {
-    beam: &'a Beam,
+pub(super) struct Dataset<'a> {
+    pub beam: &'a Beam,
     table: &'a Table<'a>,
     /// The results that have a restitution, place by place.
-    rows: Vec<&'a Row>,
+    pub rows: Vec<&'a Row>,
 }
 
 impl<'a> Dataset<'a> {
-    fn new(table: &'a Table<'a>) -> Dataset<'a> {
+    pub fn new(table: &'a Table<'a>) -> Dataset<'a> {
         Dataset { beam: table.beam, table, rows: table.all().filter(|row| row.restitution.is_some()).collect() }
     }
 
     /// The impacts as the law takes them, with so many modes.
-    fn observations(&self, modes: usize) -> Result<Observations, Failure> {
+    pub fn observations(&self, modes: usize) -> Result<Observations, Failure> {
         let mut observations = Observations::default();
         for row in &self.rows {
             let structure = self.beam.structure(row.location_m, modes, 0.0, false)?;

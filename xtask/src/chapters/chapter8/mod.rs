@@ -3,6 +3,7 @@
 mod drops;
 mod law;
 mod measured;
+mod two_rods;
 mod upright;
 
 use super::study::Study;
@@ -74,6 +75,7 @@ pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str
     let points = data.map(measured::read).transpose().map_err(|fault| BadInput(fault.to_string()))?;
     let drops = drops::run(study, &parameters)?;
     upright::run(study, &parameters)?;
+    two_rods::run(study, &parameters)?;
     law::run(study, &parameters, &drops)?;
     if let Some(points) = points {
         measured::run(study, &parameters, &points)?;

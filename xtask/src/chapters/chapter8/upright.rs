@@ -2,10 +2,11 @@
 
 use super::Parameters;
 use crate::chapters::Failure;
+use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use contact_models::LinearSpring;
 use serde::Serialize;
-use vibroimpact::report::{Comparison, significant};
+use vibroimpact::report::significant;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::modal::{Settings, Solver};
 
@@ -64,23 +65,21 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     );
     for row in &rows {
         if row.contact_over_rod_stiffness == 1e3 {
-            study.state(Comparison::about(
-                format!(
-                    "restitution, upright on a contact 1000 times stiffer than the rod, {:.0} mm",
-                    1e3 * row.length_m
-                ),
-                "8.2.1",
-                "perfect, e = 1",
-                1.0,
-                0.01,
+            let quantity = format!(
+                "restitution, upright on a contact 1000 times stiffer than the rod, {:.0} mm",
+                1e3 * row.length_m
+            );
+            let reason = "a contact of finite stiffness";
+            study.claim(Statement::identity(
+                quantity,
+                ["8.2.1", "perfect, e = 1", reason],
+                (0.99, 1.0),
                 row.restitution.unwrap_or(f64::NAN),
             ));
-            study.state(Comparison::about(
+            study.claim(Statement::self_check(
                 "duration of that contact over 2L/c",
-                "8.2.1 (wave solution)",
-                "1",
-                1.0,
-                0.02,
+                ["the exact wave solution", "1", reason],
+                (0.98, 1.02),
                 row.contact_over_wave_time,
             ));
         }

@@ -1,0 +1,178 @@
+//! What sections 4.2 and 7.2 say of a table of restitutions, as numbers of one table.
+
+use super::tables::Table;
+use crate::chapters::impact::Row;
+use crate::chapters::study::Study;
+use beam_modes::End;
+use vibroimpact::report::significant;
+
+/// A trend of one table.
+pub(in crate::chapters) struct Trend {
+    /// What is measured.
+    pub quantity: &'static str,
+    /// Where the thesis speaks of it, besides the figure of the beam.
+    pub source: &'static str,
+    /// Its words.
+    pub words: &'static str,
+    /// Between these the trend holds.
+    pub limits: (f64, f64),
+    /// Why these.
+    pub reason: &'static str,
+    /// The table's number.
+    pub ours: f64,
+}
+
+impl Trend {
+    /// Whether it holds.
+    pub fn holds(&self) -> bool {
+        (self.limits.0..=self.limits.1).contains(&self.ours)
+    }
+
+    fn new(quantity: &'static str, words: &'static str, (limits, reason): Limits, ours: f64) -> Trend {
+        Trend { quantity, source: "4.2", words, limits, reason, ours }
+    }
+}
+
+type Limits = ((f64, f64), &'static str);
+
+const RISES: Limits = ((0.0, f64::INFINITY), "any amount");
+const FALLS: Limits = ((f64::NEG_INFINITY, 0.0), "any amount");
+const CLEARLY: Limits = ((0.1, f64::INFINITY), "a tenth of the range from 0 to 1");
+const VISIBLY: Limits = ((0.05, f64::INFINITY), "a twentieth of the range from 0 to 1");
+const ONE: Limits = ((1.0, 1.0), "as stated");
+
+/// All trends that the thesis names for a beam of this kind; always the same ones, in the same order.
+pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
+    let (Some(lightest), Some(heaviest)) = (table.balls.first(), table.balls.last()) else { return Vec::new() };
+    let length = table.beam.model.length_m();
+    let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
+    let of_ball = |mass_kg: f64| move |r: &Row| inner(r) && r.mass_kg == mass_kg;
+    let contacts = |r: &Row| r.sub_impacts as f64;
+
+    let means: Vec<f64> = table.balls.iter().map(|ball| table.mean(Row::e, of_ball(ball.mass_kg))).collect();
+    let low = (0..means.len()).min_by(|&a, &b| means[a].total_cmp(&means[b])).unwrap_or(0);
+    let [first, least, last] = [0, low, means.len() - 1].map(|k| means[k]);
+    let most = table.all().filter(|r| of_ball(lightest.mass_kg)(r)).map(contacts).fold(0.0, f64::max);
+    let more =
+        table.mean(contacts, of_ball(table.balls[low].mass_kg)) - table.mean(contacts, of_ball(lightest.mass_kg));
+    let words = "for slightly higher m, the number of sub-impacts increases";
+    let mut trends = vec![
+        Trend::new(
+            "most contacts of the lightest ball away from the ends",
+            "for very small m there is a single contact event",
+            ONE,
+            most,
+        ),
+        Trend::new(
+            "mean e away from the ends: lightest ball less the least of all balls",
+            "for very small m, v_f is high; for slightly higher m, v_f is low",
+            CLEARLY,
+            first - least,
+        ),
+        Trend::new("mean contacts away from the ends: ball of least e less lightest ball", words, RISES, more),
+        Trend::new(
+            "mean e away from the ends: heaviest ball less the least of all balls",
+            "as m increases further, v_f increases again",
+            VISIBLY,
+            last - least,
+        ),
+    ];
+    ends(table, &mut trends);
+    if let [thick, _, ..] = table.beam.model.segments.as_slice() {
+        step(table, thick.length_m, heaviest.mass_kg, &mut trends);
+    }
+    trends
+}
+
+/// The quantity that depends most on the list of balls.
+pub(in crate::chapters) const FREE_END: &str = "mean e at the free end less that two places before";
+
+/// Rises towards free and held ends.
+fn ends(table: &Table, trends: &mut Vec<Trend>) {
+    let at = |place_m: f64| table.mean(Row::e, |r| r.location_m == place_m);
+    let sudden = "there is a sudden rise in restitution very close to pinned or fixed ends";
+    if let [_, near, further, ..] = table.places_m.as_slice() {
+        let quantity = "mean e one place from the left, held end less two places from it";
+        trends.push(Trend::new(quantity, sudden, VISIBLY, at(*near) - at(*further)));
+    }
+    match (table.places_m.as_slice(), table.beam.model.ends[1]) {
+        ([.., before, _, end], End::Free) => {
+            trends.push(Trend::new(
+                FREE_END,
+                "near free ends, a general rising trend in v_f",
+                RISES,
+                at(*end) - at(*before),
+            ));
+        }
+        ([.., further, near, _], _) => {
+            let quantity = "mean e one place from the right, held end less two places from it";
+            trends.push(Trend::new(quantity, sudden, VISIBLY, at(*near) - at(*further)));
+        }
+        _ => {}
+    }
+}
+
+/// The slim part, and what happens at the step.
+fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
+    let length = table.beam.model.length_m();
+    let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
+    let slim = |least_kg: f64| {
+        let on = |side: fn(f64, f64) -> bool| {
+            table.mean(Row::e, |r| inner(r) && r.mass_kg > least_kg && side(r.location_m, step_m + 1e-9))
+        };
+        on(|b, step| b > step) - on(|b, step| b < step - 2e-9)
+    };
+    let greater = "greater rebound is seen from locations of the thinner portion";
+    trends.push(Trend::new("mean e on the slim part less that on the thick part", greater, RISES, slim(0.0)));
+    let heavy = "mean e on the slim part less that on the thick part, balls above 0.3 of the heaviest";
+    trends.push(Trend::new(heavy, greater, RISES, slim(0.3 * heaviest_kg)));
+
+    // places just before and just beyond the step, but not at it
+    let before = table.places_m.iter().copied().filter(|b| *b < step_m - 1e-9).fold(0.0, f64::max);
+    let beyond = table.places_m.iter().copied().filter(|b| *b > step_m + 1e-9).fold(length, f64::min);
+    let third = |k: usize| {
+        let (from, to) = (k * table.balls.len() / 3, (k + 1) * table.balls.len() / 3);
+        let masses: Vec<f64> = table.balls[from..to].iter().map(|ball| ball.mass_kg).collect();
+        let at = |place_m: f64| table.mean(Row::e, |r| r.location_m == place_m && masses.contains(&r.mass_kg));
+        at(beyond) - at(before)
+    };
+    let [light, middle, heavy] = [0, 1, 2].map(third);
+    let mut at_step = |quantity, words, limits, ours| {
+        trends.push(Trend { source: "7.2", ..Trend::new(quantity, words, limits, ours) });
+    };
+    at_step(
+        "change of mean e across the step, lightest third of the balls",
+        "downward for very small masses",
+        FALLS,
+        light,
+    );
+    at_step(
+        "change of mean e across the step, middle third of the balls",
+        "upward for intermediate masses",
+        RISES,
+        middle,
+    );
+    at_step(
+        "size of that change, middle third less heaviest third",
+        "shrinks for larger masses",
+        RISES,
+        middle.abs() - heavy.abs(),
+    );
+}
+
+/// Tells the numbers for our choice of steps, slim parts and balls.
+pub(super) fn tell(study: &mut Study, tables: &[Table]) {
+    study.section("The trends of section 4.2 for our choice");
+    study.text(
+        "The thesis does not print its steps, slim parts and balls, so that what holds for ours says little alone. These \
+         numbers are therefore not counted among the statements; `cargo xtask reproduce-chapter ensemble` says in how many \
+         of the plausible choices each trend holds.",
+    );
+    let line = |(table, trend): (&Table, Trend)| {
+        let holds = if trend.holds() { "holds" } else { "does not hold" };
+        let texts = [&table.beam.name, trend.quantity, trend.words, &significant(trend.ours, 3), holds];
+        texts.map(str::to_owned).to_vec()
+    };
+    let all = tables.iter().flat_map(|table| of(table).into_iter().map(move |trend| (table, trend)));
+    study.table(&["beam", "quantity", "thesis", "ours", "for our choice"], &all.map(line).collect::<Vec<_>>());
+}

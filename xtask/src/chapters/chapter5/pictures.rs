@@ -1,0 +1,55 @@
+//! Laws against tables.
+
+use super::laws::{Found, LAWS};
+use crate::chapters::Failure;
+use crate::chapters::chapter7::Dataset;
+use crate::chapters::impact::Row;
+use crate::chapters::study::Study;
+use serde::Serialize;
+use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+
+/// One law for one impact.
+#[derive(Serialize)]
+struct PointRow {
+    law: &'static str,
+    beam: String,
+    mass_kg: f64,
+    location_m: f64,
+    restitution: f64,
+    restitution_of_the_law: f64,
+}
+
+pub(super) fn run(study: &mut Study, data: &[Dataset], found: &[Found]) -> Result<(), Failure> {
+    let tables: Vec<&Row> = data.iter().flat_map(|data| data.rows.iter().copied()).collect();
+    let resolved: Vec<f64> = tables.iter().map(|row| row.e()).collect();
+    let mut panels = Vec::new();
+    let mut rows = Vec::new();
+    for (law, found) in LAWS.iter().zip(found) {
+        let predicted = found.by_beam.concat();
+        let y = Axis::new("e of the law").limits(-1.05, 1.05);
+        let panel = Panel::new(Axis::new("e resolved in time").limits(-0.03, 1.03), y)
+            .title(law.name)
+            .height(150.0)
+            .with(Series::line(&[0.0, 1.0], &[0.0, 1.0]).colour(Colour::Grey))
+            .with(Series::points(&resolved, &predicted, Marker::Dot).colour(Colour::Blue));
+        panels.push(panel);
+        rows.extend(tables.iter().zip(predicted).map(|(row, restitution_of_the_law)| PointRow {
+            law: law.name,
+            beam: row.beam.clone(),
+            mass_kg: row.mass_kg,
+            location_m: row.location_m,
+            restitution: row.e(),
+            restitution_of_the_law,
+        }));
+    }
+    study.csv("predictions.csv", &rows)?;
+    let figure = panels
+        .chunks(3)
+        .fold(Figure::new("Nine laws against the tables of chapter 4").width(960.0), |f, row| f.row(row.to_vec()));
+    study.figure(
+        "laws",
+        &figure,
+        "Every impact of the four tables is a point; on the grey line law and table are equal. Below zero the ball would go \
+         on into the beam.",
+    )
+}

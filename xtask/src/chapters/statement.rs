@@ -1,0 +1,379 @@
+//! A statement of the thesis beside our number: what kind of statement it is, how far the two may lie apart and why,
+//! and what follows.
+
+use serde::{Deserialize, Serialize};
+use vibroimpact::report::{Comparison, Expected, significant};
+
+/// What is stated, and thereby what it is worth that our number agrees.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Kind {
+    /// A number as printed, held to half a unit of its last digit.
+    #[serde(rename = "printed number")]
+    PrintedNumber,
+    /// A number in words, such as "about 0.95".
+    #[serde(rename = "loose number")]
+    LooseNumber,
+    /// What the text says of a figure or of a table without a number.
+    #[serde(rename = "trend")]
+    Trend,
+    /// What follows from the equations alone, so that only an error of ours could contradict it.
+    #[serde(rename = "identity")]
+    Identity,
+    /// A check of our own method or of our own choice, beside what the text says of its own.
+    #[serde(rename = "self-check")]
+    SelfCheck,
+}
+
+impl Kind {
+    /// All kinds, in the order in which they are told.
+    pub const ALL: [Kind; 5] = [Kind::PrintedNumber, Kind::LooseNumber, Kind::Trend, Kind::Identity, Kind::SelfCheck];
+
+    /// As a heading of a table.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Kind::PrintedNumber => "Printed numbers",
+            Kind::LooseNumber => "Loose numbers",
+            Kind::Trend => "Trends",
+            Kind::Identity => "Identities",
+            Kind::SelfCheck => "Self-checks",
+        }
+    }
+
+    /// Whether the thesis could be wrong in it, so that agreement means something.
+    pub const fn can_fail(self) -> bool {
+        matches!(self, Kind::PrintedNumber | Kind::LooseNumber | Kind::Trend)
+    }
+}
+
+/// What follows from the two numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Verdict {
+    /// Our number lies within the tolerance, its own uncertainty included.
+    #[serde(rename = "agrees")]
+    Agrees,
+    /// It lies outside, or there is none.
+    #[serde(rename = "differs")]
+    Differs,
+    /// It neither bears the statement out nor refutes it: the limit lies within its uncertainty, or it stands between
+    /// what the words mean for certain and what they cannot mean.
+    #[serde(rename = "indecisive")]
+    Indecisive,
+    /// It depends on what the text does not say.
+    #[serde(rename = "cannot be decided from the text")]
+    Undecidable,
+}
+
+impl Verdict {
+    /// All verdicts, in the order in which they are told.
+    pub const ALL: [Verdict; 4] = [Verdict::Agrees, Verdict::Differs, Verdict::Indecisive, Verdict::Undecidable];
+
+    /// With a sign that is seen at a glance.
+    pub const fn marked(self) -> &'static str {
+        match self {
+            Verdict::Agrees => "✓ agrees",
+            Verdict::Differs => "✗ differs",
+            Verdict::Indecisive => "~ indecisive",
+            Verdict::Undecidable => "? cannot be decided from the text",
+        }
+    }
+}
+
+/// The statement as numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Bounds {
+    /// A number, and how far ours may lie from it.
+    Near { value: f64, tolerance: f64 },
+    /// Anything between two limits, both included; an infinite one is no limit.
+    Within { low: f64, high: f64 },
+    /// As `Within`; but a number outside those limits and within `open` refutes nothing.
+    Graded { low: f64, high: f64, open: (f64, f64) },
+    /// The share of equally plausible choices in which the statement holds.
+    Choices,
+}
+
+/// From this share of the choices on a statement that depends on a choice counts as borne out, and as refuted where so
+/// many contradict it.
+const MOST: f64 = 0.9;
+const FEW: f64 = 0.1;
+
+/// A statement of the thesis, our number, and what follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statement {
+    /// What kind of statement it is.
+    pub kind: Kind,
+    /// What is compared, with its unit.
+    pub quantity: String,
+    /// Where the statement stands.
+    pub source: String,
+    /// The statement as printed.
+    pub stated: String,
+    bounds: Bounds,
+    /// Why the tolerance is what it is.
+    pub reason: String,
+    /// Our number.
+    pub ours: f64,
+    /// How far our number may be off, in its unit.
+    pub uncertainty: f64,
+    /// What the text does not say and the verdict would need; empty where there is nothing.
+    pub missing: String,
+    /// An explanation; may be empty.
+    pub note: String,
+}
+
+impl Statement {
+    /// A printed decimal number, such as `0.11027` or `1.7945e10`, held to half a unit of its last digit. A text that
+    /// is no number never agrees.
+    pub fn printed(quantity: impl Into<String>, source: &str, printed: &str, ours: f64) -> Statement {
+        let read = Comparison::printed("", source, printed, ours);
+        let bounds = match read.expected {
+            Expected::Value { value, tolerance } => Bounds::Near { value, tolerance },
+            Expected::Range { low, high } => Bounds::Within { low, high },
+        };
+        let (kind, reason) = (Kind::PrintedNumber, "half a unit of the last digit");
+        Statement::new(kind, quantity.into(), [source, &read.stated, reason], bounds, ours)
+    }
+
+    /// A number in words, with the tolerance that the words allow.
+    pub fn loose(
+        quantity: impl Into<String>,
+        source: &str,
+        words: &str,
+        (value, tolerance): (f64, f64),
+        reason: &str,
+        ours: f64,
+    ) -> Statement {
+        let bounds = Bounds::Near { value, tolerance };
+        Statement::new(Kind::LooseNumber, quantity.into(), [source, words, reason], bounds, ours)
+    }
+
+    /// A statement without a number, borne out by a number of ours between two limits.
+    pub fn trend(
+        quantity: impl Into<String>,
+        source: &str,
+        words: &str,
+        limits: (f64, f64),
+        reason: &str,
+        ours: f64,
+    ) -> Statement {
+        Statement::within(Kind::Trend, quantity, [source, words, reason], limits, ours)
+    }
+
+    /// What cannot fail unless we err: `texts` are place, words and reason of the tolerance.
+    pub fn identity(quantity: impl Into<String>, texts: [&str; 3], limits: (f64, f64), ours: f64) -> Statement {
+        Statement::within(Kind::Identity, quantity, texts, limits, ours)
+    }
+
+    /// A check of our own: `texts` are place, words and reason of the tolerance.
+    pub fn self_check(quantity: impl Into<String>, texts: [&str; 3], limits: (f64, f64), ours: f64) -> Statement {
+        Statement::within(Kind::SelfCheck, quantity, texts, limits, ours)
+    }
+
+    /// A trend that depends on what the text does not print: in how many of so many plausible choices it holds.
+    pub fn choices(quantity: impl Into<String>, source: &str, words: &str, (holds, of): (usize, usize)) -> Statement {
+        let reason = "borne out, or refuted, by nine in ten of the choices; between, the choice decides";
+        let share = holds as f64 / of as f64;
+        let texts = [source, words, reason];
+        Statement::new(Kind::Trend, quantity.into(), texts, Bounds::Choices, share).note(format!("{holds} of {of}."))
+    }
+
+    fn within(
+        kind: Kind,
+        quantity: impl Into<String>,
+        texts: [&str; 3],
+        (low, high): (f64, f64),
+        ours: f64,
+    ) -> Statement {
+        Statement::new(kind, quantity.into(), texts, Bounds::Within { low, high }, ours)
+    }
+
+    fn new(kind: Kind, quantity: String, texts: [&str; 3], bounds: Bounds, ours: f64) -> Statement {
+        let [source, stated, reason] = texts.map(str::to_owned);
+        let (missing, note) = (String::new(), String::new());
+        Statement { kind, quantity, source, stated, bounds, reason, ours, uncertainty: 0.0, missing, note }
+    }
+
+    /// Adds an explanation.
+    #[must_use]
+    pub fn note(mut self, note: impl AsRef<str>) -> Statement {
+        if !self.note.is_empty() {
+            self.note.push(' ');
+        }
+        self.note += note.as_ref();
+        self
+    }
+
+    /// Says how far our number may be off.
+    #[must_use]
+    pub fn uncertain(mut self, uncertainty: f64) -> Statement {
+        self.uncertainty = uncertainty;
+        self
+    }
+
+    /// Says within which wider limits a number that does not bear the statement out does not refute it either.
+    #[must_use]
+    pub fn open(mut self, open: (f64, f64)) -> Statement {
+        if let Bounds::Within { low, high } = self.bounds {
+            self.bounds = Bounds::Graded { low, high, open };
+        }
+        self
+    }
+
+    /// Holds a printed number to less than half a unit of its last digit.
+    #[must_use]
+    pub fn held_to(mut self, tolerance: f64, reason: &str) -> Statement {
+        if let Bounds::Near { value, tolerance: half } = self.bounds {
+            self.bounds = Bounds::Near { value, tolerance: tolerance.min(half) };
+            self.reason = reason.to_owned();
+        }
+        self
+    }
+
+    /// Says what of the text is missing for a verdict.
+    #[must_use]
+    pub fn missing(mut self, what: &str) -> Statement {
+        self.missing = what.to_owned();
+        self
+    }
+
+    /// Ours minus the stated number; for limits, how far ours lies outside (0 inside).
+    pub fn difference(&self) -> f64 {
+        match self.bounds {
+            Bounds::Near { value, .. } => self.ours - value,
+            Bounds::Within { low, high } | Bounds::Graded { low, high, .. } => outside(self.ours, low, high),
+            Bounds::Choices => outside(self.ours, MOST, 1.0),
+        }
+    }
+
+    /// What follows from the numbers. A number that is not finite differs.
+    pub fn verdict(&self) -> Verdict {
+        let between =
+            |low, high| Statement::judge((self.ours - self.uncertainty, self.ours + self.uncertainty), low, high);
+        if !self.ours.is_finite() {
+            return Verdict::Differs;
+        }
+        if !self.missing.is_empty() {
+            return Verdict::Undecidable;
+        }
+        match self.bounds {
+            Bounds::Near { value, tolerance } => {
+                // the last bits of the comparison's own subtraction are not at stake
+                let allowed = tolerance + 4.0 * f64::EPSILON * value.abs();
+                between(value - allowed, value + allowed)
+            }
+            Bounds::Within { low, high } => between(low, high),
+            Bounds::Graded { low, high, open } => match (between(low, high), between(open.0, open.1)) {
+                (Verdict::Differs, Verdict::Agrees | Verdict::Indecisive) => Verdict::Indecisive,
+                (verdict, _) => verdict,
+            },
+            Bounds::Choices if self.ours >= MOST => Verdict::Agrees,
+            Bounds::Choices if self.ours <= FEW => Verdict::Differs,
+            Bounds::Choices => Verdict::Undecidable,
+        }
+    }
+
+    /// What an interval around our number says of two limits.
+    fn judge((from, to): (f64, f64), low: f64, high: f64) -> Verdict {
+        if from >= low && to <= high {
+            Verdict::Agrees
+        } else if to < low || from > high || low.is_nan() || high.is_nan() {
+            Verdict::Differs
+        } else {
+            Verdict::Indecisive
+        }
+    }
+
+    /// The tolerance in words.
+    pub fn tolerance(&self) -> String {
+        match self.bounds {
+            Bounds::Near { tolerance, .. } => format!("± {}", significant(tolerance, 2)),
+            Bounds::Within { low, high } => limits(low, high),
+            Bounds::Graded { low, high, open } => {
+                format!("{}; open: {}", limits(low, high), limits(open.0, open.1))
+            }
+            Bounds::Choices => limits(MOST, f64::INFINITY),
+        }
+    }
+}
+
+fn outside(ours: f64, low: f64, high: f64) -> f64 {
+    if ours < low {
+        ours - low
+    } else if ours > high {
+        ours - high
+    } else {
+        0.0 * ours
+    }
+}
+
+/// Two limits in words.
+pub(super) fn limits(low: f64, high: f64) -> String {
+    match (low, high) {
+        (_, f64::INFINITY) => format!("≥ {}", significant(low, 3)),
+        (f64::NEG_INFINITY, _) => format!("≤ {}", significant(high, 3)),
+        _ if low == high => format!("= {}", significant(low, 3)),
+        _ => format!("{} to {}", significant(low, 6), significant(high, 6)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(text: &str, ours: f64) -> Verdict {
+        Statement::printed("q", "s", text, ours).verdict()
+    }
+
+    #[test]
+    fn a_printed_number_is_held_to_half_a_unit_of_its_last_digit() {
+        assert_eq!(printed("0.0146", 0.014_548), Verdict::Differs);
+        assert_eq!(printed("0.0145", 0.014_548), Verdict::Agrees);
+        assert_eq!(printed("3.528e4", 35_264.3), Verdict::Differs);
+        assert_eq!(printed("3.53e4", 35_264.3), Verdict::Agrees);
+        assert_eq!(printed("6.030", 6.029_53), Verdict::Agrees);
+        assert_eq!(printed("4", 5.0), Verdict::Differs);
+        assert_eq!(printed("1600", 1600.0), Verdict::Agrees);
+        assert_eq!(printed("none", 0.0), Verdict::Differs);
+        assert_eq!(printed("1.5", f64::NAN), Verdict::Differs);
+        let exact = Statement::printed("q", "s", "1", 1.1);
+        assert_eq!(exact.verdict(), Verdict::Agrees);
+        assert_eq!(exact.clone().held_to(1e-3, "exact").verdict(), Verdict::Differs);
+        assert_eq!(Statement::printed("q", "s", "1.5", 1.6).held_to(9.0, "no").verdict(), Verdict::Differs);
+    }
+
+    #[test]
+    fn a_number_decides_only_beyond_its_own_uncertainty() {
+        let about = |ours: f64| {
+            Statement::loose("q", "s", "about 0.95", (0.95, 0.005), "its last digit", ours).uncertain(0.002).verdict()
+        };
+        let found = [0.95, 0.954, 0.956, 0.96].map(about);
+        assert_eq!(found, [Verdict::Agrees, Verdict::Indecisive, Verdict::Indecisive, Verdict::Differs]);
+    }
+
+    #[test]
+    fn between_what_words_mean_and_what_they_cannot_mean_nothing_is_decided() {
+        let improved = |ours: f64| {
+            Statement::trend("q", "s", "not improved", (0.7, f64::INFINITY), "", ours).open((0.5, f64::INFINITY))
+        };
+        let found = [1.2, 0.7, 0.55, 0.4].map(|ours| improved(ours).verdict());
+        assert_eq!(found, [Verdict::Agrees, Verdict::Agrees, Verdict::Indecisive, Verdict::Differs]);
+        assert_eq!(improved(0.6).tolerance(), "≥ 0.7; open: ≥ 0.5");
+        assert_eq!(improved(0.6).uncertain(0.2).verdict(), Verdict::Indecisive);
+    }
+
+    #[test]
+    fn choices_that_the_text_leaves_open_decide_when_nearly_all_agree() {
+        let of = |holds: usize| Statement::choices("q", "s", "w", (holds, 30)).verdict();
+        assert_eq!([30, 27, 26, 4, 3, 0].map(of), {
+            use Verdict::{Agrees, Differs, Undecidable};
+            [Agrees, Agrees, Undecidable, Undecidable, Differs, Differs]
+        });
+        assert_eq!(Statement::choices("q", "s", "w", (0, 0)).verdict(), Verdict::Differs);
+    }
+
+    #[test]
+    fn what_the_text_does_not_say_is_not_decided() {
+        let statement = Statement::trend("q", "s", "w", (0.0, 1.0), "r", 0.5);
+        assert_eq!(statement.verdict(), Verdict::Agrees);
+        assert_eq!(statement.missing("the scale").verdict(), Verdict::Undecidable);
+    }
+}
