@@ -45,6 +45,7 @@
 //! of an undamped mode is refused. Errors grow along a chaotic motion: compare with a run at another tolerance to see up
 //! to when event times agree.
 
+mod branch;
 mod collocate;
 mod damping;
 mod dense;
@@ -53,6 +54,7 @@ mod event;
 mod ledger;
 mod load;
 mod march;
+mod orbit;
 mod problem;
 mod reliability;
 mod rest;
@@ -63,6 +65,8 @@ mod system;
 mod tables;
 mod terminal;
 
+pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
+pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit};
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
 pub use reliability::COARSER;
 pub use solution::{

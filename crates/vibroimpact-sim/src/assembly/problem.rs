@@ -126,7 +126,6 @@ pub struct Assembly<L> {
 
 /// How accurately, and how far.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Settings {
     /// Time at which the run ends (s).
     pub end_s: f64,

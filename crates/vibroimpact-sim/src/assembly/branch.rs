@@ -1,0 +1,359 @@
+//! Branches of periodic motions over one parameter.
+//!
+//! A branch is a curve in the space of the state `x` and a parameter `p`, both measured in their own size. It is followed
+//! by pseudo-arclength: a step along the tangent, then Newton's method on `P(x, p) = x` and on the distance made good, so
+//! that it goes round folds. Along it the Floquet multipliers tell where stability is lost or gained, and how:
+//!
+//! | point | what passes |
+//! |---|---|
+//! | fold | the parameter turns: a multiplier at +1 |
+//! | period doubling | a multiplier at -1 |
+//! | Neimark-Sacker | a pair of complex multipliers at size 1 |
+//! | grazing | an interval of contact appears or goes: the contact is touched at no speed |
+//!
+//! Each is located by halving the step between the two orbits that it lies between.
+
+use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, find_orbit, refine};
+use super::problem::Assembly;
+use crate::InvalidInput;
+use contact_models::ContactLaw;
+use nalgebra::{DMatrix, DVector};
+
+/// Change of the parameter for its differences, relative to its range.
+const DIFFERENCE: f64 = 1e-6;
+/// Newton iterations of a step along the branch.
+const ITERATIONS_MAX: u32 = 8;
+/// A step that took fewer iterations than this is followed by a longer one.
+const QUICK: u32 = 4;
+/// Halvings with which a special point is located.
+const HALVINGS: u32 = 20;
+
+/// How a branch is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BranchSettings {
+    /// How each periodic motion is found.
+    pub orbit: OrbitSettings,
+    /// The range of the parameter: the branch starts at the first value and goes towards the second.
+    pub from: f64,
+    /// See `from`.
+    pub to: f64,
+    /// First step, as a part of the range. Default 0.02.
+    pub step: f64,
+    /// Longest step, likewise. Default 0.05.
+    pub longest_step: f64,
+    /// Orbits at most. Default 500.
+    pub max_orbits: usize,
+}
+
+impl BranchSettings {
+    /// Over this range, with the defaults.
+    pub fn over(from: f64, to: f64) -> BranchSettings {
+        let orbit = OrbitSettings::default();
+        BranchSettings { orbit, from, to, step: 0.02, longest_step: 0.05, max_orbits: 500 }
+    }
+
+    fn check(&self) -> Result<(), InvalidInput> {
+        self.orbit.check()?;
+        let range = self.from.is_finite() && self.to.is_finite() && self.from != self.to;
+        InvalidInput::unless(range, "to", self.to, "a finite number that differs from where the branch starts")?;
+        let step = self.step > 0.0 && self.step <= 0.5;
+        InvalidInput::unless(step, "step", self.step, "a positive part of the range, at most 0.5")?;
+        let longest = self.longest_step >= self.step && self.longest_step <= 0.5;
+        InvalidInput::unless(longest, "longest_step", self.longest_step, "from the first step to 0.5")?;
+        InvalidInput::unless(self.max_orbits > 0, "max_orbits", self.max_orbits, "at least 1")
+    }
+}
+
+/// What happens at a special point of a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Special {
+    /// The parameter turns.
+    Fold,
+    /// A multiplier passes -1.
+    PeriodDoubling,
+    /// A pair of complex multipliers passes the unit circle.
+    NeimarkSacker,
+    /// An interval of contact appears or goes.
+    Grazing,
+}
+
+impl Special {
+    /// The name for tables and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Special::Fold => "fold",
+            Special::PeriodDoubling => "period doubling",
+            Special::NeimarkSacker => "Neimark-Sacker",
+            Special::Grazing => "grazing",
+        }
+    }
+}
+
+/// An orbit of a branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BranchPoint {
+    /// The parameter.
+    pub parameter: f64,
+    /// The periodic motion there.
+    pub orbit: Orbit,
+}
+
+/// A special point of a branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpecialPoint {
+    /// What happens.
+    pub kind: Special,
+    /// The parameter.
+    pub parameter: f64,
+    /// By how much the parameter may be off: half the distance of the two orbits that the point lies between.
+    pub uncertainty: f64,
+    /// The orbit of the branch that follows it.
+    pub before_orbit: usize,
+}
+
+/// A branch of periodic motions.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Branch {
+    /// The orbits in the order in which they were found.
+    pub points: Vec<BranchPoint>,
+    /// Where stability or the pattern of contacts changes.
+    pub special: Vec<SpecialPoint>,
+    /// Whether the branch was followed to an end of the range; otherwise the last orbit is as far as it could be.
+    pub complete: bool,
+}
+
+/// Follows the branch of periodic motions of `build(parameter)`.
+///
+/// # Errors
+/// Settings out of range, input that poses no problem, or what `build` finds wrong.
+pub fn follow_branch<L: ContactLaw + Clone>(
+    build: impl Fn(f64) -> Result<Assembly<L>, InvalidInput>,
+    settings: &BranchSettings,
+    mut progress: impl FnMut(&BranchPoint) -> bool,
+) -> Result<Branch, InvalidInput> {
+    settings.check()?;
+    let OrbitOutcome::Found(first) = find_orbit(&build(settings.from)?, &settings.orbit)? else {
+        return Ok(Branch::default());
+    };
+    let mut follower = Follower { build, settings, phase_part: first.phase_s / first.period_s };
+    let mut branch = Branch::default();
+    let mut current = BranchPoint { parameter: settings.from, orbit: *first };
+    let Some(mut tangent) = follower.first_tangent(&current)? else { return Ok(branch) };
+    let mut step = settings.step;
+    if !progress(&current) {
+        branch.points.push(current);
+        return Ok(branch);
+    }
+    branch.points.push(current.clone());
+    while branch.points.len() < settings.max_orbits {
+        let Some((next, iterations)) = follower.step(&current, &tangent, step)? else {
+            step *= 0.5;
+            if step < 1e-5 * settings.step {
+                return Ok(branch);
+            }
+            continue;
+        };
+        let new_tangent = follower.between(&current, &next, &tangent);
+        for kind in
+            differences(&current.orbit, &next.orbit, tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1])
+        {
+            let before_orbit = branch.points.len();
+            let (parameter, uncertainty) = follower.locate(&current, &tangent, step, kind)?;
+            branch.special.push(SpecialPoint { kind, parameter, uncertainty, before_orbit });
+        }
+        (current, tangent) = (next, new_tangent);
+        let goes_on = progress(&current);
+        branch.points.push(current.clone());
+        let (low, high) = (settings.from.min(settings.to), settings.from.max(settings.to));
+        if !(low..=high).contains(&current.parameter) {
+            branch.complete = true;
+            break;
+        }
+        if !goes_on {
+            break;
+        }
+        if iterations < QUICK {
+            step = (1.5 * step).min(settings.longest_step);
+        }
+    }
+    Ok(branch)
+}
+
+/// What differs between two neighbours on a branch; `turn` is negative where the parameter turns between them.
+fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
+    let mut found = Vec::new();
+    if turn < 0.0 {
+        found.push(Special::Fold);
+    }
+    let flips = |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| m[1] == 0.0 && m[0] < -1.0).count();
+    if flips(one) != flips(other) {
+        found.push(Special::PeriodDoubling);
+    }
+    let spirals =
+        |orbit: &Orbit| orbit.floquet_multipliers.iter().filter(|m| m[1] != 0.0 && m[0].hypot(m[1]) > 1.0).count();
+    if spirals(one) != spirals(other) && flips(one) == flips(other) {
+        found.push(Special::NeimarkSacker);
+    }
+    if one.intervals_per_period != other.intervals_per_period {
+        found.push(Special::Grazing);
+    }
+    found
+}
+
+struct Follower<'a, F> {
+    build: F,
+    settings: &'a BranchSettings,
+    /// The moment of the period at which states are taken, as a part of it: it stays the same along the branch.
+    phase_part: f64,
+}
+
+impl<L, F> Follower<'_, F>
+where
+    L: ContactLaw + Clone,
+    F: Fn(f64) -> Result<Assembly<L>, InvalidInput>,
+{
+    fn range(&self) -> f64 {
+        self.settings.to - self.settings.from
+    }
+
+    fn map(&self, parameter: f64) -> Result<PeriodMap<L>, InvalidInput> {
+        let map = PeriodMap::new((self.build)(parameter)?, &self.settings.orbit)?;
+        let phase = self.phase_part * map.period_s();
+        Ok(map.at_phase(phase))
+    }
+
+    fn state(orbit: &Orbit) -> DVector<f64> {
+        DVector::from_column_slice(&orbit.state)
+    }
+
+    /// State and parameter in units of their sizes.
+    fn scaled(&self, point: &BranchPoint, scales: &DVector<f64>) -> DVector<f64> {
+        let state = Self::state(&point.orbit).component_div(scales);
+        let n = state.len();
+        state.insert_row(n, point.parameter / self.range())
+    }
+
+    fn scales(&self, point: &BranchPoint) -> Result<DVector<f64>, InvalidInput> {
+        let state = Self::state(&point.orbit);
+        Ok(self.map(point.parameter)?.scales(&state, &state))
+    }
+
+    /// `DP - 1` and `dP/dp`, scaled; `None` where a run stops.
+    fn linearised(
+        &self,
+        state: &DVector<f64>,
+        parameter: f64,
+        scales: &DVector<f64>,
+    ) -> Result<Option<DMatrix<f64>>, InvalidInput> {
+        let n = state.len();
+        let map = self.map(parameter)?;
+        let Ok(jacobian) = map.derivative(state, scales)? else { return Ok(None) };
+        let step = DIFFERENCE * self.range();
+        let above = self.map(parameter + step)?.apply(state)?;
+        let below = self.map(parameter - step)?.apply(state)?;
+        let (Ok(above), Ok(below)) = (above, below) else { return Ok(None) };
+        let slope = (above - below) / (2.0 * DIFFERENCE);
+        Ok(Some(DMatrix::from_fn(n, n + 1, |i, j| {
+            if j == n {
+                slope[i] / scales[i]
+            } else {
+                (jacobian[(i, j)] - f64::from(u8::from(i == j))) * scales[j] / scales[i]
+            }
+        })))
+    }
+
+    /// The unit vector along the branch, with the parameter towards the end of its range.
+    fn first_tangent(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, InvalidInput> {
+        let scales = self.scales(point)?;
+        let state = Self::state(&point.orbit);
+        let n = state.len();
+        let Some(matrix) = self.linearised(&state, point.parameter, &scales)? else { return Ok(None) };
+        let square = matrix.columns(0, n).into_owned();
+        let Some(moved) = square.lu().solve(&(-matrix.column(n))) else { return Ok(None) };
+        let tangent = moved.insert_row(n, 1.0);
+        Ok(Some(&tangent / tangent.norm()))
+    }
+
+    /// The unit vector from one orbit to the next, along the branch.
+    fn between(&self, one: &BranchPoint, other: &BranchPoint, before: &DVector<f64>) -> DVector<f64> {
+        let Ok(scales) = self.scales(one) else { return before.clone() };
+        let difference = self.scaled(other, &scales) - self.scaled(one, &scales);
+        let size = difference.norm();
+        if size > 0.0 { difference / size } else { before.clone() }
+    }
+
+    /// The orbit a step further along the tangent, and the iterations that it took; `None` if none was found.
+    fn step(
+        &self,
+        from: &BranchPoint,
+        tangent: &DVector<f64>,
+        step: f64,
+    ) -> Result<Option<(BranchPoint, u32)>, InvalidInput> {
+        let scales = self.scales(from)?;
+        let base = self.scaled(from, &scales);
+        let n = scales.len();
+        let mut at = &base + step * tangent;
+        for iteration in 1..=ITERATIONS_MAX {
+            let state = at.rows(0, n).component_mul(&scales);
+            let parameter = at[n] * self.range();
+            let Ok(map) = self.map(parameter) else { return Ok(None) };
+            let Ok(image) = map.apply(&state)? else { return Ok(None) };
+            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(None) };
+            let defect = (&image - &state).component_div(&scales);
+            let made = (&at - &base).dot(tangent) - step;
+            let whole = DMatrix::from_fn(n + 1, n + 1, |i, j| if i < n { matrix[(i, j)] } else { tangent[j] });
+            let right = DVector::from_fn(n + 1, |i, _| if i < n { -defect[i] } else { -made });
+            let Some(change) = whole.lu().solve(&right) else { return Ok(None) };
+            if change.norm() > 10.0 * step + 1e-3 {
+                return Ok(None);
+            }
+            at += &change;
+            if change.amax() < self.settings.orbit.closure.sqrt() * 1e-2 {
+                let parameter = at[n] * self.range();
+                let state = at.rows(0, n).component_mul(&scales);
+                let Ok(map) = self.map(parameter) else { return Ok(None) };
+                return Ok(match refine(&map, state, &self.settings.orbit)? {
+                    OrbitOutcome::Found(orbit) => Some((BranchPoint { parameter, orbit: *orbit }, iteration)),
+                    _ => None,
+                });
+            }
+        }
+        Ok(None)
+    }
+
+    /// The parameter of a special point within a step, and by how much it may be off.
+    fn locate(
+        &mut self,
+        from: &BranchPoint,
+        tangent: &DVector<f64>,
+        step: f64,
+        kind: Special,
+    ) -> Result<(f64, f64), InvalidInput> {
+        let (mut low, mut high) = (0.0, step);
+        let (mut below, mut above) = (from.parameter, f64::NAN);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let Some((point, _)) = self.step(from, tangent, middle)? else { break };
+            // a fold lies where the parameter is farthest: towards the end from which it turns back
+            let passed = if kind == Special::Fold {
+                let Some((beyond, _)) = self.step(from, tangent, middle + 1e-3 * (high - low))? else { break };
+                (beyond.parameter - point.parameter) * tangent[tangent.len() - 1] * self.range() < 0.0
+            } else {
+                differences(&from.orbit, &point.orbit, 1.0).contains(&kind)
+            };
+            if passed {
+                (high, above) = (middle, point.parameter);
+            } else {
+                (low, below) = (middle, point.parameter);
+            }
+            if (above - below).abs() <= 1e-8 * self.range().abs() {
+                break;
+            }
+        }
+        if above.is_nan() {
+            above = self.step(from, tangent, high)?.map_or(below, |(point, _)| point.parameter);
+        }
+        Ok((0.5 * (below + above), 0.5 * (above - below).abs()))
+    }
+}

@@ -1,0 +1,466 @@
+//! Periodic motions under harmonic loads.
+//!
+//! After `n` periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by the march. A periodic
+//! motion is a fixed point, found by Newton's method, `(DP - 1) dx = x - P(x)`; the eigenvalues of `DP` there are its
+//! Floquet multipliers, and it is stable where none exceeds 1 in size. `DP` is taken by central differences of the map,
+//! which is known to the tolerance of the run. Where contacts graze the map has no derivative, and Newton's method
+//! need not converge.
+//!
+//! The states are compared at a moment at which every contact is open, if the motion has one: what a law remembers of a
+//! contact under way is no part of `x`.
+
+use super::problem::{Assembly, Force, Settings};
+use super::solution::{ContactSample, Interval, Motion, Observer, Outcome};
+use super::solve::run;
+use crate::InvalidInput;
+use contact_models::ContactLaw;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Changes for the differences, relative to the size of the motion.
+const DIFFERENCE: f64 = 1e-5;
+/// Moments of a period at which it is sampled.
+const SAMPLES: usize = 1024;
+/// A multiplier may exceed 1 by this much before a motion counts as unstable: the differences know no more.
+const MARGINAL: f64 = 1e-6;
+/// Frequencies of loads are multiples of one if they are so to this accuracy.
+const COMMENSURATE: f64 = 1e-9;
+
+/// How a periodic motion is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrbitSettings {
+    /// Periods of the loads after which the motion repeats. Default 1.
+    pub forcing_periods: u32,
+    /// Periods that are followed from the start before Newton's method. Default 100.
+    pub transient_periods: u32,
+    /// Tolerance of the runs, see [`Settings::tolerance`]. Default 1e-11.
+    pub tolerance: f64,
+    /// Difference `|P(x) - x|`, relative to the size of the motion, that counts as none. Default 1e-9.
+    pub closure: f64,
+    /// Newton iterations at most. Default 30.
+    pub max_iterations: u32,
+}
+
+impl Default for OrbitSettings {
+    fn default() -> OrbitSettings {
+        OrbitSettings {
+            forcing_periods: 1,
+            transient_periods: 100,
+            tolerance: 1e-11,
+            closure: 1e-9,
+            max_iterations: 30,
+        }
+    }
+}
+
+impl OrbitSettings {
+    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+        InvalidInput::unless(self.forcing_periods > 0, "forcing_periods", self.forcing_periods, "at least 1")?;
+        InvalidInput::unless(self.max_iterations > 0, "max_iterations", self.max_iterations, "at least 1")?;
+        let closure = (1e-13..=0.1).contains(&self.closure);
+        InvalidInput::unless(closure, "closure", self.closure, "1e-13 to 0.1")
+    }
+}
+
+/// How one side of a contact moves on an orbit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SideMotion {
+    /// Amplitude of the displacement at the orbit's first harmonic of the loads (m).
+    pub displacement_first_harmonic_m: f64,
+    /// Largest and least displacement (m).
+    pub displacement_max_m: f64,
+    /// See `displacement_max_m`.
+    pub displacement_min_m: f64,
+}
+
+/// A periodic motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orbit {
+    /// Period of the motion (s), `forcing_periods` times that of the loads.
+    pub period_s: f64,
+    /// Periods of the loads in it.
+    pub forcing_periods: u32,
+    /// The moment of the loads' period at which the state is given (s).
+    pub phase_s: f64,
+    /// The state then: amplitudes of all modes, body by body, then their rates.
+    pub state: Vec<f64>,
+    /// `|P(x) - x|`, relative to the size of the motion.
+    pub closure: f64,
+    /// Floquet multipliers, real and imaginary part, the largest first.
+    pub floquet_multipliers: Vec<[f64; 2]>,
+    /// Whether no multiplier lies outside the unit circle.
+    pub stable: bool,
+    /// Intervals of contact that begin within a period, contact by contact.
+    pub intervals_per_period: Vec<u64>,
+    /// Motion of both sides of every contact.
+    pub sides: Vec<[SideMotion; 2]>,
+    /// Newton iterations that led here.
+    pub iterations: u32,
+}
+
+/// What the search for a periodic motion came to.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum OrbitOutcome {
+    /// It was found.
+    Found(Box<Orbit>),
+    /// Newton's method came no nearer than this to a motion that repeats itself.
+    NotFound {
+        /// `|P(x) - x|`, relative to the size of the motion.
+        closure: f64,
+    },
+    /// A run of a period stopped before its end.
+    Stopped(Outcome),
+}
+
+/// Finds a periodic motion near where a transient from the assembly's start leads.
+///
+/// # Errors
+/// Input that poses no problem; no harmonic load, or several whose frequencies are no multiples of one.
+pub fn find_orbit<L: ContactLaw + Clone>(
+    assembly: &Assembly<L>,
+    settings: &OrbitSettings,
+) -> Result<OrbitOutcome, InvalidInput> {
+    settings.check()?;
+    let mut map = PeriodMap::new(assembly.clone(), settings)?;
+    let transient = map.transient(settings.transient_periods)?;
+    match transient {
+        Ok(state) => refine(&map, state, settings),
+        Err(outcome) => Ok(OrbitOutcome::Stopped(outcome)),
+    }
+}
+
+/// Newton's method from a state near an orbit.
+pub(super) fn refine<L: ContactLaw + Clone>(
+    map: &PeriodMap<L>,
+    mut state: DVector<f64>,
+    settings: &OrbitSettings,
+) -> Result<OrbitOutcome, InvalidInput> {
+    let mut image = match map.apply(&state)? {
+        Ok(image) => image,
+        Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
+    };
+    let mut iterations = 0;
+    loop {
+        let scales = map.scales(&state, &image);
+        let closure = map.distance(&(&image - &state), &scales);
+        let jacobian = match map.derivative(&state, &scales)? {
+            Ok(jacobian) => jacobian,
+            Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
+        };
+        if closure <= settings.closure {
+            return map.describe(state, closure, &jacobian, iterations);
+        }
+        if iterations == settings.max_iterations {
+            return Ok(OrbitOutcome::NotFound { closure });
+        }
+        iterations += 1;
+        let matrix = &jacobian - DMatrix::identity(state.len(), state.len());
+        let Some(step) = matrix.lu().solve(&(&state - &image)) else {
+            return Ok(OrbitOutcome::NotFound { closure });
+        };
+        // a full step, or a shorter one that brings the ends nearer
+        let mut part = 1.0;
+        let next = loop {
+            let trial = &state + part * &step;
+            if let Ok(after) = map.apply(&trial)?
+                && (map.distance(&(&after - &trial), &scales) < closure || part < 1e-3)
+            {
+                break Some((trial, after));
+            }
+            part *= 0.5;
+            if part < 1e-4 {
+                break None;
+            }
+        };
+        match next {
+            Some((trial, after)) => (state, image) = (trial, after),
+            None => return Ok(OrbitOutcome::NotFound { closure }),
+        }
+    }
+}
+
+/// The map of the state over a period of the loads.
+pub(super) struct PeriodMap<L> {
+    assembly: Assembly<L>,
+    settings: Settings,
+    forcing_period_s: f64,
+    forcing_periods: u32,
+    phase_s: f64,
+}
+
+type Reached<T> = Result<Result<T, Outcome>, InvalidInput>;
+
+impl<L: ContactLaw + Clone> PeriodMap<L> {
+    pub fn new(assembly: Assembly<L>, settings: &OrbitSettings) -> Result<PeriodMap<L>, InvalidInput> {
+        assembly.check()?;
+        let frequencies = assembly.loads.iter().filter_map(|load| match load.force {
+            Force::Harmonic { omega_rad_s, .. } => Some(omega_rad_s),
+            _ => None,
+        });
+        let base = frequencies.clone().fold(f64::INFINITY, f64::min);
+        InvalidInput::unless(base.is_finite(), "loads", "no harmonic load", "at least one harmonic load")?;
+        for omega in frequencies {
+            let ratio = omega / base;
+            InvalidInput::unless(
+                (ratio - ratio.round()).abs() <= COMMENSURATE * ratio,
+                "loads",
+                format!("{omega} rad/s beside {base} rad/s"),
+                "frequencies that are whole multiples of the lowest",
+            )?;
+        }
+        let sampled = assembly.loads.iter().any(|load| matches!(load.force, Force::Sampled { .. }));
+        InvalidInput::unless(
+            !sampled,
+            "loads",
+            "a sampled load",
+            "constant and harmonic loads, which repeat themselves",
+        )?;
+        let forcing_period_s = TAU / base;
+        let mut runs = Settings::until(forcing_period_s * f64::from(settings.forcing_periods));
+        runs.tolerance = settings.tolerance;
+        runs.stop_at_rest = false;
+        runs.check()?;
+        let forcing_periods = settings.forcing_periods;
+        Ok(PeriodMap { assembly, settings: runs, forcing_period_s, forcing_periods, phase_s: 0.0 })
+    }
+
+    pub fn period_s(&self) -> f64 {
+        self.settings.end_s
+    }
+
+    /// The same map with the states taken at another moment of the loads' period.
+    pub fn at_phase(mut self, phase_s: f64) -> PeriodMap<L> {
+        self.set_phase(phase_s);
+        self
+    }
+
+    fn set_phase(&mut self, phase_s: f64) {
+        for load in &mut self.assembly.loads {
+            if let Force::Harmonic { omega_rad_s, phase_rad, .. } = &mut load.force {
+                *phase_rad += *omega_rad_s * (phase_s - self.phase_s);
+            }
+        }
+        self.phase_s = phase_s;
+    }
+
+    fn posed(&self, state: &DVector<f64>) -> Assembly<L> {
+        let mut assembly = self.assembly.clone();
+        let n = state.len() / 2;
+        let mut next = 0;
+        for body in &mut assembly.bodies {
+            for k in 0..body.modes.len() {
+                (body.amplitude[k], body.rate[k]) = (state[next], state[n + next]);
+                next += 1;
+            }
+        }
+        assembly
+    }
+
+    fn state_of(amplitude: &[Vec<f64>], rate: &[Vec<f64>]) -> DVector<f64> {
+        let values = amplitude.iter().chain(rate).flatten().copied();
+        DVector::from_vec(values.collect())
+    }
+
+    fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
+        let settings = Settings { end_s, ..self.settings };
+        let found = run(&self.posed(state), &settings, observer)?;
+        Ok(match found.outcome {
+            Outcome::End => Ok(Self::state_of(&found.amplitude, &found.rate)),
+            other => Err(other),
+        })
+    }
+
+    /// `P(x)`.
+    pub fn apply(&self, state: &DVector<f64>) -> Reached<DVector<f64>> {
+        self.follow(state, self.settings.end_s, &mut ())
+    }
+
+    /// The assembly's own start.
+    pub fn start(&self) -> DVector<f64> {
+        let of =
+            |part: fn(&super::Body) -> &Vec<f64>| self.assembly.bodies.iter().map(part).cloned().collect::<Vec<_>>();
+        Self::state_of(&of(|body| &body.amplitude), &of(|body| &body.rate))
+    }
+
+    /// Follows the start for some periods and moves the phase to the middle of the longest time without contact.
+    fn transient(&mut self, periods: u32) -> Reached<DVector<f64>> {
+        let mut state = self.start();
+        if periods > 0 {
+            let span = f64::from(periods) * self.forcing_period_s;
+            match self.follow(&state, span, &mut ())? {
+                Ok(reached) => state = reached,
+                Err(outcome) => return Ok(Err(outcome)),
+            }
+        }
+        let mut closed = Closed::default();
+        if let Err(outcome) = self.follow(&state, self.settings.end_s, &mut closed)? {
+            return Ok(Err(outcome));
+        }
+        let phase = closed.middle_of_longest_gap(self.settings.end_s);
+        if phase > 0.0 {
+            match self.follow(&state, phase, &mut ())? {
+                Ok(reached) => state = reached,
+                Err(outcome) => return Ok(Err(outcome)),
+            }
+            self.set_phase(phase % self.forcing_period_s);
+        }
+        Ok(Ok(state))
+    }
+
+    /// Sizes of the state's numbers: every rate as large as the largest, every amplitude as goes with it.
+    pub fn scales(&self, state: &DVector<f64>, image: &DVector<f64>) -> DVector<f64> {
+        let n = state.len() / 2;
+        let omega: Vec<f64> =
+            self.assembly.bodies.iter().flat_map(|body| body.modes.iter().map(|mode| mode.omega_rad_s)).collect();
+        let base = TAU / self.forcing_period_s;
+        let speed =
+            |x: &DVector<f64>| (0..n).map(|k| x[n + k].abs().max(omega[k].max(base) * x[k].abs())).fold(0.0, f64::max);
+        let speed = speed(state).max(speed(image)).max(1e-30);
+        DVector::from_fn(2 * n, |i, _| if i < n { speed / omega[i].max(base) } else { speed })
+    }
+
+    pub fn distance(&self, difference: &DVector<f64>, scales: &DVector<f64>) -> f64 {
+        difference.iter().zip(scales.iter()).map(|(d, scale)| (d / scale).abs()).fold(0.0, f64::max)
+    }
+
+    /// `DP`, by central differences.
+    pub fn derivative(&self, state: &DVector<f64>, scales: &DVector<f64>) -> Reached<DMatrix<f64>> {
+        let n = state.len();
+        let mut jacobian = DMatrix::zeros(n, n);
+        for i in 0..n {
+            let step = DIFFERENCE * scales[i];
+            let mut sides = [None, None];
+            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                let mut moved = state.clone();
+                moved[i] += sign * step;
+                match self.apply(&moved)? {
+                    Ok(image) => *side = Some(image),
+                    Err(outcome) => return Ok(Err(outcome)),
+                }
+            }
+            if let [Some(above), Some(below)] = sides {
+                jacobian.set_column(i, &((above - below) / (2.0 * step)));
+            }
+        }
+        Ok(Ok(jacobian))
+    }
+
+    /// All about the orbit through a state.
+    fn describe(
+        &self,
+        state: DVector<f64>,
+        closure: f64,
+        jacobian: &DMatrix<f64>,
+        iterations: u32,
+    ) -> Result<OrbitOutcome, InvalidInput> {
+        let mut survey = Survey::new(self.assembly.contacts.len(), self.settings.end_s);
+        if let Err(outcome) = self.follow(&state, self.settings.end_s, &mut survey)? {
+            return Ok(OrbitOutcome::Stopped(outcome));
+        }
+        let eigenvalues = jacobian.complex_eigenvalues();
+        let mut floquet_multipliers: Vec<[f64; 2]> = eigenvalues.iter().map(|value| [value.re, value.im]).collect();
+        floquet_multipliers.sort_by(|a, b| b[0].hypot(b[1]).total_cmp(&a[0].hypot(a[1])));
+        let stable = floquet_multipliers.iter().all(|value| value[0].hypot(value[1]) <= 1.0 + MARGINAL);
+        let (intervals_per_period, sides) = survey.result(self.forcing_periods);
+        Ok(OrbitOutcome::Found(Box::new(Orbit {
+            period_s: self.settings.end_s,
+            forcing_periods: self.forcing_periods,
+            phase_s: self.phase_s,
+            state: state.iter().copied().collect(),
+            closure,
+            floquet_multipliers,
+            stable,
+            intervals_per_period,
+            sides,
+            iterations,
+        })))
+    }
+}
+
+/// When any contact is closed.
+#[derive(Default)]
+struct Closed(Vec<(f64, f64)>);
+
+impl Observer for Closed {
+    fn interval(&mut self, _: usize, interval: &Interval) {
+        self.0.push((interval.start_s, interval.end_s.unwrap_or(f64::INFINITY)));
+    }
+}
+
+impl Closed {
+    fn middle_of_longest_gap(mut self, end_s: f64) -> f64 {
+        self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut open_since, mut best) = (0.0, (0.0, 0.0));
+        for (start, end) in self.0.into_iter().chain([(end_s, end_s)]) {
+            if start - open_since > best.0 {
+                best = (start - open_since, 0.5 * (start + open_since));
+            }
+            open_since = f64::max(open_since, end);
+        }
+        best.1
+    }
+}
+
+/// Samples of a period.
+struct Survey {
+    period_s: f64,
+    next: usize,
+    samples: Vec<Vec<[f64; 2]>>,
+    intervals: Vec<u64>,
+}
+
+impl Survey {
+    fn new(contacts: usize, period_s: f64) -> Survey {
+        Survey { period_s, next: 0, samples: vec![Vec::with_capacity(SAMPLES); contacts], intervals: vec![0; contacts] }
+    }
+
+    fn result(&self, forcing_periods: u32) -> (Vec<u64>, Vec<[SideMotion; 2]>) {
+        let side = |samples: &Vec<[f64; 2]>, side: usize| {
+            let (mut cosine, mut sine) = (0.0, 0.0);
+            let mut motion = SideMotion {
+                displacement_max_m: f64::NEG_INFINITY,
+                displacement_min_m: f64::INFINITY,
+                ..SideMotion::default()
+            };
+            for (i, values) in samples.iter().enumerate() {
+                let (s, c) = (TAU * f64::from(forcing_periods) * i as f64 / SAMPLES as f64).sin_cos();
+                cosine += values[side] * c;
+                sine += values[side] * s;
+                motion.displacement_max_m = motion.displacement_max_m.max(values[side]);
+                motion.displacement_min_m = motion.displacement_min_m.min(values[side]);
+            }
+            motion.displacement_first_harmonic_m = 2.0 * cosine.hypot(sine) / samples.len().max(1) as f64;
+            motion
+        };
+        let sides = self.samples.iter().map(|samples| [side(samples, 0), side(samples, 1)]).collect();
+        (self.intervals.clone(), sides)
+    }
+}
+
+impl Observer for Survey {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        // one that is under way at the start is counted where it begins
+        if interval.start_s > 0.0 || interval.end_s.is_none() {
+            self.intervals[contact] += 1;
+        }
+    }
+
+    fn panel(&mut self, panel: &dyn Motion) {
+        while self.next < SAMPLES {
+            let time = self.period_s * self.next as f64 / SAMPLES as f64;
+            if time > panel.end_s() {
+                break;
+            }
+            for (c, samples) in self.samples.iter_mut().enumerate() {
+                let ContactSample { displacement_m, .. } = panel.contact(c, time);
+                samples.push(displacement_m);
+            }
+            self.next += 1;
+        }
+    }
+
+    fn wants_panels(&self) -> bool {
+        true
+    }
+}

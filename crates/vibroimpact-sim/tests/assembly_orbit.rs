@@ -1,0 +1,193 @@
+//! Periodic motions against closed forms.
+
+use contact_models::{Law, LinearSpring};
+use std::f64::consts::PI;
+use vibroimpact_sim::assembly::{
+    Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, OrbitOutcome, OrbitSettings,
+    Point, Settings, Special, find_orbit, follow_branch, run,
+};
+
+fn point(shape: f64) -> Point {
+    Point::OfBody { body: 0, shape: vec![shape] }
+}
+
+/// A damped oscillator of 1 kg, driven harmonically beside a stop.
+fn driven(damping_ratio: f64, gap_m: f64, force_n: f64, omega_rad_s: f64) -> Assembly<Law> {
+    let body = Body::at_rest(vec![BodyMode { omega_rad_s: 10.0, damping_ratio }]);
+    let law = Law::from(LinearSpring::new(50.0).unwrap());
+    let stop = Contact { sides: [Point::Ground, point(1.0)], gap_m, law };
+    let force = Force::Harmonic { force_n, omega_rad_s, phase_rad: 0.3 };
+    Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![Load { body: 0, shape: vec![1.0], force }] }
+}
+
+#[test]
+fn without_contact_the_orbit_is_the_steady_motion_and_its_multipliers_are_known() {
+    let (zeta, omega) = (0.02f64, 7.0);
+    let assembly = driven(zeta, 1.0, 1.0, omega);
+    let OrbitOutcome::Found(orbit) = find_orbit(&assembly, &OrbitSettings::default()).unwrap() else { panic!() };
+    let period = 2.0 * PI / omega;
+    assert!((orbit.period_s - period).abs() < 1e-14);
+    assert_eq!(orbit.intervals_per_period, [0]);
+    let amplitude = ((100.0f64 - omega * omega).powi(2) + (2.0 * zeta * 10.0 * omega).powi(2)).sqrt().recip();
+    let side = orbit.sides[0][1];
+    assert!((side.displacement_first_harmonic_m / amplitude - 1.0).abs() < 1e-9, "{side:?}");
+    assert!((side.displacement_max_m / amplitude - 1.0).abs() < 1e-5);
+    // exp(lambda T), lambda = -zeta omega_0 +- i omega_d
+    let (size, angle) = ((-zeta * 10.0 * period).exp(), 10.0 * (1.0 - zeta * zeta).sqrt() * period);
+    for multiplier in &orbit.floquet_multipliers {
+        assert!((multiplier[0] - size * angle.cos()).abs() < 1e-8, "{multiplier:?}");
+        assert!((multiplier[1].abs() - (size * angle.sin()).abs()).abs() < 1e-8);
+    }
+    assert!(orbit.stable);
+}
+
+#[test]
+fn an_orbit_against_a_stop_repeats_itself_and_its_multipliers_have_the_right_product() {
+    let (zeta, omega) = (0.05, 9.0);
+    let assembly = driven(zeta, 1e-3, 1.0, omega);
+    let OrbitOutcome::Found(orbit) = find_orbit(&assembly, &OrbitSettings::default()).unwrap() else { panic!() };
+    assert!(orbit.stable && orbit.intervals_per_period == [1] && orbit.iterations <= 5, "{orbit:?}");
+    // Liouville: the damping alone shrinks the volume of states
+    let product = orbit
+        .floquet_multipliers
+        .iter()
+        .fold((1.0, 0.0), |(re, im): (f64, f64), m| (re * m[0] - im * m[1], re * m[1] + im * m[0]));
+    let volume = (-2.0 * zeta * 10.0 * orbit.period_s).exp();
+    assert!((product.0 - volume).abs() < 1e-7 && product.1.abs() < 1e-9, "{product:?} {volume}");
+    // a long transient arrives there
+    let mut settings = Settings::until(400.0 * orbit.period_s + orbit.phase_s);
+    settings.tolerance = 1e-11;
+    let found = run(&assembly, &settings, &mut ()).unwrap();
+    assert!((found.amplitude[0][0] - orbit.state[0]).abs() < 1e-9 * orbit.sides[0][1].displacement_max_m.abs() + 1e-11);
+    assert!((found.rate[0][0] - orbit.state[1]).abs() < 1e-8);
+}
+
+/// A ball under gravity on a table that shakes by `A sin(omega t)`, in the table's frame, against a stiff floor with the
+/// restitution `e` of a viscous contact.
+fn shaken(gamma: f64, e: f64) -> Assembly<Law> {
+    let (m, omega, g) = (0.1f64, 100.0 * PI, 9.81);
+    let (k, zeta) = (1e9, restitution_damping(e));
+    let c = 2.0 * zeta * (k * m).sqrt();
+    let law = Law::from(contact_models::KelvinVoigt::new(k, c).unwrap());
+    let contact =
+        Contact { sides: [Point::OfBody { body: 0, shape: vec![m.sqrt().recip()] }, Point::Ground], gap_m: 0.0, law };
+    let field = |force| Load { body: 0, shape: vec![m.sqrt()], force };
+    Assembly {
+        // thrown up so that it lands after a period in the phase of the periodic motion
+        bodies: vec![Body::mass(m, 0.0, 0.5 * g * 2.0 * PI / omega)],
+        contacts: vec![contact],
+        loads: vec![
+            field(Force::Constant { force_n: -g }),
+            field(Force::Harmonic { force_n: gamma * g, omega_rad_s: omega, phase_rad: phase(gamma, e) }),
+        ],
+    }
+}
+
+/// The phase of the impact: the table's velocity then makes up for the loss, cos(phase) = pi (1-e)/(1+e)/gamma.
+fn phase(gamma: f64, e: f64) -> f64 {
+    (PI * (1.0 - e) / (1.0 + e) / gamma).acos()
+}
+
+/// Damping ratio of a linear contact without adhesion that gives this restitution.
+fn restitution_damping(e: f64) -> f64 {
+    let of = |z: f64| {
+        let root = (1.0 - z * z).sqrt();
+        (-z / root * (PI - (2.0 * z * root).atan2(1.0 - 2.0 * z * z))).exp()
+    };
+    let (mut low, mut high) = (0.0, 0.99);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if of(middle) > e { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn a_ball_on_a_shaken_table_loses_its_stability_at_the_closed_forms_threshold() {
+    let e = 0.8;
+    // period one is stable from 0.349 to 1.0708, where it doubles
+    for (gamma, stable) in [(0.6, true), (1.0, true), (1.15, false)] {
+        let assembly = shaken(gamma, e);
+        let settings = OrbitSettings { transient_periods: 0, ..Default::default() };
+        match find_orbit(&assembly, &settings).unwrap() {
+            OrbitOutcome::Found(orbit) => {
+                assert_eq!(orbit.intervals_per_period, [1], "{gamma} {orbit:?}");
+                assert_eq!(orbit.stable, stable, "{gamma}: {:?}", orbit.floquet_multipliers);
+                let size = orbit.floquet_multipliers.iter().map(|m| m[0] * m[0] + m[1] * m[1]).product::<f64>().sqrt();
+                assert!((size / (e * e) - 1.0).abs() < 0.02, "{gamma} {size}");
+            }
+            other => panic!("{gamma}: {other:?}"),
+        }
+    }
+}
+
+#[derive(Default)]
+struct Starts(Vec<f64>);
+
+impl Observer for Starts {
+    fn interval(&mut self, _: usize, interval: &Interval) {
+        self.0.push(interval.start_s);
+    }
+}
+
+#[test]
+fn the_free_oscillation_against_a_stop_has_the_closed_forms_frequency() {
+    // SDND122, without its slip: 0.64663104064 Hz
+    let energy = 0.006_501_083_316_26f64;
+    let body = Body {
+        modes: vec![BodyMode { omega_rad_s: 10f64.sqrt(), damping_ratio: 0.0 }],
+        amplitude: vec![0.0],
+        rate: vec![(2.0 * energy).sqrt()],
+    };
+    let law = Law::from(LinearSpring::new(50.0).unwrap());
+    let stop = Contact { sides: [Point::Ground, point(1.0)], gap_m: 0.01, law };
+    let assembly = Assembly { bodies: vec![body], contacts: vec![stop], loads: vec![] };
+    let mut starts = Starts::default();
+    let mut settings = Settings::until(40.0);
+    settings.tolerance = 1e-12;
+    run(&assembly, &settings, &mut starts).unwrap();
+    let n = starts.0.len() - 1;
+    let frequency = n as f64 / (starts.0[n] - starts.0[0]);
+    assert!((frequency - 0.646_631_040_64).abs() < 1e-10, "{frequency}");
+}
+
+#[test]
+fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
+    let e = 0.8;
+    let mut settings = BranchSettings::over(0.6, 1.3);
+    settings.orbit.transient_periods = 0;
+    let branch = follow_branch(|gamma| Ok(shaken(gamma, e)), &settings, |_| true).unwrap();
+    assert!(branch.complete, "{:?}", branch.points.last());
+    let doubling: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::PeriodDoubling).collect();
+    assert_eq!(doubling.len(), 1, "{:?}", branch.special);
+    // the contact is not instantaneous: 20 us of a period of 20 ms
+    assert!((doubling[0].parameter / 1.0708365 - 1.0).abs() < 5e-3, "{doubling:?}");
+    assert!(branch.points.iter().all(|p| p.orbit.stable == (p.parameter < doubling[0].parameter)));
+}
+
+#[test]
+fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
+    // a hardening frequency response: a lightly damped oscillator that reaches a stiff stop near its resonance
+    let build = |omega: f64| {
+        let mut assembly = driven(0.02, 0.05, 0.6, omega);
+        assembly.contacts[0].law = Law::from(LinearSpring::new(2000.0).unwrap());
+        Ok(assembly)
+    };
+    let mut settings = BranchSettings::over(8.0, 20.0);
+    settings.step = 0.01;
+    settings.longest_step = 0.02;
+    settings.max_orbits = 400;
+    let branch = follow_branch(build, &settings, |_| true).unwrap();
+    // the steady motion without the stop reaches it where its amplitude is the gap
+    let amplitude = |w: f64| 0.6 / ((100.0 - w * w).powi(2) + (0.4 * w).powi(2)).sqrt();
+    let (mut low, mut high) = (8.0, 10.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if amplitude(middle) < 0.05 { low = middle } else { high = middle }
+    }
+    let grazing = branch.special.iter().find(|point| point.kind == Special::Grazing).unwrap();
+    assert!((grazing.parameter - low).abs() < 1e-3, "{grazing:?} {low}");
+    let folds: Vec<f64> = branch.special.iter().filter(|p| p.kind == Special::Fold).map(|p| p.parameter).collect();
+    assert!(folds.len() >= 2 && folds[0] > 10.5, "{folds:?} {:?}", branch.special);
+    assert!(branch.points.iter().any(|point| !point.orbit.stable));
+}
