@@ -20,7 +20,7 @@ use crate::output;
 /// latter with a row for each time and a column for each mode. Either is `None` where the model has no such course.
 ///
 /// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact,
-/// and a limit reached, are results: see `outcome`.
+/// and a computation that stopped, are results: see `outcome`.
 #[pyfunction]
 #[pyo3(signature = (scene, *, history = false))]
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {

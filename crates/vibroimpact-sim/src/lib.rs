@@ -25,8 +25,10 @@ pub mod dropped_rod;
 mod error;
 pub mod infinite;
 pub mod modal;
+mod stop;
 
 pub use error::InvalidInput;
+pub use stop::StopReason;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

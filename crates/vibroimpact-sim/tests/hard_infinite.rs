@@ -4,24 +4,25 @@ mod common;
 
 use common::random::{config, decades};
 use proptest::prelude::*;
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{
     Impact, Material, Outcome, S_RANGE, Settings, Solution, Structure, critical_s, solve, turning_points,
 };
 
 fn run(s: f64) -> Solution {
-    solve(Structure::Beam, s, &Settings { max_panels: 400, ..Settings::default() }).unwrap()
+    solve(Structure::Beam, s, &Settings::default()).unwrap()
 }
 
 /// `S` as near as 1e-9 and 1e-12 to the critical value and to each turning point, on both sides: how it ends, and how many
-/// separations there are (`None`: more than the panels allowed can tell).
+/// separations there are (`None`: more than numbers can tell).
 #[test]
 fn on_both_sides_of_every_change() {
     let critical = critical_s();
     let mut table = vec![
         ("below critical", critical.s * (1.0 - 1e-9), Outcome::Rebound, Some(1)),
         ("closer below critical", critical.s * (1.0 - 1e-11), Outcome::Rebound, Some(1)),
-        ("above critical", critical.s * (1.0 + 1e-9), Outcome::LimitReached, None),
-        ("closer above critical", critical.s * (1.0 + 1e-11), Outcome::LimitReached, None),
+        ("above critical", critical.s * (1.0 + 1e-9), Outcome::Stopped(StopReason::DigitsExhausted), None),
+        ("closer above critical", critical.s * (1.0 + 1e-11), Outcome::Stopped(StopReason::DigitsExhausted), None),
         ("least S", *S_RANGE.start(), Outcome::Rebound, Some(1)),
         ("largest S", *S_RANGE.end(), Outcome::Sustained, Some(0)),
     ];
@@ -40,7 +41,10 @@ fn on_both_sides_of_every_change() {
             // the number of contacts is certain, and so are their times; only where one grazes do digits go
             assert!(solution.error.unwrap() < 1e-3, "{name}: S = {s}: {:?}", solution.error);
         } else {
-            assert!(solution.separations() > 10, "{name}: S = {s}: {}", solution.separations());
+            // what is certain ends where times leave the range of numbers, or digits the body's speed
+            let certain = solution.certain_separations.unwrap();
+            assert!(certain > 50, "{name}: S = {s}: {certain} of {}", solution.separations());
+            assert_eq!(solution.rebound_ratio(), None, "{name}");
         }
         assert!(solution.contacts.windows(2).all(|pair| pair[0].end.is_some_and(|end| end < pair[1].start)), "{name}");
     }
@@ -69,6 +73,33 @@ fn a_graze_is_seen_from_both_sides() {
             let largest = largest.map(|extremum| extremum.compression).fold(0.0, f64::max);
             assert!(least > 0.0 && least < 10.0 * aside * largest, "n = {}: {least:e} of {largest:e}", point.n);
         }
+    }
+}
+
+/// So close above the critical value that how the impact ends is beyond the digits of numbers: the separations that are
+/// certain are counted, and no rebound is invented.
+#[test]
+fn what_is_certain_just_above_the_critical_value() {
+    // the number of separations that a run found before, with its "rebound"
+    for (s, found) in [(1.5605177558734, 326), (1.5605177648, 985)] {
+        let solution = run(s);
+        assert_eq!(solution.outcome, Outcome::Stopped(StopReason::DigitsExhausted), "S = {s}");
+        assert_eq!(solution.rebound_ratio(), None);
+        let certain = solution.certain_separations.unwrap();
+        assert!((50..=found).contains(&certain) && certain <= solution.separations(), "S = {s}: {certain}");
+        // each of them in its time: other numbers of nodes find them too
+        let other =
+            solve(Structure::Beam, s, &Settings { nodes: 26, tolerance: 1e-12, ..Settings::default() }).unwrap();
+        for (a, b) in solution.contacts.iter().zip(&other.contacts).take(certain) {
+            assert!((a.start - b.start).abs() <= 0.5 * b.start, "S = {s}: {} {}", a.start, b.start);
+        }
+    }
+    // the nearest numbers on either side: whether the body comes back at all is not known
+    let critical = critical_s().s;
+    for ulps in -3i64..=3 {
+        let solution = run(f64::from_bits((critical.to_bits() as i64 + ulps) as u64));
+        assert!(solution.outcome != Outcome::Sustained && solution.certain_separations >= Some(1), "{ulps}");
+        assert!(solution.rebound_ratio().is_none_or(|ratio| ratio < 1e-13 && solution.separations() == 1), "{ulps}");
     }
 }
 

@@ -7,6 +7,7 @@ use common::random::{any_law, any_structure, config, decades};
 use common::{GOLDEN, ball, hertz, pinned, pinned_with_residual, seen_from, settings};
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
 use proptest::prelude::*;
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
 /// What is to come of a case.
@@ -454,7 +455,7 @@ fn a_compression_beyond_the_law() {
     let striker = Striker { mass_kg: 5e19, speed_m_s: 1e26 };
     let law = Law::from(Hysteretic::new(1e-10, 1.6, 1.4, 0.4, 1.8e-4).unwrap());
     let solution = run(&structure, &striker, &law);
-    assert_eq!((solution.outcome, solution.restitution), (Outcome::LimitReached, None));
+    assert_eq!((solution.outcome, solution.restitution), (Outcome::Stopped(StopReason::LawRange), None));
     assert!(energy_kept(&structure, &striker, &solution) < 1.0 + 1e-9, "{solution:?}");
 }
 
@@ -483,7 +484,7 @@ fn a_stop_at_the_end_of_a_swing() {
                 assert!((first.start_s / at_rest_time - 1.0).abs() < aside.sqrt() + 1e-9, "{first:?}");
             } else {
                 // so close that rounding decides, the search may go on to its limit; it invents no contact
-                let undecided = aside < 1e-11 && solution.outcome == Outcome::LimitReached;
+                let undecided = aside < 1e-11 && solution.outcome == Outcome::Stopped(StopReason::Flight);
                 assert!(undecided || solution.outcome == Outcome::NoContact, "{aside:e} {gap} {:?}", solution.outcome);
             }
         }

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{GOLDEN, ball, hertz, pinned, pinned_with_residual, runge_kutta, settings, solve};
-use contact_models::{Law, LinearSpring, Viscous};
+use contact_models::{Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
 use vibroimpact_sim::modal::{Mode, Outcome, Solver, Start, Striker, Structure};
 
 #[test]
@@ -142,4 +142,41 @@ fn history_and_solution_tell_the_same_story() {
             + 0.5 * ball().mass_kg * history.at(t).striker_velocity_m_s.powi(2)
     });
     assert!((total(time) - initial).abs() < 1e-11 * initial);
+}
+
+/// Between the nodes too a history says what the law says: no force pulls, and at a touch there is none.
+#[test]
+fn a_history_shows_the_force_of_the_law() {
+    let laws = [
+        hertz(),
+        Viscous::new(1.7945e10, 0.08).unwrap().into(),
+        LinearSpring::new(1e7).unwrap().into(),
+        KelvinVoigt::new(1e7, 200.0).unwrap().into(),
+        Hysteretic::new(1.7945e10 / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(),
+        Law::from(Thornton::new(1.1e11, 0.015, 1e9).unwrap()),
+    ];
+    for (structure, compliant) in [(pinned(25, 0.02, 0.4), false), (pinned_with_residual(25, 0.02, 0.4), true)] {
+        for law in laws {
+            let mut solver = Solver::new(&structure).unwrap();
+            let (solution, history) = solver.record(&ball(), &law, None, &settings(1e-7)).unwrap();
+            let largest = solution.sub_impacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
+            for contact in &solution.sub_impacts {
+                for i in 0..=1_000 {
+                    let time = contact.start_s + (contact.end_s - contact.start_s) * f64::from(i) / 1e3;
+                    let sample = history.at(time);
+                    assert!(sample.force_n >= 0.0, "{}: {sample:?}", law.name());
+                    assert!(sample.force_n <= contact.peak_force_n + 1e-5 * largest, "{}: {sample:?}", law.name());
+                    if law == hertz() {
+                        let of_law = 1.7945e10 * sample.compression_m.max(0.0).powf(1.5);
+                        let floor = 1e-12 * largest;
+                        assert!((sample.force_n - of_law).abs() <= 1e-9 * of_law + floor, "{sample:?} {of_law}");
+                    }
+                }
+                let ends = [history.at(contact.start_s), history.at(contact.end_s)];
+                // a dashpot presses from the first moment on
+                let jumps = matches!(law, Law::KelvinVoigt(_)) && !compliant;
+                assert!(jumps || ends.iter().all(|end| end.force_n <= 1e-5 * largest), "{}: {ends:?}", law.name());
+            }
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod common;
 
 use common::{GOLDEN, ball, hertz, pinned, settings, solve};
 use contact_models::{Hertz, HuntCrossley, Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solver, Start, Striker, Structure};
 
 #[test]
@@ -155,11 +156,11 @@ fn limits_end_a_run_with_what_it_found() {
     let mut solver = Solver::new(&structure).unwrap();
     let few = Settings { max_sub_impacts: 1, ..settings(1e-9) };
     let solution = solver.solve(&ball(), &hertz(), None, &few).unwrap();
-    assert_eq!((solution.outcome, solution.sub_impacts.len()), (Outcome::LimitReached, 1));
+    assert_eq!((solution.outcome, solution.sub_impacts.len()), (Outcome::Stopped(StopReason::SubImpacts), 1));
     assert_eq!((solution.restitution, solution.restitution_uncertainty), (None, None));
     let short = Settings { max_steps: 10, ..settings(1e-9) };
     let solution = solver.solve(&ball(), &hertz(), None, &short).unwrap();
-    assert_eq!(solution.outcome, Outcome::LimitReached);
+    assert_eq!(solution.outcome, Outcome::Stopped(StopReason::Steps));
     assert!(solution.sub_impacts[0].end_s > 0.0);
 }
 

@@ -1,6 +1,6 @@
 //! The command line: scene files in, results out.
 //!
-//! Exit codes: 0 for a result (sustained contact and a limit reached among them), 2 for input that cannot be used,
+//! Exit codes: 0 for a result (sustained contact and a computation that stopped among them), 2 for input that cannot be used,
 //! 1 for results that cannot be written, 130 for a sweep that was asked to stop.
 
 mod commands;

@@ -1,14 +1,18 @@
 //! The result of a scene as files and people read it.
 
 use crate::model::{Answer, Uncertainty};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
 /// What `simulate --json` prints: one object, every name with its unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
-    /// `rebound`, `no contact`, `sustained` or `limit reached`.
+    /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
+    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    #[serde(serialize_with = "word")]
+    pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
@@ -33,6 +37,12 @@ pub struct Summary {
     pub counts: Cost,
     /// Which model, why, and how near it came to the tolerance; null if no choice was made.
     pub choice: Option<Answer>,
+}
+
+/// A reason as its word, or null.
+#[allow(clippy::trivially_copy_pass_by_ref, clippy::ref_option)] // the signature that serde asks for
+pub(crate) fn word<S: Serializer>(reason: &Option<StopReason>, serializer: S) -> Result<S::Ok, S::Error> {
+    reason.map(StopReason::as_str).serialize(serializer)
 }
 
 /// One contact.
@@ -94,6 +104,7 @@ impl Summary {
             solution.counts;
         Summary {
             outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
             restitution: solution.restitution,
             restitution_uncertainty: solution.restitution_uncertainty,
             uncertainty: Uncertainty { solver: solution.restitution_uncertainty, ..Uncertainty::default() },

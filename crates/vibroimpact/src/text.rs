@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Striker};
 
 use crate::model::answer_text;
@@ -105,6 +106,11 @@ pub fn infinite_headline(scene: &Scene, impact: &vibroimpact_sim::infinite::Impa
     format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
 }
 
+/// The outcome of a computation that stopped before the impact had ended: why, and what to do.
+pub(crate) fn stopped(reason: Option<StopReason>) -> Option<String> {
+    reason.map(|reason| format!("stopped before the impact ended ({}): {}", reason.as_str(), reason.advice()))
+}
+
 /// The result of an impact.
 pub fn result(summary: &Summary) -> String {
     let mut text = String::new();
@@ -112,12 +118,11 @@ pub fn result(summary: &Summary) -> String {
         let _ = writeln!(text, "  {name:<22}{value}");
     };
     let outcome = match summary.outcome {
-        "sustained" => "sustained contact: the motion died down with the bodies touching; there is no rebound",
-        "limit reached" => "limit reached: the computation stopped before the impact ended",
+        "sustained" => "sustained contact: the bodies stay together; there is no rebound",
         "no contact" => "no contact: the bodies never meet",
         other => other,
     };
-    line("outcome", outcome.to_owned());
+    line("outcome", stopped(summary.stopped_by).unwrap_or_else(|| outcome.to_owned()));
     if let Some(value) = summary.restitution {
         line("restitution", restitution(value, summary.restitution_uncertainty));
         line("as modelled", restitution(value, summary.uncertainty.solver));

@@ -34,7 +34,7 @@ fn every_infinite_scene_of_the_gallery_runs() {
     for (name, scene) in infinite {
         let impact = scene.infinite_impact().unwrap();
         let solution = solve(impact.structure, impact.groups().unwrap().s, &Settings::default()).unwrap();
-        assert_ne!(solution.outcome, Outcome::LimitReached, "{name}");
+        assert!(!matches!(solution.outcome, Outcome::Stopped(_)), "{name}");
         assert!(solution.digits().is_some_and(|digits| digits > 9.0), "{name}");
         assert_eq!(scene.impact().unwrap_err().field, "structure.kind", "{name}");
         assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");

@@ -6,6 +6,7 @@ use std::time::Instant;
 use contact_models::Law;
 use emoc::{SingleImpact, Solver as NetSolver};
 use vibroimpact::Scene;
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite;
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Start};
 
@@ -110,7 +111,7 @@ fn modal_impact(case: &Modal, verdict: &mut Verdict) -> Result<(), String> {
     let refused = |fault| format!("a sound impact was refused: {fault}");
     let mut solver = Solver::new(structure).map_err(refused)?;
     let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(refused)?;
-    verdict.outcome = solution.outcome.as_str();
+    verdict.outcome = solution.outcome.stopped_by().map_or(solution.outcome.as_str(), StopReason::as_str);
     verdict.contacts = solution.sub_impacts.len();
     let counts = solution.counts;
     verdict.steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
@@ -179,7 +180,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
     };
     let speed = striker.speed_m_s.abs() + surface;
     let mut contacts = 1.0 + solution.sub_impacts.len() as f64;
-    if solution.outcome == Outcome::LimitReached {
+    if matches!(solution.outcome, Outcome::Stopped(_)) {
         // a contact that was given up after thousands of steps has a tenth of the tolerance for each of them
         contacts += 0.1 * solution.counts.contact_steps as f64;
     }
@@ -217,11 +218,7 @@ fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict
     let settings = infinite::Settings { max_panels: 500, ..infinite::Settings::default() };
     let solved = infinite::solve(structure, s.clamp(1e-12, 1e8), &settings);
     let solution = solved.map_err(|fault| format!("a sound S was refused: {fault}"))?;
-    verdict.outcome = match solution.outcome {
-        infinite::Outcome::Rebound => "rebound",
-        infinite::Outcome::Sustained => "sustained",
-        infinite::Outcome::LimitReached => "limit reached",
-    };
+    verdict.outcome = solution.outcome.stopped_by().map_or(solution.outcome.as_str(), StopReason::as_str);
     verdict.contacts = solution.contacts.len();
     verdict.steps = solution.panels_tried as u64;
     check(solution.panels_tried <= settings.max_panels + 1_000, || format!("{} panels", solution.panels_tried))?;

@@ -96,12 +96,13 @@ pub struct Settings {
     pub horizon: f64,
     /// Whether to solve a second time with more nodes, for [`Solution::error`]. Default true.
     pub estimate_error: bool,
-    /// Most panels to try before stopping with [`Outcome::LimitReached`]. Default 200,000. Only `S`
+    /// Most panels to try before stopping ([`StopReason::Steps`](crate::StopReason)). Default 200,000. Only `S`
     /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at
-    /// a relative distance of 1e-3, 1,008 at 1e-5, 4,401 at 1e-6 and more than 16,000 at 1e-7.
+    /// a relative distance of 1e-3, 1,008 at 1e-5, 4,401 at 1e-6 and more than 16,000 at 1e-7; nearer still times leave
+    /// the range of numbers first ([`StopReason::DigitsExhausted`](crate::StopReason)).
     pub max_panels: usize,
-    /// Most contacts to follow: 1 for the first alone. Where the body would come back once more, the run ends with
-    /// [`Outcome::LimitReached`], known up to the next touch. Default: no limit.
+    /// Most contacts to follow: 1 for the first alone. Where the body would come back once more, the run stops
+    /// ([`StopReason::SubImpacts`](crate::StopReason)), known up to the next touch. Default: no limit.
     pub max_contacts: usize,
 }
 

@@ -7,6 +7,7 @@ use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
 use super::rule::{Kind, Tables, gauss, series};
 use super::units::Units;
+use crate::StopReason;
 
 /// How an impact ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,9 +19,29 @@ pub enum Outcome {
     /// periods, at a time from which the beam's damping outweighs everything that makes them grow
     /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
     Sustained,
-    /// The number of panels or of contacts allowed did not suffice; what was found up to
-    /// [`known_until`](Solution::known_until) stands.
-    LimitReached,
+    /// The computation stopped before the impact had ended; what was found up to
+    /// [`known_until`](Solution::known_until) stands. Of a beam close to the critical `S` how it ends may be beyond the
+    /// digits of numbers ([`StopReason::DigitsExhausted`]): see [`certain_separations`](Solution::certain_separations).
+    Stopped(StopReason),
+}
+
+impl Outcome {
+    /// The outcome as a word for tables and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Outcome::Rebound => "rebound",
+            Outcome::Sustained => "sustained",
+            Outcome::Stopped(_) => "stopped",
+        }
+    }
+
+    /// Why the computation stopped before the impact had ended, if it did.
+    pub fn stopped_by(self) -> Option<StopReason> {
+        match self {
+            Outcome::Stopped(reason) => Some(reason),
+            _ => None,
+        }
+    }
 }
 
 /// One contact. Times in units of `T`, speeds in units of `v`, positive towards the structure.
@@ -72,6 +93,9 @@ pub struct State {
     pub structure_speed: f64,
 }
 
+/// Contacts of two solutions are the same while their times differ by less than this part.
+const SAME: f64 = 0.5;
+
 /// Free flight after a contact.
 #[derive(Debug, Clone)]
 pub(super) struct Flight {
@@ -106,6 +130,9 @@ pub struct Solution {
     /// the tolerance leaves open where the two agree by accident (1e-5 of it). Infinite if the two
     /// differ in the number of contacts or in the outcome. `None` if not asked for.
     pub error: Option<f64>,
+    /// How many separations, from the first, both solutions have at the same times, to half of these. Beyond them nothing
+    /// is known. `None` if no second solution was asked for.
+    pub certain_separations: Option<usize>,
     /// The motion can be asked for up to this time (units of `T`).
     pub known_until: f64,
     /// Panels in the solution.
@@ -122,10 +149,11 @@ impl Solution {
         Solution {
             structure,
             s,
-            outcome: Outcome::LimitReached,
+            outcome: Outcome::Stopped(StopReason::Steps),
             contacts: Vec::new(),
             extrema: Vec::new(),
             error: None,
+            certain_separations: None,
             known_until: 0.0,
             panels: 0,
             panels_tried: 0,
@@ -227,8 +255,17 @@ impl Solution {
     /// Sets the error estimate from a finer solution.
     pub(super) fn compare(&mut self, finer: &Solution, tolerance: f64) {
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a / b - 1.0).abs() };
+        let certain = |(a, b): &(&Contact, &Contact)| {
+            let ends = a.duration.zip(b.duration);
+            relative(a.start, b.start) < SAME && ends.is_some_and(|(a, b)| relative(a, b) < SAME)
+        };
+        self.certain_separations = Some(self.contacts.iter().zip(&finer.contacts).take_while(certain).count());
         if self.outcome != finer.outcome || self.contacts.len() != finer.contacts.len() {
             self.error = Some(f64::INFINITY);
+            if (self.outcome == Outcome::Rebound) != (finer.outcome == Outcome::Rebound) {
+                // whether the body leaves or comes back depends on digits that are not there
+                self.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
+            }
             return;
         }
         let error = self.contacts.iter().zip(&finer.contacts).fold(0.0_f64, |error, (a, b)| {

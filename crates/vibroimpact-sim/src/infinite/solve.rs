@@ -5,7 +5,10 @@ use super::history::History;
 use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
 use super::units::Touch;
 use super::{S_RANGE, Settings, Structure};
-use crate::InvalidInput;
+use crate::{InvalidInput, StopReason};
+
+/// Times beyond this (units of `T`) are not followed: powers of them leave the range of numbers.
+const LATEST: f64 = 1e120;
 
 /// Solves the impact for one value of `S` (within [`S_RANGE`]).
 ///
@@ -40,8 +43,8 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         let (duration, outcome) = match ending {
             Ending::Separated(duration) => (duration, Outcome::Rebound),
             Ending::Sustained(duration) => (duration, Outcome::Sustained),
-            Ending::Minimum(_) => (0.0, Outcome::LimitReached),
-            Ending::Limit(duration) => (duration, Outcome::LimitReached),
+            Ending::Minimum(_) => (0.0, Outcome::Stopped(StopReason::Steps)),
+            Ending::Limit(duration) => (duration, Outcome::Stopped(StopReason::Steps)),
         };
         let ended = matches!(ending, Ending::Separated(_));
         let departure = march.departure();
@@ -75,9 +78,11 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             solution.known_until = f64::INFINITY;
             return solution;
         };
-        if solution.contacts.len() >= settings.max_contacts {
+        let late = (end + time > LATEST).then_some(StopReason::DigitsExhausted);
+        let limit = (solution.contacts.len() >= settings.max_contacts).then_some(StopReason::SubImpacts);
+        if let Some(reason) = limit.or(late) {
             solution.known_until = end + time;
-            solution.outcome = Outcome::LimitReached;
+            solution.outcome = Outcome::Stopped(reason);
             return solution;
         }
         body_travel += body * time;

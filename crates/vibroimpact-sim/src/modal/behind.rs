@@ -57,7 +57,7 @@ impl<L: ContactLaw> Behind<'_, L> {
     }
 
     /// The compression at which `xi + c F(xi, xi') = g`, near an estimate.
-    fn compression(&self, gap: f64, estimate: f64, rate: f64) -> f64 {
+    pub fn compression(&self, gap: f64, estimate: f64, rate: f64) -> f64 {
         let mut compression = estimate;
         for _ in 0..ITERATIONS_MAX {
             let force = self.law.force(self.branch, compression, rate);

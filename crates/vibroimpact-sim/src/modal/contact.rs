@@ -5,8 +5,10 @@ use super::ladder::{J_MAX, J_MIN, Ladder, level_within, step_s};
 use super::landing::{self, Approach, Landed, REACH};
 use super::legendre::{BASIS, Nodal, Q, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
+use super::rest::Pressed;
 use super::solution::{Counts, SubImpact};
 use super::step::{BLUR, Collocated, Given, collocate, first_crossing, truncation};
+use crate::StopReason;
 use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 
 /// How a contact ended.
@@ -14,10 +16,10 @@ use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 pub(crate) enum ContactEnd {
     /// The surfaces parted, leaving this memory.
     Released(Memory),
-    /// Nothing moves any more.
-    AtRest,
-    /// The settings' limit on steps, the finest step, or the end of what the law computes with was reached.
-    Limit,
+    /// The surfaces do not part any more.
+    Lasts,
+    /// The contact was given up.
+    Stopped(StopReason),
 }
 
 /// The impact as seen by one contact.
@@ -31,9 +33,11 @@ pub(crate) struct Setting<'a, L> {
     /// Energy below which the impact counts as died down (J).
     pub rest_energy: f64,
     pub max_steps: u64,
+    /// A contact that lasts is followed up to this time (s).
+    pub until_s: f64,
 }
 
-/// Energy is looked at once in this many steps.
+/// Whether a contact lasts is looked at once in this many steps.
 const REST_CHECK: u64 = 8;
 /// A step is doubled when its error is this many times below the tolerance.
 const GROWTH: f64 = 250.0;
@@ -169,13 +173,17 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
     }
 
     fn follow(&mut self) -> ContactEnd {
+        let mut lasts = false;
         loop {
             let steps = self.counts.contact_steps + self.counts.rejected_steps;
-            if steps >= self.setting.max_steps || self.level > J_MAX || self.is_beyond_the_law() {
-                return ContactEnd::Limit;
+            if !lasts && steps % REST_CHECK == REST_CHECK - 1 {
+                lasts = self.lasts();
             }
-            if steps % REST_CHECK == REST_CHECK - 1 && self.energy() < self.setting.rest_energy {
-                return ContactEnd::AtRest;
+            if lasts && self.motion.time >= self.setting.until_s {
+                return ContactEnd::Lasts;
+            }
+            if let Some(reason) = self.limit(steps) {
+                return if lasts { ContactEnd::Lasts } else { ContactEnd::Stopped(reason) };
             }
             if let Some(end) = self.advance() {
                 return end;
@@ -183,21 +191,33 @@ impl<'a, L: ContactLaw> Contact<'a, L> {
         }
     }
 
+    fn limit(&self, steps: u64) -> Option<StopReason> {
+        if steps >= self.setting.max_steps {
+            Some(StopReason::Steps)
+        } else if self.level > J_MAX {
+            Some(StopReason::FinestStep)
+        } else if self.is_beyond_the_law() {
+            Some(StopReason::LawRange)
+        } else {
+            None
+        }
+    }
+
+    fn lasts(&self) -> bool {
+        let pressed = Pressed {
+            law: self.setting.law,
+            branch: &self.branch,
+            compression: self.compression,
+            rate: self.rate,
+            mu: self.setting.mu,
+            residual_compliance: self.setting.residual_compliance,
+        };
+        pressed.lasts(self.ladder, self.motion, self.setting.rest_energy)
+    }
+
     /// Whether the law has been asked for more than it knows.
     fn is_beyond_the_law(&self) -> bool {
         self.compression.abs().max(self.peak_compression.largest).max(self.rate.abs()) > LARGEST
-    }
-
-    /// Kinetic and elastic energy of everything that moves, without what the striker shares with the rigid bodies (J).
-    fn energy(&self) -> f64 {
-        let state = &self.motion.vibration;
-        let mut energy = 0.5 * self.motion.drift_rate.powi(2) / self.setting.mu;
-        for (k, mode) in self.ladder.modes.iter().enumerate() {
-            let (a, b) = (mode.omega_rad_s * state.alpha[k], state.beta[k]);
-            energy += 0.5 * (a * a + b * b) / self.ladder.weight[k];
-        }
-        let force = self.setting.law.force(&self.branch, self.compression, self.rate).force_n;
-        energy + (force * self.compression).abs()
     }
 
     /// One try: a step forward, a return to a finer level, or the end of the contact.

@@ -4,7 +4,7 @@
 //! its energy allows), the modes above any `K` move the surface by at most `H = sum_{k>K} A_k`, and the rest has
 //! `|u''| <= B = sum_{k<=K} (1 + 2 zeta_k) omega_k^2 A_k`. So `u(t) >= u_K - H + u_K' t - B t^2 / 2`, and no contact
 //! can come before the root of the best of these parabolas. With `K = 0` it is a straight line: where that rises, the
-//! bodies never meet again.
+//! bodies never meet again. A damped mode's bound falls with its energy, so the bounds are taken anew every few steps.
 
 use super::ladder::{Ladder, level_within, step_s};
 use super::landing::{REACH, advance, taylor_of_free_motion};
@@ -15,6 +15,9 @@ use super::solution::Counts;
 /// The gap is expanded in a power series once the next safe step is this many levels finer than the series reaches;
 /// until then a few more plain steps cost less.
 const WINDOW: i32 = 2;
+
+/// The bounds of a flight are taken anew after this many steps, as the motion decays.
+const RENEWED: u64 = 8;
 
 /// What free flight came to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,7 +100,8 @@ pub(crate) fn fly(
     max_steps: u64,
     counts: &mut Counts,
 ) -> FlightEnd {
-    let bounds = Bounds::new(ladder, motion);
+    let decays = ladder.drag.iter().any(|drag| *drag > 0.0);
+    let mut bounds = Bounds::new(ladder, motion);
     let reach = if ladder.fastest_rad_s > 0.0 { REACH / ladder.fastest_rad_s } else { f64::INFINITY };
     // the surfaces have just parted: an overlap of rounding is none
     let overlap = motion.gap() - touch;
@@ -106,10 +110,13 @@ pub(crate) fn fly(
     }
     // the power series of the gap serves for one ladder step
     let near = level_within(reach);
-    loop {
+    for step in 1.. {
         counts.flight_steps += 1;
         if counts.flight_steps > max_steps {
             return FlightEnd::Limit;
+        }
+        if decays && step % RENEWED == 0 {
+            bounds = Bounds::new(ladder, motion);
         }
         let safe = bounds.safe_time(motion, touch);
         if safe == f64::INFINITY {
@@ -132,6 +139,7 @@ pub(crate) fn fly(
         ladder.rotate(level, &mut motion.vibration);
         motion.coast(step_s(level));
     }
+    FlightEnd::Limit
 }
 
 /// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below.

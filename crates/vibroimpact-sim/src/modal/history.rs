@@ -1,10 +1,11 @@
 //! The whole motion of an impact, at any time, and where its energy went.
 
+use super::behind::Behind;
 use super::legendre::{BASIS, Nodal, derivative, dot, evaluate};
 use super::motion::{ContactPiece, Motion, Piece};
 use super::oscillator::{Propagator, propagate, response};
 use super::problem::{Mode, Start, Striker};
-use super::solution::Solution;
+use super::solution::{Outcome, Solution};
 use super::solve::Solver;
 use contact_models::ContactLaw;
 
@@ -56,12 +57,15 @@ pub struct History<L> {
     mu: f64,
     pieces: Vec<Piece>,
     end_s: f64,
+    /// Up to here the motion is known (s).
+    known_until_s: f64,
     end: (Vec<f64>, Vec<f64>, f64),
 }
 
-/// A moment of the motion.
+/// A moment of the motion: compression (m) and force (N) of the contact.
 struct Moment {
     motion: Motion,
+    compression: f64,
     force: f64,
 }
 
@@ -85,13 +89,23 @@ impl<L: ContactLaw> History<L> {
             mu: solver.inverse_mass(&striker),
             pieces,
             end_s: solution.end_s,
+            known_until_s: match solution.outcome {
+                Outcome::Rebound | Outcome::NoContact => f64::INFINITY,
+                _ => solution.end_s,
+            },
             end: (solution.amplitude.clone(), solution.rate.clone(), solution.striker_velocity_m_s),
         }
     }
 
-    /// Time of the last event (s). Later times are answered by free motion.
+    /// Time of the last event (s), or up to which a contact that lasts was followed.
     pub fn duration_s(&self) -> f64 {
         self.end_s
+    }
+
+    /// Up to this time (s) the motion is known; later ones are answered as this one. Infinite after a rebound, which free
+    /// motion follows for ever. A contact that lasts is followed at least up to [`Settings::until_s`](super::Settings).
+    pub fn known_until_s(&self) -> f64 {
+        self.known_until_s
     }
 
     /// Times worth drawing between 0 and `until_s`: `count` equal intervals, and every step made in contact.
@@ -109,7 +123,9 @@ impl<L: ContactLaw> History<L> {
         times
     }
 
-    /// Motion and force at `time_s` (s); times before 0 and not-a-number are answered as 0.
+    /// Motion and force at `time_s` (s); times before 0 and not-a-number are answered as 0, those beyond
+    /// [`known_until_s`](History::known_until_s) as that. The force is that of the law at the compression and its rate, and
+    /// so is never negative.
     pub fn at(&self, time_s: f64) -> Sample {
         let moment = self.moment(time_s);
         let motion = &moment.motion;
@@ -121,7 +137,7 @@ impl<L: ContactLaw> History<L> {
             structure_velocity_m_s: velocity,
             striker_displacement_m: displacement - gap,
             striker_velocity_m_s: velocity - motion.gap_rate(),
-            compression_m: gap - self.residual_compliance * moment.force,
+            compression_m: moment.compression,
             force_n: moment.force,
         }
     }
@@ -242,7 +258,7 @@ impl<L: ContactLaw> History<L> {
     }
 
     fn moment(&self, time_s: f64) -> Moment {
-        let time_s = if time_s > 0.0 { time_s } else { 0.0 };
+        let time_s = if time_s > 0.0 { time_s.min(self.known_until_s) } else { 0.0 };
         let after = self.pieces.partition_point(|piece| piece.start.time <= time_s);
         let piece = &self.pieces[after.saturating_sub(1)];
         self.within(piece, time_s - piece.start.time)
@@ -258,7 +274,7 @@ impl<L: ContactLaw> History<L> {
         }
         let Some(contact) = &piece.contact else {
             motion.coast(t);
-            return Moment { motion, force: 0.0 };
+            return Moment { compression: motion.gap(), motion, force: 0.0 };
         };
         let t = t.min(contact.length);
         let part = t / contact.length;
@@ -270,8 +286,24 @@ impl<L: ContactLaw> History<L> {
             motion.vibration.beta[k] -= mode.shape.powi(2) * dot(&velocity, &force);
         }
         motion.advance_drift(t, &force, self.mu);
-        let value = evaluate(&contact.force, part);
-        Moment { motion, force: value }
+        let (compression, force) = self.contact(contact, &motion, part);
+        Moment { motion, compression, force }
+    }
+
+    /// Compression and force within a step: what the law says of the motion, as the polynomial through the nodes need not
+    /// meet it between them, and at a touch may even be negative.
+    fn contact(&self, contact: &ContactPiece, motion: &Motion, part: f64) -> (f64, f64) {
+        let collocated = evaluate(&contact.force, part);
+        let (gap, compliance) = (motion.gap(), self.residual_compliance);
+        let rate = motion.gap_rate() - compliance * contact.force_rate(part);
+        let estimate = gap - compliance * collocated;
+        let compression = if compliance > 0.0 {
+            let behind = Behind { law: &self.law, branch: &contact.branch, compliance };
+            behind.compression(gap, estimate, rate)
+        } else {
+            estimate
+        };
+        (compression, self.law.force(&contact.branch, compression, rate).force_n.max(0.0))
     }
 }
 

@@ -43,6 +43,7 @@ pub(crate) mod legendre;
 mod motion;
 pub(crate) mod oscillator;
 pub(crate) mod problem;
+mod rest;
 mod solution;
 mod solve;
 pub(crate) mod step;

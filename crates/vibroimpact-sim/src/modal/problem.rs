@@ -141,16 +141,25 @@ pub struct Settings {
     pub tolerance: f64,
     /// Solve a second time, more coarsely, to estimate the uncertainty of the restitution. Default true.
     pub estimate_uncertainty: bool,
-    /// Stop after this many contacts (outcome `LimitReached`). Default 10,000.
+    /// Stop after this many contacts ([`StopReason::SubImpacts`](crate::StopReason)). Default 10,000.
     pub max_sub_impacts: usize,
-    /// Stop after this many steps in contact, or in the search for contacts. Default 200,000; an ordinary impact needs
-    /// hundreds.
+    /// Stop after this many steps in contact ([`StopReason::Steps`](crate::StopReason)), or in the search for contacts
+    /// ([`StopReason::Flight`](crate::StopReason)). Default 200,000; an ordinary impact needs hundreds.
     pub max_steps: u64,
+    /// Follow a contact that lasts at least up to this time (s), for the history of a recorded impact; after a rebound the
+    /// history knows every time anyhow. Default 0: no further than it takes to know that it lasts.
+    pub until_s: f64,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { tolerance: 1e-9, estimate_uncertainty: true, max_sub_impacts: 10_000, max_steps: 200_000 }
+        Settings {
+            tolerance: 1e-9,
+            estimate_uncertainty: true,
+            max_sub_impacts: 10_000,
+            max_steps: 200_000,
+            until_s: 0.0,
+        }
     }
 }
 
@@ -158,6 +167,8 @@ impl Settings {
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
         InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")?;
-        InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")
+        InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
+        let until = (0.0..=SCALE_MAX).contains(&self.until_s);
+        InvalidInput::unless(until, "until_s", self.until_s, "0 or a positive number of seconds, at most 1e30")
     }
 }

@@ -1,5 +1,7 @@
 //! What an impact came to.
 
+use crate::StopReason;
+
 /// How an impact ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -8,11 +10,11 @@ pub enum Outcome {
     Rebound,
     /// The bodies never met.
     NoContact,
-    /// The motion died down with the bodies still in contact.
+    /// The bodies stay in contact: the motion has died down, or what is left of it cannot part them (a structure pressed
+    /// against an immovable stop, whose energy is below what parting takes).
     Sustained,
-    /// A limit of the settings was reached first, the finest step, or [`contact_models::LARGEST`]; the solution holds
-    /// what was found until then.
-    LimitReached,
+    /// The computation stopped before the impact had ended; the solution holds what was found until then.
+    Stopped(StopReason),
 }
 
 impl Outcome {
@@ -22,7 +24,15 @@ impl Outcome {
             Outcome::Rebound => "rebound",
             Outcome::NoContact => "no contact",
             Outcome::Sustained => "sustained",
-            Outcome::LimitReached => "limit reached",
+            Outcome::Stopped(_) => "stopped",
+        }
+    }
+
+    /// Why the computation stopped before the impact had ended, if it did.
+    pub fn stopped_by(self) -> Option<StopReason> {
+        match self {
+            Outcome::Stopped(reason) => Some(reason),
+            _ => None,
         }
     }
 }
@@ -55,6 +65,16 @@ pub struct Counts {
     pub law_evaluations: u64,
     /// Steps of the search for the next contact.
     pub flight_steps: u64,
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Counts) {
+        self.contact_steps += other.contact_steps;
+        self.rejected_steps += other.rejected_steps;
+        self.newton_iterations += other.newton_iterations;
+        self.law_evaluations += other.law_evaluations;
+        self.flight_steps += other.flight_steps;
+    }
 }
 
 /// The result of one impact.

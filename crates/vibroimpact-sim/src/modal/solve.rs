@@ -8,7 +8,7 @@ use super::motion::{Motion, Piece};
 use super::oscillator::propagate;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
-use crate::InvalidInput;
+use crate::{InvalidInput, StopReason};
 use contact_models::{ContactLaw, Memory};
 
 /// Part of the stated tolerance that one step may use up, as a share of the striker's momentum.
@@ -48,6 +48,7 @@ struct Run {
     outcome: Outcome,
     motion: Motion,
     sub_impacts: Vec<SubImpact>,
+    counts: Counts,
 }
 
 impl Solver {
@@ -125,12 +126,13 @@ impl Solver {
             "a finite mass, where no mode of the structure moves at the contact",
         )?;
 
-        let mut counts = Counts::default();
-        let run = self.run(striker, law, start, settings, settings.tolerance, &mut counts, record);
+        let run = self.run(striker, law, start, settings, settings.tolerance, record);
+        let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
         let restitution_uncertainty = restitution.filter(|_| settings.estimate_uncertainty).map(|value| {
             let tolerance = (COARSER * settings.tolerance).min(0.1);
-            let second = self.run(striker, law, start, settings, tolerance, &mut counts, &mut None);
+            let second = self.run(striker, law, start, settings, tolerance, &mut None);
+            counts += second.counts;
             // a second solution that ends otherwise says that nothing is certain
             let other = self.restitution(&second, striker, start);
             other.map_or(1.0, |other| (5.0 * settings.tolerance + 3.0 * (other - value).abs()).min(f64::MAX))
@@ -149,7 +151,6 @@ impl Solver {
         })
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn run<L: ContactLaw>(
         &mut self,
         striker: &Striker,
@@ -157,9 +158,9 @@ impl Solver {
         start: &Start,
         settings: &Settings,
         tolerance: f64,
-        counts: &mut Counts,
         record: &mut Option<Vec<Piece>>,
     ) -> Run {
+        let mut counts = Counts::default();
         let mut motion = self.initial(striker, start);
         let mu = self.inverse_mass(striker);
         // momentum and energy of the approach, or of the structure's motion where there is no approach
@@ -173,6 +174,7 @@ impl Solver {
             impulse_tolerance: STEP_SHARE * tolerance * momentum,
             rest_energy: (0.1 * tolerance * speed).powi(2) / inverse,
             max_steps: settings.max_steps,
+            until_s: if record.is_some() { settings.until_s } else { 0.0 },
         };
         let mut memory = Memory::default();
         let mut sub_impacts = Vec::new();
@@ -183,32 +185,32 @@ impl Solver {
                     pieces.push(Piece { start: motion.clone(), contact: None });
                 }
                 let departure = motion.clone();
-                match fly(&mut self.ladder, &mut motion, memory.touch_m, settings.max_steps, counts) {
+                match fly(&mut self.ladder, &mut motion, memory.touch_m, settings.max_steps, &mut counts) {
                     FlightEnd::Contact => {}
                     end => {
                         // the search went on past the last event: report the state at that event
                         motion = departure;
                         break match end {
-                            FlightEnd::Limit => Outcome::LimitReached,
+                            FlightEnd::Limit => Outcome::Stopped(StopReason::Flight),
                             _ if sub_impacts.is_empty() => Outcome::NoContact,
                             _ => Outcome::Rebound,
                         };
                     }
                 }
             }
-            let (found, end) = Contact::run(&setting, &mut self.ladder, &mut motion, &memory, counts, record);
+            let (found, end) = Contact::run(&setting, &mut self.ladder, &mut motion, &memory, &mut counts, record);
             sub_impacts.push(found);
             match end {
                 ContactEnd::Released(kept) => memory = kept,
-                ContactEnd::AtRest => break Outcome::Sustained,
-                ContactEnd::Limit => break Outcome::LimitReached,
+                ContactEnd::Lasts => break Outcome::Sustained,
+                ContactEnd::Stopped(reason) => break Outcome::Stopped(reason),
             }
             if sub_impacts.len() >= settings.max_sub_impacts {
-                break Outcome::LimitReached;
+                break Outcome::Stopped(StopReason::SubImpacts);
             }
             in_contact = false;
         };
-        Run { outcome, motion, sub_impacts }
+        Run { outcome, motion, sub_impacts, counts }
     }
 
     fn initial(&self, striker: &Striker, start: &Start) -> Motion {

@@ -6,7 +6,7 @@ use contact_models::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::PI;
-use vibroimpact_sim::modal::{Mode, Solution, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Solution, Solver, Start, Striker, Structure};
 
 /// So many cases, times the environment variable `VIBROIMPACT_CASES` if it is set.
 pub fn cases(count: u32) -> u32 {
@@ -122,4 +122,71 @@ pub fn ordinary_damping() -> impl Strategy<Value = f64> {
 pub fn ordinary_impact() -> impl Strategy<Value = Impact> {
     (ordinary_structure(ordinary_damping()), ordinary_striker(), ordinary_law())
         .prop_map(|(structure, striker, law)| Impact { structure, striker, law })
+}
+
+/// An impact from the edges of what an engineer might pose: near supports and free ends, many modes without damping, every
+/// law, free structures that fly against a stop.
+#[derive(Debug, Clone)]
+pub struct EdgeImpact {
+    pub structure: Structure,
+    pub striker: Striker,
+    pub law: Law,
+    pub start: Option<Start>,
+}
+
+/// Laws of every kind, for a striker of the order of 0.1 kg at 1 m/s.
+fn edge_law() -> impl Strategy<Value = Law> {
+    let stiffness = || decades(8.0, 11.0);
+    prop_oneof![
+        4 => ordinary_law(),
+        1 => (stiffness(), 0.1..1.0).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),
+        1 => (stiffness(), 0.1..1.0).prop_map(|(k, e)| Flores::new(k, e).unwrap().into()),
+    ]
+}
+
+/// A pinned beam seen from near its support, a cantilever-like row of modes seen from its tip, or many modes.
+fn edge_structure() -> impl Strategy<Value = Structure> {
+    let place = prop_oneof![2 => decades(-3.0, -1.3), 1 => Just(0.5), 2 => 0.02..0.98f64];
+    let number = prop_oneof![2 => 1usize..50, 1 => 50usize..120];
+    let damping = prop_oneof![1 => Just(0.0), 2 => decades(-4.0, -1.0)];
+    (number, damping, place, any::<bool>(), any::<bool>()).prop_map(|(n, damping_ratio, b, residual, tip)| {
+        if residual {
+            return super::pinned_with_residual(n, damping_ratio, b);
+        }
+        let mut structure = super::pinned(n, damping_ratio, b);
+        if tip {
+            // all shapes of one size, as at a free end
+            for (k, mode) in structure.modes.iter_mut().enumerate() {
+                mode.omega_rad_s *= ((k as f64 + 0.5) / (k as f64 + 1.0)).powi(2);
+                mode.shape = 2.0;
+            }
+        }
+        structure
+    })
+}
+
+pub fn edge_impact() -> impl Strategy<Value = EdgeImpact> {
+    let striker = (edge_structure(), ordinary_striker(), edge_law()).prop_map(|(structure, striker, law)| EdgeImpact {
+        structure,
+        striker,
+        law,
+        start: None,
+    });
+    let stop = (edge_structure(), decades(-1.0, 0.5), decades(-1.0, 1.0), -0.3..0.3f64, edge_law()).prop_map(
+        |(mut structure, shape, speed, swing, law)| {
+            // a structure that flies as a rigid body, swinging in its lowest mode
+            structure.modes.insert(0, Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape });
+            let mut start = Start::at_rest(structure.modes.len());
+            start.rate[0] = speed / shape;
+            start.rate[1] = swing * speed / structure.modes[1].shape.abs().max(0.1);
+            start.gap_m = 1e-3;
+            EdgeImpact {
+                structure,
+                striker: Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 },
+                law,
+                start: Some(start),
+            }
+        },
+    );
+    prop_oneof![4 => striker, 1 => stop]
 }

@@ -25,7 +25,7 @@ A scene with bodies in place of structure and striker is followed until its end_
 on long runs, and Ctrl-C keeps what was found. Then --out writes history.csv, intervals.csv and .parquet, run.svg,
 report.html, result.json, and section.csv where a load is harmonic.
 
-The exit code is 0 for every result, sustained contact and a limit reached among them, 2 for a scene that cannot be
+The exit code is 0 for every result, sustained contact and a computation that stopped among them, 2 for a scene that cannot be
 used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
 
 /// What to solve, and where to put it.

@@ -5,6 +5,7 @@ mod files;
 mod text;
 
 use serde::Serialize;
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{
     CriticalS, Groups, MOST_TURNING_POINTS, Outcome, Solution, State, TurningPoint, critical_s, turning_points,
 };
@@ -20,10 +21,15 @@ pub use text::{text, turning_points_text};
 pub struct Summary {
     /// The nondimensional number `S`.
     pub s: f64,
-    /// `rebound`, `sustained` or `limit reached`.
+    /// `rebound`, `sustained` or `stopped`.
     pub outcome: &'static str,
+    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    #[serde(serialize_with = "crate::summary::word")]
+    pub stopped_by: Option<StopReason>,
     /// Number of separations.
     pub separations: usize,
+    /// How many of them, from the first, a solution of higher resolution has too; what follows is not known.
+    pub certain_separations: Option<usize>,
     /// Speed away from the structure after the last separation over the speed of impact; null unless the striker
     /// rebounds.
     pub rebound_ratio: Option<f64>,
@@ -117,12 +123,10 @@ impl Summary {
             .collect();
         Summary {
             s: solution.s,
-            outcome: match solution.outcome {
-                Outcome::Rebound => "rebound",
-                Outcome::Sustained => "sustained",
-                Outcome::LimitReached => "limit reached",
-            },
+            outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
             separations: solution.separations(),
+            certain_separations: solution.certain_separations,
             rebound_ratio: solution.rebound_ratio(),
             first_rebound_ratio: solution.first_rebound_ratio(),
             relative_error: solution.error.filter(|error| error.is_finite()),
@@ -239,6 +243,6 @@ pub fn telling_time(solution: &Solution) -> f64 {
     let last = solution.contacts.last().map_or(0.0, |contact| contact.end.unwrap_or(contact.start));
     match solution.outcome {
         Outcome::Rebound => 1.5 * last,
-        Outcome::Sustained | Outcome::LimitReached => solution.known_until,
+        Outcome::Sustained | Outcome::Stopped(_) => solution.known_until,
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Summary, TurningPoints};
-use crate::text::quantity;
+use crate::text::{quantity, stopped};
 
 /// Contacts listed one by one; the rest are counted.
 const LISTED: usize = 20;
@@ -17,11 +17,13 @@ pub fn text(summary: &Summary) -> String {
     line("S", format!("{}", summary.s));
     let outcome = match summary.outcome {
         "sustained" => "sustained contact: the striker never leaves for good",
-        "limit reached" => "limit reached: the separations are too many to follow; what was found stands",
         other => other,
     };
-    line("outcome", outcome.to_owned());
+    line("outcome", stopped(summary.stopped_by).unwrap_or_else(|| outcome.to_owned()));
     line("separations", summary.separations.to_string());
+    if let Some(certain) = summary.certain_separations.filter(|certain| *certain < summary.separations) {
+        line("of them certain", format!("the first {certain}; what follows is not known"));
+    }
     let digits = summary.digits.unwrap_or(0.0);
     let decimals = (digits as usize).clamp(1, 12);
     if let Some(ratio) = summary.first_rebound_ratio {

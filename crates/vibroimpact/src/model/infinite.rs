@@ -289,20 +289,13 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
         ),
     };
     let answer = Answer {
-        outcome: outcome(solution.outcome),
+        outcome: solution.outcome.as_str(),
+        stopped_by: solution.outcome.stopped_by(),
         restitution,
         sub_impact_count: Some(solution.contacts.len()),
         ..Answer::new(Model::InfiniteBeam, pose.tolerance, known, reason)
     };
     Ok(Ok((Choice { answer, impact: None }, uncertainty)))
-}
-
-fn outcome(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Rebound => "rebound",
-        Outcome::Sustained => "sustained",
-        Outcome::LimitReached => "limit reached",
-    }
 }
 
 /// A structure that has no ends to begin with.
@@ -324,7 +317,8 @@ pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInpu
     // no mode is left out
     let known = Known::new(scene, uncertainty, Ok(0.0)).of(restitution);
     let answer = Answer {
-        outcome: outcome(solution.outcome),
+        outcome: solution.outcome.as_str(),
+        stopped_by: solution.outcome.stopped_by(),
         restitution,
         sub_impact_count: Some(solution.contacts.len()),
         settled: settled || solution.outcome == Outcome::Sustained,

@@ -29,6 +29,7 @@ use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Counts;
 
 pub use attached::largest_share;
@@ -151,8 +152,11 @@ impl JsonSchema for Modes {
 pub struct Answer {
     /// The model used; never `auto`.
     pub model: Model,
-    /// `rebound`, `no contact`, `sustained` or `limit reached`.
+    /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
+    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    #[serde(serialize_with = "crate::summary::word")]
+    pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
     /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
@@ -186,6 +190,7 @@ impl Answer {
         Answer {
             model,
             outcome: "rebound",
+            stopped_by: None,
             restitution: None,
             restitution_uncertainty: known.uncertainty.whole(),
             uncertainty: known.uncertainty,

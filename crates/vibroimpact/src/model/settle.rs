@@ -225,7 +225,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         // after several contacts, two impacts may agree and lack the same further contact: ask a third
         let several = next.solution.sub_impacts.len() > 1 && rungs.earlier.len() < 2;
         let settled = solver + left_out <= pose.tolerance && both && !several;
-        let limit = next.solution.outcome == Outcome::LimitReached;
+        let limit = matches!(next.solution.outcome, Outcome::Stopped(_));
         if settled || limit {
             return Ok(finish(pose, rungs, settled));
         }
@@ -315,6 +315,7 @@ impl Choice {
         let Conclusion { known, settled, spread, reason } = conclusion;
         let answer = Answer {
             outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
             restitution: solution.restitution,
             sub_impact_count: Some(solution.sub_impacts.len()),
             modes: impact.structure.modes.len(),

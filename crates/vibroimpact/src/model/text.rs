@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Answer, Comparison, Plan};
-use crate::text::{filled, quantity, restitution};
+use crate::text::{filled, quantity, restitution, stopped};
 
 /// A number in passing: two significant digits.
 pub(super) fn small(value: f64) -> String {
@@ -78,7 +78,7 @@ pub fn net_text(answer: &Answer) -> String {
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22}{value}");
     };
-    line("outcome", answer.outcome.to_owned());
+    line("outcome", stopped(answer.stopped_by).unwrap_or_else(|| answer.outcome.to_owned()));
     if let Some(value) = answer.restitution {
         line("restitution", restitution(value, answer.restitution_uncertainty));
     }

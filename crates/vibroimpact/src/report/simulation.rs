@@ -8,7 +8,7 @@ use crate::infinite;
 use crate::plot::Figure;
 use crate::scene::{Scene, Structure};
 use crate::summary::Summary;
-use crate::text::{quantity, restitution};
+use crate::text::{quantity, restitution, stopped};
 
 /// Under the picture of an impact.
 const PICTURE_CAPTION: &str =
@@ -74,7 +74,7 @@ pub fn of_infinite_impact(
     figure: &Figure,
 ) -> io::Result<Report> {
     let mut report = begun(headline, scene);
-    let mut rows = vec![row("outcome", summary.outcome.to_owned())];
+    let mut rows = vec![row("outcome", stopped(summary.stopped_by).unwrap_or_else(|| summary.outcome.to_owned()))];
     let digits = summary.digits.unwrap_or(0.0);
     if let Some(ratio) = summary.rebound_ratio {
         rows.push(row("rebound ratio", format!("{ratio:.*}", (digits as usize).clamp(1, 12))));
@@ -185,7 +185,7 @@ fn row(name: &str, value: String) -> Vec<String> {
 }
 
 fn result(summary: &Summary) -> Vec<Vec<String>> {
-    let mut rows = vec![row("outcome", summary.outcome.to_owned())];
+    let mut rows = vec![row("outcome", stopped(summary.stopped_by).unwrap_or_else(|| summary.outcome.to_owned()))];
     if let Some(value) = summary.restitution {
         let value = restitution(value, summary.restitution_uncertainty);
         rows.push(row("restitution", format!("**{value}**")));

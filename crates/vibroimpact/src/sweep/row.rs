@@ -10,7 +10,7 @@ use crate::model::{Answer, Kept};
 use crate::scene::json::number;
 
 /// The columns after the varied fields.
-const RESULTS: [(&str, Kind); 22] = [
+const RESULTS: [(&str, Kind); 23] = [
     ("outcome", Kind::Text),
     ("restitution", Kind::Number),
     ("restitution_uncertainty", Kind::Number),
@@ -32,6 +32,7 @@ const RESULTS: [(&str, Kind); 22] = [
     ("flight_steps", Kind::Whole),
     ("mode_steps", Kind::Whole),
     ("panels", Kind::Whole),
+    ("stopped_by", Kind::Text),
     ("error", Kind::Text),
 ];
 
@@ -99,6 +100,7 @@ fn cells(answer: &Answer) -> [String; RESULTS.len()] {
         cost.flight_steps.to_string(),
         cost.mode_steps.to_string(),
         cost.panels.to_string(),
+        answer.stopped_by.map_or_else(String::new, |reason| reason.as_str().to_owned()),
         String::new(),
     ]
 }

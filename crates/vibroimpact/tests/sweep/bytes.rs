@@ -38,7 +38,7 @@ fn rows_hold_the_results_of_their_scenes() {
         "index,striker.mass_kg,modes,striker.speed_m_s,structure.shape_at_location[1],outcome,restitution,\
          restitution_uncertainty,uncertainty_solver,uncertainty_modes_left_out,uncertainty_beam_theory,settled,spread,\
          sub_impact_count,model,mode_count,residual_compliance_m_n,solves,modes_computed,contact_steps,rejected_steps,newton_iterations,law_evaluations,flight_steps,mode_steps,panels,\
-         error\n"
+         stopped_by,error\n"
     ));
     let mut failed = 0;
     for (point, row) in rows.iter().enumerate() {
