@@ -32,8 +32,9 @@
 //! that of the straight lines). Products of two sinusoids are elementary, and taken once for the whole run.
 //!
 //! # What it is not
-//! Nothing is found as the difference of the others but `unaccounted_j`. It holds the rounding of all parts and what the
-//! quadrature of a contact's work misses.
+//! Nothing is found as the difference of the others but `unaccounted_j`. It holds what the quadrature of a contact's work
+//! misses and the rounding of all parts: of the largest energy met on the way, of carried motion too, which is large where a
+//! sampled load changes within a small part of a slow mode's period or a harmonic one nearly meets a frequency.
 
 use super::damping::lost_within;
 use super::load::Loads;
