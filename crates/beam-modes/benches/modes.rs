@@ -1,6 +1,6 @@
 //! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps.
 
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, BeamSystem, End, Segment, ShearSection};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -27,6 +27,14 @@ fn modes(c: &mut Criterion) {
         ("taper", &taper, 40),
     ] {
         c.bench_function(&format!("{name}, {count} modes"), |b| b.iter(|| black_box(beam).modes(black_box(count))));
+    }
+    // a beam forty times as long as thick
+    let shear = [(1.4e5, 5e-4), (7e4, 2.5e-4)]
+        .map(|(shear_rigidity_n, rotary_inertia_kg_m)| ShearSection { shear_rigidity_n, rotary_inertia_kg_m });
+    let timoshenko = BeamSystem { shear: Some(shear.to_vec()), ..BeamSystem::from(stepped.clone()) };
+    for count in [40, 500] {
+        let name = format!("stepped, Timoshenko, {count} modes");
+        c.bench_function(&name, |b| b.iter(|| black_box(&timoshenko).modes(black_box(count))));
     }
     let found = uniform.modes(40).unwrap();
     c.bench_function("40 shapes at one place", |b| b.iter(|| found.shapes_at(black_box(0.4))));

@@ -1,8 +1,8 @@
 //! Modes of a stepped cantilever, twenty times over: for callgrind. See docs/performance-other.md.
 //!
-//! `modes_cost COUNT`; 500 when left out.
+//! `modes_cost COUNT [timoshenko]`; 500 when left out.
 
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, BeamSystem, End, Segment, ShearSection};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -14,6 +14,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         mass_per_length_kg_m,
     };
     let beam = Beam { segments: vec![segment(1.0, 1.0), segment(0.2, 0.5)], ends: [End::Clamped, End::Free] };
+    let mut beam = BeamSystem::from(beam);
+    if std::env::args().nth(2).is_some_and(|word| word == "timoshenko") {
+        let shear = [(400.0, 1e-3), (200.0, 5e-4)]
+            .map(|(shear_rigidity_n, rotary_inertia_kg_m)| ShearSection { shear_rigidity_n, rotary_inertia_kg_m });
+        beam.shear = Some(shear.to_vec());
+    }
     let mut best = f64::INFINITY;
     let mut last = None;
     for _ in 0..20 {

@@ -33,7 +33,6 @@ pub(crate) struct Sweep {
 
 /// Those of both ends.
 pub(crate) struct Sweeps {
-    q: f64,
     left: Sweep,
     right: Sweep,
 }
@@ -133,29 +132,29 @@ impl Waveguide for Axial {
         &self.spans
     }
 
-    fn leading_order(&self) -> usize {
+    fn leading(&self, first: &Piece) -> f64 {
         match self.ends[0] {
-            RodEnd::Fixed => 1,
-            RodEnd::Free => 0,
+            RodEnd::Fixed => first.slope(0.0),
+            RodEnd::Free => first.displacement(0.0),
         }
     }
 
-    fn spacing(&self) -> f64 {
+    fn spacing(&self, _: f64) -> f64 {
         PI / self.phase
     }
 
     fn sweeps(&self, q: f64) -> Sweeps {
-        Sweeps { q, left: self.sweep(q, false), right: self.sweep(q, true) }
+        Sweeps { left: self.sweep(q, false), right: self.sweep(q, true) }
     }
 
-    fn matches(&self, Sweeps { left, right, .. }: &Sweeps) -> Vec<Match> {
+    fn matches(&self, Sweeps { left, right }: &Sweeps) -> Vec<Match> {
         let pairs = left.entries.iter().zip(&right.exits).enumerate();
         pairs
             .map(|(span, (l, &[u, v]))| Match { defect: (l[0] * v + l[1] * u).abs(), span, state: [u, -v, 0.0, 0.0] })
             .collect()
     }
 
-    fn unroll(&self, Sweeps { q, left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
+    fn unroll(&self, q: f64, Sweeps { left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
         let n = self.spans.len();
         let [u, v, ..] = at.state;
         // how much of the unit state each span carries
@@ -175,8 +174,7 @@ impl Waveguide for Axial {
                 // u = z_0 / sqrt(EA k), the common power of q left out
                 let size = share[i] / (span.rigidity * self.slowness[i]).sqrt();
                 let k = q * self.slowness[i];
-                let piece =
-                    |[a, b]: [f64; 2]| Piece::Long { k, length: span.length, wave: [a * size, b * size, 0.0, 0.0] };
+                let piece = |[a, b]: [f64; 2]| Piece::slender(k, span.length, [a * size, b * size, 0.0, 0.0]);
                 if i < at.span { piece(left.entries[i]) } else { piece(right.entries[i]).reflected() }
             })
             .collect()

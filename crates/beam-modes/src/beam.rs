@@ -4,10 +4,11 @@ use crate::compliance::green;
 use crate::error::InvalidInput;
 use crate::flexure::Flexure;
 use crate::modes::{Modes, require_count};
+use crate::node::Node;
 use crate::piece::Piece;
 use crate::roots::elastic_roots;
 use crate::shapes::shapes;
-use crate::span::{Span, Units, nondimensional};
+use crate::span::{Span, Units, nondimensional_beam};
 use crate::uniform;
 
 /// A uniform stretch of a beam.
@@ -108,17 +109,18 @@ impl Beam {
     pub fn modes(&self, count: usize) -> Result<Modes, InvalidInput> {
         let (spans, units) = self.checked()?;
         require_count(count, spans.len())?;
-        let motions = rigid_motions(&spans, self.ends);
+        let nodes = vec![Node::default(); spans.len() + 1];
+        let motions = rigid_motions(&spans, self.ends, &nodes);
         let elastic = count.saturating_sub(motions.len());
 
-        let chain = Flexure::new(spans.clone(), self.ends);
+        let chain = Flexure::new(spans.clone(), self.ends, nodes);
         let roots = if spans.len() == 1 {
             (1..=elastic).map(|n| uniform::root(self.ends, n)).collect()
         } else {
             elastic_roots(&chain, motions.len(), elastic)?
         };
 
-        let unit = units.rigidity.sqrt() / units.mass_per_length_kg_m.sqrt() / units.length_m / units.length_m;
+        let unit = units.bending_frequency();
         let omega = roots.iter().map(|q| q * q * unit);
         let rigid: Vec<Vec<Piece>> = motions.iter().take(count).map(|motion| rigid_shape(&spans, motion)).collect();
         let elastic = shapes(&chain, &roots);
@@ -155,26 +157,38 @@ impl Beam {
         let (spans, units) = self.checked()?;
         let x = InvalidInput::require_on("x_m", x_m, units.length_m)? / units.length_m;
         let y = InvalidInput::require_on("y_m", y_m, units.length_m)? / units.length_m;
-        let motions = rigid_motions(&spans, self.ends);
+        let motions = rigid_motions(&spans, self.ends, &[]);
         let deflection = green(&spans, self.ends, &motions, x, y);
         Ok(deflection * units.length_m.powi(3) / units.rigidity)
     }
 
     pub(crate) fn checked(&self) -> Result<(Vec<Span>, Units), InvalidInput> {
-        let raw: Vec<[f64; 3]> =
-            self.segments.iter().map(|s| [s.length_m, s.flexural_rigidity_n_m2, s.mass_per_length_kg_m]).collect();
-        nondimensional(&raw, ["length_m", "flexural_rigidity_n_m2", "mass_per_length_kg_m"])
+        nondimensional_beam(self, None)
     }
 }
 
 /// Mass-normalised displacements `p + q x` that strain nothing: a translation before a rotation about the centre of
 /// mass.
-pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2]) -> Vec<[f64; 2]> {
+pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> Vec<[f64; 2]> {
     use End::{Free, Guided, Pinned};
-    let mass: f64 = spans.iter().map(|s| s.mass * s.length).sum();
-    let centre = spans.iter().map(|s| s.mass * s.length * (s.start + 0.5 * s.length)).sum::<f64>() / mass;
+    let places = || spans.iter().map(|s| s.start).chain([1.0]);
+    let fixed = || places().zip(nodes).filter(|(_, node)| node.is_heavy());
+    let mass: f64 = spans.iter().map(|s| s.mass * s.length).sum::<f64>() + fixed().map(|(_, n)| n.mass[0]).sum::<f64>();
+    let first_moment = spans.iter().map(|s| s.mass * s.length * (s.start + 0.5 * s.length)).sum::<f64>()
+        + fixed().map(|(x, node)| node.mass[0] * x).sum::<f64>();
+    let centre = first_moment / mass;
+    let held =
+        places().zip(nodes).filter(|(_, n)| n.support || n.spring[0] > 0.0).map(|(x, _)| x).collect::<Vec<f64>>();
+    let founded = spans.iter().any(|s| s.foundation > 0.0);
+    // an axial force keeps its direction, and so turns the beam towards it
+    let turned = spans.iter().any(|s| s.tension != 0.0) || nodes.iter().any(|node| node.spring[1] > 0.0);
+    let stands = |&[p, q]: &[f64; 2]| !founded && (!turned || q == 0.0) && held.iter().all(|x| p + q * x == 0.0);
     let motions = match ends {
-        [Free, Free] => vec![[1.0, 0.0], [-centre, 1.0]],
+        [Free, Free] => match held.as_slice() {
+            // about the only place that is held
+            [x, rest @ ..] if rest.iter().all(|other| other == x) => vec![[-x, 1.0]],
+            _ => vec![[1.0, 0.0], [-centre, 1.0]],
+        },
         [Guided, Free | Guided] | [Free, Guided] => vec![[1.0, 0.0]],
         [Pinned, Free] => vec![[0.0, 1.0]],
         [Free, Pinned] => vec![[1.0, -1.0]],
@@ -183,12 +197,14 @@ pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2]) -> Vec<[f64; 2]> {
     let normalised = |[p, q]: [f64; 2]| {
         // the integral of (p + q x)^2 over a span, by its mean and its spread
         let square = |s: &Span| (p + q * (s.start + 0.5 * s.length)).powi(2) + (q * s.length).powi(2) / 12.0;
-        let norm = spans.iter().map(|s| s.mass * s.length * square(s)).sum::<f64>().sqrt();
+        let along = spans.iter().map(|s| s.mass * s.length * square(s) + s.rotary * s.length * q * q).sum::<f64>();
+        let fixed = fixed().map(|(x, node)| node.mass[0] * (p + q * x).powi(2) + node.mass[1] * q * q).sum::<f64>();
+        let norm = (along + fixed).sqrt();
         [p / norm, q / norm]
     };
-    motions.into_iter().map(normalised).collect()
+    motions.into_iter().filter(stands).map(normalised).collect()
 }
 
-fn rigid_shape(spans: &[Span], &[p, q]: &[f64; 2]) -> Vec<Piece> {
+pub(crate) fn rigid_shape(spans: &[Span], &[p, q]: &[f64; 2]) -> Vec<Piece> {
     spans.iter().map(|s| Piece::Short { k: 0.0, length: s.length, start: [p + q * s.start, q, 0.0, 0.0] }).collect()
 }

@@ -1,33 +1,46 @@
 //! Bending waves on a stepped beam: count of Wittrick and Williams, characteristic function, and the states from
 //! which mode shapes are unrolled.
 //!
-//! Everything is dimensionless (see `span`); the trial value is `q = sqrt(omega)`, and a span's wave number is
-//! `k = q (m/EI)^(1/4)`.
+//! Everything is dimensionless (see `span`); the trial value is `q = sqrt(omega)`, and a span's scaling wave number is
+//! `k = q (m/EI)^(1/4)`. What the two theories of bending, axial force and foundation make of a span is in `waves`;
+//! what is fixed to the beam between spans is in `node`.
 
 use crate::beam::End;
-use crate::piece::{Piece, SHORT, krylov};
+use crate::node::Node;
+use crate::piece::Piece;
 use crate::plane::{Crossing, Handover, Plane, State, combine, form, reflect};
 use crate::roots::Characteristic;
 use crate::shapes::{Match, Waveguide};
 use crate::span::Span;
+use crate::waves::Waves;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Flexure {
     spans: Vec<Span>,
     ends: [End; 2],
+    /// At both ends and between spans: one more than spans.
+    nodes: Vec<Node>,
     /// `(m/EI)^(1/4)` of each span.
     wave_numbers: Vec<f64>,
     /// `sum k l / q`.
     phase: f64,
     /// Factors of the state from span `i` to span `i + 1`.
     steps: Vec<State>,
+    /// Neither shear, rotary inertia, tension nor foundation anywhere.
+    plain: bool,
 }
 
-/// The plane of one end at one frequency, on its way along the beam; both lists in the order of the spans.
+/// What a plane passes between two spans: masses and springs, a support, the change of units.
+#[derive(Debug, Clone, Copy)]
+struct Joint([Option<Handover>; 3]);
+
+/// The plane of one end at one frequency, on its way along the beam; all lists in the order of the spans.
 struct Sweep {
+    /// Where each span is entered.
+    entries: Vec<Plane>,
     crossings: Vec<Crossing>,
-    /// At every step between spans.
-    handovers: Vec<Handover>,
+    /// Between spans.
+    joints: Vec<Joint>,
 }
 
 /// Those of both ends.
@@ -64,55 +77,120 @@ fn end_plane(end: End) -> Plane {
     }))
 }
 
-impl Flexure {
-    pub fn new(spans: Vec<Span>, ends: [End; 2]) -> Self {
-        let wave_numbers: Vec<f64> = spans.iter().map(|s| (s.mass / s.rigidity).sqrt().sqrt()).collect();
-        let steps = (1..spans.len())
-            .map(|i| {
-                let (left, right) = (&spans[i - 1], &spans[i]);
-                let slower = wave_numbers[i - 1] / wave_numbers[i];
-                let rho = (right.rigidity / left.rigidity / slower.powi(3)).sqrt();
-                [rho, rho * slower, 1.0 / (rho * slower), 1.0 / rho]
-            })
-            .collect();
-        let phase = spans.iter().zip(&wave_numbers).map(|(span, k)| span.length * k).sum();
-        Self { spans, ends, wave_numbers, phase, steps }
+impl Joint {
+    fn exit(&self, entry: Plane) -> Plane {
+        self.0.iter().flatten().next_back().map_or(entry, |handover| handover.plane)
     }
 
+    /// Coefficients, in the plane that entered, of a state of the plane that left.
+    fn coefficients_before(&self, state: &State, exit: &Plane) -> [f64; 2] {
+        self.0.iter().rev().flatten().fold(exit.coefficients(state), |after, handover| handover.before(after))
+    }
+}
+
+impl Flexure {
+    pub fn new(spans: Vec<Span>, ends: [End; 2], nodes: Vec<Node>) -> Self {
+        let wave_numbers: Vec<f64> = spans.iter().map(|s| (s.mass / s.rigidity).sqrt().sqrt()).collect();
+        let steps =
+            (1..spans.len()).map(|i| step(&spans[i - 1], wave_numbers[i - 1], &spans[i], wave_numbers[i])).collect();
+        let phase = spans.iter().zip(&wave_numbers).map(|(span, k)| span.length * k).sum();
+        let plain = spans.iter().all(Span::is_plain);
+        Self { spans, ends, nodes, wave_numbers, phase, steps, plain }
+    }
+
+    /// The scaling wave number, from the mass or, where it pushes harder, from the foundation.
     fn wave_number(&self, i: usize, q: f64) -> f64 {
-        q * self.wave_numbers[i]
+        let Span { mass, foundation, rigidity, .. } = self.spans[i];
+        if foundation == 0.0 {
+            return q * self.wave_numbers[i];
+        }
+        ((mass * (q * q) * (q * q) - foundation).max(foundation) / rigidity).sqrt().sqrt()
+    }
+
+    fn waves(&self, i: usize, q: f64) -> Waves {
+        Waves::new(&self.spans[i], self.wave_number(i, q), q)
+    }
+
+    /// Factors of the state from span `i - 1` to span `i`.
+    fn step(&self, i: usize, q: f64) -> State {
+        if self.spans[i].foundation == 0.0 {
+            return self.steps[i - 1];
+        }
+        step(&self.spans[i - 1], self.wave_number(i - 1, q), &self.spans[i], self.wave_number(i, q))
+    }
+
+    /// What is fixed at a node, for a plane in the units of a span beside it.
+    fn pass(&self, node: usize, plane: Plane, span: usize, q: f64) -> Joint {
+        let node = &self.nodes[node];
+        let load = (!node.is_bare()).then(|| {
+            let (k, rigidity) = (self.wave_number(span, q), self.spans[span].rigidity);
+            let [force, moment] = node.dynamic_stiffness(q);
+            plane.loaded([force / (rigidity * k * k * k), moment / (rigidity * k)])
+        });
+        let joint = Joint([load, None, None]);
+        let support = if node.support { joint.exit(plane).supported() } else { None };
+        Joint([load, support, None])
+    }
+
+    /// The same between two spans, into the units of the next: `scale`.
+    fn join(&self, node: usize, plane: Plane, span: usize, q: f64, scale: &State) -> Joint {
+        let mut joint = self.pass(node, plane, span, q);
+        joint.0[2] = Some(joint.exit(plane).rescaled(scale));
+        joint
+    }
+
+    /// The plane that one end allows, with what is fixed there.
+    fn start(&self, q: f64, from_right: bool) -> Plane {
+        let n = self.spans.len();
+        let plane = end_plane(self.ends[usize::from(from_right)]);
+        let (node, span) = if from_right { (n, n - 1) } else { (0, 0) };
+        self.pass(node, plane, span, q).exit(plane)
     }
 
     /// The plane that one end allows, carried over every span from there; from the right, in reflected variables.
     fn sweep(&self, q: f64, from_right: bool) -> Sweep {
         let n = self.spans.len();
-        let mut plane = end_plane(self.ends[usize::from(from_right)]);
-        let mut crossings = Vec::with_capacity(n);
-        let mut handovers = Vec::with_capacity(n);
+        let mut plane = self.start(q, from_right);
+        let mut sweep =
+            Sweep { entries: Vec::with_capacity(n), crossings: Vec::with_capacity(n), joints: Vec::with_capacity(n) };
         for step in 0..n {
             let i = if from_right { n - 1 - step } else { step };
-            let crossing = plane.cross(self.wave_number(i, q), self.spans[i].length);
+            sweep.entries.push(plane);
+            let crossing = plane.cross(&self.waves(i, q));
             if step + 1 < n {
-                let handover = if from_right {
-                    crossing.exit.rescaled(&self.steps[i - 1].map(|s| 1.0 / s))
+                let joint = if from_right {
+                    self.join(i, crossing.exit, i, q, &self.step(i, q).map(|s| 1.0 / s))
                 } else {
-                    crossing.exit.rescaled(&self.steps[i])
+                    self.join(i + 1, crossing.exit, i, q, &self.step(i + 1, q))
                 };
-                plane = handover.plane;
-                handovers.push(handover);
+                plane = joint.exit(crossing.exit);
+                sweep.joints.push(joint);
             }
-            crossings.push(crossing);
+            sweep.crossings.push(crossing);
         }
         if from_right {
-            crossings.reverse();
-            handovers.reverse();
+            sweep.entries.reverse();
+            sweep.crossings.reverse();
+            sweep.joints.reverse();
         }
-        Sweep { crossings, handovers }
+        sweep
     }
 
-    /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, the common power of `q` left out.
-    fn amplitude(&self, i: usize) -> f64 {
-        1.0 / (self.spans[i].rigidity * self.wave_numbers[i].powi(3)).sqrt()
+    /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, a common power of `q` left out where there is one.
+    fn amplitude(&self, i: usize, q: f64) -> f64 {
+        let foundation = self.spans[i].foundation != 0.0;
+        let k = if foundation { self.wave_number(i, q) } else { self.wave_numbers[i] };
+        1.0 / (self.spans[i].rigidity * k.powi(3)).sqrt()
+    }
+
+    /// The plane carried over one span and, but for the last, into the next.
+    fn advance(&self, i: usize, plane: Plane, waves: &Waves, q: f64) -> Plane {
+        let exit = plane.cross(waves).exit;
+        if i + 1 < self.spans.len() {
+            self.join(i + 1, exit, i, q, &self.step(i + 1, q)).exit(exit)
+        } else {
+            self.pass(i + 1, exit, i, q).exit(exit)
+        }
     }
 
     /// The characteristic function: zero when the plane holds a state that the right end allows.
@@ -120,6 +198,18 @@ impl Flexure {
         let [m, n] = constrained(self.ends[1]);
         u[m] * v[n] - v[m] * u[n]
     }
+
+    /// Half waves on the whole beam.
+    fn half_waves(&self, q: f64) -> f64 {
+        (0..self.spans.len()).map(|i| self.waves(i, q).half_waves()).sum()
+    }
+}
+
+/// Factors of the state from a span with the wave number `k` to the next with another.
+fn step(left: &Span, left_k: f64, right: &Span, right_k: f64) -> State {
+    let slower = left_k / right_k;
+    let rho = (right.rigidity / left.rigidity / slower.powi(3)).sqrt();
+    [rho, rho * slower, 1.0 / (rho * slower), 1.0 / rho]
 }
 
 /// How many eigenvalues of the symmetric matrix `[[p, r], [r, s]]` are negative.
@@ -134,34 +224,13 @@ fn negative_eigenvalues(p: f64, r: f64, s: f64) -> usize {
     }
 }
 
-/// A span with its far end clamped: how many of its doubly clamped frequencies lie below, and its stiffness matrix
-/// at the near end, in the span's variables: `(numerator, denominator)`.
-fn clamped_span(y: f64) -> (usize, [f64; 3], f64) {
-    if y <= SHORT {
-        let [c0, c1, c2, c3] = krylov(y);
-        let (c1, c2, c3) = (c1 * y, c2 * y * y, c3 * y * y * y);
-        // displacement and slope vanish at the far end: solve for z_2, z_3 in terms of z_0, z_1
-        return (0, [c0 * c1 - c2 * c3, c1 * c1 - c0 * c2, c1 * c2 - c0 * c3], c2 * c2 - c1 * c3);
-    }
-    let (sin, cos) = y.sin_cos();
-    let decay = (-y.min(600.0)).exp();
-    let (cosh, sinh) = (1.0 + decay * decay, 1.0 - decay * decay);
-    let denominator = 2.0 * decay - cos * cosh;
-    let half_waves = (y / std::f64::consts::PI).floor();
-    let even = half_waves % 2.0 == 0.0;
-    // floor(y/pi) - (1 - (-1)^i sign(1 - cosh cos)) / 2, Wittrick and Williams
-    let excess = usize::from(even != (denominator > 0.0));
-    let count = (half_waves as usize).saturating_sub(excess);
-    (count, [cos * sinh + sin * cosh, sin * sinh, sin * cosh - cos * sinh], denominator)
-}
-
 impl Characteristic for Flexure {
     fn count_and_function(&self, q: f64) -> (usize, f64) {
-        let mut plane = end_plane(self.ends[0]);
+        let mut plane = self.start(q, false);
         let mut count = 0;
-        for (i, span) in self.spans.iter().enumerate() {
-            let k = self.wave_number(i, q);
-            let (inside, [ww, wt, tt], denominator) = clamped_span(k * span.length);
+        for i in 0..self.spans.len() {
+            let waves = self.waves(i, q);
+            let (inside, [ww, wt, tt], denominator) = waves.clamped();
             // U' (K_left + K_span) U times |denominator|: same signature as K_left + K_span, and no pole
             let [u, v] = plane.0;
             let (size, sign) = (denominator.abs(), denominator.signum());
@@ -172,10 +241,7 @@ impl Characteristic for Flexure {
             };
             let off_diagonal = 0.5 * (entry(&u, &v) + entry(&v, &u));
             count += inside + negative_eigenvalues(entry(&u, &u), off_diagonal, entry(&v, &v));
-            plane = plane.cross(k, span.length).exit;
-            if let Some(scale) = self.steps.get(i) {
-                plane = plane.rescaled(scale).plane;
-            }
+            plane = self.advance(i, plane, &waves, q);
         }
         // the right end releases what it does not constrain
         let [u, v] = plane.0;
@@ -193,18 +259,30 @@ impl Characteristic for Flexure {
     }
 
     fn function(&self, q: f64) -> f64 {
-        let mut plane = end_plane(self.ends[0]);
-        for (i, span) in self.spans.iter().enumerate() {
-            plane = plane.cross(self.wave_number(i, q), span.length).exit;
-            if let Some(scale) = self.steps.get(i) {
-                plane = plane.rescaled(scale).plane;
-            }
-        }
+        let start = self.start(q, false);
+        let plane = (0..self.spans.len()).fold(start, |plane, i| self.advance(i, plane, &self.waves(i, q), q));
         self.at_right_end(&plane)
     }
 
     fn estimate(&self, count: usize) -> f64 {
-        (count as f64 + 1.0) * std::f64::consts::PI / self.phase
+        let slender = (count as f64 + 1.0) * std::f64::consts::PI / self.phase;
+        if self.plain {
+            return slender;
+        }
+        // waves are more where shear makes them slow, fewer on a foundation
+        let wanted = count as f64 + 1.0;
+        let (mut low, mut high) = (0.0, slender);
+        for _ in 0..60 {
+            if self.half_waves(high) >= wanted {
+                break;
+            }
+            (low, high) = (high, 1.5 * high);
+        }
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            *(if self.half_waves(middle) < wanted { &mut low } else { &mut high }) = middle;
+        }
+        high
     }
 }
 
@@ -215,12 +293,36 @@ impl Waveguide for Flexure {
         &self.spans
     }
 
-    fn leading_order(&self) -> usize {
-        allowed(self.ends[0])[0]
+    fn inner(&self, u: &[Piece], v: &[Piece]) -> f64 {
+        let both = self.spans.iter().zip(u.iter().zip(v));
+        let along = both.map(|(span, (u, v))| {
+            let rotary = if span.rotary > 0.0 { span.rotary * u.rotation_product(v) } else { 0.0 };
+            span.mass * u.product(v) + rotary
+        });
+        let last = self.spans.len() - 1;
+        let fixed = self.nodes.iter().enumerate().filter(|(_, node)| node.is_heavy()).map(|(i, node)| {
+            let (span, x) = if i > last { (last, self.spans[last].length) } else { (i, 0.0) };
+            let [mass, rotary] = node.mass;
+            mass * u[span].displacement(x) * v[span].displacement(x)
+                + rotary * u[span].rotation(x) * v[span].rotation(x)
+        });
+        along.sum::<f64>() + fixed.sum::<f64>()
     }
 
-    fn spacing(&self) -> f64 {
-        std::f64::consts::PI / self.phase
+    fn leading(&self, first: &Piece) -> f64 {
+        match allowed(self.ends[0])[0] {
+            0 => first.displacement(0.0),
+            1 => first.rotation(0.0),
+            _ => first.curvature(0.0),
+        }
+    }
+
+    fn spacing(&self, q: f64) -> f64 {
+        if self.plain {
+            return std::f64::consts::PI / self.phase;
+        }
+        let step = 1e-3 * q;
+        2.0 * step / (self.half_waves(q + step) - self.half_waves(q - step))
     }
 
     fn sweeps(&self, q: f64) -> Sweeps {
@@ -230,7 +332,7 @@ impl Waveguide for Flexure {
     fn matches(&self, Sweeps { left, right }: &Sweeps) -> Vec<Match> {
         let mut found = Vec::with_capacity(2 * self.spans.len());
         for i in 0..self.spans.len() {
-            let Plane([l0, l1]) = if i == 0 { end_plane(self.ends[0]) } else { left.handovers[i - 1].plane };
+            let Plane([l0, l1]) = left.entries[i];
             let [r0, r1] = right.crossings[i].exit.0.map(|z| reflect(&z));
             let rows = [[form(&l0, &r0), form(&l0, &r1)], [form(&l1, &r0), form(&l1, &r1)]];
             let size = |row: [f64; 2]| row[0] * row[0] + row[1] * row[1];
@@ -247,20 +349,21 @@ impl Waveguide for Flexure {
         found
     }
 
-    fn unroll(&self, Sweeps { left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
+    fn unroll(&self, q: f64, Sweeps { left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
         let mut pieces = vec![None; self.spans.len()];
         let mut state = at.state;
         for i in (0..at.span).rev() {
-            let (piece, entry) = left.crossings[i].follow_back(left.handovers[i].coefficients_before(&state));
-            pieces[i] = Some(piece.scaled(self.amplitude(i)));
+            let coefficients = left.joints[i].coefficients_before(&state, &left.entries[i + 1]);
+            let (piece, entry) = left.crossings[i].follow_back(coefficients);
+            pieces[i] = Some(piece.scaled(self.amplitude(i, q)));
             state = entry;
         }
         let mut coefficients = right.crossings[at.span].exit.coefficients(&reflect(&at.state));
         for i in at.span..self.spans.len() {
             let (piece, entry) = right.crossings[i].follow_back(coefficients);
-            pieces[i] = Some(piece.reflected().scaled(self.amplitude(i)));
-            if let Some(handover) = right.handovers.get(i) {
-                coefficients = handover.coefficients_before(&entry);
+            pieces[i] = Some(piece.reflected().scaled(self.amplitude(i, q)));
+            if let Some(joint) = right.joints.get(i) {
+                coefficients = joint.coefficients_before(&entry, &right.entries[i]);
             }
         }
         pieces.into_iter().flatten().collect()

@@ -1,10 +1,21 @@
-//! Exact natural modes of stepped Euler-Bernoulli beams in bending and of stepped rods in axial vibration, their static
-//! compliance, and a Hermite finite-element model of the same beams.
+//! Exact natural modes of stepped beams in bending, by Euler-Bernoulli's or Timoshenko's theory, with attachments,
+//! supports, axial force and foundation ([`BeamSystem`]), and of stepped rods in axial vibration; their static
+//! compliance; remainder modes for what a truncated model leaves out; and a Hermite finite-element model.
 //!
 //! # The mathematics
 //! A beam of uniform segments obeys `EI w'''' = m omega^2 w` on each segment (thesis Eq. 4.1 without force), with `w`,
 //! `w'`, `EI w''` and `EI w'''` continuous at the steps and two conditions at either end. Its modes `phi_k` are
 //! orthonormal in mass, `int m phi_i phi_j dx = delta_ij` (Eq. 4.4).
+//!
+//! Timoshenko's theory lets sections turn by `theta` apart from the slope (S. P. Timoshenko, Phil. Mag. 41:744, 1921):
+//!
+//! ```text
+//! (kappa G A (w' - theta))' + m omega^2 w = 0,
+//! (EI theta')' + kappa G A (w' - theta) + rho I omega^2 theta = 0,      int m w_i w_j + rho I theta_i theta_j dx = delta_ij.
+//! ```
+//!
+//! Below `omega_c = sqrt(kappa G A / rho I)` one pair of waves travels and one decays, above it both travel (the second
+//! spectrum). Axial force `T` (tension positive) and foundation `k_f` make `EI w'''' - T w'' + k_f w = m omega^2 w`.
 //!
 //! | symbol | meaning | unit | equation |
 //! |---|---|---|---|
@@ -14,6 +25,7 @@
 //! | `omega_k` | natural frequency | rad/s | 4.5 |
 //! | `phi_k` | mass-normalised mode shape | kg^(-1/2) | 4.4 |
 //! | `k` | wave number of a segment, `(m omega^2 / EI)^(1/4)`; axial, `omega sqrt(m/EA)` | 1/m | |
+//! | `kappa G A`, `rho I` | shear rigidity, rotary inertia per length | N, kg m | |
 //! | `G(x,y)` | static Green's function, `sum phi_k(x) phi_k(y) / omega_k^2` over elastic modes | m/N | |
 //!
 //! # The method
@@ -27,14 +39,20 @@
 //! 3. The planes from the left and from the right are compared at every span, and the mode is started where they agree
 //!    best, that is, where the mode is large, and unrolled from there to both sides. Shapes of nearly equal frequencies
 //!    are orthogonalised with closed-form integrals, which also give the norm.
-//! 4. A uniform beam needs no search: one formula covers the ten pairs of ends.
+//! 4. A uniform Euler-Bernoulli beam needs no search: one formula covers the ten pairs of ends.
+//! 5. All this holds for every span whose four first-order equations have constant coefficients. Shear, rotary inertia,
+//!    axial force and foundation change the two exponents of a span and the ratios of moment to displacement of its
+//!    waves, nothing else (`waves.rs`); masses and springs shear the plane where they are fixed, a support replaces one
+//!    of its columns (`node.rs`, `plane.rs`). Where a foundation holds a span so that no wave travels, the span is cut
+//!    into pieces for power series.
 //!
 //! Neighbours whose rigidities are in the ratio 1e12, or lengths in the ratio 1e3, keep shapes orthonormal to 1e-11;
 //! see `tests/stepped.rs`. Contrasts are refused beyond 1e12.
 //!
 //! # Limits
-//! Euler-Bernoulli: no shear and no rotary inertia, which tell once a half wave is shorter than some ten thicknesses.
-//! The beam is straight, without axial load, and bends in one plane; supports are at its ends.
+//! Euler-Bernoulli ([`Beam`]) knows no shear and no rotary inertia, which tell once a half wave is shorter than some ten
+//! thicknesses; Timoshenko's theory follows elasticity to half waves of about one thickness. The beam is straight and
+//! bends in one plane.
 //!
 //! # Example
 //! ```
@@ -53,11 +71,14 @@
 
 mod axial;
 mod beam;
+mod buckling;
+mod chain;
 mod compliance;
 mod error;
 pub mod fem;
 mod flexure;
 mod modes;
+mod node;
 mod piece;
 mod plane;
 mod remainder;
@@ -65,7 +86,11 @@ mod rod;
 mod roots;
 mod shapes;
 mod span;
+mod statics;
+mod superposition;
+mod system;
 mod uniform;
+mod waves;
 
 pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
@@ -74,6 +99,7 @@ pub use remainder::{
     MOST_REMAINDER_MODES, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes,
 };
 pub use rod::{Rod, RodEnd, RodSegment};
+pub use system::{Attachment, BeamSystem, ShearSection, Support};
 
 /// Runs the example of the readme.
 #[cfg(doctest)]

@@ -18,6 +18,8 @@ pub struct Modes {
     rigid: usize,
     /// Mode by mode, span by span; dimensionless.
     pieces: Vec<Piece>,
+    /// Masses fixed to the structure: span, place within it, mass; dimensionless.
+    fixed: Vec<(usize, f64, f64)>,
 }
 
 /// Guards memory: `count` modes of `spans` pieces each.
@@ -49,11 +51,17 @@ impl Modes {
             spans,
             units,
             omega_rad_s,
+            fixed: Vec::new(),
         };
         let resolved = modes.pieces.len() == modes.len() * modes.spans.len()
             && modes.pieces.iter().all(|p| p.size().is_finite())
             && modes.omega_rad_s.iter().all(|omega| omega.is_finite());
         if resolved { Ok(modes) } else { Err(InvalidInput::new("segments", "as given", RESOLVABLE)) }
+    }
+
+    /// With masses fixed to the structure, which a uniform acceleration also pulls at.
+    pub(crate) fn with_fixed(self, fixed: Vec<(usize, f64, f64)>) -> Self {
+        Self { fixed, ..self }
     }
 
     /// How many modes there are.
@@ -87,7 +95,7 @@ impl Modes {
     /// [`InvalidInput`] for a mode that is not there or a place off the structure. The same holds for
     /// [`slope`](Self::slope) and [`curvature`](Self::curvature).
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
-        self.derivative(0, k, x_m)
+        self.quantity(0, k, x_m, Piece::displacement)
     }
 
     /// Slope of mode `k` at `x_m`, kg^(-1/2)/m.
@@ -95,16 +103,24 @@ impl Modes {
     /// # Errors
     /// As for [`shape`](Self::shape).
     pub fn slope(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
-        self.derivative(1, k, x_m)
+        self.quantity(1, k, x_m, Piece::slope)
     }
 
-    /// Second derivative of mode `k` at `x_m`, kg^(-1/2)/m^2; times `E I` it is the bending moment. At a step, where it
-    /// jumps, the value on the right.
+    /// Rotation of the sections in mode `k` at `x_m`, kg^(-1/2)/m: the slope, but for beams with shear.
+    ///
+    /// # Errors
+    /// As for [`shape`](Self::shape).
+    pub fn rotation(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+        self.quantity(1, k, x_m, Piece::rotation)
+    }
+
+    /// Derivative of the rotation of mode `k` at `x_m`, kg^(-1/2)/m^2 (without shear, the second derivative of the shape);
+    /// times `E I` it is the bending moment. At a step, where it jumps, the value on the right.
     ///
     /// # Errors
     /// As for [`shape`](Self::shape).
     pub fn curvature(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
-        self.derivative(2, k, x_m)
+        self.quantity(2, k, x_m, Piece::curvature)
     }
 
     /// Shapes of all modes at `x_m`, kg^(-1/2).
@@ -114,7 +130,7 @@ impl Modes {
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (span, x) = self.place(x_m)?;
         let unit = self.unit(0);
-        Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].derivative(0, x)).collect())
+        Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].displacement(x)).collect())
     }
 
     /// Participation `int m phi_k dx` of every mode in a uniform acceleration, kg^(1/2): the modal force of the weight
@@ -137,15 +153,18 @@ impl Modes {
         let whole = |mode: &[Piece]| -> f64 {
             self.spans.iter().zip(mode).map(|(span, piece)| span.mass * piece.integral()).sum()
         };
-        self.pieces.chunks(self.spans.len()).map(|mode| unit * whole(mode)).collect()
+        let fixed = |mode: &[Piece]| -> f64 {
+            self.fixed.iter().map(|&(span, x, mass)| mass * mode[span].displacement(x)).sum()
+        };
+        self.pieces.chunks(self.spans.len()).map(|mode| unit * (whole(mode) + fixed(mode))).collect()
     }
 
-    fn derivative(&self, order: usize, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
+    fn quantity(&self, order: i32, k: usize, x_m: f64, value: fn(&Piece, f64) -> f64) -> Result<f64, InvalidInput> {
         if k >= self.len() {
             return Err(InvalidInput::new("k", k, "the number of a mode, from 0 to len() - 1"));
         }
         let (span, x) = self.place(x_m)?;
-        Ok(self.unit(order) * self.pieces[k * self.spans.len() + span].derivative(order, x))
+        Ok(self.unit(order) * value(&self.pieces[k * self.spans.len() + span], x))
     }
 
     fn place(&self, x_m: f64) -> Result<(usize, f64), InvalidInput> {
@@ -154,8 +173,8 @@ impl Modes {
     }
 
     /// From dimensionless shapes to kg^(-1/2) m^(-order).
-    fn unit(&self, order: usize) -> f64 {
+    fn unit(&self, order: i32) -> f64 {
         let Units { length_m, mass_per_length_kg_m, .. } = self.units;
-        length_m.powi(-(order as i32)) / (length_m.sqrt() * mass_per_length_kg_m.sqrt())
+        length_m.powi(-order) / (length_m.sqrt() * mass_per_length_kg_m.sqrt())
     }
 }

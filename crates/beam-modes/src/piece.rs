@@ -1,20 +1,49 @@
 //! A mode shape on one span: evaluation and exact integrals of products.
 //!
-//! Every solution of `w'''' = k^4 w` on a span of length `l` is held in one of two forms:
+//! Every solution on a span of length `l` is held in one of three forms:
 //!
-//! - long (`k l > 1`): `a cos kx + b sin kx + c exp(-kx) + d exp(-k(l-x))`, which neither overflows nor cancels;
-//! - short: the four derivatives at the left end and the power series that continue them. Here sines and
-//!   exponentials would be nearly dependent. A rigid-body motion is the short form with `k = 0`.
+//! - long: `a cos kx + b sin kx` and a second pair of waves, `c exp(-kappa x) + d exp(-kappa (l - x))` where it decays,
+//!   `c C(x) + d mu S(x)` with `C = cosh(sqrt(mu) x)`, `S = sinh(sqrt(mu) x)/sqrt(mu)` where it is bounded over the span
+//!   or travels (`mu < 0`); none of these overflows or cancels;
+//! - short, for `w'''' = k^4 w` and `k l <= 1`: the four derivatives at the left end and the power series that continue
+//!   them. Here sines and exponentials would be nearly dependent. A rigid-body motion is the short form with `k = 0`;
+//! - series: the same for any short span, by the state at the left end (see `waves`).
 //!
 //! Axial modes use the long form with `c = d = 0` (and the short one for the rigid motion).
 
-/// Up to this value of `k l` a span is short.
-pub(crate) const SHORT: f64 = 1.0;
+use crate::plane::State;
+use crate::superposition::Superposition;
+use crate::waves::{Waves, cosine_and_sine};
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum Piece {
-    Long { k: f64, length: f64, wave: [f64; 4] },
-    Short { k: f64, length: f64, start: [f64; 4] },
+    Long {
+        k: f64,
+        second: Second,
+        length: f64,
+        wave: [f64; 4],
+        /// Rotation over displacement of either pair: the rotation is `t1 (b cos kx - a sin kx)` and
+        /// `t2 (d exp(-kappa (l - x)) - c exp(-kappa x))` or `t2 (c S + d C)`.
+        turns: [f64; 2],
+    },
+    Short {
+        k: f64,
+        length: f64,
+        start: [f64; 4],
+    },
+    Series {
+        waves: Waves,
+        start: State,
+    },
+}
+
+/// The exponent of the second pair of waves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Second {
+    /// `kappa`.
+    Decaying(f64),
+    /// `mu`.
+    Bounded(f64),
 }
 
 /// `[1/m!, 1/(m+4)!, 1/(m+8)!, ...]` for m = 0..4.
@@ -36,103 +65,278 @@ pub(crate) fn krylov(y: f64) -> [f64; 4] {
 }
 
 impl Piece {
-    /// The derivative of the given order (0 to 3) at the distance `x` from the left end of the span.
-    pub fn derivative(&self, order: usize, x: f64) -> f64 {
+    /// A wave of bending without shear, or an axial one: the rotation is the slope.
+    pub fn slender(k: f64, length: f64, wave: [f64; 4]) -> Self {
+        Piece::Long { k, second: Second::Decaying(k), length, wave, turns: [k, k] }
+    }
+
+    /// The displacement at the distance `x` from the left end of the span.
+    pub fn displacement(&self, x: f64) -> f64 {
         match *self {
-            Piece::Long { k, length, wave: [a, b, c, d] } => {
+            Piece::Long { k, second, length, wave: [a, b, c, d], .. } => {
                 let (sin, cos) = (k * x).sin_cos();
-                let (oscillation, parity) = match order % 4 {
-                    0 => (a * cos + b * sin, 1.0),
-                    1 => (b * cos - a * sin, -1.0),
-                    2 => (-a * cos - b * sin, 1.0),
-                    _ => (a * sin - b * cos, -1.0),
-                };
-                let evanescent = parity * c * (-k * x).exp() + d * (-k * (length - x)).exp();
-                (oscillation + evanescent) * k.powi(order as i32)
-            }
-            Piece::Short { k, start, .. } => {
-                let series = krylov(k * x);
-                let k4 = k.powi(4);
-                let term = |j: usize| {
-                    if j >= order {
-                        start[j] * series[j - order] * x.powi((j - order) as i32)
-                    } else {
-                        start[j] * series[4 + j - order] * x.powi((4 + j - order) as i32) * k4
+                let rest = match second {
+                    Second::Decaying(kappa) => c * (-kappa * x).exp() + d * (-kappa * (length - x)).exp(),
+                    Second::Bounded(mu) => {
+                        let (cosine, sine) = cosine_and_sine(mu, x);
+                        c * cosine + d * mu * sine
                     }
                 };
-                term(0) + term(1) + term(2) + term(3)
+                (a * cos + b * sin) + rest
             }
+            Piece::Short { k, start, .. } => short(k, &start, 0, x),
+            Piece::Series { waves, start } => waves.series(&start, waves.k * x)[0],
         }
+    }
+
+    /// The slope of the displacement.
+    pub fn slope(&self, x: f64) -> f64 {
+        match *self {
+            Piece::Long { k, second, length, wave: [a, b, c, d], .. } => {
+                let (sin, cos) = (k * x).sin_cos();
+                let rest = match second {
+                    Second::Decaying(kappa) => kappa * (d * (-kappa * (length - x)).exp() - c * (-kappa * x).exp()),
+                    Second::Bounded(mu) => {
+                        let (cosine, sine) = cosine_and_sine(mu, x);
+                        mu * (c * sine + d * cosine)
+                    }
+                };
+                k * (b * cos - a * sin) + rest
+            }
+            Piece::Short { k, start, .. } => short(k, &start, 1, x),
+            Piece::Series { waves, start } => waves.kinematics(&waves.series(&start, waves.k * x))[1],
+        }
+    }
+
+    /// The rotation of the sections, which is the slope where there is no shear.
+    pub fn rotation(&self, x: f64) -> f64 {
+        match *self {
+            Piece::Long { k, second, length, wave: [a, b, c, d], turns } => {
+                let (sin, cos) = (k * x).sin_cos();
+                let rest = match second {
+                    Second::Decaying(kappa) => d * (-kappa * (length - x)).exp() - c * (-kappa * x).exp(),
+                    Second::Bounded(mu) => {
+                        let (cosine, sine) = cosine_and_sine(mu, x);
+                        c * sine + d * cosine
+                    }
+                };
+                turns[0] * (b * cos - a * sin) + turns[1] * rest
+            }
+            Piece::Short { k, start, .. } => short(k, &start, 1, x),
+            Piece::Series { waves, start } => waves.kinematics(&waves.series(&start, waves.k * x))[2],
+        }
+    }
+
+    /// The derivative of the rotation: bending moment over rigidity.
+    pub fn curvature(&self, x: f64) -> f64 {
+        match *self {
+            Piece::Long { k, second, length, wave: [a, b, c, d], turns } => {
+                let (sin, cos) = (k * x).sin_cos();
+                let rest = match second {
+                    Second::Decaying(kappa) => kappa * (c * (-kappa * x).exp() + d * (-kappa * (length - x)).exp()),
+                    Second::Bounded(mu) => {
+                        let (cosine, sine) = cosine_and_sine(mu, x);
+                        c * cosine + d * mu * sine
+                    }
+                };
+                turns[1] * rest - turns[0] * k * (a * cos + b * sin)
+            }
+            Piece::Short { k, start, .. } => short(k, &start, 2, x),
+            Piece::Series { waves, start } => waves.kinematics(&waves.series(&start, waves.k * x))[3],
+        }
+    }
+
+    fn values_mut(&mut self) -> &mut [f64; 4] {
+        let (Piece::Long { wave: values, .. }
+        | Piece::Short { start: values, .. }
+        | Piece::Series { start: values, .. }) = self;
+        values
     }
 
     /// Largest of the four numbers that make up the piece.
     pub fn size(&self) -> f64 {
-        let (Piece::Long { wave: values, .. } | Piece::Short { start: values, .. }) = self;
-        values.iter().fold(0.0, |size, v| v.abs().max(size))
+        let mut copy = *self;
+        copy.values_mut().iter().fold(0.0, |size, v| v.abs().max(size))
     }
 
     pub fn scaled(mut self, factor: f64) -> Self {
-        let (Piece::Long { wave: values, .. } | Piece::Short { start: values, .. }) = &mut self;
-        values.iter_mut().for_each(|v| *v *= factor);
+        self.values_mut().iter_mut().for_each(|v| *v *= factor);
         self
     }
 
     /// `self + factor * other` for two pieces whose wave numbers may differ in the last digits.
-    pub fn plus(mut self, factor: f64, other: &Self) -> Self {
-        if std::mem::discriminant(&self) != std::mem::discriminant(other) {
-            // one just below, one just above the limit between the forms
-            return self.shortened().plus(factor, &other.shortened());
-        }
-        let (Piece::Long { wave: values, .. } | Piece::Short { start: values, .. }) = &mut self;
-        let (Piece::Long { wave: others, .. } | Piece::Short { start: others, .. }) = other;
-        values.iter_mut().zip(others).for_each(|(v, o)| *v += factor * o);
-        self
+    pub fn plus(self, factor: f64, other: &Self) -> Self {
+        let (mut sum, mut other) = self.alike(*other);
+        sum.values_mut().iter_mut().zip(other.values_mut()).for_each(|(v, o)| *v += factor * *o);
+        sum
     }
 
-    /// The same piece in short form.
-    fn shortened(&self) -> Self {
-        let (Piece::Long { k, length, .. } | Piece::Short { k, length, .. }) = *self;
-        Piece::Short { k, length, start: [0, 1, 2, 3].map(|order| self.derivative(order, 0.0)) }
+    /// Both in one form, where one is just below, the other just above the limit between two.
+    fn alike(self, other: Self) -> (Self, Self) {
+        match (self, other) {
+            (Piece::Long { second: u, .. }, Piece::Long { second: v, .. })
+                if std::mem::discriminant(&u) != std::mem::discriminant(&v) =>
+            {
+                (self.bounded(), other.bounded())
+            }
+            (Piece::Short { .. }, Piece::Long { .. }) | (Piece::Long { .. }, Piece::Short { .. }) => {
+                (self.shortened(), other.shortened())
+            }
+            (Piece::Series { waves, .. }, Piece::Long { .. }) => (self, other.as_series(waves)),
+            (Piece::Long { .. }, Piece::Series { waves, .. }) => (self.as_series(waves), other),
+            _ => (self, other),
+        }
+    }
+
+    /// The same piece in short form, for bending without shear.
+    fn shortened(self) -> Self {
+        match self {
+            Piece::Long { k, length, wave: [a, b, c, d], .. } => {
+                let far = d * (-k * length).exp();
+                let (even, odd) = (c + far, far - c);
+                let start = [a + even, k * (b + odd), k * k * (even - a), k * k * k * (odd - b)];
+                Piece::Short { k, length, start }
+            }
+            other => other,
+        }
+    }
+
+    /// The same piece with a decaying pair written as a bounded one.
+    fn bounded(self) -> Self {
+        match self {
+            Piece::Long { k, second: Second::Decaying(kappa), length, wave: [a, b, c, d], turns } => {
+                let far = d * (-kappa * length).exp();
+                let wave = [a, b, c + far, (far - c) / kappa];
+                Piece::Long {
+                    k,
+                    second: Second::Bounded(kappa * kappa),
+                    length,
+                    wave,
+                    turns: [turns[0], turns[1] * kappa],
+                }
+            }
+            other => other,
+        }
+    }
+
+    /// The same piece by its state at the left end.
+    fn as_series(self, waves: Waves) -> Self {
+        match self.bounded() {
+            Piece::Long { k, wave: [_, b, _, d], .. } => {
+                // the shear force is the integral of the displacement
+                let integral = d - b / k;
+                let start = waves.state(self.displacement(0.0), self.rotation(0.0), self.curvature(0.0), integral);
+                Piece::Series { waves, start }
+            }
+            other => other,
+        }
     }
 
     /// The same shape seen from the other end of the span.
     pub fn reflected(self) -> Self {
         match self {
-            Piece::Long { k, length, wave: [a, b, c, d] } => {
+            Piece::Long { k, second, length, wave: [a, b, c, d], turns } => {
                 let (sin, cos) = (k * length).sin_cos();
-                Piece::Long { k, length, wave: [a * cos + b * sin, a * sin - b * cos, d, c] }
+                let [c, d] = match second {
+                    Second::Decaying(_) => [d, c],
+                    Second::Bounded(mu) => {
+                        let (cosine, sine) = cosine_and_sine(mu, length);
+                        [c * cosine + d * mu * sine, -(c * sine + d * cosine)]
+                    }
+                };
+                Piece::Long { k, second, length, wave: [a * cos + b * sin, a * sin - b * cos, c, d], turns }
             }
-            Piece::Short { k, length, .. } => {
-                let at_end = [0, 1, 2, 3].map(|order| self.derivative(order, length));
+            Piece::Short { k, length, start } => {
+                let at_end = [0, 1, 2, 3].map(|order| short(k, &start, order, length));
                 Piece::Short { k, length, start: [at_end[0], -at_end[1], at_end[2], -at_end[3]] }
             }
+            Piece::Series { waves, start } => {
+                let [w, t, m, v] = waves.series(&start, waves.k * waves.length);
+                Piece::Series { waves, start: [w, -t, m, -v] }
+            }
         }
     }
 
-    /// Integral over the span, in closed form for a long piece.
+    /// Integral of the displacement over the span, in closed form for a long piece.
     pub fn integral(&self) -> f64 {
         match *self {
-            Piece::Long { k, length, wave: [a, b, c, d] } => {
+            Piece::Long { k, second, length, wave: [a, b, c, d], .. } => {
                 let (half_sin, half_cos) = (0.5 * k * length).sin_cos();
                 let oscillation = 2.0 * half_sin * (a * half_cos + b * half_sin);
-                (oscillation - (c + d) * (-k * length).exp_m1()) / k
+                match second {
+                    Second::Decaying(kappa) if kappa == k => (oscillation - (c + d) * (-k * length).exp_m1()) / k,
+                    Second::Decaying(kappa) => oscillation / k - (c + d) * (-kappa * length).exp_m1() / kappa,
+                    Second::Bounded(mu) => {
+                        let (_, sine) = cosine_and_sine(mu, length);
+                        let (_, half) = cosine_and_sine(mu, 0.5 * length);
+                        oscillation / k + c * sine + d * 2.0 * mu * half * half
+                    }
+                }
             }
-            Piece::Short { length, .. } => gauss(length, |x| self.derivative(0, x)),
+            Piece::Short { length, .. } => gauss(length, |x| self.displacement(x)),
+            Piece::Series { waves, .. } => gauss(waves.length, |x| self.displacement(x)),
         }
     }
 
-    /// Integral of the product over the span. Two long pieces: closed form. Otherwise, `k l` is at most about 1 and
-    /// Gauss's rule, of degree 19, is exact to rounding.
+    /// Integral of the product of the displacements over the span: closed form for two long pieces, Gauss's rule, of
+    /// degree 19 on panels of a few radians, where a pair of waves is nearly constant over the span.
     pub fn product(&self, other: &Self) -> f64 {
-        match (*self, *other) {
-            (Piece::Long { k, length, wave: u }, Piece::Long { k: kappa, wave: v, .. }) => {
-                long_product(k, kappa, length, u, v)
-            }
-            (Piece::Short { length, .. }, _) | (_, Piece::Short { length, .. }) => {
-                gauss(length, |x| self.derivative(0, x) * other.derivative(0, x))
-            }
+        match (self.displacement_waves(), other.displacement_waves()) {
+            (Some(u), Some(v)) => u.product(&v, self.length()),
+            _ => self.quadrature(other, |piece, x| piece.displacement(x)),
         }
     }
+
+    /// Integral of the product of the rotations.
+    pub fn rotation_product(&self, other: &Self) -> f64 {
+        match (self.rotation_waves(), other.rotation_waves()) {
+            (Some(u), Some(v)) => u.product(&v, self.length()),
+            _ => self.quadrature(other, |piece, x| piece.rotation(x)),
+        }
+    }
+
+    fn quadrature(&self, other: &Self, value: impl Fn(&Self, f64) -> f64) -> f64 {
+        let length = self.length();
+        let phase = |piece: &Self| match *piece {
+            Piece::Long { k, .. } => k * length,
+            Piece::Short { .. } | Piece::Series { .. } => 0.0,
+        };
+        let panels = ((phase(self) + phase(other)) / 6.0).ceil().max(1.0);
+        let h = length / panels;
+        let panel = |i: usize| gauss(h, |x| value(self, i as f64 * h + x) * value(other, i as f64 * h + x));
+        (0..panels as usize).map(panel).sum()
+    }
+
+    fn length(&self) -> f64 {
+        match self {
+            Piece::Long { length, .. } | Piece::Short { length, .. } => *length,
+            Piece::Series { waves, .. } => waves.length,
+        }
+    }
+
+    fn displacement_waves(&self) -> Option<Superposition> {
+        let Piece::Long { k, second, length, wave: [a, b, c, d], .. } = *self else { return None };
+        Superposition::new([k, a, b], second, length, |mu| [c, d * mu], [c, d])
+    }
+
+    fn rotation_waves(&self) -> Option<Superposition> {
+        let Piece::Long { k, second, length, wave: [a, b, c, d], turns: [t1, t2] } = *self else { return None };
+        Superposition::new([k, t1 * b, -t1 * a], second, length, |_| [t2 * d, t2 * c], [-t2 * c, t2 * d])
+    }
+}
+
+/// The derivative of the given order (0 to 3) of a solution of `w'''' = k^4 w`, from those at `x = 0`.
+fn short(k: f64, start: &[f64; 4], order: usize, x: f64) -> f64 {
+    let series = krylov(k * x);
+    let k4 = k.powi(4);
+    let term = |j: usize| {
+        if j >= order {
+            start[j] * series[j - order] * x.powi((j - order) as i32)
+        } else {
+            start[j] * series[4 + j - order] * x.powi((4 + j - order) as i32) * k4
+        }
+    };
+    term(0) + term(1) + term(2) + term(3)
 }
 
 /// Positive nodes and weights of Gauss's rule with ten points (Abramowitz and Stegun, table 25.4).
@@ -148,38 +352,4 @@ const GAUSS: [(f64, f64); 5] = [
 pub(crate) fn gauss(length: f64, f: impl Fn(f64) -> f64) -> f64 {
     let half = 0.5 * length;
     GAUSS.iter().map(|(node, weight)| half * weight * (f(half * (1.0 + node)) + f(half * (1.0 - node)))).sum()
-}
-
-fn sinc(y: f64) -> f64 {
-    if y.abs() < 1e-8 { 1.0 } else { y.sin() / y }
-}
-
-fn long_product(k: f64, kappa: f64, length: f64, u: [f64; 4], v: [f64; 4]) -> f64 {
-    let (sum, difference) = (k + kappa, k - kappa);
-    // integrals of cos(nu x) and sin(nu x)
-    let cosine = |nu: f64| length * sinc(nu * length);
-    let sine = |nu: f64| length * (0.5 * nu * length) * sinc(0.5 * nu * length).powi(2);
-    let oscillations = 0.5
-        * ((u[0] * v[0] + u[1] * v[1]) * cosine(difference)
-            + (u[0] * v[0] - u[1] * v[1]) * cosine(sum)
-            + (u[0] * v[1] + u[1] * v[0]) * sine(sum)
-            + (u[1] * v[0] - u[0] * v[1]) * sine(difference));
-
-    // an oscillation of one with an exponential of the other, decaying from the left and, after reflection, from the right
-    let mixed = |k: f64, [a, b, _, _]: [f64; 4], kappa: f64, [_, _, c, d]: [f64; 4]| {
-        let (sin, cos) = (k * length).sin_cos();
-        let decay = (-kappa * length).exp();
-        let with_cos = kappa + decay * (k * sin - kappa * cos);
-        let with_sin = k - decay * (kappa * sin + k * cos);
-        let (ar, br) = (a * cos + b * sin, a * sin - b * cos);
-        (c * (a * with_cos + b * with_sin) + d * (ar * with_cos + br * with_sin)) / (k * k + kappa * kappa)
-    };
-
-    let same_end = -(-sum * length).exp_m1() / sum;
-    let gap = difference.abs();
-    let spread = if gap * length < 1e-8 { length } else { -(-gap * length).exp_m1() / gap };
-    let opposite_ends = (-k.min(kappa) * length).exp() * spread;
-    let exponentials = (u[2] * v[2] + u[3] * v[3]) * same_end + (u[2] * v[3] + u[3] * v[2]) * opposite_ends;
-
-    oscillations + mixed(k, u, kappa, v) + mixed(kappa, v, k, u) + exponentials
 }

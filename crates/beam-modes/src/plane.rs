@@ -1,11 +1,12 @@
 //! The plane of states that one end of a beam allows, carried along the beam without loss.
 //!
-//! The state at a place is `z = sqrt(EI k^3) (w, w'/k, w''/k^2, w'''/k^3)` with the span's own `k`. The states that
-//! satisfy the two conditions of an end form a plane; its orthonormal basis is all that an eigenvalue search needs.
+//! The state at a place is `z = sqrt(EI k^3) (w, t/k, M/(EI k^2), -V/(EI k^3))` with the span's own `k` (see `waves`); for
+//! Euler-Bernoulli's beam these are the derivatives of `w`. The states that satisfy the two conditions of an end form a plane; its orthonormal basis is all that an eigenvalue search needs.
 //! Crossing a span turns the oscillating part, shrinks one exponential and stretches the other: the basis is first
 //! turned so that a single column holds the growing exponential, and that column is measured at the far end.
 
-use crate::piece::{Piece, SHORT, krylov};
+use crate::piece::Piece;
+use crate::waves::{Form, Waves, decay};
 
 pub(crate) type State = [f64; 4];
 
@@ -16,14 +17,13 @@ pub(crate) struct Plane(pub [State; 2]);
 /// A span crossed: enough to follow a state of the plane back.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Crossing {
-    k: f64,
-    length: f64,
-    /// Columns where the span was entered: wave amplitudes `a, b, c, d` (long span) or states (short).
+    waves: Waves,
+    /// Columns where the span was entered: wave amplitudes (long span) or states (short).
     entry: [[f64; 4]; 2],
     /// What the second column was multiplied by on the way.
     shrink: f64,
-    /// The amplitude of the second column's growing exponential, measured at the far end.
-    arrived: f64,
+    /// The amplitude of the second column's growing exponential, measured at the far end, if there is one.
+    arrived: Option<f64>,
     /// Columns as they arrived = `exit` times this.
     triangle: Triangle,
     /// The plane where the span was left.
@@ -34,8 +34,16 @@ pub(crate) struct Crossing {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Handover {
     pub plane: Plane,
-    /// The old basis, rescaled, = `plane` times this.
-    triangle: Triangle,
+    back: Back,
+}
+
+/// How coefficients are followed back.
+#[derive(Debug, Clone, Copy)]
+enum Back {
+    /// The old basis, as it arrived, = `plane` times this.
+    Triangle(Triangle),
+    /// The old state is this combination of the old basis, times the coefficient of the second column.
+    Support([f64; 2]),
 }
 
 /// Upper triangle `(r11, r12, r22)`: what Gram and Schmidt divided out.
@@ -68,15 +76,6 @@ pub(crate) fn form(left: &State, right: &State) -> f64 {
     left[0] * right[3] - left[3] * right[0] - left[1] * right[2] + left[2] * right[1]
 }
 
-fn to_waves(z: &State) -> [f64; 4] {
-    let (p, q) = (0.25 * (z[0] + z[2]), 0.25 * (z[1] + z[3]));
-    [0.5 * (z[0] - z[2]), 0.5 * (z[1] - z[3]), p - q, p + q]
-}
-
-fn from_waves([a, b, c, d]: [f64; 4]) -> State {
-    [a + (c + d), b + (d - c), (c + d) - a, (d - c) - b]
-}
-
 impl Plane {
     /// Gram-Schmidt; positive factors only, so that orientation is kept.
     fn orthonormal(u: State, v: State) -> (Plane, Triangle) {
@@ -95,7 +94,7 @@ impl Plane {
     pub fn rescaled(&self, scale: &[f64; 4]) -> Handover {
         let apply = |z: &State| [z[0] * scale[0], z[1] * scale[1], z[2] * scale[2], z[3] * scale[3]];
         let (plane, triangle) = Self::orthonormal(apply(&self.0[0]), apply(&self.0[1]));
-        Handover { plane, triangle }
+        Handover { plane, back: Back::Triangle(triangle) }
     }
 
     /// Coefficients of a state of the plane.
@@ -104,48 +103,63 @@ impl Plane {
     }
 
     /// Carries the plane over a span.
-    pub fn cross(&self, k: f64, length: f64) -> Crossing {
-        let y = k * length;
-        if y <= SHORT {
-            let [c0, c1, c2, c3] = krylov(y);
-            let (c1, c2, c3) = (c1 * y, c2 * y * y, c3 * y * y * y);
-            let carry = |z: &State| {
-                [
-                    c0 * z[0] + c1 * z[1] + c2 * z[2] + c3 * z[3],
-                    c3 * z[0] + c0 * z[1] + c1 * z[2] + c2 * z[3],
-                    c2 * z[0] + c3 * z[1] + c0 * z[2] + c1 * z[3],
-                    c1 * z[0] + c2 * z[1] + c3 * z[2] + c0 * z[3],
-                ]
-            };
-            let (exit, triangle) = Self::orthonormal(carry(&self.0[0]), carry(&self.0[1]));
-            return Crossing { k, length, entry: self.0, shrink: 1.0, arrived: 0.0, triangle, exit };
-        }
-        let (u, v) = (to_waves(&self.0[0]), to_waves(&self.0[1]));
+    pub fn cross(&self, waves: &Waves) -> Crossing {
+        let y = waves.k * waves.length;
+        let Form::Long(pair) = waves.form else {
+            let (exit, triangle) = Self::orthonormal(waves.series(&self.0[0], y), waves.series(&self.0[1], y));
+            return Crossing { waves: *waves, entry: self.0, shrink: 1.0, arrived: None, triangle, exit };
+        };
+        let (u, v) = (pair.to_waves(&self.0[0]), pair.to_waves(&self.0[1]));
+        let carry = |wave: [f64; 4], factor: f64| pair.to_state(pair.carry(wave, y, factor));
+        let Some(kappa) = pair.decay() else {
+            let (exit, triangle) = Self::orthonormal(carry(u, 1.0), carry(v, 1.0));
+            return Crossing { waves: *waves, entry: [u, v], shrink: 1.0, arrived: None, triangle, exit };
+        };
         let growing = u[3].hypot(v[3]);
-        // beyond exp(-600) an exponential is nothing; the floor keeps every quotient finite
-        let decay = (-y.min(600.0)).exp();
         let (mut first, mut second, mut shrink, mut arrived) = (u, v, 1.0, 0.0);
         if growing > 1e-150 {
             let (cos, sin) = (v[3] / growing, u[3] / growing);
             first = combine(cos, &u, -sin, &v);
             second = combine(sin, &u, cos, &v);
-            (shrink, arrived) = (decay, growing);
+            (shrink, arrived) = (decay(kappa * y), growing);
         }
         (first[3], second[3]) = (0.0, arrived);
-        let (sin, cos) = y.sin_cos();
-        let carry = |[a, b, c, _]: [f64; 4], factor: f64, d: f64| {
-            from_waves([factor * (a * cos + b * sin), factor * (b * cos - a * sin), factor * decay * c, d])
-        };
-        let (exit, triangle) = Self::orthonormal(carry(first, 1.0, 0.0), carry(second, shrink, arrived));
-        Crossing { k, length, entry: [first, second], shrink, arrived, triangle, exit }
+        let (exit, triangle) = Self::orthonormal(carry(first, 1.0), carry(second, shrink));
+        Crossing { waves: *waves, entry: [first, second], shrink, arrived: Some(arrived), triangle, exit }
+    }
+
+    /// The plane beyond a spring or a mass: the moment grows by `stiffness[1]` times the rotation, the shear force by
+    /// `stiffness[0]` times the displacement, both in the units of the state.
+    pub fn loaded(&self, stiffness: [f64; 2]) -> Handover {
+        let load = |z: &State| [z[0], z[1], z[2] + stiffness[1] * z[1], z[3] - stiffness[0] * z[0]];
+        let (plane, triangle) = Self::orthonormal(load(&self.0[0]), load(&self.0[1]));
+        Handover { plane, back: Back::Triangle(triangle) }
+    }
+
+    /// The plane beyond a rigid support: no displacement, any shear force.
+    pub fn supported(&self) -> Option<Handover> {
+        let [u, v] = &self.0;
+        let size = u[0].hypot(v[0]);
+        let (cos, sin) = if size > 0.0 { (u[0] / size, v[0] / size) } else { (1.0, 0.0) };
+        let still = combine(-sin, u, cos, v);
+        let norm = still[1].hypot(still[2]);
+        // without displacement or with nothing else, the plane stays as it is
+        if size == 0.0 || norm == 0.0 {
+            return None;
+        }
+        let plane = Plane([[0.0, 0.0, 0.0, 1.0], [0.0, still[1] / norm, still[2] / norm, 0.0]]);
+        Some(Handover { plane, back: Back::Support([-sin / norm, cos / norm]) })
     }
 }
 
 impl Handover {
-    /// Coefficients, in the basis before the handover, of a state after it. (Taking the state itself back would lose
+    /// Coefficients in the basis before the handover, from those after it. (Taking the state itself back would lose
     /// the digits of its small components where the spans differ much.)
-    pub fn coefficients_before(&self, z: &State) -> [f64; 2] {
-        self.triangle.solve(self.plane.coefficients(z))
+    pub fn before(&self, after: [f64; 2]) -> [f64; 2] {
+        match self.back {
+            Back::Triangle(triangle) => triangle.solve(after),
+            Back::Support(still) => still.map(|c| c * after[1]),
+        }
     }
 }
 
@@ -154,13 +168,11 @@ impl Crossing {
     /// entered. Both in the variables of the span; the piece runs in the direction of travel.
     pub fn follow_back(&self, coefficients: [f64; 2]) -> (Piece, State) {
         let [p, q] = self.triangle.solve(coefficients);
-        let (k, length) = (self.k, self.length);
         let entry = combine(p, &self.entry[0], q * self.shrink, &self.entry[1]);
-        if k * length <= SHORT {
-            let start = [entry[0], entry[1] * k, entry[2] * k * k, entry[3] * k * k * k];
-            return (Piece::Short { k, length, start }, entry);
-        }
-        let wave = [entry[0], entry[1], entry[2], q * self.arrived];
-        (Piece::Long { k, length, wave }, from_waves(entry))
+        let Form::Long(pair) = self.waves.form else {
+            return (self.waves.piece(entry), entry);
+        };
+        let arrived = self.arrived.map_or(entry[3], |arrived| q * arrived);
+        (self.waves.piece([entry[0], entry[1], entry[2], arrived]), pair.to_state(entry))
     }
 }

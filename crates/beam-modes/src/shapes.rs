@@ -19,28 +19,27 @@ pub(crate) trait Waveguide {
     /// What both ends allow at one frequency, at every span.
     type Sweeps;
     fn spans(&self) -> &[Span];
-    /// The lowest derivative that the left end leaves free; shapes are positive in it.
-    fn leading_order(&self) -> usize;
-    /// Mean distance between roots `q`.
-    fn spacing(&self) -> f64;
+    /// Mass inner product of two shapes.
+    fn inner(&self, u: &[Piece], v: &[Piece]) -> f64 {
+        self.spans().iter().zip(u.iter().zip(v)).map(|(span, (u, v))| span.mass * u.product(v)).sum()
+    }
+    /// The lowest derivative that the left end leaves free, there; shapes are positive in it.
+    fn leading(&self, first: &Piece) -> f64;
+    /// Mean distance between roots near `q`.
+    fn spacing(&self, q: f64) -> f64;
     fn sweeps(&self, q: f64) -> Self::Sweeps;
     /// Candidates for the mode, at every span.
     fn matches(&self, sweeps: &Self::Sweeps) -> Vec<Match>;
     /// The solution that passes through a match, span by span.
-    fn unroll(&self, sweeps: &Self::Sweeps, at: &Match) -> Vec<Piece>;
+    fn unroll(&self, q: f64, sweeps: &Self::Sweeps, at: &Match) -> Vec<Piece>;
 }
 
-/// Mass inner product of two shapes.
-fn inner(spans: &[Span], u: &[Piece], v: &[Piece]) -> f64 {
-    spans.iter().zip(u.iter().zip(v)).map(|(span, (u, v))| span.mass * u.product(v)).sum()
-}
-
-fn normalise(spans: &[Span], pieces: &mut [Piece]) {
+fn normalise(guide: &impl Waveguide, pieces: &mut [Piece]) {
     // first to size one, lest the squares leave the range of f64
     let size = pieces.iter().map(Piece::size).fold(0.0, f64::max);
     if size > 0.0 {
         pieces.iter_mut().for_each(|p| *p = p.scaled(1.0 / size));
-        let norm = inner(spans, pieces, pieces).sqrt();
+        let norm = guide.inner(pieces, pieces).sqrt();
         pieces.iter_mut().for_each(|p| *p = p.scaled(1.0 / norm));
     }
 }
@@ -52,11 +51,10 @@ const NEW: f64 = 0.1;
 
 /// Mass-normalised shapes (dimensionless) of the ascending roots.
 pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
-    let spans = guide.spans();
     let mut shapes: Vec<Vec<Piece>> = Vec::with_capacity(roots.len());
     let mut cluster = 0;
     for (n, &q) in roots.iter().enumerate() {
-        if n > 0 && q - roots[n - 1] > CLUSTER * guide.spacing() {
+        if n > 0 && q - roots[n - 1] > CLUSTER * guide.spacing(q) {
             cluster = n;
         }
         let sweeps = guide.sweeps(q);
@@ -67,18 +65,18 @@ pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
         }
         let mut best = (-1.0, Vec::new());
         for candidate in &candidates {
-            let mut shape = guide.unroll(&sweeps, candidate);
-            normalise(spans, &mut shape);
+            let mut shape = guide.unroll(q, &sweeps, candidate);
+            normalise(guide, &mut shape);
             let mut part = 1.0;
             // twice is enough (Kahan and Parlett)
             for _ in 0..2 {
                 for other in &shapes[cluster..n] {
-                    let overlap = inner(spans, &shape, other);
+                    let overlap = guide.inner(&shape, other);
                     shape.iter_mut().zip(other).for_each(|(piece, o)| *piece = piece.plus(-overlap, o));
                 }
-                let left = inner(spans, &shape, &shape).max(0.0).sqrt();
+                let left = guide.inner(&shape, &shape).max(0.0).sqrt();
                 part *= left;
-                normalise(spans, &mut shape);
+                normalise(guide, &mut shape);
             }
             if part > best.0 {
                 best = (part, shape);
@@ -88,7 +86,7 @@ pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
             }
         }
         let mut shape: Vec<Piece> = best.1;
-        if shape.first().is_some_and(|piece| piece.derivative(guide.leading_order(), 0.0) < 0.0) {
+        if shape.first().is_some_and(|piece| guide.leading(piece) < 0.0) {
             shape.iter_mut().for_each(|piece| *piece = piece.scaled(-1.0));
         }
         shapes.push(shape);

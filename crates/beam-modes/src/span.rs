@@ -2,7 +2,9 @@
 //!
 //! Lengths are measured in the total length, rigidity and mass per length in those of the first segment.
 
+use crate::beam::Beam;
 use crate::error::InvalidInput;
+use crate::system::ShearSection;
 
 /// One uniform stretch, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +16,26 @@ pub(crate) struct Span {
     pub rigidity: f64,
     /// Mass per length.
     pub mass: f64,
+    /// `1/(kappa G A)`; zero without shear.
+    pub shear: f64,
+    /// Rotary inertia per length, `rho I`.
+    pub rotary: f64,
+    /// Axial force.
+    pub tension: f64,
+    /// Stiffness per length of a foundation.
+    pub foundation: f64,
+}
+
+impl Span {
+    /// A span of bending without shear, or of an axial wave.
+    pub fn slender(start: f64, length: f64, rigidity: f64, mass: f64) -> Self {
+        Self { start, length, rigidity, mass, shear: 0.0, rotary: 0.0, tension: 0.0, foundation: 0.0 }
+    }
+
+    /// Whether rigidity and mass are all that counts.
+    pub fn is_plain(&self) -> bool {
+        [self.shear, self.rotary, self.tension, self.foundation] == [0.0; 4]
+    }
 }
 
 /// What turns dimensionless results back to SI.
@@ -23,6 +45,13 @@ pub(crate) struct Units {
     /// `EI` (N m^2) or `EA` (N) of the first segment.
     pub rigidity: f64,
     pub mass_per_length_kg_m: f64,
+}
+
+impl Units {
+    /// rad/s in bending: the dimensionless frequency is `q^2`.
+    pub fn bending_frequency(&self) -> f64 {
+        self.rigidity.sqrt() / self.mass_per_length_kg_m.sqrt() / self.length_m / self.length_m
+    }
 }
 
 /// Largest ratio between the segments' lengths, rigidities or masses per length.
@@ -50,23 +79,63 @@ pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<
             }
         }
     }
+    Ok(merged(raw, |_| [0.0; 2]))
+}
+
+/// The same for a beam, with shear and rotary inertia where they are given.
+pub(crate) fn nondimensional_beam(
+    beam: &Beam,
+    shear: Option<&[ShearSection]>,
+) -> Result<(Vec<Span>, Units), InvalidInput> {
+    let raw: Vec<[f64; 3]> =
+        beam.segments.iter().map(|s| [s.length_m, s.flexural_rigidity_n_m2, s.mass_per_length_kg_m]).collect();
+    let bare = nondimensional(&raw, ["length_m", "flexural_rigidity_n_m2", "mass_per_length_kg_m"])?;
+    let Some(shear) = shear else { return Ok(bare) };
+    if shear.len() != raw.len() {
+        return Err(InvalidInput::new("shear", format!("{} sections", shear.len()), "one section a segment"));
+    }
+    let Units { length_m, rigidity, mass_per_length_kg_m } = bare.1;
+    let mut sections = Vec::with_capacity(shear.len());
+    for (i, section) in shear.iter().enumerate() {
+        let path = |field: &str| format!("segments[{i}].{field}");
+        let stiffness = InvalidInput::require_positive(path("shear_rigidity_n"), section.shear_rigidity_n)?;
+        let inertia = section.rotary_inertia_kg_m;
+        let scaled = [rigidity / length_m / length_m / stiffness, inertia / mass_per_length_kg_m / length_m / length_m];
+        if !(0.0..=SHEAR_MOST).contains(&scaled[0]) {
+            return Err(InvalidInput::new(path("shear_rigidity_n"), stiffness, SHEAR_RANGE));
+        }
+        if !(0.0..=SHEAR_MOST).contains(&scaled[1]) {
+            return Err(InvalidInput::new(path("rotary_inertia_kg_m"), inertia, ROTARY_RANGE));
+        }
+        sections.push(scaled);
+    }
+    Ok(merged(&raw, |i| sections[i]))
+}
+
+/// Largest flexibility in shear, and rotary inertia, against those in bending of a beam as long as this one.
+const SHEAR_MOST: f64 = 1e6;
+const SHEAR_RANGE: &str =
+    "at least 1e-6 times the flexural rigidity of the first segment over the square of the length";
+const ROTARY_RANGE: &str = "0 up to 1e6 times the mass per length of the first segment times the square of the length";
+
+/// Merges equal neighbours; `section` is what a segment has beside length, rigidity and mass.
+fn merged(raw: &[[f64; 3]], section: impl Fn(usize) -> [f64; 2]) -> (Vec<Span>, Units) {
+    let first = raw[0];
     let length_m: f64 = raw.iter().map(|s| s[0]).sum();
     let mut spans: Vec<Span> = Vec::with_capacity(raw.len());
     let mut start_m = 0.0;
     let mut i = 0;
     while i < raw.len() {
-        let run = raw[i..].iter().take_while(|s| s[1..] == raw[i][1..]).count();
+        let same = |j: &usize| raw[*j][1..] == raw[i][1..] && section(*j) == section(i);
+        let run = (i..raw.len()).take_while(same).count();
         let run_m: f64 = raw[i..i + run].iter().map(|s| s[0]).sum();
-        spans.push(Span {
-            start: start_m / length_m,
-            length: run_m / length_m,
-            rigidity: raw[i][1] / first[1],
-            mass: raw[i][2] / first[2],
-        });
+        let [rigidity, mass] = [raw[i][1] / first[1], raw[i][2] / first[2]];
+        let [shear, rotary] = section(i);
+        spans.push(Span { shear, rotary, ..Span::slender(start_m / length_m, run_m / length_m, rigidity, mass) });
         start_m += run_m;
         i += run;
     }
-    Ok((spans, Units { length_m, rigidity: first[1], mass_per_length_kg_m: first[2] }))
+    (spans, Units { length_m, rigidity: first[1], mass_per_length_kg_m: first[2] })
 }
 
 /// The span that contains the dimensionless place `x`, and the place within it.

@@ -4,6 +4,7 @@ use super::{PointMode, PointsMode, remainder_at_points, remainder_modes};
 use crate::beam::Beam;
 use crate::error::InvalidInput;
 use crate::modes::Modes;
+use crate::system::BeamSystem;
 
 /// How many modes to compute so that what lies beyond them hardly tells in the remainder of `kept` modes: four times
 /// as many, and at least 200 more.
@@ -30,11 +31,30 @@ impl Beam {
     /// # Errors
     /// [`InvalidInput`] as for [`modes`](Self::modes), for a place off the beam, and for a `count` other than 1 to 4.
     pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
+        BeamSystem::from(self.clone()).remainder(x_m, kept, count)
+    }
+
+    /// Remainder modes common to several places on the beam, at most one a place; see [`remainder_at_points`].
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
+        BeamSystem::from(self.clone()).remainder_at(x_m, kept)
+    }
+}
+
+impl BeamSystem {
+    /// As [`Beam::remainder`]. The tail of a Timoshenko beam is a wave impedance rather than a spring: it falls as the
+    /// inverse of the number of modes, and remainder modes bring more there.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a place off the beam, and for a `count` other than 1 to 4.
+    pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
         let whole_m_n = self.static_compliance(x_m)?;
         self.modes(enough(kept))?.remainder(x_m, kept, count, whole_m_n)
     }
 
-    /// Remainder modes common to several places on the beam, at most one a place; see [`remainder_at_points`].
+    /// As [`Beam::remainder_at`].
     ///
     /// # Errors
     /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.

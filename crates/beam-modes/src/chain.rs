@@ -1,0 +1,164 @@
+//! A beam system as a dimensionless chain of uniform spans with nodes between them.
+
+use crate::beam::End;
+use crate::error::InvalidInput;
+use crate::node::Node;
+use crate::span::{Span, Units, nondimensional_beam};
+use crate::system::{BeamSystem, held};
+use crate::waves::SHORT;
+
+#[derive(Debug, Clone)]
+pub(crate) struct Chain {
+    pub spans: Vec<Span>,
+    /// One more than spans.
+    pub nodes: Vec<Node>,
+    pub ends: [End; 2],
+    pub units: Units,
+}
+
+/// Places closer than this, in lengths of the beam, are one.
+const SAME_PLACE: f64 = 1e-12;
+/// More spans than this are not cut.
+const MOST_SPANS: f64 = 5000.0;
+const BESIDE_BENDING: &str = "a value that bending can stand against: the beam would have to be cut into more than 5000 \
+                              pieces";
+const EULER_BERNOULLI: &str =
+    "0 on a Timoshenko beam: axial force and foundation belong to Euler-Bernoulli's theory here";
+
+impl Chain {
+    pub fn of(system: &BeamSystem) -> Result<Self, InvalidInput> {
+        let mut chain = Self::nodes_between(system, None)?;
+        if system.foundation_n_m2 > 0.0 {
+            chain.cut_by_decay()?;
+        }
+        Ok(chain)
+    }
+
+    /// With a node at `y`, and cut so finely that no span decays.
+    pub fn for_statics(system: &BeamSystem, y: f64) -> Result<Self, InvalidInput> {
+        let mut chain = Self::nodes_between(system, Some(y))?;
+        chain.cut_by_decay()?;
+        Ok(chain)
+    }
+
+    fn nodes_between(system: &BeamSystem, place: Option<f64>) -> Result<Self, InvalidInput> {
+        let (mut spans, units) = nondimensional_beam(&system.beam, system.shear.as_deref())?;
+        let Units { length_m, rigidity, mass_per_length_kg_m } = units;
+        let scaled = |field: &str, value: f64, unit: f64| {
+            if value.is_finite() && (value * unit).abs() <= 1e18 {
+                Ok(value * unit)
+            } else {
+                let allowed = "a finite number, at most 1e18 against the beam's own bending";
+                Err(InvalidInput::new(field, value, allowed))
+            }
+        };
+        let tension = scaled("axial_force_n", system.axial_force_n, length_m * length_m / rigidity)?;
+        let foundation = scaled("foundation_n_m2", system.foundation_n_m2, length_m.powi(4) / rigidity)?;
+        for (field, value) in [("axial_force_n", system.axial_force_n), ("foundation_n_m2", system.foundation_n_m2)] {
+            if system.shear.is_some() && value != 0.0 {
+                return Err(InvalidInput::new(field, value, EULER_BERNOULLI));
+            }
+        }
+        if foundation < 0.0 {
+            return Err(InvalidInput::new("foundation_n_m2", system.foundation_n_m2, "a finite number, at least 0"));
+        }
+        spans.iter_mut().for_each(|span| (span.tension, span.foundation) = (tension, foundation));
+
+        let mut chain = Self { nodes: vec![Node::default(); spans.len() + 1], spans, ends: system.beam.ends, units };
+        let mass = mass_per_length_kg_m * length_m;
+        for (i, attachment) in system.attachments.iter().enumerate() {
+            let path = |field: &str| format!("attachments[{i}].{field}");
+            let not_negative = |field: &str, value: f64, unit: f64| {
+                let value = scaled(&path(field), value, unit)?;
+                if value >= 0.0 {
+                    Ok(value)
+                } else {
+                    Err(InvalidInput::new(path(field), value / unit, "a finite number, at least 0"))
+                }
+            };
+            let node = Node {
+                mass: [
+                    not_negative("mass_kg", attachment.mass_kg, 1.0 / mass)?,
+                    not_negative(
+                        "rotary_inertia_kg_m2",
+                        attachment.rotary_inertia_kg_m2,
+                        1.0 / mass / length_m / length_m,
+                    )?,
+                ],
+                spring: [
+                    not_negative("spring_n_m", attachment.spring_n_m, length_m.powi(3) / rigidity)?,
+                    not_negative(
+                        "rotational_spring_n_m_rad",
+                        attachment.rotational_spring_n_m_rad,
+                        length_m / rigidity,
+                    )?,
+                ],
+                support: false,
+            };
+            let x_m = InvalidInput::require_on(&path("location_m"), attachment.location_m, length_m)?;
+            chain.node_at(x_m / length_m).add(&node);
+        }
+        for (i, support) in system.supports.iter().enumerate() {
+            let path = format!("supports[{i}].location_m");
+            let x = InvalidInput::require_on(&path, support.location_m, length_m)? / length_m;
+            chain.node_at(x).support = true;
+        }
+        if let Some(x) = place {
+            chain.node_at(x);
+        }
+        // a support at an end is a way to hold it
+        let last = chain.spans.len();
+        for (end, node) in [(0, 0), (1, last)] {
+            if std::mem::take(&mut chain.nodes[node].support) {
+                chain.ends[end] = held(chain.ends[end]);
+            }
+        }
+        Ok(chain)
+    }
+
+    /// The node at a place; a span is cut there if there is none.
+    fn node_at(&mut self, x: f64) -> &mut Node {
+        let i = self.index(x);
+        &mut self.nodes[i]
+    }
+
+    fn index(&mut self, x: f64) -> usize {
+        let (i, inside) = crate::span::locate(&self.spans, x);
+        let span = self.spans[i];
+        if inside <= SAME_PLACE {
+            return i;
+        }
+        if span.length - inside <= SAME_PLACE {
+            return i + 1;
+        }
+        self.spans[i].length = inside;
+        self.spans.insert(i + 1, Span { start: span.start + inside, length: span.length - inside, ..span });
+        self.nodes.insert(i + 1, Node::default());
+        i + 1
+    }
+
+    /// Cuts spans over which axial force or foundation make waves that decay.
+    fn cut_by_decay(&mut self) -> Result<(), InvalidInput> {
+        let pieces = |span: &Span| {
+            let by_force = (span.tension.abs() / span.rigidity).sqrt();
+            let by_foundation = (2.0 * span.foundation / span.rigidity).sqrt().sqrt();
+            (span.length * (by_force + by_foundation) / (0.7 * SHORT)).ceil().max(1.0)
+        };
+        if self.spans.iter().map(pieces).sum::<f64>() > MOST_SPANS {
+            let field = if self.spans[0].foundation > 0.0 { "foundation_n_m2" } else { "axial_force_n" };
+            return Err(InvalidInput::new(field, "as given", BESIDE_BENDING));
+        }
+        let (mut spans, mut nodes) = (Vec::new(), Vec::new());
+        for (span, node) in self.spans.iter().zip(&self.nodes) {
+            let n = pieces(span);
+            for i in 0..n as usize {
+                let start = span.start + span.length * i as f64 / n;
+                spans.push(Span { start, length: span.length / n, ..*span });
+                nodes.push(if i == 0 { *node } else { Node::default() });
+            }
+        }
+        nodes.extend(self.nodes.last());
+        (self.spans, self.nodes) = (spans, nodes);
+        Ok(())
+    }
+}
