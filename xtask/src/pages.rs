@@ -6,7 +6,7 @@ use crate::chapters::tally::{Row, Tally, tell};
 use crate::chapters::{Failure, Part, run_all};
 use std::fs;
 use std::path::{Path, PathBuf};
-use vibroimpact::report::{Report, significant, write_whole};
+use vibroimpact::report::{Report, write_whole};
 
 /// Between these two lines of a page stands its table.
 const BEGIN: &str = "<!-- from statements.csv; `cargo xtask book --write` writes it -->";
@@ -133,8 +133,7 @@ fn differing(all: &[Row]) -> String {
     let differ = all.iter().filter(|row| row.verdict == Verdict::Differs);
     let line = |row: &Row| {
         let texts = [&row.quantity, &row.source, &row.stated];
-        let ours = significant(row.ours, 5);
-        [&row.chapter.to_string()].into_iter().chain(texts).chain([&ours]).cloned().collect()
+        [&row.chapter.to_string()].into_iter().chain(texts).chain([&row.ours()]).cloned().collect()
     };
     page.table(&["chapter", "quantity", "where", "the thesis", "ours"], &differ.map(line).collect::<Vec<_>>());
     page.markdown().trim_start_matches(['#', ' ', '\n']).to_owned()
@@ -165,7 +164,7 @@ mod tests {
         let page = format!("# A\n\n{BEGIN}\nold\n{END}\n\nend\n");
         let new = with_table(&page, &[statement(1.560_52)]).unwrap();
         assert!(new.starts_with("# A\n") && new.ends_with("\n\nend\n") && !new.contains("old"));
-        assert!(new.contains("| S | 2.5 | 1.56 | 1.5605 | ± 0.005 | half a unit of the last digit | ✓ agrees |"));
+        assert!(new.contains("| S | 2.5 | 1.56 | 1.56052 | ± 0.005 | half a unit of the last digit | ✓ agrees |"));
         assert!(new.contains("Printed numbers (1): 1 agrees."));
         assert_eq!(with_table(&new, &[statement(1.560_52)]).unwrap(), new);
         assert!(with_table("# A\n", &[]).is_err());

@@ -160,17 +160,16 @@ fn claim(study: &mut Study, judged: &[&Judged], beam: &str, figure: u32) {
         values.sort_by(f64::total_cmp);
         let [low, middle, high] = [0, values.len() / 2, values.len() - 1].map(|k| significant(values[k], 2));
         let trend = of[0];
+        let limits = limits(trend.limits.0, trend.limits.1);
         let statement = Statement::choices(
-            format!("share of choices: {}, {beam}", trend.quantity),
+            format!("share of choices in which this is {limits}: {}, {beam}", trend.quantity),
             &format!("{}, Fig. 4.{figure}", trend.source),
             trend.words,
             (holds, of.len()),
         );
-        let limits = limits(trend.limits.0, trend.limits.1);
-        study.claim(statement.note(format!(
-            "Holds where the quantity is {limits} ({}); it runs from {low} over {middle} (median) to {high}.",
-            trend.reason
-        )));
+        study.claim(
+            statement.note(format!("From {low} over {middle} (median) to {high}; the limit is {}.", trend.reason)),
+        );
     }
 }
 
@@ -290,16 +289,15 @@ fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Fa
     study.csv("speeds.csv", &rows)?;
     let holds = rows.iter().filter(|row| row.largest_change <= SMALL).count();
     let statement = Statement::choices(
-        "share of choices: largest change of e from that at 1 m/s, speeds from 1/15 to 15 m/s, stepped-cantilever",
+        "share of choices in which this is ≤ 0.1: largest change of e from that at 1 m/s, speeds from 1/15 to 15 m/s, \
+         stepped-cantilever",
         "footnote, 4.1; Fig. 4.3",
         "changing the velocity up or down by a factor of 15 has only a small effect",
         (holds, rows.len()),
     );
     let worst = rows.iter().map(|row| row.largest_change).fold(0.0, f64::max);
-    study.claim(statement.note(format!(
-        "Holds where the change is at most {SMALL}, over steps, slim parts and places; the largest is {}.",
-        significant(worst, 2)
-    )));
+    study
+        .claim(statement.note(format!("Over steps, slim parts and places; the largest is {}.", significant(worst, 2))));
     Ok(())
 }
 

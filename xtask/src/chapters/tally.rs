@@ -55,10 +55,15 @@ impl Row {
         }
     }
 
+    /// Our number with as many digits as the statement may need.
+    pub fn ours(&self) -> String {
+        significant(self.ours, if self.kind == Kind::PrintedNumber { 7 } else { 5 })
+    }
+
     fn cells(&self) -> Vec<String> {
         let ours = match self.uncertainty {
-            0.0 => significant(self.ours, 5),
-            uncertainty => format!("{} ± {}", significant(self.ours, 5), significant(uncertainty, 1)),
+            0.0 => self.ours(),
+            uncertainty => format!("{} ± {}", self.ours(), significant(uncertainty, 1)),
         };
         vec![
             self.quantity.clone(),
