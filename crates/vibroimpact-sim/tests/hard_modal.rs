@@ -177,7 +177,7 @@ fn damping_and_frequencies() {
         cases.push(case(format!("damping ratio {damping}"), structure, ball(), hertz(), Expect::Rebound(known)));
     }
     // critical damping is no special place
-    let beside = pinned(20, 1.0 - 1e-9, GOLDEN);
+    let beside = pinned(20, 1.0 - 1e-12, GOLDEN);
     cases.push(case("critical damping", pinned(20, 1.0, GOLDEN), ball(), hertz(), Expect::Same(beside)));
     // so much damping holds the beam still
     cases.push(case("damping ratio 1e6", pinned(20, 1e6, GOLDEN), ball(), hertz(), Expect::Restitution(1.0, 1e-3)));
@@ -262,7 +262,8 @@ fn reversals_behind_a_residual_compliance() {
         let mut e = |tolerance: f64| {
             let solution = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
             assert_eq!(solution.outcome, Outcome::Rebound, "N = {n}, tolerance {tolerance:e}");
-            assert!(solution.counts.contact_steps < 5_000, "N = {n}, tolerance {tolerance:e}: {:?}", solution.counts);
+            // of up to four solutions
+            assert!(solution.counts.contact_steps < 10_000, "N = {n}, tolerance {tolerance:e}: {:?}", solution.counts);
             (solution.restitution.unwrap(), solution.restitution_uncertainty.unwrap())
         };
         let (reference, _) = e(1e-13);
@@ -569,6 +570,30 @@ proptest! {
             prop_assert!(solution.restitution_uncertainty.unwrap() >= 0.0);
         }
         prop_assert!(solution.amplitude.iter().chain(&solution.rate).all(|value| value.is_finite()));
+    }
+}
+
+/// A light ball on the guided end of a slender beam in three modes and a residual compliance: at tolerances from 1e-2 to 1e-6
+/// the steps got stuck. The solution at 1e-9 and 1e-11 is 0.86530958, with 11 contacts.
+#[test]
+fn few_modes_and_a_compliance_at_loose_tolerances() {
+    let (length, diameter): (f64, f64) = (0.29256227331225043, 0.000420049429993596);
+    let area = 0.25 * std::f64::consts::PI * diameter * diameter;
+    let flexural_rigidity_n_m2 = 4623804235.435798 * area * diameter * diameter / 16.0;
+    let segment = Segment { length_m: length, flexural_rigidity_n_m2, mass_per_length_kg_m: 1166.5507325534022 * area };
+    let beam = Beam { segments: vec![segment], ends: [End::Guided, End::Pinned] };
+    let mut structure = seen_from(&beam, 0.0, 3, 0.00014785393000310015);
+    let kept: f64 = structure.modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
+    structure.residual_compliance_m_n = length.powi(3) / (3.0 * flexural_rigidity_n_m2) - kept;
+    let striker = Striker { mass_kg: 0.0001016356302612917, speed_m_s: 0.5837524201245173 };
+    let law = Law::from(Hertz::new(4357452.9971862845).unwrap());
+    let mut solver = Solver::new(&structure).unwrap();
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9] {
+        let solution = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
+        assert_eq!(solution.outcome, Outcome::Rebound, "{tolerance:e}");
+        let (error, stated) =
+            ((solution.restitution.unwrap() - 0.86530958).abs(), solution.restitution_uncertainty.unwrap());
+        assert!(error <= stated + 5e-9 && stated < 1.0, "{tolerance:e}: {error:e}, stated {stated:e}");
     }
 }
 

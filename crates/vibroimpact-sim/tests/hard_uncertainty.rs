@@ -2,16 +2,18 @@
 
 mod common;
 
-use common::random::{Impact, cases, decades, ordinary_damping, ordinary_impact, ordinary_striker};
-use common::{hertz, pinned, runge_kutta, settings};
-use contact_models::Law;
+use beam_modes::{Beam, End, Segment};
+use common::random::{EdgeImpact, cases, decades, edge_impact, ordinary_damping, ordinary_impact, ordinary_striker};
+use common::{hertz, pinned, runge_kutta, seen_from, settings};
+use contact_models::{Law, LinearSpring, Viscous};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::PI;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite;
-use vibroimpact_sim::modal::{Outcome, Settings, Solver};
+use vibroimpact_sim::modal::{Outcome, Settings, Solver, Striker};
 
 /// The same row of random values on every machine.
 fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
@@ -23,51 +25,133 @@ fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
 /// How well stated uncertainties cover errors.
 #[derive(Default, Debug)]
 struct Coverage {
-    cases: usize,
-    covered: usize,
-    /// Largest error over stated uncertainty, and what it belongs to.
+    /// Error over stated uncertainty, of each case.
+    ratios: Vec<f64>,
+    /// What the largest belongs to.
     worst: (f64, String),
 }
 
 impl Coverage {
     fn note(&mut self, error: f64, stated: f64, what: impl FnOnce() -> String) {
-        self.cases += 1;
-        self.covered += usize::from(error <= stated);
+        self.ratios.push(error / stated);
         if error / stated > self.worst.0 {
             self.worst = (error / stated, format!("error {error:e}, stated {stated:e}: {}", what()));
         }
     }
 
-    fn assert(&self, at_least: usize) {
-        assert!(self.cases >= at_least, "{self:?}");
-        assert!(100 * self.covered >= 99 * self.cases, "{self:?}");
-        assert!(self.worst.0 <= 10.0, "{self:?}");
+    /// As many cases as `at_least`, of which 99.9 % (all but one, where they are fewer than 2,000) are covered, and none is
+    /// more than three times as far off as stated. With `--nocapture` the figures are printed.
+    fn assert(&mut self, name: &str, at_least: usize) {
+        self.ratios.sort_by(f64::total_cmp);
+        let (count, worst) = (self.ratios.len(), &self.worst);
+        let outside = self.ratios.iter().filter(|ratio| **ratio > 1.0).count();
+        let median = self.ratios[count / 2].recip();
+        println!(
+            "{name}: {count} cases, {outside} not covered, stated over true {median:.0} in the median, worst {worst:?}"
+        );
+        assert!(count >= at_least, "{name}: {count}");
+        assert!(outside <= (count / 1_000).max(1), "{name}: {outside} of {count}, worst {worst:?}");
+        assert!(worst.0 <= 3.0, "{name}: {worst:?}");
+    }
+
+    /// Half of the stated uncertainties are less than so many times the error.
+    fn assert_not_wider(&self, name: &str, times: f64) {
+        let median = self.ratios[self.ratios.len() / 2].recip();
+        assert!(median < times, "{name}: {median}");
     }
 }
 
 /// True errors from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
 /// become that exact, it ends with its limit, and one at 1e-12 or 1e-11 takes its place.
-#[test]
-fn the_modal_restitution() {
-    let impacts = draw(ordinary_impact(), 150);
-    let tight = |impact: &Impact, tolerance: f64| {
-        let settings = Settings { max_steps: 20_000, ..settings(tolerance) };
-        let mut solver = Solver::new(&impact.structure).unwrap();
-        let solution = solver.solve(&impact.striker, &impact.law, None, &settings).unwrap();
-        solution.restitution.zip(solution.restitution_uncertainty)
+fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
+    let tight = |impact: &EdgeImpact, tolerance: f64| {
+        let settings = Settings { max_steps: 40_000, ..settings(tolerance) };
+        let solution = impact.solve(&settings);
+        solution.restitution.zip(solution.restitution_uncertainty).filter(|(_, rest)| *rest < 1e-3)
     };
-    let reference = |impact: &Impact| [1e-13, 1e-12, 1e-11].into_iter().find_map(|tolerance| tight(impact, tolerance));
-    let references: Vec<(f64, f64)> = impacts.iter().filter_map(reference).collect();
-    assert_eq!(references.len(), impacts.len());
-    for tolerance in [1e-9, 1e-7, 1e-5] {
+    let reference =
+        |impact: &EdgeImpact| [1e-13, 1e-12, 1e-11].into_iter().find_map(|tolerance| tight(impact, tolerance));
+    let references: Vec<Option<(f64, f64)>> = impacts.iter().map(reference).collect();
+    // some are so chaotic that no double-precision solution is known to 1e-3
+    let known = references.iter().flatten().count();
+    assert!(100 * known >= 95 * impacts.len(), "{name}: {known} of {}", impacts.len());
+    for tolerance in [1e-9, 1e-7, 1e-5, 1e-3] {
         let mut coverage = Coverage::default();
-        for (impact, (reference, rest)) in impacts.iter().zip(&references) {
-            let solution = impact.solve(tolerance);
-            assert_eq!(solution.outcome, Outcome::Rebound, "{impact:?}");
-            let beyond = ((solution.restitution.unwrap() - reference).abs() - rest).max(0.0);
+        for (impact, (reference, rest)) in impacts.iter().zip(&references).filter_map(|(i, r)| Some((i, (*r)?))) {
+            let solution = impact.solve(&Settings { max_steps: 40_000, ..settings(tolerance) });
+            // at loose tolerances an impact that amplifies errors may be given up
+            let Some(restitution) = solution.restitution else {
+                assert!(tolerance > 1e-6, "{name}: {:?} {impact:?}", solution.outcome);
+                continue;
+            };
+            let beyond = ((restitution - reference).abs() - rest).max(0.0);
             coverage.note(beyond, solution.restitution_uncertainty.unwrap(), || format!("{tolerance:e} {impact:?}"));
         }
-        coverage.assert(impacts.len());
+        let name = format!("{name} at {tolerance:e}");
+        coverage.assert(&name, 95 * known / 100);
+        if tolerance < 1e-4 {
+            coverage.assert_not_wider(&name, median);
+        }
+    }
+}
+
+#[test]
+fn ordinary_impacts() {
+    let as_edge = |impact: common::random::Impact| {
+        let common::random::Impact { structure, striker, law } = impact;
+        EdgeImpact { structure, striker, law, start: None }
+    };
+    let impacts: Vec<EdgeImpact> = draw(ordinary_impact(), 150).into_iter().map(as_edge).collect();
+    modal_restitution("ordinary", &impacts, 250.0);
+}
+
+#[test]
+fn impacts_from_the_edges() {
+    modal_restitution("edges", &draw(edge_impact(), 100), 250.0);
+}
+
+/// Two impacts that amplify errors, by the double-double Taylor series of their equations.
+#[test]
+fn impacts_known_to_more_digits() {
+    let rod = |length_m: f64, youngs_pa: f64, density: f64, diameter: f64| Segment {
+        length_m,
+        flexural_rigidity_n_m2: youngs_pa * PI * diameter.powi(4) / 64.0,
+        mass_per_length_kg_m: density * PI * diameter * diameter / 4.0,
+    };
+    let bar = |length_m: f64, width_m: f64, thickness_m: f64| Segment {
+        length_m,
+        flexural_rigidity_n_m2: 23959912665.092495 * width_m * thickness_m.powi(3) / 12.0,
+        mass_per_length_kg_m: 7248.269666050314 * width_m * thickness_m,
+    };
+    let slender = Segment {
+        length_m: 0.615512734587341,
+        flexural_rigidity_n_m2: 9.639547845394423,
+        mass_per_length_kg_m: 0.5649960047061051,
+    };
+    let first = rod(1.615266677775907, 21098263812.64986, 2466.335715254258, 0.008966475144786988);
+    let beam = Beam { segments: vec![first, slender], ends: [End::Guided, End::Free] };
+    let structure = seen_from(&beam, 0.25580000008103826, 9, 0.002169422726249561);
+    let striker = Striker { mass_kg: 1.7654680053554914, speed_m_s: 0.03552190450390591 };
+    let law = Law::from(Viscous::new(74097728.79988147, 11.439798636375956).unwrap());
+    let viscous = EdgeImpact { structure, striker, law, start: None };
+    let bars = vec![
+        bar(0.0457049863631492, 0.0027715213558317867, 0.0012347549129352487),
+        bar(0.07046769870001454, 0.0023835893178334733, 0.0023086463456862467),
+        bar(0.2398378233870333, 0.0033135814128138325, 0.0021573661618968947),
+    ];
+    let beam = Beam { segments: bars, ends: [End::Guided, End::Guided] };
+    let structure = seen_from(&beam, 0.0457049863631492, 82, 0.0);
+    let striker = Striker { mass_kg: 0.013485596220419543, speed_m_s: 0.05739689771346372 };
+    let law = Law::from(LinearSpring::new(971539.819720483).unwrap());
+    let linear = EdgeImpact { structure, striker, law, start: None };
+    // inputs off by 1e-15 move the first by 2.3e-7, the second by 2.8e-9
+    for (impact, truth, moved) in [(viscous, 0.687107055, 2.3e-7), (linear, 0.63202333145, 2.8e-9)] {
+        for tolerance in [1e-9, 1e-8, 1e-7, 1e-6, 1e-5] {
+            let solution = impact.solve(&settings(tolerance));
+            let stated = solution.restitution_uncertainty.unwrap() + 10.0 * moved;
+            let error = (solution.restitution.unwrap() - truth).abs();
+            assert!(error <= stated, "{tolerance:e}: {error:e}, stated {stated:e}");
+        }
     }
 }
 
@@ -86,7 +170,7 @@ fn the_modal_restitution_against_runge_kutta() {
         let what = || format!("{n} {damping} {b} {striker:?}");
         coverage.note(beyond, solution.restitution_uncertainty.unwrap(), what);
     }
-    coverage.assert(24);
+    coverage.assert("Runge-Kutta", 24);
 }
 
 /// Impacts that begin in motion: tilted rods dropped on a surface that does not move.
@@ -134,7 +218,7 @@ fn the_dropped_rod() {
             coverage.note((error - rest).max(0.0), stated, || format!("{tolerance:e} {speed_m_s} m/s {rod:?}"));
         }
     }
-    coverage.assert(160);
+    coverage.assert("dropped rod", 160);
 }
 
 /// On the infinite beam and plate: true errors of contact times, durations and speeds from the tightest settings.
@@ -161,5 +245,5 @@ fn the_infinite_structures() {
         let beyond = (error - reference.error.unwrap().max(1e-13)).max(0.0);
         coverage.note(beyond, stated, || format!("{structure:?} S = {s}, {nodes} nodes, 10^{tolerance}"));
     }
-    coverage.assert(80);
+    coverage.assert("infinite", 80);
 }

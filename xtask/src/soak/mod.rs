@@ -29,7 +29,7 @@ pub struct Summary {
     pub seed: u64,
     /// Impacts solved.
     pub impacts: u64,
-    /// How often each kind of case ended how.
+    /// How often each kind of case ended how; those that stopped, by their reason.
     pub outcomes: BTreeMap<String, u64>,
     /// Contacts over all impacts, and the most in one.
     pub contacts: u64,

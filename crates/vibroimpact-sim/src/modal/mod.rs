@@ -29,8 +29,10 @@
 //! In free flight nothing is integrated: a bound on the gap's motion gives a time before which no contact can come
 //! (see `flight.rs`), and a bound that none will come at all ends the impact.
 //!
-//! The uncertainty of the restitution is five times the tolerance and three times the difference to a second solution,
-//! of 32 times the tolerance. Undamped impacts with many modes amplify errors by 1e5 and more; the estimate shows it.
+//! The uncertainty of the restitution rests on coarser solutions: one of 32 times the tolerance, and one of eight times,
+//! whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger difference to them.
+//! Where that is more than the tolerance the impact amplifies errors, undamped ones with many modes by 1e5 and more, and two
+//! solutions may agree by accident: a third is asked, and the largest difference counts five times.
 
 mod behind;
 pub(crate) mod contact;
@@ -47,6 +49,7 @@ mod rest;
 mod solution;
 mod solve;
 pub(crate) mod step;
+mod time_unit;
 
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};

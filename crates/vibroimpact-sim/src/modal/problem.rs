@@ -139,7 +139,7 @@ pub struct Settings {
     /// Accuracy aimed at, relative to the striker's momentum, a contact: 1e-13 to 0.1. Default 1e-9.
     /// An impact that amplifies errors ends with fewer digits; `Solution::restitution_uncertainty` tells.
     pub tolerance: f64,
-    /// Solve a second time, more coarsely, to estimate the uncertainty of the restitution. Default true.
+    /// Solve again, more coarsely, to estimate the uncertainty of the restitution. Default true.
     pub estimate_uncertainty: bool,
     /// Stop after this many contacts ([`StopReason::SubImpacts`](crate::StopReason)). Default 10,000.
     pub max_sub_impacts: usize,

@@ -86,11 +86,11 @@ pub struct Solution {
     /// (for a structure without rigid-body modes: of the striker alone). `None` unless the bodies approached
     /// each other, fast enough for the ratio to be a number, and the impact ended.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution, from a second, coarser solution; `None` if not asked for.
+    /// Estimated error of the restitution, from two or three coarser solutions; `None` if not asked for.
     pub restitution_uncertainty: Option<f64>,
     /// Every interval of contact, in order of time.
     pub sub_impacts: Vec<SubImpact>,
-    /// Costs, of the second solution included.
+    /// Costs, of the coarser solutions included.
     pub counts: Counts,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,

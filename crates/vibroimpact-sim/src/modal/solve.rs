@@ -8,13 +8,27 @@ use super::motion::{Motion, Piece};
 use super::oscillator::propagate;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
+use super::time_unit;
 use crate::{InvalidInput, StopReason};
 use contact_models::{ContactLaw, Memory};
 
 /// Part of the stated tolerance that one step may use up, as a share of the striker's momentum.
 const STEP_SHARE: f64 = 0.1;
-/// How much more coarsely the second solution, for the uncertainty, is computed.
+/// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
+/// unnoticed.
+const LOOSEST: f64 = 1e-4;
+/// How much more coarsely than the solution those are computed that tell its uncertainty: in the same unit of time, in
+/// another one, and a third where these differ by more than the tolerance.
 const COARSER: f64 = 32.0;
+const OTHERWISE: f64 = 8.0;
+const THIRD: f64 = 8.0;
+/// The uncertainty in differences to them: without and with the third; and what is stated of the tolerance in any case.
+const ORDINARY: f64 = 2.5;
+const AMPLIFIED: f64 = 5.0;
+const LEAST: f64 = 3e-3;
+/// By so much is the tolerance tightened where steps get stuck behind a compliance, down to this one.
+const TIGHTER: f64 = 1e-2;
+const TIGHT: f64 = 1e-9;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less.
@@ -41,6 +55,8 @@ pub struct Solver {
     ladder: Ladder,
     /// Where each of the structure's modes went: its place on the ladder, if it is elastic and excited.
     place: Vec<Option<usize>>,
+    /// The same structure in another unit of time, once it was needed.
+    otherwise: Option<Box<Solver>>,
 }
 
 /// One run at one tolerance.
@@ -55,6 +71,10 @@ impl Solver {
     /// A solver for a structure; builds no table yet.
     pub fn new(structure: &Structure) -> Result<Solver, InvalidInput> {
         structure.check()?;
+        Ok(Solver::unchecked(structure))
+    }
+
+    fn unchecked(structure: &Structure) -> Solver {
         let modes = structure.modes.clone();
         let mut order: Vec<usize> =
             (0..modes.len()).filter(|&k| !modes[k].is_rigid() && modes[k].is_excited()).collect();
@@ -64,7 +84,8 @@ impl Solver {
             place[k] = Some(i);
         }
         let ladder = Ladder::new(order.iter().map(|&k| modes[k]).collect());
-        Ok(Solver { modes, residual_compliance_m_n: structure.residual_compliance_m_n, ladder, place })
+        let residual_compliance_m_n = structure.residual_compliance_m_n;
+        Solver { modes, residual_compliance_m_n, ladder, place, otherwise: None }
     }
 
     /// Solves one impact. `start` is the structure's motion when the clock starts; `None` means at rest and touching.
@@ -126,17 +147,12 @@ impl Solver {
             "a finite mass, where no mode of the structure moves at the contact",
         )?;
 
-        let run = self.run(striker, law, start, settings, settings.tolerance, record);
+        let run = self.run(striker, law, start, settings, settings.tolerance.min(LOOSEST), record);
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
-        let restitution_uncertainty = restitution.filter(|_| settings.estimate_uncertainty).map(|value| {
-            let tolerance = (COARSER * settings.tolerance).min(0.1);
-            let second = self.run(striker, law, start, settings, tolerance, &mut None);
-            counts += second.counts;
-            // a second solution that ends otherwise says that nothing is certain
-            let other = self.restitution(&second, striker, start);
-            other.map_or(1.0, |other| (5.0 * settings.tolerance + 3.0 * (other - value).abs()).min(f64::MAX))
-        });
+        let restitution_uncertainty = restitution
+            .filter(|_| settings.estimate_uncertainty)
+            .map(|value| self.uncertainty(value, striker, law, start, settings, &mut counts));
         let (amplitude, rate) = modal_state(&self.modes, &self.place, &run.motion, start);
         Ok(Solution {
             outcome: run.outcome,
@@ -151,7 +167,80 @@ impl Solver {
         })
     }
 
+    /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
+    /// certain.
+    fn uncertainty<L: ContactLaw>(
+        &mut self,
+        value: f64,
+        striker: &Striker,
+        law: &L,
+        start: &Start,
+        settings: &Settings,
+        counts: &mut Counts,
+    ) -> f64 {
+        let coarser = |factor: f64| factor * settings.tolerance.min(LOOSEST);
+        let same = self.again(striker, law, start, settings, coarser(COARSER), counts);
+        let other = {
+            let (modes, compliance) = (&self.modes, self.residual_compliance_m_n);
+            let solver = self
+                .otherwise
+                .get_or_insert_with(|| Box::new(Solver::unchecked(&time_unit::structure(modes, compliance))));
+            let (striker, start) = (time_unit::striker(striker), time_unit::start(start));
+            solver.again(&striker, &time_unit::Law(law), &start, settings, coarser(OTHERWISE), counts)
+        };
+        let (Some(same), Some(other)) = (same, other) else { return 1.0 };
+        let mut spread = (same - value).abs().max((other - value).abs());
+        let mut times = ORDINARY;
+        if spread > settings.tolerance {
+            let Some(third) = self.again(striker, law, start, settings, coarser(THIRD), counts) else { return 1.0 };
+            (spread, times) = (spread.max((third - value).abs()), AMPLIFIED);
+        }
+        (LEAST * settings.tolerance + times * spread).min(f64::MAX)
+    }
+
+    /// The restitution of the same impact at another tolerance.
+    fn again<L: ContactLaw>(
+        &mut self,
+        striker: &Striker,
+        law: &L,
+        start: &Start,
+        settings: &Settings,
+        tolerance: f64,
+        counts: &mut Counts,
+    ) -> Option<f64> {
+        let run = self.run(striker, law, start, settings, tolerance, &mut None);
+        *counts += run.counts;
+        self.restitution(&run, striker, start)
+    }
+
+    /// One run. Behind a residual compliance, with few modes, the steps of a loose tolerance may get stuck on their way,
+    /// where those of a tighter one do not: then they take over.
     fn run<L: ContactLaw>(
+        &mut self,
+        striker: &Striker,
+        law: &L,
+        start: &Start,
+        settings: &Settings,
+        mut tolerance: f64,
+        record: &mut Option<Vec<Piece>>,
+    ) -> Run {
+        let mut counts = Counts::default();
+        loop {
+            let mut run = self.march(striker, law, start, settings, tolerance, record);
+            counts += run.counts;
+            let stuck = matches!(run.outcome, Outcome::Stopped(StopReason::Steps | StopReason::FinestStep));
+            if !stuck || self.residual_compliance_m_n == 0.0 || tolerance <= TIGHT {
+                run.counts = counts;
+                return run;
+            }
+            tolerance = (tolerance * TIGHTER).max(TIGHT);
+            if let Some(pieces) = record.as_mut() {
+                pieces.clear();
+            }
+        }
+    }
+
+    fn march<L: ContactLaw>(
         &mut self,
         striker: &Striker,
         law: &L,

@@ -6,7 +6,7 @@ use contact_models::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::PI;
-use vibroimpact_sim::modal::{Mode, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
 /// So many cases, times the environment variable `VIBROIMPACT_CASES` if it is set.
 pub fn cases(count: u32) -> u32 {
@@ -132,6 +132,13 @@ pub struct EdgeImpact {
     pub striker: Striker,
     pub law: Law,
     pub start: Option<Start>,
+}
+
+impl EdgeImpact {
+    pub fn solve(&self, settings: &Settings) -> Solution {
+        let mut solver = Solver::new(&self.structure).unwrap();
+        solver.solve(&self.striker, &self.law, self.start.as_ref(), settings).unwrap()
+    }
 }
 
 /// Laws of every kind, for a striker of the order of 0.1 kg at 1 m/s.

@@ -20,7 +20,7 @@ pub const EXAMPLES: &str = "Examples:
 
 S = C^10 k_H^2 m^8 v is the one number that matters; S up to 1.5605 gives a rebound after one contact, larger S one
 or more separations, then sustained contact, and S above 35264 sustained contact at once. S from 1e-12 to 1e8 is
-solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"stopped\": how many are certain is said.
+solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"stopped\", with how many are certain.
 A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and a hertz contact.";
 
 /// What to solve, and where to put it.
