@@ -180,31 +180,49 @@ fn by_parts(mode: &Mode, h: f64) -> Form {
     let at_end = sums.map(|sum| sum.iter().sum::<Complex64>());
     let scale = -Complex64::i() * lambda / omega_d;
 
-    // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}); the first is that to a unit rate
-    let polynomial: [Nodal; Q + 1] =
-        array::from_fn(|i| if i == 0 { [0.0; Q] } else { sums[i - 1].map(|value| -(scale * value).re) });
-    let exponential: [Complex64; Q + 1] = array::from_fn(|i| if i == 0 { scale } else { scale * at_start[i - 1] });
-
     // means of P_d e^{z x}, of e^{2 z x} and of |e^{z x}|^2
     let whole = z.exp();
     let moments: [Complex64; Q] = array::from_fn(|d| sign(d) * (whole * at_start[d] - at_end[d]));
     let turned = (whole * whole - 1.0) * 0.5 * inverse;
     let decay = 2.0 * sigma * h;
     let decayed = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
-    let mixed = polynomial.map(|values| values.iter().zip(&moments).map(|(value, m)| value * m).sum::<Complex64>());
-    let product = |i: usize, j: usize| {
-        let plain: f64 = (0..Q).map(|d| polynomial[i][d] * polynomial[j][d] / (2 * d + 1) as f64).sum();
-        let (one, other) = (exponential[i], exponential[j]);
-        let crossed = (other * mixed[i] + one * mixed[j]).re;
-        plain + crossed + 0.5 * ((one * other * turned).re + (one * other.conj()).re * decayed)
+
+    // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}): the mean of a product is bilinear in the
+    // coefficients, c, and the mean m of the polynomial times e^{z x}
+    let left = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
+        array::from_fn(|i| if i < Q { polynomial[i] } else { [m.re, m.im, c.re, c.im][i - Q] })
     };
-    let form = Form {
-        bb: product(0, 0),
-        bq: array::from_fn(|n| product(0, n + 1)),
-        qq: array::from_fn(|n| array::from_fn(|m| product(n + 1, m + 1))),
+    let right = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
+        let turned = m + 0.5 * c * turned;
+        let rest = [c.re, -c.im, turned.re + 0.5 * decayed * c.re, 0.5 * decayed * c.im - turned.im];
+        array::from_fn(|i| if i < Q { polynomial[i] / (2 * i + 1) as f64 } else { rest[i - Q] })
     };
-    form.scaled(mode, h)
+    let by_rate = left(&[0.0; Q], scale, Complex64::ZERO);
+    let (mut by_force, mut others) = ([[0.0; PARTS]; Q], [[0.0; Q]; PARTS]);
+    for n in 0..Q {
+        let polynomial = sums[n].map(|value| -(scale * value).re);
+        let c = scale * at_start[n];
+        let m = polynomial.iter().zip(&moments).map(|(value, moment)| value * moment).sum();
+        by_force[n] = left(&polynomial, c, m);
+        for (other, value) in others.iter_mut().zip(right(&polynomial, c, m)) {
+            other[n] = value;
+        }
+    }
+    let row = |one: &[f64; PARTS]| {
+        let mut row = [0.0; Q];
+        for (value, other) in one.iter().zip(&others) {
+            for n in 0..Q {
+                row[n] += value * other[n];
+            }
+        }
+        row
+    };
+    let bb = by_rate.iter().zip(right(&[0.0; Q], scale, Complex64::ZERO)).map(|(one, other)| one * other).sum();
+    Form { bb, bq: row(&by_rate), qq: by_force.map(|one| row(&one)) }.scaled(mode, h)
 }
+
+/// Numbers that a rate is made of where it is integrated by parts.
+const PARTS: usize = Q + 4;
 
 /// Any damping, on panels that grow away from the start.
 fn by_quadrature(mode: &Mode, h: f64) -> Form {
@@ -226,36 +244,61 @@ fn by_quadrature(mode: &Mode, h: f64) -> Form {
     form.scaled(mode, h)
 }
 
-/// The forms of all damped modes on one level.
+/// The forms of all modes on one level.
 pub(super) struct Damping {
     /// Loss by `a^2`, `a b` and `b^2`, mode by mode.
     free: Vec<[f64; 3]>,
     /// Loss by `a g_n` and `b g_n`.
     cross: Vec<(Nodal, Nodal)>,
-    /// Loss by `g_n g_m`.
-    forced: Vec<Matrix>,
     /// `[c][c']`, where asked for: loss by `F_n F'_m`, summed over the modes.
     pairs: Vec<Option<Box<Matrix>>>,
-    contacts: usize,
 }
 
 impl Damping {
-    pub fn new(system: &System, j: i32) -> Damping {
-        let (mut free, mut cross, mut forced) = (Vec::new(), Vec::new(), Vec::new());
-        for (mode, &square) in system.modes.iter().zip(&system.square) {
-            let Form { bb, bq, qq } = Form::of(mode, step_s(j));
-            free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
-            cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
-            forced.push(qq);
-        }
-        let contacts = system.links.len();
-        let pairs = std::iter::repeat_with(|| None).take(contacts * contacts).collect();
-        Damping { free, cross, forced, pairs, contacts }
+    pub fn new(system: &System) -> Damping {
+        let pairs = std::iter::repeat_with(|| None).take(system.links.len().pow(2)).collect();
+        Damping { free: Vec::new(), cross: Vec::new(), pairs }
     }
 
-    /// What damping takes from these bodies within a panel (J).
+    /// Makes sure that everything about level `j` is there for these contacts.
+    pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize]) {
+        let mut missing: Vec<(usize, Vec<f64>, Box<Matrix>)> = Vec::new();
+        for (i, &c) in contacts.iter().enumerate() {
+            for &other in contacts[..=i].iter().filter(|other| system.neighbours[c].contains(other)) {
+                let place = c * system.links.len() + other;
+                if self.pairs[place].is_none() {
+                    let mut weights = vec![0.0; system.modes.len()];
+                    system.links[c].shared(&system.links[other]).for_each(|(k, weight)| weights[k] = weight);
+                    missing.push((place, weights, Box::new([[0.0; Q]; Q])));
+                }
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        self.free.clear();
+        self.cross.clear();
+        for (k, mode) in system.modes.iter().enumerate() {
+            let Form { bb, bq, qq } = Form::of(mode, step_s(j));
+            let square = system.square[k];
+            self.free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
+            self.cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
+            for (_, weights, sum) in missing.iter_mut().filter(|(_, weights, _)| weights[k] != 0.0) {
+                for n in 0..Q {
+                    for m in 0..Q {
+                        sum[n][m] += weights[k] * qq[n][m];
+                    }
+                }
+            }
+        }
+        for (place, _, sum) in missing {
+            self.pairs[place] = Some(sum);
+        }
+    }
+
+    /// What damping takes from these bodies within a panel (J). Needs [`Damping::prepare`].
     pub fn lost(
-        &mut self,
+        &self,
         system: &System,
         damped: &[Range<usize>],
         (amplitude, rate): (&[f64], &[f64]),
@@ -283,28 +326,13 @@ impl Damping {
             }
             lost -= dot(&by_motion, &force[i]);
             for (j, &other) in contacts[..=i].iter().enumerate() {
-                if system.neighbours[c].contains(&other) {
+                if let Some(pair) = &self.pairs[c * system.links.len() + other] {
                     let twice = if j < i { 2.0 } else { 1.0 };
-                    lost += twice * dot(&force[i], &apply(self.pair(system, c, other), &force[j]));
+                    lost += twice * dot(&force[i], &apply(pair, &force[j]));
                 }
             }
         }
         lost
-    }
-
-    fn pair(&mut self, system: &System, c: usize, other: usize) -> &Matrix {
-        let forced = &self.forced;
-        self.pairs[c * self.contacts + other].get_or_insert_with(|| {
-            let mut sum = [[0.0; Q]; Q];
-            for (k, weight) in system.links[c].shared(&system.links[other]) {
-                for n in 0..Q {
-                    for m in 0..Q {
-                        sum[n][m] += weight * forced[k][n][m];
-                    }
-                }
-            }
-            Box::new(sum)
-        })
     }
 }
 

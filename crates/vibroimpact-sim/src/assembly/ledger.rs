@@ -110,7 +110,7 @@ impl Account {
                 let motion = (start.amplitude, start.rate);
                 let level = level_within(h);
                 self.damping_j += if step_s(level) == h {
-                    tables.damping(system, level).lost(system, &self.damped, motion, contacts, force)
+                    tables.damping(system, level, contacts).lost(system, &self.damped, motion, contacts, force)
                 } else {
                     lost_within(system, &self.damped, h, motion, contacts, force)
                 };

@@ -55,10 +55,12 @@ impl Tables {
         level.rotation.get_or_insert_with(|| Box::new(Rotation::new(&system.modes, step_s(j))))
     }
 
-    /// What modal damping takes on level `j`; only the energy ledger asks.
-    pub fn damping(&mut self, system: &System, j: i32) -> &mut Damping {
+    /// What modal damping takes on level `j` while these contacts are closed; only the energy ledger asks.
+    pub fn damping(&mut self, system: &System, j: i32, contacts: &[usize]) -> &Damping {
         let level = &mut self.levels[(j - J_MIN) as usize];
-        level.damping.get_or_insert_with(|| Box::new(Damping::new(system, j)))
+        let damping = level.damping.get_or_insert_with(|| Box::new(Damping::new(system)));
+        damping.prepare(system, j, contacts);
+        damping
     }
 
     /// Makes sure that everything about level `j` is there for these contacts and these forces.
