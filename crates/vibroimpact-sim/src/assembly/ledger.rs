@@ -42,9 +42,9 @@ use super::problem::Body;
 use super::solution::Ledger;
 use super::system::System;
 use super::tables::Tables;
+use super::wave::{Wave, integral, turned_mean};
 use crate::modal::ladder::{level_within, step_s};
-use crate::modal::legendre::{Nodal, Q};
-use crate::modal::oscillator::exponential_moments;
+use crate::modal::legendre::Nodal;
 use num_complex::Complex64;
 use std::ops::Range;
 
@@ -280,13 +280,6 @@ fn work_on_rigid(start: &Moment, h: f64, k: usize, contacts: &[usize], force: &[
     f0 * moved + slope * later
 }
 
-/// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
-fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
-    // seen from the other end, where odd polynomials change their sign
-    let moments = exponential_moments(Complex64::new(0.0, angle));
-    (0..Q).map(|n| if n % 2 == 0 { force[n] * moments[n] } else { -force[n] * moments[n] }).sum()
-}
-
 /// `-sum_c psi_kc values_c`.
 fn on_modes<T>(system: &System, values: &[T], zero: T) -> Vec<T>
 where
@@ -299,33 +292,6 @@ where
         }
     }
     sums
-}
-
-/// `e^{i Omega t}` over a stretch of time.
-struct Wave {
-    /// At its ends.
-    ends: [Complex64; 2],
-    /// `int e^{i Omega t} dt`.
-    mean: Complex64,
-    /// `int (t - start) e^{i Omega t} dt`.
-    first: Complex64,
-}
-
-impl Wave {
-    fn over(omega: f64, from_s: f64, to_s: f64) -> Wave {
-        let ends = [from_s, to_s].map(|time| Complex64::cis(omega * time));
-        let length = to_s - from_s;
-        let mean = integral(omega, from_s, to_s);
-        let i_omega = Complex64::new(0.0, omega);
-        Wave { ends, mean, first: (length * ends[1] - mean) / i_omega }
-    }
-}
-
-/// `int e^{i Omega t} dt`, for any `Omega`.
-fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
-    let (half, length) = (0.5 * omega * (to_s - from_s), to_s - from_s);
-    let mean = if half.abs() < 1e-9 { 1.0 } else { half.sin() / half };
-    Complex64::cis(omega * 0.5 * (from_s + to_s)) * (length * mean)
 }
 
 /// Damping and load work of the harmonic steady motion by itself, over the whole run.

@@ -48,6 +48,7 @@
 mod branch;
 mod collocate;
 mod damping;
+mod damping_form;
 mod dense;
 mod enclosure;
 mod event;
@@ -64,6 +65,7 @@ mod state;
 mod system;
 mod tables;
 mod terminal;
+mod wave;
 
 pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
 pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit};

@@ -1,0 +1,300 @@
+//! What modal damping takes from one mode within a panel, as a quadratic form of what moves it there.
+//!
+//! On a panel of `h` a mode starts at `(a, b)` and is driven by `g(t) = sum g_n P_n(2 t/h - 1)`. A displacement `a` acts
+//! like a force `-omega^2 a` that is constant, so with `S` the impulse response its rate is
+//!
+//! ```text
+//! a'(t) = b S'(t) + sum_n q_n v_n(t),   q_0 = g_0 - omega^2 a,   q_n = g_n,   v_n(t) = int_0^t S'(t-s) P_n(2 s/h - 1) ds
+//! ```
+//!
+//! and the loss `int 2 zeta omega a'^2 dt` a form in `(b, q_0 .. q_7)` ([`Form`]). Its numbers are integrals of products of
+//! the nine rates themselves, by three ways:
+//!
+//! - a mode that turns by at most [`SLOW`] rad: Gauss quadrature, with the rates from their power series;
+//! - a faster one: `S' = Re(c e^{z x})`, and `v_n` is a polynomial and a multiple of the same exponential (integration by
+//!   parts, as in [`crate::modal::forcing`]), so each product has a closed integral;
+//! - a faster one that does not vibrate or hardly: quadrature on panels that grow away from the start.
+
+use crate::modal::forcing::rate;
+use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::modal::oscillator::{NEARLY_CRITICAL, propagate, response};
+use crate::modal::problem::Mode;
+use num_complex::Complex64;
+use std::array;
+use std::num::NonZeroUsize;
+use std::sync::LazyLock;
+
+/// A mode that turns by at most this much (rad) needs the coarser rule only.
+const GENTLE: f64 = 1.0;
+/// Terms of the power series that serve for it.
+pub(super) const TERMS: usize = 20;
+
+/// Nodes of that rule.
+pub(super) const COARSE_NODES: usize = 12;
+
+pub(super) static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
+static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
+
+/// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Form {
+    pub bb: f64,
+    pub bq: Nodal,
+    pub qq: Matrix,
+}
+
+impl Form {
+    const NONE: Form = Form { bb: 0.0, bq: [0.0; Q], qq: [[0.0; Q]; Q] };
+
+    pub fn of(mode: &Mode, h: f64) -> Form {
+        let turned = rate(mode) * h;
+        if mode.damping_ratio * mode.omega_rad_s == 0.0 {
+            return Form::NONE;
+        }
+        if turned <= GENTLE {
+            COARSE.form(mode, h)
+        } else if turned <= SLOW {
+            FINE.form(mode, h)
+        } else if mode.damping_ratio < NEARLY_CRITICAL {
+            by_parts(mode, h)
+        } else {
+            by_quadrature(mode, h)
+        }
+    }
+
+    /// Adds the products of the rates at one place, which are those to a unit rate and to unit Legendre forces over `h`.
+    fn add(&mut self, weight: f64, by_rate: f64, by_force: &Nodal) {
+        self.bb += weight * by_rate * by_rate;
+        for n in 0..Q {
+            self.bq[n] += weight * by_rate * by_force[n];
+            for m in 0..Q {
+                self.qq[n][m] += weight * by_force[n] * by_force[m];
+            }
+        }
+    }
+
+    /// From a mean over the panel of products of rates, those to forces divided by `h`, to the loss.
+    fn scaled(mut self, mode: &Mode, h: f64) -> Form {
+        let scale = 2.0 * mode.damping_ratio * mode.omega_rad_s * h;
+        self.bb *= scale;
+        self.bq = self.bq.map(|value| value * scale * h);
+        self.qq = self.qq.map(|row| row.map(|value| value * scale * h * h));
+        self
+    }
+}
+
+/// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
+pub(super) struct Series<const M: usize> {
+    pub weights: [f64; M],
+    /// `x^p/p!`.
+    pub powers: Vec<[f64; M]>,
+    /// `[p][n]`: `int_0^x (x-s)^p/p! P_n(2s-1) ds`.
+    pub forced: Vec<[[f64; M]; Q]>,
+}
+
+impl<const M: usize> Series<M> {
+    fn new() -> Series<M> {
+        let rule = rule(const { NonZeroUsize::new(M).unwrap() });
+        let mut powers = vec![[1.0; M]; SERIES];
+        let mut forced = vec![[[0.0; M]; Q]; SERIES];
+        for (q, &(x, _)) in rule.iter().enumerate() {
+            for p in 1..SERIES {
+                powers[p][q] = powers[p - 1][q] * x / p as f64;
+            }
+            for &(y, w) in &BASIS.fine {
+                let values = legendre(x * y);
+                let mut kernel = w * x;
+                for (p, row) in forced.iter_mut().enumerate() {
+                    if p > 0 {
+                        kernel *= x * (1.0 - y) / p as f64;
+                    }
+                    for n in 0..Q {
+                        row[n][q] += kernel * values[n];
+                    }
+                }
+            }
+        }
+        Series { weights: array::from_fn(|q| rule[q].1), powers, forced }
+    }
+
+    /// `S'^(p)(0) h^p`.
+    pub fn derivatives(mode: &Mode, h: f64) -> impl Iterator<Item = f64> {
+        let angle = mode.omega_rad_s * h;
+        let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
+        let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
+        let (mut here, mut next) = (1.0, -drag);
+        (0..terms).map(move |_| {
+            let value = here;
+            (here, next) = (next, -drag * next - square * here);
+            value
+        })
+    }
+
+    fn form(&self, mode: &Mode, h: f64) -> Form {
+        let (mut by_rate, mut by_force) = ([0.0; M], [[0.0; M]; Q]);
+        for (derivative, (powers, forced)) in Self::derivatives(mode, h).zip(self.powers.iter().zip(&self.forced)) {
+            for q in 0..M {
+                by_rate[q] += derivative * powers[q];
+            }
+            for n in 0..Q {
+                for q in 0..M {
+                    by_force[n][q] += derivative * forced[n][q];
+                }
+            }
+        }
+        let mut form = Form::NONE;
+        for q in 0..M {
+            form.add(self.weights[q], by_rate[q], &by_force.map(|values| values[q]));
+        }
+        form.scaled(mode, h)
+    }
+}
+
+/// Below critical damping, for a mode that turns by more than a few radians.
+fn by_parts(mode: &Mode, h: f64) -> Form {
+    let sigma = mode.damping_ratio * mode.omega_rad_s;
+    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
+    let lambda = Complex64::new(-sigma, omega_d);
+    let (z, inverse) = (lambda * h, (lambda * h).inv());
+
+    // Q_n = sum_k P_n^(k)/z^(k+1) by Legendre coefficients: v_n/h = Re(scale (e^{z x} Q_n(0) - Q_n(x)))
+    let mut sums = [[Complex64::ZERO; Q]; Q];
+    sums[0][0] = inverse;
+    (sums[1][0], sums[1][1]) = (2.0 * inverse * inverse, inverse);
+    for n in 1..Q - 1 {
+        let factor = (4 * n + 2) as f64 * inverse;
+        for d in 0..=n {
+            sums[n + 1][d] = sums[n - 1][d] + factor * sums[n][d];
+        }
+        sums[n + 1][n + 1] += inverse;
+        sums[n + 1][n - 1] -= inverse;
+    }
+    let sign = |d: usize| if d.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let at_start = sums.map(|sum| sum.iter().enumerate().map(|(d, value)| sign(d) * value).sum::<Complex64>());
+    let at_end = sums.map(|sum| sum.iter().sum::<Complex64>());
+    let scale = -Complex64::i() * lambda / omega_d;
+
+    // means of P_d e^{z x}, of e^{2 z x} and of |e^{z x}|^2
+    let whole = z.exp();
+    let moments: [Complex64; Q] = array::from_fn(|d| sign(d) * (whole * at_start[d] - at_end[d]));
+    let turned = (whole * whole - 1.0) * 0.5 * inverse;
+    let decay = 2.0 * sigma * h;
+    let decayed = if decay < 1e-17 { 1.0 } else { -(-decay).exp_m1() / decay };
+
+    // each rate is a polynomial, by Legendre coefficients, and Re(c e^{z x}): the mean of a product is bilinear in the
+    // coefficients, c, and the mean m of the polynomial times e^{z x}
+    let left = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
+        array::from_fn(|i| if i < Q { polynomial[i] } else { [m.re, m.im, c.re, c.im][i - Q] })
+    };
+    let right = |polynomial: &Nodal, c: Complex64, m: Complex64| -> [f64; PARTS] {
+        let turned = m + 0.5 * c * turned;
+        let rest = [c.re, -c.im, turned.re + 0.5 * decayed * c.re, 0.5 * decayed * c.im - turned.im];
+        array::from_fn(|i| if i < Q { polynomial[i] / (2 * i + 1) as f64 } else { rest[i - Q] })
+    };
+    let by_rate = left(&[0.0; Q], scale, Complex64::ZERO);
+    let (mut by_force, mut others) = ([[0.0; PARTS]; Q], [[0.0; Q]; PARTS]);
+    for n in 0..Q {
+        let polynomial = sums[n].map(|value| -(scale * value).re);
+        let c = scale * at_start[n];
+        let m = polynomial.iter().zip(&moments).map(|(value, moment)| value * moment).sum();
+        by_force[n] = left(&polynomial, c, m);
+        for (other, value) in others.iter_mut().zip(right(&polynomial, c, m)) {
+            other[n] = value;
+        }
+    }
+    let row = |one: &[f64; PARTS]| {
+        let mut row = [0.0; Q];
+        for (value, other) in one.iter().zip(&others) {
+            for n in 0..Q {
+                row[n] += value * other[n];
+            }
+        }
+        row
+    };
+    let bb = by_rate.iter().zip(right(&[0.0; Q], scale, Complex64::ZERO)).map(|(one, other)| one * other).sum();
+    Form { bb, bq: row(&by_rate), qq: by_force.map(|one| row(&one)) }.scaled(mode, h)
+}
+
+/// Numbers that a rate is made of where it is integrated by parts.
+const PARTS: usize = Q + 4;
+
+/// Any damping, on panels that grow away from the start.
+fn by_quadrature(mode: &Mode, h: f64) -> Form {
+    let mut form = Form::NONE;
+    let mut from = 0.0;
+    let mut to = (2.0 / (2.0 * mode.damping_ratio * mode.omega_rad_s * h)).clamp(1e-18, 1.0);
+    while from < 1.0 {
+        for &(y, w) in &BASIS.fine {
+            let x = from + (to - from) * y;
+            let (_, velocity) = response(mode, x * h);
+            // P_n on [0, x] in the polynomials of that part
+            let values = BASIS.nodes.map(|node| legendre(x * node));
+            let by_force = array::from_fn(|n| dot(&BASIS.coefficients(&values.map(|value| value[n])), &velocity) / h);
+            form.add(w * (to - from), propagate(mode, x * h).p22, &by_force);
+        }
+        from = to;
+        to = (2.0 * to).min(1.0);
+    }
+    form.scaled(mode, h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By composite Gauss quadrature of the rates as [`crate::modal::oscillator`] has them.
+    fn reference(mode: &Mode, h: f64) -> Form {
+        let mut form = Form::NONE;
+        let panels = (4.0 * rate(mode) * h).ceil().max(4.0) as usize;
+        for i in 0..panels {
+            for &(y, w) in &BASIS.fine {
+                let x = (i as f64 + y) / panels as f64;
+                let (_, velocity) = response(mode, x * h);
+                let part = |n: usize| BASIS.coefficients(&BASIS.nodes.map(|node| legendre(x * node)[n]));
+                let by_force = array::from_fn(|n| dot(&part(n), &velocity) / h);
+                form.add(w / panels as f64, propagate(mode, x * h).p22, &by_force);
+            }
+        }
+        form.scaled(mode, h)
+    }
+
+    #[test]
+    fn every_form_is_the_integral_of_the_squared_rate() {
+        let h = 1e-3;
+        for zeta in [1e-3, 0.02, 0.6, 0.98, 0.995, 1.0, 1.3, 20.0] {
+            for turned in [1e-3, 0.3, 1.0, 1.1, 6.0, 6.1, 12.0, 40.0] {
+                let unit = Mode { omega_rad_s: 1.0, damping_ratio: zeta, shape: 1.0 };
+                let mode = Mode { omega_rad_s: turned / h / rate(&unit), ..unit };
+                let (found, known) = (Form::of(&mode, h), reference(&mode, h));
+                // nearly equal roots cancel, and by parts so does the response to high polynomials
+                let roots = if zeta < NEARLY_CRITICAL { ((1.0 - zeta) * (1.0 + zeta)).recip() } else { 1.0 };
+                let grown = |n: usize| (1..=n).map(|j| (4 * j - 2) as f64 / turned.max(SLOW)).product::<f64>().max(1.0);
+                let close = |found: f64, known: f64, unit: f64, floor: f64| {
+                    let error = (found - known).abs() / unit;
+                    let what = format!("zeta {zeta}, turned {turned}: {found:e} and {known:e}, {error:e}");
+                    assert!(error < 2e-14 * (10.0 + turned) * roots * floor, "{what}");
+                };
+                close(found.bb, known.bb, known.bb, 1.0);
+                for n in 0..Q {
+                    close(found.bq[n], known.bq[n], (known.bb * known.qq[0][0]).sqrt(), grown(n));
+                    for m in 0..Q {
+                        close(found.qq[n][m], known.qq[n][m], known.qq[0][0], grown(n) * grown(m));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn forms_are_finite_for_any_mode_and_panel() {
+        for omega_rad_s in [1e-15, 1e-3, 1e9, 1e15] {
+            for damping_ratio in [1e-9, 0.5, 1.0, 1e6] {
+                for h in [1e-50, 1.0, 1e30] {
+                    let Form { bb, bq, qq } = Form::of(&Mode { omega_rad_s, damping_ratio, shape: 1.0 }, h);
+                    let all = bq.iter().chain(qq.iter().flatten()).chain([&bb]).all(|value| value.is_finite());
+                    assert!(all, "{omega_rad_s} {damping_ratio} {h}");
+                }
+            }
+        }
+    }
+}
