@@ -1,7 +1,8 @@
 //! What a force costs in the inner loop of a solver, and the restitution of a rigid striker at a wall.
 
 use contact_models::{
-    ContactLaw, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, Law, Memory, Thornton, Viscous,
+    ContactLaw, Felt, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, Law, Memory, Thornton,
+    Viscous,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -15,6 +16,7 @@ fn laws() -> Result<Vec<Law>, InvalidInput> {
         HuntCrossley::new(k, 1.5, 0.2)?.into(),
         KelvinVoigt::new(1e8, 200.0)?.into(),
         Flores::new(k, 0.8)?.into(),
+        Felt::new(4.5e9, 2.5, 1e-4)?.into(),
         Thornton::new(1.1e11, 0.015, 2e9)?.into(),
     ])
 }

@@ -15,6 +15,7 @@
 //!
 //! It follows that `alpha e < 1`: a free striker never reaches the tensile tail.
 
+use crate::conservative::power_of;
 use crate::error::bounded;
 use crate::{After, Boundary, Branch, Force, InvalidInput, Memory, Stage};
 
@@ -84,11 +85,7 @@ pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> 
 
 /// `k <xi>^n` and its derivative.
 fn elastic(law: &impl Damped, compression_m: f64) -> (f64, f64) {
-    let (k, n) = (law.stiffness(), law.exponent());
-    let xi = bounded(compression_m).max(0.0);
-    // the square root is several times faster than a general power
-    let lower = if n == 1.5 { xi.sqrt() } else { xi.powf(n - 1.0) };
-    (k * lower * xi, n * k * lower)
+    power_of(law.stiffness(), law.exponent(), compression_m)
 }
 
 /// Force on the branch; `branch.internal` is `D`.

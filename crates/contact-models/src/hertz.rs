@@ -1,8 +1,8 @@
 //! Hertz: elastic contact of curved, frictionless bodies. Conservative.
 
-use crate::error::bounded;
+use crate::InvalidInput;
+use crate::conservative::{Conservative, conservative_law, power_of};
 use crate::pair::{Body, effective_modulus_pa, effective_radius_m};
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
 
 /// `F = k_H <xi>^(3/2)` (thesis Eqs. 3.12 to 3.14).
 ///
@@ -52,42 +52,16 @@ impl Hertz {
         InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         Ok(self)
     }
+}
 
-    /// Rebound speed over approach speed of a rigid striker at a wall.
-    pub(crate) fn wall_restitution(&self, _mass_kg: f64, _speed_m_s: f64) -> f64 {
-        1.0
+impl Conservative for Hertz {
+    fn exponent(&self) -> f64 {
+        1.5
+    }
+
+    fn curve(&self, compression_m: f64) -> (f64, f64) {
+        power_of(self.stiffness_n_m1_5, 1.5, compression_m)
     }
 }
 
-impl ContactLaw for Hertz {
-    fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
-    }
-
-    fn force(&self, _branch: &Branch, compression_m: f64, _rate_m_s: f64) -> Force {
-        let xi = bounded(compression_m).max(0.0);
-        let root = xi.sqrt();
-        Force {
-            force_n: self.stiffness_n_m1_5 * xi * root,
-            per_compression_n_m: 1.5 * self.stiffness_n_m1_5 * root,
-            per_rate_n_s_m: 0.0,
-        }
-    }
-
-    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
-        let xi = bounded(compression_m).max(0.0);
-        0.4 * self.force(branch, xi, 0.0).force_n * xi
-    }
-
-    fn boundaries(&self, _branch: &Branch) -> [Boundary; 2] {
-        [Boundary::compression_falls_to(0.0), Boundary::NEVER]
-    }
-
-    fn cross(&self, _branch: &Branch, _which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
-        After::Release(Memory::default())
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
-    }
-}
+conservative_law!(Hertz);

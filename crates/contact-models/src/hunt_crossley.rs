@@ -20,7 +20,7 @@ use crate::damped::{self, Damped, damped_law};
 pub struct HuntCrossley {
     /// Stiffness `k` (N/m^n).
     pub stiffness_n_m_n: f64,
-    /// Exponent `n`, from 1 to 4.
+    /// Exponent `n`, from 1 to 6.
     pub exponent: f64,
     /// Damping factor `D` (s/m).
     pub damping_s_m: f64,
@@ -30,7 +30,7 @@ impl HuntCrossley {
     /// The law with stiffness `k` (N/m^n), exponent `n` and damping factor `D` (s/m, may be zero).
     ///
     /// # Errors
-    /// A stiffness that is not positive, an exponent outside 1 to 4, a negative damping.
+    /// A stiffness that is not positive, an exponent outside 1 to 6, a negative damping.
     pub fn new(stiffness_n_m_n: f64, exponent: f64, damping_s_m: f64) -> Result<HuntCrossley, InvalidInput> {
         HuntCrossley { stiffness_n_m_n, exponent, damping_s_m }.validated()
     }
@@ -71,7 +71,7 @@ impl HuntCrossley {
     /// As [`HuntCrossley::new`].
     pub fn validated(self) -> Result<HuntCrossley, InvalidInput> {
         InvalidInput::require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
-        InvalidInput::require("exponent", self.exponent, (1.0..=4.0).contains(&self.exponent), "a number from 1 to 4")?;
+        InvalidInput::require("exponent", self.exponent, (1.0..=6.0).contains(&self.exponent), "a number from 1 to 6")?;
         InvalidInput::require_not_negative("damping_s_m", self.damping_s_m)?;
         Ok(self)
     }

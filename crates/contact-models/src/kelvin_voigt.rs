@@ -69,10 +69,25 @@ impl KelvinVoigt {
     pub(crate) fn wall_restitution(&self, mass_kg: f64, _speed_m_s: f64) -> f64 {
         restitution_at(0.5 * self.damping_n_s_m / (self.stiffness_n_m * mass_kg).sqrt())
     }
+}
 
-    /// Where the formula pushes (`side = 1`) or pulls (`side = -1`).
-    fn formula_side(&self, side: f64) -> Boundary {
-        Boundary { per_compression: side * self.stiffness_n_m, per_rate: side * self.damping_n_s_m, level: 0.0 }
+/// Half planes of a law that pushes where `per_compression xi + per_rate xi_dot > 0` and recovers elsewhere (slack).
+pub(crate) fn recovering_boundaries(branch: &Branch, per_compression: f64, per_rate: f64) -> [Boundary; 2] {
+    let formula =
+        |side: f64| Boundary { per_compression: side * per_compression, per_rate: side * per_rate, level: 0.0 };
+    match branch.stage {
+        Stage::Slack => [Boundary::compression_falls_to(0.0), formula(-1.0)],
+        // the formula stops pushing before the compression is gone
+        _ => [formula(1.0), Boundary::NEVER],
+    }
+}
+
+/// What follows at these boundaries.
+pub(crate) fn cross_recovering(branch: &Branch, which: usize) -> After {
+    match (branch.stage, which) {
+        (Stage::Slack, 0) => After::Release(Memory::default()),
+        (Stage::Slack, _) => After::Continue(Branch { stage: Stage::Single, ..*branch }),
+        _ => After::Continue(Branch { stage: Stage::Slack, ..*branch }),
     }
 }
 
@@ -105,19 +120,11 @@ impl ContactLaw for KelvinVoigt {
     }
 
     fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        match branch.stage {
-            Stage::Slack => [Boundary::compression_falls_to(0.0), self.formula_side(-1.0)],
-            // the formula stops pushing before the compression is gone
-            _ => [self.formula_side(1.0), Boundary::NEVER],
-        }
+        recovering_boundaries(branch, self.stiffness_n_m, self.damping_n_s_m)
     }
 
     fn cross(&self, branch: &Branch, which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
-        match (branch.stage, which) {
-            (Stage::Slack, 0) => After::Release(Memory::default()),
-            (Stage::Slack, _) => After::Continue(Branch { stage: Stage::Single, ..*branch }),
-            _ => After::Continue(Branch { stage: Stage::Slack, ..*branch }),
-        }
+        cross_recovering(branch, which)
     }
 
     fn depends_on_rate(&self) -> bool {

@@ -20,6 +20,7 @@
 //! | `theta_m`, `beta` | centre and half width of its range | 1 | Eq. 3.17 |
 //! | `K`, `eps` | how fast it follows `xi`; regularisation at `xi = 0` | 1, m | Eq. 3.17 |
 //! | `E*`, `R*` | effective modulus and radius of two bodies | Pa, m | Eq. 3.14, general |
+//! | `Q0`, `p`, `alpha` | static stiffness, exponent and retardation time of felt | N/m^p, 1, s | |
 //! | `p_y` | contact pressure at first yield | Pa | |
 //! | `v0`, `e` | approach speed; rebound speed over it | m/s, 1 | Eq. 3.19 |
 //!
@@ -31,10 +32,12 @@
 //! | [`Viscous`] | `k_H xi^1.5 (1 + c xi')` | `k_H`, `c` | thesis 3.15 | `c xi'` well below 1 | slack |
 //! | [`Hysteretic`] | `k_H xi^1.5 (1 + theta)` | `k_H`, `theta_m`, `beta`, `K`, `eps` | thesis 3.16, 3.17 | damping without rate, no indentation | never does |
 //! | [`LinearSpring`] | `k xi` | `k` | textbook | constant contact area, penalty | never does |
+//! | [`Power`] | `k xi^n` | `k`, `n` | textbook | any curve that a power fits, no losses | never does |
 //! | [`KelvinVoigt`] | `k xi + c xi'` | `k`, `c` | Schwager and Poschel 2007 | simple model, `e` without speed | slack |
 //! | [`HuntCrossley`] | `k xi^n (1 + D xi')` | `k`, `n`, `D` | Hunt and Crossley 1975 | light damping | slack |
 //! | [`LankaraniNikravesh`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Lankarani and Nikravesh 1990 | `e` near 1 | slack |
 //! | [`Flores`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Flores et al. 2011 | any `e`, approximately | slack |
+//! | [`Felt`] | `Q0 (xi^p + alpha d(xi^p)/dt)` | `Q0`, `p`, `alpha` | Stulov 2004 | piano hammers | slack |
 //! | [`Thornton`] | Hertz, line after yield, flattened Hertz back | `E*`, `R*`, `p_y` | Thornton 1997 | moderate plastic indentation | never does |
 //!
 //! *Slack* means that the surfaces recover without touching: the force is zero until the formula
@@ -62,8 +65,10 @@
 //! # Ok::<(), contact_models::InvalidInput>(())
 //! ```
 
+mod conservative;
 mod damped;
 mod error;
+mod felt;
 mod flores;
 mod hertz;
 mod hunt_crossley;
@@ -74,6 +79,7 @@ mod law;
 mod laws;
 mod linear;
 mod pair;
+mod power;
 mod quadrature;
 mod thornton;
 mod trace;
@@ -84,6 +90,7 @@ mod viscous;
 mod readme {}
 
 pub use error::{InvalidInput, LARGEST};
+pub use felt::Felt;
 pub use flores::Flores;
 pub use hertz::Hertz;
 pub use hunt_crossley::HuntCrossley;
@@ -94,6 +101,7 @@ pub use law::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
 pub use laws::Law;
 pub use linear::LinearSpring;
 pub use pair::{Body, effective_modulus_pa, effective_radius_m};
+pub use power::Power;
 pub use thornton::Thornton;
 pub use trace::{TracePoint, trace};
 pub use viscous::Viscous;

@@ -1,7 +1,8 @@
 //! The linear spring. Conservative.
 
+use crate::InvalidInput;
+use crate::conservative::{Conservative, conservative_law};
 use crate::error::bounded;
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
 
 /// `F = k <xi>`.
 ///
@@ -30,38 +31,17 @@ impl LinearSpring {
         InvalidInput::require_positive("stiffness_n_m", self.stiffness_n_m)?;
         Ok(self)
     }
+}
 
-    /// Rebound speed over approach speed of a rigid striker at a wall.
-    pub(crate) fn wall_restitution(&self, _mass_kg: f64, _speed_m_s: f64) -> f64 {
+impl Conservative for LinearSpring {
+    fn exponent(&self) -> f64 {
         1.0
     }
-}
 
-impl ContactLaw for LinearSpring {
-    fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
-    }
-
-    fn force(&self, _branch: &Branch, compression_m: f64, _rate_m_s: f64) -> Force {
-        let k = self.stiffness_n_m;
-        // the extension below zero pulls: linear, so that an iteration may step over the boundary
-        Force { force_n: k * bounded(compression_m), per_compression_n_m: k, per_rate_n_s_m: 0.0 }
-    }
-
-    fn stored_energy_j(&self, _branch: &Branch, compression_m: f64) -> f64 {
-        let xi = bounded(compression_m).max(0.0);
-        0.5 * self.stiffness_n_m * xi * xi
-    }
-
-    fn boundaries(&self, _branch: &Branch) -> [Boundary; 2] {
-        [Boundary::compression_falls_to(0.0), Boundary::NEVER]
-    }
-
-    fn cross(&self, _branch: &Branch, _which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
-        After::Release(Memory::default())
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
+    fn curve(&self, compression_m: f64) -> (f64, f64) {
+        // the continuation below zero pulls: linear, so that an iteration may step over the boundary
+        (self.stiffness_n_m * bounded(compression_m), self.stiffness_n_m)
     }
 }
+
+conservative_law!(LinearSpring);

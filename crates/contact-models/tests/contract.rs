@@ -107,7 +107,7 @@ proptest! {
         for point in &path {
             let now = point.work_j - point.stored_energy_j;
             match law {
-                Law::Hertz(_) | Law::LinearSpring(_) => prop_assert!(now.abs() < tolerance, "{law:?} {point:?}"),
+                Law::Hertz(_) | Law::LinearSpring(_) | Law::Power(_) => prop_assert!(now.abs() < tolerance, "{law:?} {point:?}"),
                 Law::Hysteretic(_) => {
                     if point.stored_energy_j == 0.0 {
                         prop_assert!(now > dissipated - tolerance, "{law:?} {point:?} {dissipated}");
@@ -152,6 +152,8 @@ fn random_motions_reach_every_stage() {
     let expected: Vec<(&str, Vec<Stage>)> = vec![
         ("hertz", vec![Stage::Single]),
         ("linear", vec![Stage::Single]),
+        ("power", vec![Stage::Single]),
+        ("felt", vec![Stage::Single, Stage::Slack]),
         ("viscous", vec![Stage::Single, Stage::Slack]),
         ("hunt-crossley", vec![Stage::Single, Stage::Slack]),
         ("lankarani-nikravesh", vec![Stage::Single, Stage::Slack]),

@@ -1,7 +1,7 @@
 //! Parameters out of range are reported with field, value and what is allowed.
 
-use contact_models::{Body, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt};
-use contact_models::{LankaraniNikravesh, Law, LinearSpring, Memory, Thornton, Viscous};
+use contact_models::{Body, Felt, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt};
+use contact_models::{LankaraniNikravesh, Law, LinearSpring, Memory, Power, Thornton, Viscous};
 use contact_models::{effective_modulus_pa, effective_radius_m, trace};
 
 const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e31, 1e-320];
@@ -23,6 +23,11 @@ fn parameters_of_every_law() {
         assert_eq!(field(KelvinVoigt::new(1.0, bad)), "damping_n_s_m");
         assert_eq!(field(HuntCrossley::new(bad, 1.5, 0.1)), "stiffness_n_m_n");
         assert_eq!(field(HuntCrossley::new(1.0, bad, 0.1)), "exponent");
+        assert_eq!(field(Power::new(bad, 1.5)), "stiffness_n_m_n");
+        assert_eq!(field(Power::new(1.0, bad)), "exponent");
+        assert_eq!(field(Felt::new(bad, 2.5, 1e-4)), "stiffness_n_m_n");
+        assert_eq!(field(Felt::new(1.0, bad, 1e-4)), "exponent");
+        assert_eq!(field(Felt::new(1.0, 2.5, bad)), "retardation_time_s");
         assert_eq!(field(LankaraniNikravesh::new(bad, 0.9)), "stiffness_n_m1_5");
         assert_eq!(field(LankaraniNikravesh::new(1.0, bad)), "restitution");
         assert_eq!(field(Flores::new(bad, 0.9)), "stiffness_n_m1_5");
@@ -44,6 +49,11 @@ fn parameters_of_every_law() {
         assert_eq!(field(Hysteretic::new(1.0, 1.6, 1.4, 0.4, bad)), "epsilon_m");
     }
     assert_eq!(field(Hysteretic::new(1.0, 1.6, 2.7, 0.4, 0.0)), "beta");
+    // the ends of the range of exponents
+    for (exponent, power, felt) in [(0.99, false, false), (1.0, true, false), (1.99, true, false), (2.0, true, true)] {
+        assert_eq!((Power::new(1.0, exponent).is_ok(), Felt::new(1.0, exponent, 1.0).is_ok()), (power, felt));
+    }
+    assert!(Power::new(1.0, 6.01).is_err() && Felt::new(1.0, 6.01, 1.0).is_err());
     let message = Viscous::new(1.0, -0.1).unwrap_err().to_string();
     assert_eq!(message, "damping_s_m = -0.1 is not allowed: a number from 0 to 1e30");
 }
@@ -72,13 +82,15 @@ fn extremes_stay_finite() {
     for a in ends {
         for b in ends {
             for c in ends {
-                let laws: [Law; 9] = [
+                let laws: [Law; 11] = [
                     Hertz::new(a).unwrap().into(),
                     LinearSpring::new(a).unwrap().into(),
                     Viscous::new(a, b).unwrap().into(),
                     Hysteretic::new(a, b, b.min(1.0), c.min(1000.0), c).unwrap().into(),
                     KelvinVoigt::new(a, b).unwrap().into(),
-                    HuntCrossley::new(a, 4.0, b).unwrap().into(),
+                    HuntCrossley::new(a, 6.0, b).unwrap().into(),
+                    Power::new(a, 6.0).unwrap().into(),
+                    Felt::new(a, if c < 1.0 { 2.0 } else { 6.0 }, b).unwrap().into(),
                     LankaraniNikravesh::new(a, 0.5).unwrap().into(),
                     Flores { lowest_approach_speed_m_s: b, ..Flores::new(a, 0.001).unwrap() }.into(),
                     Thornton::new(a, b, c).unwrap().into(),

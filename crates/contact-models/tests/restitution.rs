@@ -4,8 +4,8 @@
 mod common;
 
 use common::{BALL_MASS_KG, K_H, rebound};
-use contact_models::{Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
-use contact_models::{Law, LinearSpring, Thornton, Viscous};
+use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
+use contact_models::{Law, LinearSpring, Power, Thornton, Viscous};
 
 fn wall(law: impl Into<Law>, speed_m_s: f64) -> f64 {
     law.into().wall_restitution(BALL_MASS_KG, speed_m_s).unwrap()
@@ -25,6 +25,10 @@ fn cases() -> Vec<(Law, f64)> {
         (KelvinVoigt::with_restitution(1e8, 0.7, BALL_MASS_KG).unwrap().into(), 3.0 / omega),
         (KelvinVoigt::with_restitution(1e8, 0.1, BALL_MASS_KG).unwrap().into(), 3.0 / omega),
         (HuntCrossley::new(1e12, 2.2, 0.3).unwrap().into(), 2.0 * t),
+        (Power::new(1e12, 2.2).unwrap().into(), 2.0 * t),
+        (Felt::new(1e12, 2.5, 1e-5).unwrap().into(), 4.0 * t),
+        (Felt::new(1e12, 2.0, 3e-4).unwrap().into(), 4.0 * t),
+        (Felt::new(1e15, 4.5, 1e-4).unwrap().into(), 4.0 * t),
         (LankaraniNikravesh::new(K_H, 0.8).unwrap().into(), t),
         (Flores::new(K_H, 0.3).unwrap().into(), 2.0 * t),
         (Thornton::new(1.1e11, 0.015, 1.2e9).unwrap().into(), t),
@@ -83,6 +87,26 @@ fn damping_by_approach_speed_is_bounded() {
     let law = LankaraniNikravesh { lowest_approach_speed_m_s: 0.1, ..LankaraniNikravesh::new(K_H, 0.5).unwrap() };
     assert_eq!(wall(law, 0.1), wall(law, 2.0));
     assert!(wall(law, 0.01) > 0.9 && wall(law, 1e-20) <= 1.0);
+}
+
+/// Felt that hardly damps loses what its dashpot takes along the elastic course,
+/// `1 - e = beta p int x^(p-1) |x'| dx` over the way in and out; felt that damps very much lets its striker creep back.
+#[test]
+fn felt_at_the_ends_of_its_range() {
+    let (p, mass, speed) = (2.0, 1.0, 1.0);
+    // x'^2 = 1 - 2 x^3/3 at p = 2: int_0^xm 2 x sqrt(1 - 2 x^3/3) dx = (3/2)^(2/3) (2/3) B(2/3, 3/2), twice
+    let lost = 2.0 * 1.5_f64.powf(2.0 / 3.0) * (2.0 / 3.0) * 1.1087612396699105;
+    for beta in [1e-9, 1e-6, 1e-4] {
+        let e = Law::from(Felt::new(1.0, p, beta).unwrap()).wall_restitution(mass, speed).unwrap();
+        assert!(((1.0 - e) / (beta * lost) - 1.0).abs() < 1e-3 + 10.0 * beta, "{beta} {} {}", (1.0 - e) / beta, lost);
+    }
+    let mut last = 1.0;
+    for exponent in 0..40 {
+        let beta = 1e-10 * 10f64.powi(exponent);
+        let e = Law::from(Felt::new(1.0, p, beta).unwrap()).wall_restitution(mass, speed).unwrap();
+        assert!(e <= last && e > 0.0, "{beta} {e}");
+        last = e;
+    }
 }
 
 /// Thornton's own closed form for the restitution, in terms of the yield speed.

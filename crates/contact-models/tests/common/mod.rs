@@ -3,8 +3,8 @@
 #![allow(dead_code)] // each test binary uses a part
 
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
-use contact_models::{Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
-use contact_models::{Law, LinearSpring, Thornton, Viscous};
+use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
+use contact_models::{Law, LinearSpring, Power, Thornton, Viscous};
 use proptest::prelude::*;
 
 pub const BALL_MASS_KG: f64 = 0.11027;
@@ -104,6 +104,8 @@ pub fn laws() -> impl Strategy<Value = Law> {
             }
         ),
         (k.clone(), 0.01..3.0).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
+        (k.clone(), 1.0..4.0).prop_map(|(k, n)| Power::new(k, n).unwrap().into()),
+        (k.clone(), 2.0..5.0, 0.01..2.0).prop_map(|(k, p, a)| Felt::new(k, p, a).unwrap().into()),
         (k.clone(), 1.0..4.0, 0.0..2.0).prop_map(|(k, n, d)| HuntCrossley::new(k, n, d).unwrap().into()),
         (k.clone(), e.clone()).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),
         (k.clone(), e).prop_map(|(k, e)| Flores::new(k, e).unwrap().into()),
