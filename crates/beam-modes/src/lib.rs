@@ -1,6 +1,7 @@
 //! Exact natural modes of stepped beams in bending, by Euler-Bernoulli's or Timoshenko's theory, with attachments,
-//! supports, axial force and foundation ([`BeamSystem`]), and of stepped rods in axial vibration; their static
-//! compliance; remainder modes for what a truncated model leaves out; and a Hermite finite-element model.
+//! supports, axial force and foundation ([`BeamSystem`]), and of stepped rods in axial vibration; modes of strings
+//! ([`TautString`]) and of rectangular plates ([`Plate`]); their static compliance; remainder modes for what a truncated
+//! model leaves out; and a Hermite finite-element model.
 //!
 //! # The mathematics
 //! A beam of uniform segments obeys `EI w'''' = m omega^2 w` on each segment (thesis Eq. 4.1 without force), with `w`,
@@ -81,12 +82,14 @@ mod modes;
 mod node;
 mod piece;
 mod plane;
+mod plate;
 mod remainder;
 mod rod;
 mod roots;
 mod shapes;
 mod span;
 mod statics;
+mod string;
 mod superposition;
 mod system;
 mod uniform;
@@ -95,10 +98,12 @@ mod waves;
 pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
 pub use modes::Modes;
+pub use plate::{Edge, Plate, PlateModes, PlateTheory};
 pub use remainder::{
     MOST_REMAINDER_MODES, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes,
 };
 pub use rod::{Rod, RodEnd, RodSegment};
+pub use string::{TautString, TautStringModes};
 pub use system::{Attachment, BeamSystem, ShearSection, Support};
 
 /// Runs the example of the readme.

@@ -161,8 +161,8 @@ pub(crate) fn compliance(modes: &[Mode]) -> f64 {
 /// zero.
 pub(crate) fn residual(structure: &scene::Structure, whole: f64, kept: f64) -> Result<f64, InvalidInput> {
     const ROUNDING: f64 = 1e-9;
-    // a beam's are exact on both sides, so that less than nothing is rounding: on a support, of nothing
-    if matches!(structure, scene::Structure::Beam(_)) || whole >= kept * (1.0 - ROUNDING) {
+    // where both are computed, so that less than nothing is rounding: on a support, of nothing
+    if structure.is_computed() || whole >= kept * (1.0 - ROUNDING) {
         Ok((whole - kept).max(0.0))
     } else {
         let allowed = format!("not less than that of the modes kept, {kept:e}");

@@ -25,8 +25,8 @@ const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every qu
 
 The model, and how many modes it takes, are the program's choice (see vibroimpact plan --help). Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
 instead. A structure without ends is { "kind": "infinite-beam" } with such a section, or "infinite-plate".
-Laws of contact: hertz, viscous, hysteretic, linear-spring, kelvin-voigt, hunt-crossley,
-lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
+Laws of contact: hertz, viscous, hysteretic, linear-spring, power, felt, kelvin-voigt,
+hunt-crossley, lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
 
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]

@@ -8,7 +8,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::report::significant;
-use crate::scene::{Scene, Structure};
+use crate::scene::{Location, Scene, Structure};
 use crate::summary::Summary;
 
 /// Shares of the energy below this are rounding, and shown as zero.
@@ -69,6 +69,14 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
                 if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
             format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
         }
+        Structure::TautString(string) => {
+            format!("string of {} under {}", quantity(string.length_m, "m"), quantity(string.tension_n, "N"))
+        }
+        Structure::Plate(plate) => {
+            let edges = plate.edges.map(|edge| format!("{edge:?}").to_lowercase()).join("-");
+            let [length, width] = [plate.length_m, plate.width_m].map(|side| quantity(side, "m"));
+            format!("{edges} plate, {length} by {width} by {}", quantity(plate.thickness_m, "m"))
+        }
         Structure::Modal(_) | Structure::ModesFile(_) => "structure given by its modes".to_owned(),
         Structure::DroppedRod(rod) => {
             return format!(
@@ -84,7 +92,8 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
         Structure::InfinitePlate(_) => "infinite plate".to_owned(),
     };
     let place = match (scene.location_m, &scene.location) {
-        (Some(x), _) => format!(", at {}", quantity(x, "m")),
+        (Some(Location::Along(x)), _) => format!(", at {}", quantity(x, "m")),
+        (Some(Location::On([x, y])), _) => format!(", at {}, {}", quantity(x, "m"), quantity(y, "m")),
         (None, Some(name)) => format!(", at {name}"),
         (None, None) => String::new(),
     };

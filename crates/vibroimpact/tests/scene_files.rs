@@ -145,10 +145,29 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
         ("infinite-plate", "/structure/thickness_m", json!(-1)),
         ("dropped-rod", "/structure/inclination_deg", json!(91)),
         ("dropped-rod", "/structure/axial_modes", json!(10_001)),
-        ("simply-supported-plate", "/structure/points/centre/shape/0", json!("1")),
-        ("simply-supported-plate", "/structure/points/centre/colour", json!(1)),
-        ("simply-supported-plate", "/structure/omega_rad_s/3", json!(-1)),
-        ("simply-supported-plate", "/structure/modal_mass_kg", json!([0])),
+        ("baseball-bat", "/structure/points/150_mm/shape/0", json!("1")),
+        ("baseball-bat", "/structure/points/150_mm/colour", json!(1)),
+        ("baseball-bat", "/structure/omega_rad_s/3", json!(-1)),
+        ("baseball-bat", "/structure/modal_mass_kg", json!([0])),
+        ("simply-supported-plate", "/structure/edges", json!(["pinned", "pinned"])),
+        ("simply-supported-plate", "/structure/edges/2", json!("guided")),
+        ("simply-supported-plate", "/structure/theory", json!("timoshenko")),
+        ("simply-supported-plate", "/structure/shear_coefficient", json!(0)),
+        ("simply-supported-plate", "/structure/thickness_m", json!(0)),
+        ("simply-supported-plate", "/structure/width_m", json!("wide")),
+        ("simply-supported-plate", "/structure/poissons_ratio", json!(0.6)),
+        ("simply-supported-plate", "/structure/damping_ratio", json!(-1)),
+        ("simply-supported-plate", "/location_m", json!([0.1])),
+        ("simply-supported-plate", "/location_m", json!([0.1, 0.1, 0.1])),
+        ("simply-supported-plate", "/location_m/1", json!("middle")),
+        ("piano-hammer", "/structure/tension_n", json!(0)),
+        ("piano-hammer", "/structure/length_m", json!(-1)),
+        ("piano-hammer", "/structure/mass_per_length_kg_m", json!(0)),
+        ("piano-hammer", "/structure/damping_ratio", json!(-1)),
+        ("piano-hammer", "/structure/ends", json!(["pinned", "pinned"])),
+        ("piano-hammer", "/contact/exponent", json!(0.5)),
+        ("piano-hammer", "/contact/stiffness_n_m_n", json!(0)),
+        ("piano-hammer", "/contact/retardation_time_s", json!(1e-4)),
     ] {
         let mut spoilt = tree(&named(name));
         let (holder, key) = place.rsplit_once('/').unwrap();
@@ -269,7 +288,7 @@ fn motion_before_the_impact_can_be_told_in_two_ways() {
     let scene = named("moving-beam");
     let by_place = scene.impact().unwrap().start.unwrap();
     let shape_at_middle = {
-        let there = Scene { location_m: Some(0.5), start: None, ..scene.clone() };
+        let there = Scene { location_m: Some(0.5.into()), start: None, ..scene.clone() };
         there.structure().unwrap().modes[0].shape
     };
     let start = Start { gap_m: 1e-4, rate_m_kg0_5_s: vec![0.5 / shape_at_middle], ..Start::default() };
@@ -284,8 +303,8 @@ fn motion_before_the_impact_can_be_told_in_two_ways() {
         (Start { amplitude_m_kg0_5: vec![f64::INFINITY], ..Start::default() }, "start.amplitude[0]"),
         (moving(MovingMode { mode: 0, ..one.clone() }), "start.moving_modes[0].mode"),
         (moving(MovingMode { mode: 101, ..one.clone() }), "start.moving_modes[0].mode"),
-        (moving(MovingMode { mode: 2, location_m: Some(0.5), ..one.clone() }), "start.moving_modes[0].mode"),
-        (moving(MovingMode { location_m: Some(2.0), ..one.clone() }), "start.moving_modes[0].location_m"),
+        (moving(MovingMode { mode: 2, location_m: Some(0.5.into()), ..one.clone() }), "start.moving_modes[0].mode"),
+        (moving(MovingMode { location_m: Some(2.0.into()), ..one.clone() }), "start.moving_modes[0].location_m"),
         (moving(MovingMode { location: Some("tip".into()), ..one.clone() }), "start.moving_modes[0].location"),
         (moving(MovingMode { velocity_m_s: f64::NAN, ..one.clone() }), "start.moving_modes[0].velocity_m_s"),
     ] {

@@ -69,6 +69,8 @@ fn every_law_of_contact_models_can_be_named() {
         (r#""law": "viscous", "stiffness_n_m1_5": 1e9, "restitution": 0.9"#, "viscous"),
         (r#""law": "hysteretic", "stiffness_n_m1_5": 1e9, "theta_m": 1.6, "beta": 1.4, "k_bar": 0.4"#, "hysteretic"),
         (r#""law": "linear-spring", "stiffness_n_m": 1e6"#, "linear"),
+        (r#""law": "power", "stiffness_n_m_n": 1e9, "exponent": 1.4"#, "power"),
+        (r#""law": "felt", "stiffness_n_m_n": 1e12, "exponent": 2.5, "retardation_time_s": 1e-5"#, "felt"),
         (r#""law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.5"#, "kelvin-voigt"),
         (r#""law": "hunt-crossley", "stiffness_n_m_n": 1e8, "exponent": 1.3, "damping_s_m": 0.1"#, "hunt-crossley"),
         (r#""law": "lankarani-nikravesh", "stiffness_n_m1_5": 1e9, "restitution": 0.9"#, "lankarani-nikravesh"),
@@ -134,7 +136,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
     let mut scene = beam.clone();
     let modes = beam.structure().unwrap().modes;
     let Structure::Beam(ref described) = beam.structure else { panic!() };
-    let whole = described.to_beam().unwrap().static_compliance(beam.location_m.unwrap()).unwrap();
+    let whole = described.to_beam().unwrap().static_compliance(0.6180339887498949).unwrap();
     scene.structure = Structure::Modal(Modal {
         omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
         shape_at_location: modes.iter().map(|mode| mode.shape).collect(),
@@ -164,7 +166,7 @@ fn values_that_json_cannot_hold_are_refused_too() {
         let refused = |scene: &Scene| scene.impact().and_then(|impact| impact.solve()).unwrap_err();
         assert_eq!(refused(&scene).field, "striker.speed_m_s");
         let mut scene = named("pinned-beam");
-        scene.location_m = Some(value);
+        scene.location_m = Some(value.into());
         assert_eq!(refused(&scene).field, "location_m");
         let mut scene = named("pinned-beam");
         scene.tolerance = Some(value);

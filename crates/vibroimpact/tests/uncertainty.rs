@@ -106,11 +106,14 @@ fn listed_beam(count: usize) -> Value {
 /// The same modes twice say nothing of the modes that are not there.
 #[test]
 fn a_list_at_its_end_says_so_and_states_the_last_real_change() {
-    let plate_of_40 = named("simply-supported-plate");
-    let mut whole: Value = serde_json::from_str(&plate_of_40.to_json()).unwrap();
-    whole["structure"] = plate(700);
-    whole.as_object_mut().unwrap().remove("location");
-    let exact = answer(&Scene::from_value(&whole).unwrap());
+    let listed = |count: usize| {
+        let mut tree: Value = serde_json::from_str(&named("simply-supported-plate").to_json()).unwrap();
+        tree["structure"] = plate(count);
+        tree.as_object_mut().unwrap().remove("location_m");
+        Scene::from_value(&tree).unwrap()
+    };
+    let plate_of_40 = listed(40);
+    let exact = answer(&listed(700));
     assert!(exact.settled && (exact.restitution.unwrap() - 0.0828).abs() < 1e-3, "{exact:?}");
     let mut scenes = vec![(plate_of_40, exact.restitution.unwrap())];
     for count in [6, 10, 14, 20] {

@@ -1,8 +1,8 @@
 //! Random impacts: most of them wide of anything ordinary, some at the very limits of what the solvers accept.
 
 use contact_models::{
-    Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring,
-    Thornton, Viscous,
+    Felt, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring,
+    Power, Thornton, Viscous,
 };
 use emoc::{Coefficients, Contact, Friction, Problem};
 use fastrand::Rng;
@@ -160,7 +160,7 @@ fn start(random: &mut Rng, structure: &Structure, speed_m_s: f64) -> Start {
 
 fn law(random: &mut Rng, extreme: bool) -> Law {
     let k = if extreme { decades(random, -10.0, 25.0) } else { decades(random, 2.0, 14.0) };
-    let found: Result<Law, InvalidInput> = match random.u32(0..12) {
+    let found: Result<Law, InvalidInput> = match random.u32(0..14) {
         0 => Viscous::new(k, decades(random, -4.0, 2.0)).map(Law::from),
         1 => Hysteretic::new(k, 1.6, 1.4, 0.4, decades(random, -10.0, -3.0)).map(Law::from),
         2 => Hysteretic::new(k, 1.6, 1.4, 0.4, 0.0).map(Law::from),
@@ -173,6 +173,8 @@ fn law(random: &mut Rng, extreme: bool) -> Law {
             let (modulus, radius) = (decades(random, 6.0, 12.0), decades(random, -3.0, 0.0));
             Thornton::new(modulus, radius, decades(random, 5.0, 10.0)).map(Law::from)
         }
+        9 => Power::new(k, 1.0 + 4.0 * random.f64()).map(Law::from),
+        10 => Felt::new(k, 2.0 + 3.0 * random.f64(), decades(random, -6.0, -1.0)).map(Law::from),
         _ => Hertz::new(k).map(Law::from),
     };
     found.unwrap_or(Law::Hertz(Hertz { stiffness_n_m1_5: 1e10 }))

@@ -190,7 +190,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
     verdict.energy_gain = if before > 0.0 { after / before - 1.0 } else { 0.0 };
     verdict.gain_over_allowed = if allowed > 0.0 { (after - before) / allowed } else { 0.0 };
     check(after - before <= allowed, || format!("energy from {before:e} J to {after:e} J"))?;
-    let elastic = matches!(law, Law::Hertz(_) | Law::LinearSpring(_));
+    let elastic = matches!(law, Law::Hertz(_) | Law::LinearSpring(_) | Law::Power(_));
     let undamped = structure.modes.iter().all(|mode| mode.damping_ratio == 0.0);
     if elastic && undamped && solution.outcome == Outcome::Rebound {
         verdict.residual_over_allowed = if allowed > 0.0 { (after - before).abs() / allowed } else { 0.0 };

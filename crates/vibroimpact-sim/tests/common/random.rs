@@ -1,7 +1,8 @@
 //! Random impacts for property tests: the seed is fixed, so that a run is the same everywhere.
 
 use contact_models::{
-    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+    Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
+    Viscous,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -37,6 +38,8 @@ pub fn any_law() -> impl Strategy<Value = Law> {
         (stiffness(), decades(-10.0, -3.0))
             .prop_map(|(k, epsilon)| Hysteretic::new(k, 1.6, 1.4, 0.4, epsilon).unwrap().into()),
         stiffness().prop_map(|k| LinearSpring::new(k).unwrap().into()),
+        (stiffness(), 1.0..5.0).prop_map(|(k, n)| Power::new(k, n).unwrap().into()),
+        (stiffness(), 2.0..5.0, decades(-6.0, -1.0)).prop_map(|(k, p, a)| Felt::new(k, p, a).unwrap().into()),
         (stiffness(), decades(-3.0, 5.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
         (stiffness(), 1.0..3.0, decades(-3.0, 2.0)).prop_map(|(k, n, d)| HuntCrossley::new(k, n, d).unwrap().into()),
         (stiffness(), 0.01..1.0).prop_map(|(k, e)| LankaraniNikravesh::new(k, e).unwrap().into()),

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::fields::{BETWEEN, FIELDS};
 use crate::scene::fields::look_up;
 use crate::scene::json::{quote, read};
-use crate::scene::{self, InvalidInput, Striker};
+use crate::scene::{self, InvalidInput, Location, Striker};
 
 /// A contact of two points along `x`.
 ///
@@ -72,8 +72,8 @@ pub enum Ground {
 pub struct Point {
     /// Name of the body.
     pub body: String,
-    /// Place on a beam or a rod, from its left end (m).
-    pub location_m: Option<f64>,
+    /// Place on a beam, string or rod, from its left end (m); on a plate `[x, y]`.
+    pub location_m: Option<Location>,
     /// Name of the point of a modal structure.
     pub location: Option<String>,
 }

@@ -10,7 +10,7 @@ use vibroimpact_sim::assembly::Force;
 use super::contact::Point;
 use crate::input::{Table, read_bytes};
 use crate::scene::json::number;
-use crate::scene::{InvalidInput, SceneError, table_path};
+use crate::scene::{InvalidInput, Location, SceneError, table_path};
 
 /// A force on a point of a body, positive along `+x`: constant (`force_n`), harmonic (`force_n sin(2 pi frequency_hz t +
 /// phase)`), or straight lines between values (`times_s` and `forces_n`, or a table), zero before the first and after the
@@ -20,8 +20,8 @@ use crate::scene::{InvalidInput, SceneError, table_path};
 pub struct Load {
     /// Name of the body.
     pub body: String,
-    /// Place on a beam or a rod, from its left end (m).
-    pub location_m: Option<f64>,
+    /// Place on a beam, string or rod, from its left end (m); on a plate `[x, y]`.
+    pub location_m: Option<Location>,
     /// Name of the point of a modal structure.
     pub location: Option<String>,
     /// The force, or its amplitude (N).

@@ -7,7 +7,7 @@ use vibroimpact_sim::modal::Mode;
 use super::body::{Body, Elastic, Elastics};
 use super::load::require_finite;
 use super::rod::Rod;
-use crate::scene::{InvalidInput, KnownModes, Place, Structure, fields};
+use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
 
 /// A body whose modes have been computed, to be seen from any of its points.
 pub(super) struct Seen<'a> {
@@ -81,7 +81,8 @@ impl<'a> Seen<'a> {
             Elastics::Rod(rod) => {
                 place.require_no_name("left out: the place on a rod is location_m")?;
                 let needed = "a finite number from 0 to the length of the rod";
-                let location_m = place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?;
+                let location_m =
+                    place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?.along()?;
                 let Some(modes) = &self.rod else { return Ok(Vec::new()) };
                 let shapes = modes
                     .shapes_at(location_m)
@@ -90,7 +91,9 @@ impl<'a> Seen<'a> {
                 Ok(modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
             }
             Elastics::Structure(structure) => {
-                let needs_count = matches!(structure, Structure::Beam(_)) && body.modes.is_none();
+                let needs_count =
+                    matches!(structure, Structure::Beam(_) | Structure::TautString(_) | Structure::Plate(_))
+                        && body.modes.is_none();
                 if needs_count {
                     return Err(self.of_body(InvalidInput::missing("modes", "a whole number from 0 to 10000")));
                 }
@@ -143,9 +146,12 @@ impl<'a> Seen<'a> {
 }
 
 /// Some place of the structure.
-fn anywhere(body: &Elastic) -> (Option<f64>, Option<String>) {
+fn anywhere(body: &Elastic) -> (Option<Location>, Option<String>) {
     match &body.structure {
-        Elastics::Rod(_) | Elastics::Structure(Structure::Beam(_)) => (Some(0.0), None),
+        Elastics::Rod(_) | Elastics::Structure(Structure::Beam(_) | Structure::TautString(_)) => {
+            (Some(0.0.into()), None)
+        }
+        Elastics::Structure(Structure::Plate(_)) => (Some([0.0; 2].into()), None),
         Elastics::Structure(Structure::Modal(listed)) => (None, listed.points.keys().next().cloned()),
         Elastics::Structure(_) => (None, None),
     }

@@ -40,7 +40,18 @@ fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
 /// The number of modes that is expected to do, before any is computed: on average over a beam's length, the modes up
 /// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
 fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
-    let Source::Beam { beam, location_m, .. } = &pose.source else { return Ok(pose.source.most()) };
+    let (beam, location_m) = match &pose.source {
+        Source::Beam { beam, location_m, .. } => (beam, location_m),
+        Source::Computed { structure, .. } => {
+            let enough = |n: usize| {
+                let (omega, added) = structure.estimate(n).unwrap_or_default();
+                resolution(pose, omega, added) >= target
+            };
+            let most = pose.source.most();
+            return Ok((FEWEST + 1..most).find(|n| enough(*n)).unwrap_or(most));
+        }
+        Source::Listed { .. } => return Ok(pose.source.most()),
+    };
     let segments = beam.to_beam().map_err(|fault| fault.within("structure"))?.segments;
     let slowness = |s: &beam_modes::Segment| (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25);
     let phase: f64 = segments.iter().map(|s| s.length_m * slowness(s)).sum();

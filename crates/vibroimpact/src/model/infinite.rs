@@ -93,7 +93,7 @@ impl Uniform {
     /// The beam of a scene with Hertz contact, or why there is none.
     fn new(pose: &Pose) -> Result<Result<Uniform, String>, InvalidInput> {
         let Source::Beam { beam, location_m, .. } = &pose.source else {
-            return Ok(Err("the structure is given by its modes, not as a beam".to_owned()));
+            return Ok(Err("the structure is not a beam of segments".to_owned()));
         };
         if !matches!(pose.law, Law::Hertz(_)) {
             return Ok(Err("the infinite beam is solved for hertz contact".to_owned()));

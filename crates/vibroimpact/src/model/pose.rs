@@ -6,7 +6,7 @@ use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
 use crate::impact::{compliance, in_scene, residual};
 use crate::scene::json::number;
-use crate::scene::{self, InvalidInput, Scene};
+use crate::scene::{self, InvalidInput, Location, Place, Scene};
 
 /// Tolerances that can be asked for where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
@@ -49,9 +49,8 @@ pub(super) fn modal_only(scene: &Scene) -> Option<&'static str> {
 /// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to settle to.
 pub(crate) fn chooses_modes(scene: &Scene) -> bool {
     let settles = match &scene.structure {
-        scene::Structure::Beam(_) => true,
         scene::Structure::Modal(listed) => listed.gives_compliance(scene.location.as_deref()),
-        _ => false,
+        computed => computed.is_computed(),
     };
     settles && scene.modes == Modes::Auto && modal_only(scene).is_none()
 }
@@ -106,6 +105,8 @@ impl Wall {
 pub(super) enum Source<'a> {
     /// A beam: as many modes as are asked for.
     Beam { beam: &'a scene::Beam, location_m: f64, whole_m_n: f64, modes: Vec<Mode> },
+    /// A string or plate, likewise.
+    Computed { structure: &'a scene::Structure, place: Place<'a>, whole_m_n: f64, modes: Vec<Mode> },
     /// A structure given by its modes, and perhaps its whole static compliance.
     Listed { modes: Vec<Mode>, whole_m_n: Option<f64> },
 }
@@ -138,9 +139,14 @@ impl<'a> Pose<'a> {
             scene::Structure::Beam(beam) => {
                 // an empty list of modes checks place, segments and damping
                 scene.structure.modes(scene.place(), Some(0))?;
-                let location_m = scene.location_m.unwrap_or(f64::NAN);
+                let location_m = scene.location_m.map_or(Ok(f64::NAN), Location::along)?;
                 let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
                 Source::Beam { beam, location_m, whole_m_n, modes: Vec::new() }
+            }
+            structure if structure.is_computed() => {
+                structure.modes(scene.place(), Some(0))?;
+                let whole_m_n = structure.static_compliance_m_n(scene.place())?;
+                Source::Computed { structure, place: scene.place(), whole_m_n, modes: Vec::new() }
             }
             listed => {
                 let modes = listed.modes(scene.place(), scene.modes.count())?;
@@ -202,6 +208,14 @@ impl<'a> Pose<'a> {
                 }
                 Ok(modes.get(..count).unwrap_or(modes))
             }
+            Source::Computed { structure, place, modes, .. } => {
+                if modes.len() < count {
+                    let size = count.next_multiple_of(SIZES).min(structure.most_modes());
+                    *modes = structure.modes_with(*place, Some(size), &mut self.kept.modes)?;
+                    cost.modes_computed += size as u64;
+                }
+                Ok(modes.get(..count).unwrap_or(modes))
+            }
             Source::Listed { modes, .. } => Ok(modes.get(..count).unwrap_or(modes)),
         }
     }
@@ -212,6 +226,7 @@ impl Source<'_> {
     pub fn most(&self) -> usize {
         match self {
             Source::Beam { .. } => super::guess::MOST_MODES,
+            Source::Computed { structure, .. } => structure.most_modes(),
             Source::Listed { modes, .. } => modes.len(),
         }
     }
@@ -219,7 +234,7 @@ impl Source<'_> {
     /// Static compliance of the whole structure at the place, if it is known (m/N).
     pub fn whole_m_n(&self) -> Option<f64> {
         match self {
-            Source::Beam { whole_m_n, .. } => Some(*whole_m_n),
+            Source::Beam { whole_m_n, .. } | Source::Computed { whole_m_n, .. } => Some(*whole_m_n),
             Source::Listed { whole_m_n, .. } => *whole_m_n,
         }
     }

@@ -30,6 +30,7 @@ const STILL: f64 = 1e-12;
 pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, String>, InvalidInput> {
     let rigid_bodies = match &pose.source {
         Source::Beam { beam, .. } => beam.to_beam().map_err(|fault| fault.within("structure"))?.rigid_body_count(),
+        Source::Computed { structure, .. } => structure.rigid_body_count()?,
         Source::Listed { modes, .. } => modes.len(),
     };
     let mass = pose.striker.mass_kg;
@@ -45,11 +46,13 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
     };
     let damping = match &pose.source {
         Source::Beam { beam, .. } => beam.damping_ratio,
+        Source::Computed { structure, .. } => structure.damping_ratio(),
         Source::Listed { modes, .. } => modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max),
     };
     let energy = mass * pose.striker.speed_m_s.powi(2);
     let epsilon = 16.0 * whole.max(0.0) * pose.wall.force_n.powi(2) / energy * (1.0 + 64.0 * damping);
-    let elastic = matches!(pose.scene.contact, Contact::Hertz(_) | Contact::LinearSpring { .. });
+    let elastic =
+        matches!(pose.scene.contact, Contact::Hertz(_) | Contact::LinearSpring { .. } | Contact::Power { .. });
     Ok(match epsilon {
         e if e.is_nan() => Err("the contact has no scale".to_owned()),
         e if elastic => Ok(1.0 - (1.0 - e.min(1.0)).sqrt()),

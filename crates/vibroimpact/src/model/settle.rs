@@ -293,7 +293,7 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, spread: Option<(f64, usize)
 
 fn lightly_damped(pose: &Pose) -> &'static str {
     let modes = match &pose.source {
-        Source::Beam { modes, .. } | Source::Listed { modes, .. } => modes,
+        Source::Beam { modes, .. } | Source::Computed { modes, .. } | Source::Listed { modes, .. } => modes,
     };
     match modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max) {
         0.0 => " (nothing damps the structure)",

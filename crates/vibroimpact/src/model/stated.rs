@@ -74,6 +74,10 @@ fn left_out(
 ) -> Result<Result<f64, String>, InvalidInput> {
     let (count, most) = match &scene.structure {
         Structure::Beam(_) => (impact.structure.modes.len(), usize::MAX),
+        computed if computed.is_computed() => {
+            let count = impact.structure.modes.len();
+            (count, computed.most_modes().max(count))
+        }
         Structure::DroppedRod(rod) => (rod.bending_modes + rod.axial_modes, usize::MAX),
         Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
             (impact.structure.modes.len(), listed.omega_rad_s.len())

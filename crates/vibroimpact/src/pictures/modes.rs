@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
-use crate::scene::{Beam, InvalidInput, Scene, Structure};
+use crate::scene::{Beam, InvalidInput, Location, Scene, Structure};
 use crate::text::quantity;
 
 /// Modes whose shape along the beam is drawn.
@@ -45,7 +45,7 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
         n => format!("The first {n} modes"),
     });
     Ok(match (&scene.structure, scene.location_m) {
-        (Structure::Beam(beam), Some(location_m)) => {
+        (Structure::Beam(beam), Some(Location::Along(location_m))) => {
             let drawn = frequency.get(..count.min(DRAWN)).unwrap_or(&frequency);
             figure.row([along(beam, location_m, drawn)?]).row([at_place])
         }

@@ -6,7 +6,7 @@ use super::{Report, literal};
 use crate::Impact;
 use crate::infinite;
 use crate::plot::Figure;
-use crate::scene::{Scene, Structure};
+use crate::scene::{PlateTheory, Scene, Structure};
 use crate::summary::Summary;
 use crate::text::{quantity, restitution, stopped};
 
@@ -142,6 +142,15 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
             beam.segments.len(),
             if beam.segments.len() == 1 { "" } else { "s" },
             beam.damping_ratio
+        ),
+        Structure::TautString(string) => format!(
+            "The structure by its modes: a string between two pinned ends, damping ratio {} in every mode.",
+            string.damping_ratio
+        ),
+        Structure::Plate(plate) => format!(
+            "The structure by its modes: a rectangular plate by {}'s theory, damping ratio {} in every mode.",
+            if plate.theory == PlateTheory::Mindlin { "Mindlin" } else { "Kirchhoff" },
+            plate.damping_ratio
         ),
         _ => "The structure by the modes that the scene gives.".to_owned(),
     };

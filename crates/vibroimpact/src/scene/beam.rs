@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal;
 
 use super::error::InvalidInput;
-use super::fields;
-use super::json::{number, objects};
+use super::json::objects;
+use super::known::{require_damping, shapes_as_modes};
 use super::sets::one_of_sets;
 use super::structure::require_count;
 
@@ -86,47 +86,10 @@ impl Beam {
     /// The first `count` modes, to be seen from any place.
     pub(crate) fn modes(&self, count: usize) -> Result<BeamModes, InvalidInput> {
         require_count(count)?;
-        let damping_ratio = self.damping_ratio;
-        let modes = || {
-            if !(damping_ratio >= 0.0 && damping_ratio.is_finite()) {
-                let allowed = fields::allowed("damping_ratio").unwrap_or_default();
-                return Err(InvalidInput::new("damping_ratio", number(damping_ratio), allowed));
-            }
-            Ok(self.to_beam()?.modes(count)?)
-        };
-        Ok(BeamModes { modes: modes().map_err(|fault| fault.within("structure"))?, damping_ratio })
-    }
-}
-
-/// The modes of the last beam, by how many were asked for: scenes of one beam share them.
-#[derive(Default)]
-pub(crate) struct KnownModes {
-    beam: Option<Beam>,
-    sets: Vec<(usize, BeamModes)>,
-}
-
-impl KnownModes {
-    /// More sets are not kept.
-    const MOST_SETS: usize = 32;
-
-    /// The first `count` modes of a beam. A set of another size is not cut to this one: it may differ in the last bit,
-    /// and no result may depend on what was asked before.
-    pub(crate) fn first(&mut self, beam: &Beam, count: usize) -> Result<&BeamModes, InvalidInput> {
-        if self.beam.as_ref() != Some(beam) {
-            *self = KnownModes { beam: Some(beam.clone()), sets: Vec::new() };
-        }
-        let place = match self.sets.iter().position(|(size, _)| *size == count) {
-            Some(place) => place,
-            None => {
-                let modes = beam.modes(count)?;
-                if self.sets.len() == Self::MOST_SETS {
-                    self.sets.remove(0);
-                }
-                self.sets.push((count, modes));
-                self.sets.len() - 1
-            }
-        };
-        Ok(&self.sets[place].1)
+        require_damping(self.damping_ratio)?;
+        let modes = || Ok(self.to_beam()?.modes(count)?);
+        let within = |fault: InvalidInput| fault.within("structure");
+        Ok(BeamModes { modes: modes().map_err(within)?, damping_ratio: self.damping_ratio })
     }
 }
 
@@ -148,8 +111,7 @@ impl BeamModes {
             "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
             _ => InvalidInput::from(fault).within("structure"),
         })?;
-        let mode = |(&omega_rad_s, shape)| modal::Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape };
-        Ok(self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
+        Ok(shapes_as_modes(self.modes.omega_rad_s(), shapes, self.damping_ratio))
     }
 }
 

@@ -1,7 +1,8 @@
 //! The contact between striker and structure.
 
 use contact_models::{
-    Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton, Viscous,
+    Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
+    Viscous,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,6 +54,22 @@ pub enum Contact {
     LinearSpring {
         /// Stiffness (N/m).
         stiffness_n_m: f64,
+    },
+    /// `"power"`: a power of the compression, [`contact_models::Power`].
+    Power {
+        /// Stiffness (N/m^n).
+        stiffness_n_m_n: f64,
+        /// Exponent `n` of the compression.
+        exponent: f64,
+    },
+    /// `"felt"`: the felt of piano hammers by Stulov's three parameters, [`contact_models::Felt`].
+    Felt {
+        /// Static stiffness (N/m^n).
+        stiffness_n_m_n: f64,
+        /// Exponent `n` of the compression, at least 2.
+        exponent: f64,
+        /// Retardation time (s).
+        retardation_time_s: f64,
     },
     /// `"kelvin-voigt"`: spring and dashpot side by side, [`contact_models::KelvinVoigt`].
     KelvinVoigt {
@@ -145,6 +162,8 @@ impl Contact {
             Contact::Viscous { .. } => "viscous",
             Contact::Hysteretic { .. } => "hysteretic",
             Contact::LinearSpring { .. } => "linear-spring",
+            Contact::Power { .. } => "power",
+            Contact::Felt { .. } => "felt",
             Contact::KelvinVoigt { .. } => "kelvin-voigt",
             Contact::HuntCrossley { .. } => "hunt-crossley",
             Contact::LankaraniNikravesh { .. } => "lankarani-nikravesh",
@@ -171,6 +190,10 @@ impl Contact {
                 Hysteretic::new(stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m).map(Law::from)
             }
             Contact::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m).map(Law::from),
+            Contact::Power { stiffness_n_m_n, exponent } => Power::new(stiffness_n_m_n, exponent).map(Law::from),
+            Contact::Felt { stiffness_n_m_n, exponent, retardation_time_s } => {
+                Felt::new(stiffness_n_m_n, exponent, retardation_time_s).map(Law::from)
+            }
             Contact::KelvinVoigt { stiffness_n_m: k, damping_n_s_m, restitution } => {
                 match damping(("damping_n_s_m", damping_n_s_m), restitution)? {
                     Damping::Given(c) => KelvinVoigt::new(k, c),

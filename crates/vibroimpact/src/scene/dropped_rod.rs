@@ -108,7 +108,7 @@ impl Scene {
         left_out("striker.density_kg_m3", density_kg_m3.map(number))?;
         left_out("striker.radius_m", radius_m.map(number))?;
         left_out("striker.immovable", immovable.then(|| "true".to_owned()))?;
-        left_out("location_m", self.location_m.map(number))?;
+        left_out("location_m", self.location_m.map(|place| place.to_string()))?;
         left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
         left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
         left_out("residual_compliance", self.residual_compliance.map(|on| on.to_string()))?;

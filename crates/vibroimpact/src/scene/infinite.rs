@@ -73,7 +73,7 @@ impl Scene {
             Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure has no such thing")),
             None => Ok(()),
         };
-        left_out("location_m", self.location_m.map(number))?;
+        left_out("location_m", self.location_m.map(|place| place.to_string()))?;
         left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
         left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
         left_out("striker.immovable", self.striker.immovable.then(|| "true".to_owned()))?;

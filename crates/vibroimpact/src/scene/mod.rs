@@ -16,7 +16,7 @@
 //!     damping_ratio: 0.02,
 //! };
 //! let scene = Scene {
-//!     location_m: Some(0.6180339887498949),
+//!     location_m: Some(0.6180339887498949.into()),
 //!     modes: Modes::Count(100),
 //!     residual_compliance: Some(true),
 //!     ..Scene::new(beam, Striker::sphere(7800.0, 0.015, 1.0), Contact::Hertz(HertzStiffness::of_material(2e11, 0.3)))
@@ -33,13 +33,17 @@ mod error;
 pub(crate) mod fields;
 mod infinite;
 pub(crate) mod json;
+mod known;
+mod location;
 mod materials;
 mod modal;
 mod modes_file;
+mod plate;
 pub mod schema;
 pub(crate) mod sets;
 mod start;
 mod striker;
+mod string;
 mod structure;
 pub(crate) mod toml;
 
@@ -51,17 +55,20 @@ use serde_json::Value;
 
 use crate::model::{Model, Modes};
 
-pub(crate) use beam::KnownModes;
 pub use beam::{Beam, End, Segment};
 pub use contact::Contact;
 pub use dropped_rod::DroppedRod;
 pub use error::{InvalidInput, SceneError};
 pub use infinite::{InfiniteBeam, InfinitePlate};
+pub(crate) use known::KnownModes;
+pub use location::Location;
 pub use materials::{HertzStiffness, Materials};
 pub use modal::{Modal, Point};
 pub use modes_file::ModesFile;
+pub use plate::{Edge, Plate, PlateTheory};
 pub use start::{MovingMode, Start};
 pub use striker::Striker;
+pub use string::TautString;
 pub use structure::Structure;
 
 use crate::input::read_bytes;
@@ -86,8 +93,9 @@ pub struct Scene {
     pub striker: Striker,
     /// The law of the contact.
     pub contact: Contact,
-    /// Place of the impact, from the left end (m). Required for a beam; other structures have none.
-    pub location_m: Option<f64>,
+    /// Place of the impact (m): from the left end of a beam or string; on a plate two numbers, `[x, y]` from a corner.
+    /// Required for these; other structures have none.
+    pub location_m: Option<Location>,
     /// Name of the point that is struck. Required for a modal structure with named points; other structures have none.
     pub location: Option<String>,
     /// Which model answers, [`Scene::answer`]; the program's choice when left out.
@@ -119,7 +127,7 @@ struct Outline {
     #[serde(deserialize_with = "json::object")]
     striker: Striker,
     contact: Value,
-    location_m: Option<f64>,
+    location_m: Option<Location>,
     location: Option<String>,
     #[serde(default)]
     model: Model,

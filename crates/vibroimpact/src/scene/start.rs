@@ -7,7 +7,7 @@ use vibroimpact_sim::modal::{self, Mode};
 use super::error::InvalidInput;
 use super::json::{number, objects};
 use super::structure::Place;
-use super::{Scene, fields};
+use super::{Location, Scene, fields};
 
 /// How the structure moves when the clock starts, and how far away the striker then is. Displacements and velocities
 /// are positive towards the striker. What is given adds up.
@@ -47,8 +47,8 @@ pub struct Start {
 pub struct MovingMode {
     /// Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
     pub mode: usize,
-    /// Place on a beam, from its left end (m); the point of impact when left out.
-    pub location_m: Option<f64>,
+    /// Place on a beam, string or plate (m), as the scene's `location_m`; the point of impact when left out.
+    pub location_m: Option<Location>,
     /// Name of the point of a modal structure; the point of impact when left out.
     pub location: Option<String>,
     /// Displacement there (m); 0 when left out.

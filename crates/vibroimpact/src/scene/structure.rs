@@ -5,14 +5,18 @@ use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::modal;
 
-use super::beam::{Beam, KnownModes};
+use super::beam::Beam;
 use super::dropped_rod::DroppedRod;
 use super::error::InvalidInput;
 use super::fields;
 use super::infinite::{InfiniteBeam, InfinitePlate};
-use super::json::{number, read, split_tag};
+use super::json::{read, split_tag};
+use super::known::KnownModes;
+use super::location::Location;
 use super::modal::Modal;
 use super::modes_file::ModesFile;
+use super::plate::{Plate, PlateTheory};
+use super::string::TautString;
 
 /// What is struck; `"kind"` tells which.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -21,6 +25,11 @@ use super::modes_file::ModesFile;
 pub enum Structure {
     /// `"beam"`: an Euler-Bernoulli beam of uniform segments, whose modes are computed.
     Beam(Beam),
+    /// `"string"`: a string under tension, with or without stiffness.
+    #[serde(rename = "string")]
+    TautString(TautString),
+    /// `"plate"`: a rectangular plate, whose modes are computed.
+    Plate(Plate),
     /// `"modal"`: any linear structure, given by its modes (measured, or from finite elements).
     Modal(Modal),
     /// `"modes-file"`: the same from a table of comma-separated values that stands beside the scene.
@@ -44,12 +53,12 @@ macro_rules! from_kind {
     };
 }
 
-from_kind!(Beam, Modal, ModesFile, InfiniteBeam, InfinitePlate, DroppedRod);
+from_kind!(Beam, TautString, Plate, Modal, ModesFile, InfiniteBeam, InfinitePlate, DroppedRod);
 
-/// Where a structure is struck or seen from: a distance along a beam, or the name of a point.
+/// Where a structure is struck or seen from: a place on it, or the name of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place<'a> {
-    pub location_m: Option<f64>,
+    pub location_m: Option<Location>,
     pub location: Option<&'a str>,
 }
 
@@ -60,9 +69,16 @@ impl Place<'_> {
         self.require_no_name(why)
     }
 
+    /// The place on a structure that has places of its own.
+    fn on_structure(&self) -> Result<Location, InvalidInput> {
+        self.require_no_name("left out: the place on this structure is location_m")?;
+        let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
+        self.location_m.ok_or_else(missing)
+    }
+
     pub(crate) fn require_no_distance(&self, why: &str) -> Result<(), InvalidInput> {
         match self.location_m {
-            Some(location_m) => Err(InvalidInput::new("location_m", number(location_m), why)),
+            Some(location_m) => Err(InvalidInput::new("location_m", location_m.to_string(), why)),
             None => Ok(()),
         }
     }
@@ -76,7 +92,8 @@ impl Place<'_> {
 }
 
 /// How the kinds of structures are named in scene files.
-const KINDS: [&str; 6] = ["beam", "modal", "modes-file", "infinite-beam", "infinite-plate", "dropped-rod"];
+const KINDS: [&str; 8] =
+    ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate", "dropped-rod"];
 
 impl Structure {
     pub(crate) fn from_value(value: &Value) -> Result<Structure, InvalidInput> {
@@ -84,6 +101,8 @@ impl Structure {
         let rest = Value::Object(rest);
         match kind {
             "beam" => read(&rest).map(Structure::Beam),
+            "string" => read(&rest).map(Structure::TautString),
+            "plate" => read(&rest).map(Structure::Plate),
             "infinite-beam" => read(&rest).map(Structure::InfiniteBeam),
             "infinite-plate" => read(&rest).map(Structure::InfinitePlate),
             "dropped-rod" => read(&rest).map(Structure::DroppedRod),
@@ -96,6 +115,8 @@ impl Structure {
     pub fn kind(&self) -> &'static str {
         match self {
             Structure::Beam(_) => "beam",
+            Structure::TautString(_) => "string",
+            Structure::Plate(_) => "plate",
             Structure::Modal(_) => "modal",
             Structure::ModesFile(_) => "modes-file",
             Structure::InfiniteBeam(_) => "infinite-beam",
@@ -108,7 +129,7 @@ impl Structure {
     fn no_modes(&self) -> InvalidInput {
         let allowed = match self {
             Structure::ModesFile(_) => "replaced by its table: Scene::read does it, or Scene::read_modes_file",
-            _ => "beam, modal or dropped-rod, the structures with modes",
+            _ => "beam, string, plate, modal or dropped-rod, the structures with modes",
         };
         InvalidInput::new("structure.kind", format!("\"{}\"", self.kind()), allowed)
     }
@@ -126,18 +147,24 @@ impl Structure {
         known: &mut KnownModes,
     ) -> Result<Vec<modal::Mode>, InvalidInput> {
         count.map_or(Ok(()), require_count)?;
-        let missing = |field| InvalidInput::missing(field, fields::allowed(field).unwrap_or_default());
         let modes = match self {
             Structure::InfiniteBeam(_) | Structure::InfinitePlate(_) | Structure::ModesFile(_) => {
                 return Err(self.no_modes());
             }
-            Structure::Beam(beam) => {
-                place.require_no_name("left out: the place on a beam is location_m")?;
-                let location_m = place.location_m.ok_or_else(|| missing("location_m"))?;
+            Structure::Beam(_) | Structure::TautString(_) | Structure::Plate(_) => {
+                let location_m = place.on_structure()?;
                 let stated = "a whole number from 0 to 10000, where the program does not choose it: for a structure that \
-                              moves before the impact, and for an immovable striker";
+                              moves before the impact, for an immovable striker, and for Mindlin's plate";
                 let count = count.ok_or_else(|| InvalidInput::missing("modes", stated))?;
-                return known.first(beam, count)?.seen_from(location_m);
+                return match self {
+                    Structure::Beam(beam) => known.first(beam, count)?.seen_from(location_m.along()?),
+                    Structure::TautString(string) => string.modes(location_m.along()?, count),
+                    Structure::Plate(plate) => {
+                        let there = location_m.on()?;
+                        plate.seen_from(known.plates.first(plate, count, Plate::modes)?, there)
+                    }
+                    _ => Ok(Vec::new()),
+                };
             }
             Structure::Modal(listed) => {
                 place.require_no_distance("left out: the points of a modal structure have names")?;
@@ -157,13 +184,65 @@ impl Structure {
         }
     }
 
+    /// Whether modes and static compliance are computed from what the structure is, so that there is a limit of many
+    /// modes.
+    pub(crate) fn is_computed(&self) -> bool {
+        match self {
+            Structure::Beam(_) | Structure::TautString(_) => true,
+            Structure::Plate(plate) => plate.theory == PlateTheory::Kirchhoff,
+            _ => false,
+        }
+    }
+
+    /// Largest number of modes that the program tries of a structure whose modes it computes.
+    pub(crate) fn most_modes(&self) -> usize {
+        // slow to settle, and cheap; of a plate many do not move the place
+        const STRING: usize = 2000;
+        const PLATE: usize = 1600;
+        match self {
+            Structure::Plate(plate) => plate.to_plate().map_or(0, |plate| plate.most_modes().min(PLATE)),
+            _ => STRING,
+        }
+    }
+
+    /// Frequency of mode `n` of a string or plate (rad/s), and what `n` modes add to the inverse mass of a place (1/kg):
+    /// on average, before any is computed.
+    pub(crate) fn estimate(&self, n: usize) -> Option<(f64, f64)> {
+        match self {
+            Structure::TautString(string) => Some(string.estimate(n)),
+            Structure::Plate(plate) => Some(plate.estimate(n)),
+            _ => None,
+        }
+    }
+
+    /// How many ways a string or plate has to move as a rigid body.
+    pub(crate) fn rigid_body_count(&self) -> Result<usize, InvalidInput> {
+        match self {
+            Structure::Plate(plate) => {
+                Ok(plate.to_plate().map_err(|fault| fault.within("structure"))?.rigid_body_count())
+            }
+            _ => Ok(0),
+        }
+    }
+
+    /// The damping ratio of every mode of a string or plate.
+    pub(crate) fn damping_ratio(&self) -> f64 {
+        match self {
+            Structure::TautString(string) => string.damping_ratio,
+            Structure::Plate(plate) => plate.damping_ratio,
+            _ => 0.0,
+        }
+    }
+
     /// Static compliance at a place (m/N) of the whole elastic structure.
     pub(crate) fn static_compliance_m_n(&self, place: Place) -> Result<f64, InvalidInput> {
         match self {
             Structure::Beam(beam) => beam
                 .to_beam()
-                .and_then(|beam| Ok(beam.static_compliance(place.location_m.unwrap_or(f64::NAN))?))
-                .map_err(|fault| fault.within("structure")),
+                .and_then(|beam| Ok(beam.static_compliance(place.on_structure()?.along()?)?))
+                .map_err(|fault| if fault.field == "location_m" { fault } else { fault.within("structure") }),
+            Structure::TautString(string) => string.static_compliance_m_n(place.on_structure()?.along()?),
+            Structure::Plate(plate) => plate.static_compliance_m_n(place.on_structure()?.on()?),
             Structure::Modal(listed) => listed.static_compliance_m_n(place.location),
             Structure::DroppedRod(rod) => rod.static_compliance_m_n().map_err(|fault| fault.within("structure")),
             Structure::InfiniteBeam(_) | Structure::InfinitePlate(_) | Structure::ModesFile(_) => Err(self.no_modes()),

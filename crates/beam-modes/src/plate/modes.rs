@@ -1,0 +1,110 @@
+//! Modes of a plate, and what can be asked of them.
+
+use super::Plate;
+use super::line::Line;
+use crate::error::InvalidInput;
+use crate::string::sine_of;
+
+/// Natural modes of a plate, in ascending order of frequency; rigid-body ones first, with `omega = 0`.
+///
+/// Shapes are mass-normalised, `int rho h phi_i phi_j dA = delta_ij`, and in kg^(-1/2); with Mindlin's theory rotary
+/// inertia counts too. Signs are fixed by the largest coefficient in the basis.
+#[derive(Debug, Clone)]
+pub struct PlateModes {
+    pub(super) plate: Plate,
+    pub(super) rigid: usize,
+    pub(super) omega_rad_s: Vec<f64>,
+    pub(super) change: Vec<f64>,
+    pub(super) kind: Kind,
+}
+
+/// How shapes are held.
+#[derive(Debug, Clone)]
+pub(super) enum Kind {
+    /// Products of sines.
+    Sines(Vec<Sine>),
+    /// Products of polynomials up to these degrees.
+    Polynomials { degrees: [usize; 2], shapes: Vec<Product> },
+}
+
+/// `size sin(m pi x/a) sin(n pi y/b)`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sine {
+    pub m: usize,
+    pub n: usize,
+    pub omega_rad_s: f64,
+    pub size: f64,
+}
+
+/// A sum over products of the functions of two classes.
+#[derive(Debug, Clone)]
+pub(super) struct Product {
+    pub classes: [usize; 2],
+    /// Row by row; the second direction runs fastest.
+    pub coefficients: Vec<f64>,
+}
+
+impl PlateModes {
+    /// How many modes there are.
+    pub fn len(&self) -> usize {
+        self.omega_rad_s.len()
+    }
+
+    /// Whether no mode was asked for.
+    pub fn is_empty(&self) -> bool {
+        self.omega_rad_s.is_empty()
+    }
+
+    /// How many of them are rigid-body motions.
+    pub fn rigid_body_count(&self) -> usize {
+        self.rigid
+    }
+
+    /// Natural frequencies, rad/s.
+    pub fn omega_rad_s(&self) -> &[f64] {
+        &self.omega_rad_s
+    }
+
+    /// By what share each frequency would rise, at most, if the polynomials' degree were two less in both directions: a
+    /// measure of what a higher degree could still change. Zero where modes have a closed form.
+    pub fn change(&self) -> &[f64] {
+        &self.change
+    }
+
+    /// How many of the modes, from the lowest, are converged: each changes by less than this share.
+    pub fn converged(&self, share: f64) -> usize {
+        self.change.iter().take_while(|change| **change < share).count()
+    }
+
+    /// Shapes of all modes at a place, kg^(-1/2).
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for a place off the plate.
+    pub fn shapes_at(&self, x_m: f64, y_m: f64) -> Result<Vec<f64>, InvalidInput> {
+        let (x, y) = self.plate.place(x_m, y_m)?;
+        Ok(match &self.kind {
+            Kind::Sines(sines) => {
+                sines.iter().map(|sine| sine.size * sine_of(sine.m, x) * sine_of(sine.n, y)).collect()
+            }
+            Kind::Polynomials { degrees, shapes } => {
+                let [along, across] = lines(&self.plate, *degrees);
+                let (along_here, across_here) = (along.values(2.0 * x - 1.0), across.values(2.0 * y - 1.0));
+                let shape = |product: &Product| {
+                    let (rows, columns) = (&along.classes[product.classes[0]], &across.classes[product.classes[1]]);
+                    let row = |(i, coefficients): (&usize, &[f64])| {
+                        let sum: f64 = columns.iter().zip(coefficients).map(|(j, c)| c * across_here[*j]).sum();
+                        along_here[*i] * sum
+                    };
+                    rows.iter().zip(product.coefficients.chunks(columns.len().max(1))).map(row).sum()
+                };
+                shapes.iter().map(shape).collect()
+            }
+        })
+    }
+}
+
+/// The polynomials along and across a plate.
+pub(super) fn lines(plate: &Plate, degrees: [usize; 2]) -> [Line; 2] {
+    let [left, right, low, high] = plate.edges;
+    [Line::new([left, right], degrees[0]), Line::new([low, high], degrees[1])]
+}

@@ -1,0 +1,79 @@
+//! Modes computed for earlier scenes of the same structure.
+
+use vibroimpact_sim::modal::Mode;
+
+use super::beam::{Beam, BeamModes};
+use super::error::InvalidInput;
+use super::fields;
+use super::json::number;
+use super::plate::Plate;
+
+/// The modes of the last beam and of the last plate, by how many were asked for: scenes of one structure share them.
+#[derive(Default)]
+pub(crate) struct KnownModes {
+    pub(super) beams: Sets<Beam, BeamModes>,
+    pub(super) plates: Sets<Plate, beam_modes::PlateModes>,
+}
+
+/// Sets of modes of one structure.
+pub(super) struct Sets<S, M> {
+    structure: Option<S>,
+    sets: Vec<(usize, M)>,
+}
+
+impl<S, M> Default for Sets<S, M> {
+    fn default() -> Sets<S, M> {
+        Sets { structure: None, sets: Vec::new() }
+    }
+}
+
+/// More sets are not kept.
+const MOST_SETS: usize = 32;
+
+impl<S: Clone + PartialEq, M> Sets<S, M> {
+    /// The first `count` modes of a structure. A set of another size is not cut to this one: it may differ in the last
+    /// bit, and no result may depend on what was asked before.
+    pub fn first(
+        &mut self,
+        structure: &S,
+        count: usize,
+        compute: impl Fn(&S, usize) -> Result<M, InvalidInput>,
+    ) -> Result<&M, InvalidInput> {
+        if self.structure.as_ref() != Some(structure) {
+            *self = Sets { structure: Some(structure.clone()), sets: Vec::new() };
+        }
+        let place = match self.sets.iter().position(|(size, _)| *size == count) {
+            Some(place) => place,
+            None => {
+                let modes = compute(structure, count)?;
+                if self.sets.len() == MOST_SETS {
+                    self.sets.remove(0);
+                }
+                self.sets.push((count, modes));
+                self.sets.len() - 1
+            }
+        };
+        Ok(&self.sets[place].1)
+    }
+}
+
+impl KnownModes {
+    /// The first `count` modes of a beam.
+    pub(crate) fn first(&mut self, beam: &Beam, count: usize) -> Result<&BeamModes, InvalidInput> {
+        self.beams.first(beam, count, Beam::modes)
+    }
+}
+
+/// Passes a damping ratio of a structure.
+pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
+    if damping_ratio >= 0.0 && damping_ratio.is_finite() {
+        return Ok(());
+    }
+    let allowed = fields::allowed("damping_ratio").unwrap_or_default();
+    Err(InvalidInput::new("structure.damping_ratio", number(damping_ratio), allowed))
+}
+
+/// Modes of one damping ratio, from frequencies and shapes.
+pub(super) fn shapes_as_modes(omega_rad_s: &[f64], shapes: Vec<f64>, damping_ratio: f64) -> Vec<Mode> {
+    omega_rad_s.iter().zip(shapes).map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect()
+}

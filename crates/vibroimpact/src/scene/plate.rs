@@ -1,0 +1,169 @@
+//! A rectangular plate.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use vibroimpact_sim::modal::Mode;
+
+use super::error::InvalidInput;
+use super::known::{require_damping, shapes_as_modes};
+
+/// A uniform rectangular plate, [`beam_modes::Plate`].
+///
+/// ```
+/// use vibroimpact::scene::{Edge, Plate};
+///
+/// let plate = Plate { damping_ratio: 0.01, ..Plate::new([0.4, 0.3], 0.005, 2e11, 0.3, 7800.0, [Edge::Pinned; 4]) };
+/// assert!((plate.to_plate()?.modes(1)?.omega_rad_s()[0] - 1312.8).abs() < 0.1);
+/// # Ok::<(), vibroimpact::InvalidInput>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plate {
+    /// Length, along x (m).
+    pub length_m: f64,
+    /// Width, along y (m).
+    pub width_m: f64,
+    /// Thickness, along the direction of the blow (m).
+    pub thickness_m: f64,
+    /// Young's modulus (Pa).
+    pub youngs_modulus_pa: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+    /// Density (kg/m^3).
+    pub density_kg_m3: f64,
+    /// How the edges at x = 0, x = length, y = 0 and y = width are held.
+    pub edges: [Edge; 4],
+    /// By which theory the plate bends; Kirchhoff's when left out.
+    #[serde(default)]
+    pub theory: PlateTheory,
+    /// Shear coefficient of Mindlin's theory; 5/(6 - Poisson's ratio) when left out.
+    pub shear_coefficient: Option<f64>,
+    /// Damping ratio of every mode; 0 when left out.
+    #[serde(default)]
+    pub damping_ratio: f64,
+}
+
+/// How an edge of a plate is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Edge {
+    /// Neither displacement nor slope.
+    Clamped,
+    /// No displacement, no moment.
+    Pinned,
+    /// No moment, no shear force.
+    Free,
+}
+
+/// The theory by which a plate bends.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum PlateTheory {
+    /// Thin: no shear, no rotary inertia.
+    #[default]
+    Kirchhoff,
+    /// With both, for a plate pinned along all edges whose number of modes is stated.
+    Mindlin,
+}
+
+impl Plate {
+    /// An undamped thin plate: length and width, thickness (m), Young's modulus (Pa), Poisson's ratio, density (kg/m^3),
+    /// edges.
+    pub fn new(
+        [length_m, width_m]: [f64; 2],
+        thickness_m: f64,
+        youngs_modulus_pa: f64,
+        poissons_ratio: f64,
+        density_kg_m3: f64,
+        edges: [Edge; 4],
+    ) -> Plate {
+        Plate {
+            length_m,
+            width_m,
+            thickness_m,
+            youngs_modulus_pa,
+            poissons_ratio,
+            density_kg_m3,
+            edges,
+            theory: PlateTheory::Kirchhoff,
+            shear_coefficient: None,
+            damping_ratio: 0.0,
+        }
+    }
+
+    /// The plate in the terms of [`beam_modes`].
+    ///
+    /// # Errors
+    /// A value out of range, or a theory that does not hold for these edges.
+    pub fn to_plate(&self) -> Result<beam_modes::Plate, InvalidInput> {
+        let edges = self.edges.map(|edge| match edge {
+            Edge::Clamped => beam_modes::Edge::Clamped,
+            Edge::Pinned => beam_modes::Edge::Pinned,
+            Edge::Free => beam_modes::Edge::Free,
+        });
+        let standard = beam_modes::Plate::shear_coefficient(self.poissons_ratio);
+        let theory = match self.theory {
+            PlateTheory::Kirchhoff => beam_modes::PlateTheory::Kirchhoff,
+            PlateTheory::Mindlin => {
+                beam_modes::PlateTheory::Mindlin { shear_coefficient: self.shear_coefficient.unwrap_or(standard) }
+            }
+        };
+        if let (PlateTheory::Kirchhoff, Some(value)) = (self.theory, self.shear_coefficient) {
+            let allowed = "left out, or beside \"theory\": \"mindlin\"";
+            return Err(InvalidInput::new("shear_coefficient", value.to_string(), allowed));
+        }
+        let thin = beam_modes::Plate::thin(
+            self.length_m,
+            self.width_m,
+            self.thickness_m,
+            self.youngs_modulus_pa,
+            self.poissons_ratio,
+            self.density_kg_m3,
+            edges,
+        );
+        let plate = beam_modes::Plate { theory, ..thin };
+        plate.checked()?;
+        Ok(plate)
+    }
+
+    /// The first `count` modes, to be seen from any place.
+    pub(super) fn modes(&self, count: usize) -> Result<beam_modes::PlateModes, InvalidInput> {
+        require_damping(self.damping_ratio)?;
+        let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
+        plate.modes(count).map_err(in_structure)
+    }
+
+    /// The modes as a striker at a place meets them.
+    pub(super) fn seen_from(
+        &self,
+        modes: &beam_modes::PlateModes,
+        [x_m, y_m]: [f64; 2],
+    ) -> Result<Vec<Mode>, InvalidInput> {
+        let shapes = modes.shapes_at(x_m, y_m).map_err(in_structure)?;
+        Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
+    }
+
+    /// Static compliance at a place (m/N).
+    pub(super) fn static_compliance_m_n(&self, [x_m, y_m]: [f64; 2]) -> Result<f64, InvalidInput> {
+        let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
+        plate.static_compliance(x_m, y_m).map_err(in_structure)
+    }
+
+    /// Frequency of mode `n` by Weyl's law (rad/s), and what `n` modes add to the inverse mass of a place inside, on
+    /// average (1/kg).
+    pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
+        let area = self.length_m * self.width_m;
+        let rigidity = self.youngs_modulus_pa * self.thickness_m.powi(2) / (12.0 * (1.0 - self.poissons_ratio.powi(2)));
+        let omega = 4.0 * std::f64::consts::PI * n as f64 / area * (rigidity / self.density_kg_m3).sqrt();
+        (omega, n as f64 / (self.density_kg_m3 * self.thickness_m * area))
+    }
+}
+
+fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
+    match fault.field.as_str() {
+        "x_m" => InvalidInput { field: "location_m[0]".to_owned(), ..fault.into() },
+        "y_m" => InvalidInput { field: "location_m[1]".to_owned(), ..fault.into() },
+        "count" => InvalidInput { field: "modes".to_owned(), ..fault.into() },
+        _ => InvalidInput::from(fault).within("structure"),
+    }
+}

@@ -1,0 +1,73 @@
+//! A string under tension.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use vibroimpact_sim::modal::Mode;
+
+use super::error::InvalidInput;
+use super::known::{require_damping, shapes_as_modes};
+
+/// A uniform string between two pinned ends, [`beam_modes::TautString`].
+///
+/// ```
+/// use vibroimpact::scene::TautString;
+///
+/// // C4 of a grand piano
+/// let string = TautString { length_m: 0.62, tension_n: 670.0, mass_per_length_kg_m: 3.93e-3 / 0.62, ..TautString::default() };
+/// assert!((string.to_taut_string().modes(1)?.omega_rad_s()[0] - 1647.5).abs() < 1.0);
+/// # Ok::<(), vibroimpact::beam_modes::InvalidInput>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TautString {
+    /// Length between the ends (m).
+    pub length_m: f64,
+    /// Tension (N).
+    pub tension_n: f64,
+    /// Mass per length (kg/m).
+    pub mass_per_length_kg_m: f64,
+    /// Flexural rigidity `EI` of a string that resists bending (N m^2); 0 when left out.
+    #[serde(default)]
+    pub flexural_rigidity_n_m2: f64,
+    /// Damping ratio of every mode; 0 when left out.
+    #[serde(default)]
+    pub damping_ratio: f64,
+}
+
+impl TautString {
+    /// The string in the terms of [`beam_modes`].
+    pub fn to_taut_string(&self) -> beam_modes::TautString {
+        let TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2, .. } = *self;
+        beam_modes::TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2 }
+    }
+
+    /// The first `count` modes at a place.
+    pub(super) fn modes(&self, location_m: f64, count: usize) -> Result<Vec<Mode>, InvalidInput> {
+        require_damping(self.damping_ratio)?;
+        let modes = self.to_taut_string().modes(count).map_err(in_structure)?;
+        let shapes = modes.shapes_at(location_m).map_err(in_structure)?;
+        Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
+    }
+
+    /// Static compliance at a place (m/N).
+    pub(super) fn static_compliance_m_n(&self, location_m: f64) -> Result<f64, InvalidInput> {
+        self.to_taut_string().static_compliance(location_m).map_err(in_structure)
+    }
+
+    /// Frequency of mode `n` without stiffness (rad/s), and what `n` modes add to the inverse mass of a place, on
+    /// average (1/kg).
+    pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
+        let mass = self.mass_per_length_kg_m * self.length_m;
+        let omega =
+            std::f64::consts::PI * n as f64 * (self.tension_n / self.mass_per_length_kg_m).sqrt() / self.length_m;
+        (omega, n as f64 / mass)
+    }
+}
+
+fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
+    match fault.field.as_str() {
+        "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
+        "count" => InvalidInput { field: "modes".to_owned(), ..fault.into() },
+        _ => InvalidInput::from(fault).within("structure"),
+    }
+}
