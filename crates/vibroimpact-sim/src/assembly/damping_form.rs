@@ -245,7 +245,7 @@ mod tests {
     /// By composite Gauss quadrature of the rates as [`crate::modal::oscillator`] has them.
     fn reference(mode: &Mode, h: f64) -> Form {
         let mut form = Form::NONE;
-        let panels = (4.0 * rate(mode) * h).ceil().max(4.0) as usize;
+        let panels = (0.5 * rate(mode) * h).ceil().max(2.0) as usize;
         for i in 0..panels {
             for &(y, w) in &BASIS.fine {
                 let x = (i as f64 + y) / panels as f64;
