@@ -218,6 +218,8 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
         .title("(b) the later contacts, magnified")
         .height(360.0);
+    // values of S are in order
+    let near = s.partition_point(|s| *s < 1.58)..s.partition_point(|s| *s < 2.25);
     let time = Axis::new("time").unit("10⁵ T");
     let mut linear = Panel::new(Axis::new("S").limits(1.6, 2.2), time.clone().limits(0.0, 5.0))
         .title("(c) linear axes, as in the printed figure")
@@ -238,10 +240,10 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
         lower = lower.with(start(&distance, &relative(&starts))).with(end(&distance, &relative(&ends)));
         // the printed figure has both axes linear there
-        let scaled = |times: &[f64]| times.iter().map(|t| 1e-5 * t).collect::<Vec<f64>>();
-        let (starts, ends) = (scaled(&starts), scaled(&ends));
-        linear = linear.with(start(&s, &starts)).with(end(&s, &ends));
-        inset = inset.with(start(&s, &starts)).with(end(&s, &ends));
+        let scaled = |times: &[f64]| near.clone().map(|i| 1e-5 * times[i]).collect::<Vec<f64>>();
+        let (x, starts, ends) = (&s[near.clone()], scaled(&starts), scaled(&ends));
+        linear = linear.with(start(x, &starts)).with(end(x, &ends));
+        inset = inset.with(start(x, &starts)).with(end(x, &ends));
     }
     study.figure(
         "fig-2-08",
