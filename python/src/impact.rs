@@ -14,7 +14,7 @@ use crate::output;
 
 /// Resolve one impact: every contact, the rebound, where the energy went.
 ///
-/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (on infinite structures, `contacts`) as a
+/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (and the `contacts` of an infinite structure) as a
 /// structured array and energies of modes as an array. With `history=True` two entries more: `history`, motion and
 /// force over time as a dictionary of arrays; and `modal_energies`, a dictionary of `time_s` and `energy_j`, the
 /// latter with a row for each time and a column for each mode. Either is `None` where the model has no such course.
@@ -25,9 +25,11 @@ use crate::output;
 #[pyo3(signature = (scene, *, history = false))]
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {
     let (json, course, energies) = py.detach(|| {
-        let found = scene.scene()?.simulate()?;
-        let (course, energies) = if history { (found.history(), found.modal_energies()) } else { (None, None) };
-        Ok::<_, Fault>((found.json()?, course, energies))
+        let scene = scene.scene()?;
+        let found = scene.simulate()?;
+        let (course, energies) =
+            if history { (found.history(None), found.modal_energies(None)) } else { (None, None) };
+        Ok::<_, Fault>((found.json(&scene)?, course, energies))
     })?;
     let result = output::result(py, &json)?;
     if history {
@@ -80,7 +82,7 @@ pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, 
 pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_, PyDict>> {
     let (json, course) = py.detach(|| {
         let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
-        let course = history.then(|| infinite::history(&solution, None));
+        let course = history.then(|| infinite::history(&solution, None, None));
         Ok::<_, Fault>((export::json(&Summary::new(&solution, None))?, course))
     })?;
     let result = output::result(py, &json)?;

@@ -60,7 +60,7 @@ def test_a_model_without_a_course_in_time(scene, command_line, tmp_path):
     file.write_text(json.dumps(scene | {"model": "emoc"}))
     found = vibroimpact.simulate(file, history=True)
     assert found.pop("history") is None and found.pop("modal_energies") is None
-    assert found["model"] == "emoc" and found == command_line("simulate", file)
+    assert found["choice"]["model"] == "emoc" and found == command_line("simulate", file)
 
 
 def test_modes(command_line):

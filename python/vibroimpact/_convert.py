@@ -46,7 +46,7 @@ def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
         if entry.get(name) is not None:
             entry[name] = np.array(entry[name], dtype=float)
     for name, kinds in _TABLES.items():
-        if name in entry:
+        if entry.get(name) is not None:
             rows = entry[name]
             fields = next((fields for fields in kinds if rows and fields == list(rows[0])), kinds[0])
             kind = [(field, np.int64 if field == "n" else np.float64) for field in fields]

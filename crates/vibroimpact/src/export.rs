@@ -2,13 +2,15 @@
 
 use std::error::Error;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use contact_models::Law;
 use tempfile::TempDir;
 use vibroimpact_sim::modal::{History, Sample};
 
-use crate::pictures;
+use crate::plot::Figure;
+use crate::simulate::Resolved;
 use crate::summary::Summary;
 
 /// Whatever can go wrong between the numbers and the disk.
@@ -18,25 +20,31 @@ pub type Failure = Box<dyn Error + Send + Sync>;
 const HISTORY_INTERVALS: usize = 1000;
 /// Equal intervals of the modal energies.
 const ENERGY_INTERVALS: usize = 400;
-/// How far past the last separation the histories go, as a share of the time until then.
-const AFTERMATH: f64 = 0.1;
 
 /// The files of one impact, ready in memory, so that nothing is written unless all of it can be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Files(pub(crate) Vec<(&'static str, Vec<u8>)>);
 
 impl Files {
-    /// `result.json`, `history.csv`, `modal_energies.csv`, `sub_impacts.csv` and `impact.svg`.
+    /// Every name that a file of the result of a scene with bodies may have beside those of [`Files::NAMES`].
+    pub const NAMES_OF_BODIES: [&str; 5] =
+        ["intervals.csv", "intervals.parquet", "run.svg", "report.html", "section.csv"];
+    /// Every name that a file of the result of one impact may have.
+    pub const NAMES: [&str; 6] =
+        ["result.json", "history.csv", "modal_energies.csv", "sub_impacts.csv", "contacts.csv", "impact.svg"];
+
+    /// `result.json`, `history.csv`, `modal_energies.csv`, `sub_impacts.csv` and `impact.svg`. `result` is the text of
+    /// the first, `until_s` how far the tables go.
     ///
     /// # Errors
     /// None that an impact could cause; those of the writers are passed on.
-    pub fn new(title: &str, summary: &Summary, history: &History<Law>) -> Result<Files, Failure> {
+    pub fn new(result: String, resolved: &Resolved, until_s: f64, figure: &Figure) -> Result<Files, Failure> {
         Ok(Files(vec![
-            ("result.json", json(summary)?.into_bytes()),
-            ("history.csv", self::history(history).csv()?),
-            ("modal_energies.csv", modal_energies(history).csv()?),
-            ("sub_impacts.csv", sub_impacts_csv(summary)?),
-            ("impact.svg", pictures::impact(title, summary, history).svg()?.into_bytes()),
+            ("result.json", result.into_bytes()),
+            ("history.csv", history(&resolved.history, until_s).csv()?),
+            ("modal_energies.csv", modal_energies(&resolved.history, until_s).csv()?),
+            ("sub_impacts.csv", sub_impacts_csv(&resolved.summary)?),
+            ("impact.svg", figure.svg()?.into_bytes()),
         ]))
     }
 
@@ -45,13 +53,17 @@ impl Files {
         Files(files)
     }
 
-    /// `result.json` alone, for a model without a course in time.
-    pub fn result(json: String) -> Files {
-        Files(vec![("result.json", json.into_bytes())])
+    /// `result.json` and `impact.svg`, for a model without a course in time.
+    ///
+    /// # Errors
+    /// None that an impact could cause.
+    pub fn of_net(result: String, figure: &Figure) -> Result<Files, Failure> {
+        Ok(Files(vec![("result.json", result.into_bytes()), ("impact.svg", figure.svg()?.into_bytes())]))
     }
 
     /// Writes the files into a folder, which is made if it is missing. Each file appears whole or not at all, and
-    /// none before all have been written beside their places.
+    /// none before all have been written beside their places. Files of an earlier result are replaced, and those that
+    /// this result does not have are removed.
     ///
     /// # Errors
     /// A folder or file that cannot be written.
@@ -64,6 +76,12 @@ impl Files {
         }
         for name in self.names() {
             fs::rename(aside.path().join(name), folder.join(name)).map_err(blame)?;
+        }
+        for name in Files::NAMES.into_iter().filter(|name| self.names().all(|written| written != *name)) {
+            match fs::remove_file(folder.join(name)) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(blame(error).into()),
+                _ => {}
+            }
         }
         Ok(())
     }
@@ -108,14 +126,9 @@ impl Table {
     }
 }
 
-/// How far the histories go (s).
-fn until_s(history: &History<Law>) -> f64 {
-    history.duration_s() * (1.0 + AFTERMATH)
-}
-
-/// Motion and force over time: what `history.csv` holds.
-pub fn history(history: &History<Law>) -> Table {
-    let times = history.times(until_s(history), HISTORY_INTERVALS);
+/// Motion and force over time until `until_s`: what `history.csv` holds.
+pub fn history(history: &History<Law>, until_s: f64) -> Table {
+    let times = history.times(until_s, HISTORY_INTERVALS);
     let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
     let column = |name: &str, of: fn(&Sample) -> f64| (name.to_owned(), samples.iter().map(of).collect());
     Table {
@@ -131,9 +144,8 @@ pub fn history(history: &History<Law>) -> Table {
     }
 }
 
-/// The energy of each mode over time: what `modal_energies.csv` holds.
-pub fn modal_energies(history: &History<Law>) -> Table {
-    let until_s = until_s(history);
+/// The energy of each mode over time until `until_s`: what `modal_energies.csv` holds.
+pub fn modal_energies(history: &History<Law>, until_s: f64) -> Table {
     let times: Vec<f64> = (0..=ENERGY_INTERVALS).map(|i| until_s * i as f64 / ENERGY_INTERVALS as f64).collect();
     let rows: Vec<Vec<f64>> = times.iter().map(|time_s| history.modal_energies_j(*time_s)).collect();
     let modes = rows.first().map_or(0, Vec::len);

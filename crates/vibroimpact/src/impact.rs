@@ -45,13 +45,12 @@ impl Impact {
 pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
     let fault = InvalidInput::from(fault);
     match fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("].")) {
+        // lists of modes have been checked by their names; these modes were computed
         Some((k, quantity)) => {
-            let list = match quantity {
-                "shape" => "shape_at_location",
-                "damping_ratio" => "damping_ratios",
-                other => other,
-            };
-            InvalidInput { field: format!("structure.{list}[{k}]"), ..fault }
+            let mode = k.parse().map_or(0, |k: usize| k + 1);
+            let value = fault.value.unwrap_or_default();
+            let allowed = format!("a structure whose modes have a {quantity} of {}", fault.allowed);
+            InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
         }
         None if ["mass_kg", "speed_m_s"].contains(&fault.field.as_str()) => fault.within("striker"),
         // an amplitude or rate out of range may come from any of the ways in which a scene states the start

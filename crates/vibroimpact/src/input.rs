@@ -6,6 +6,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
+use crate::scene::told::shorten;
 use crate::scene::{InvalidInput, SceneError};
 
 /// Largest file that is read (bytes).
@@ -52,7 +53,11 @@ impl Table {
             let cells = record.map_err(unreadable)?;
             Ok(Row { line: cells.position().map_or(0, |start| line_of(bytes, start)), cells })
         };
-        let rows = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
+        let rows: Vec<Row> = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
+        if let Some(row) = rows.iter().find(|row| row.cells.len() != header.len()) {
+            let allowed = format!("as many as the line of names has, which is {}", header.len());
+            return Err(InvalidInput::new(format!("line {}", row.line), format!("{} cells", row.cells.len()), allowed));
+        }
         Ok(Table { header, rows })
     }
 
@@ -74,12 +79,7 @@ impl Row {
         let text = self.cells.get(place).filter(|text| !text.is_empty());
         let text = text.ok_or_else(|| InvalidInput::missing(&field, "a finite number"))?;
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| InvalidInput::new(field, text.chars().take(40).collect::<String>(), "a finite number"))
-    }
-
-    /// Number of cells.
-    pub fn len(&self) -> usize {
-        self.cells.len()
+        number.ok_or_else(|| InvalidInput::new(field, shorten(text), "a finite number"))
     }
 }
 

@@ -47,6 +47,7 @@
 
 mod impact;
 mod input;
+mod result_file;
 
 pub mod assembly;
 pub mod export;
@@ -68,6 +69,7 @@ pub use emoc;
 pub use fitting;
 pub use fracdiff;
 pub use impact::Impact;
+pub use result_file::{ResultFile, SubImpact};
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;
 

@@ -1,7 +1,8 @@
 //! The command line: scene files in, results out.
 //!
-//! Exit codes: 0 for a result (sustained contact and a computation that stopped among them), 2 for input that cannot be used,
-//! 1 for results that cannot be written, 130 for a sweep that was asked to stop.
+//! Exit codes: 0 for a result (sustained contact and a computation that stopped among them), 2 for input that cannot be
+//! used (a sweep none of whose points can be solved among it), 1 for results that cannot be written, 130 for a sweep that
+//! was asked to stop.
 
 mod commands;
 
@@ -9,9 +10,12 @@ use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use commands::heartbeat::watched;
+use commands::sweep::NoPointSolved;
 use commands::{choice, infinite_beam, modes, net, shell, simulate, sweep};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
+use vibroimpact::text::{printable, shorten};
 use vibroimpact::{InvalidInput, SceneError};
 
 const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
@@ -77,31 +81,58 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match run(Cli::parse().command).and_then(|printed| print(&printed)) {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(fault) => return misused(&fault),
+    };
+    match run(cli.command).and_then(|printed| print(&printed)) {
         Ok(()) => ExitCode::SUCCESS,
         // a reader that has seen enough is no failure
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            if let Some(NoPointSolved { printed, .. }) = failure.downcast_ref() {
+                // the results are there, and are told as ever
+                let _ = print(printed);
+            }
+            eprintln!("error: {}", printable(&failure.to_string()));
             let of_sweep = failure.downcast_ref::<SweepError>();
             if matches!(of_sweep, Some(SweepError::Stopped { .. })) {
                 return ExitCode::from(sweep::STOPPED);
             }
-            let of_input = failure.is::<SceneError>() || failure.is::<InvalidInput>();
+            let of_input = failure.is::<SceneError>() || failure.is::<InvalidInput>() || failure.is::<NoPointSolved>();
             ExitCode::from(if of_input || of_sweep.is_some_and(SweepError::is_of_input) { 2 } else { 1 })
         }
     }
 }
 
+/// Tells what is wrong with the command line, or prints the help that was asked for. What was typed is not repeated in a
+/// way that could steer the terminal.
+fn misused(fault: &clap::Error) -> ExitCode {
+    let hostile = |argument: &String| shorten(&printable(argument)) != *argument;
+    let mut typed: Vec<String> = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+    // of an option and its value in one argument the value is repeated alone
+    typed.extend(typed.clone().iter().filter_map(|argument| Some(argument.split_once('=')?.1.to_owned())));
+    if fault.use_stderr() && typed.iter().any(hostile) {
+        let told = typed.iter().fold(fault.render().to_string(), |told, argument| {
+            if hostile(argument) { told.replace(argument.as_str(), &shorten(&printable(argument))) } else { told }
+        });
+        eprint!("{}", printable(&told));
+    } else {
+        // no better place to say so
+        let _ = fault.print();
+    }
+    ExitCode::from(u8::try_from(fault.exit_code()).unwrap_or(2))
+}
+
 fn run(command: Command) -> Result<String, Failure> {
     match command {
         Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Plan(arguments) => choice::plan(arguments),
-        Command::Compare(arguments) => choice::compare(arguments),
-        Command::Modes(arguments) => modes::run(arguments),
-        Command::Emoc(arguments) => net::emoc(arguments),
-        Command::Fit(arguments) => net::fit(arguments),
-        Command::InfiniteBeam(arguments) => infinite_beam::run(arguments),
+        Command::Plan(arguments) => watched("plan", || choice::plan(arguments)),
+        Command::Compare(arguments) => watched("compare", || choice::compare(arguments)),
+        Command::Modes(arguments) => watched("modes", || modes::run(arguments)),
+        Command::Emoc(arguments) => watched("emoc", || net::emoc(arguments)),
+        Command::Fit(arguments) => watched("fit", || net::fit(arguments)),
+        Command::InfiniteBeam(arguments) => watched("infinite-beam", || infinite_beam::run(arguments)),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Completions(arguments) => shell::completions(arguments, Cli::command()),

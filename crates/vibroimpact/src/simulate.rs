@@ -2,14 +2,15 @@
 
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Groups};
-use vibroimpact_sim::modal::History;
+use vibroimpact_sim::modal::{History, Settings, Structure};
 
 use crate::export::{self, Failure, Table};
 use crate::impact::Impact;
 use crate::infinite as infinite_structure;
-use crate::model::Answer;
-use crate::scene::{InvalidInput, Scene};
-use crate::summary::Summary;
+use crate::model::{Answer, Kept, Model};
+use crate::result_file::ResultFile;
+use crate::scene::{self, InvalidInput, Scene};
+use crate::summary::{RodMotion, Summary};
 
 /// What [`Scene::simulate`] found.
 pub enum Simulation {
@@ -49,23 +50,38 @@ impl Scene {
     ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1e10 }
     /// }"#)?;
     /// let found = scene.simulate()?;
-    /// assert!(found.json().unwrap().contains(r#""outcome": "rebound""#));
-    /// assert_eq!(found.history().unwrap().columns[0].0, "time_s");
+    /// assert!(found.json(&scene).unwrap().contains(r#""outcome": "rebound""#));
+    /// assert_eq!(found.history(None).unwrap().columns[0].0, "time_s");
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn simulate(&self) -> Result<Simulation, InvalidInput> {
         if self.is_infinite() {
+            self.require_infinite_model()?;
             let (groups, solution) = self.solve_infinite()?;
             return Ok(Simulation::Infinite { groups, solution });
         }
         let choice = self.choose()?;
-        let Some(impact) = choice.impact else {
-            return Ok(Simulation::Net(choice.answer));
+        let impact = match choice.impact {
+            Some(impact) => impact,
+            None if choice.answer.model == Model::Rigid => self.at_a_wall()?,
+            None => return Ok(Simulation::Net(choice.answer)),
         };
         let (solution, history) = impact.record()?;
         let residual_m_n = impact.structure.residual_compliance_m_n;
+        let rod = match &self.structure {
+            scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
+            _ => None,
+        };
         let summary = Summary::new(&solution, history.energy_ledger(), residual_m_n).chosen(choice.answer);
+        let summary = Summary { rod, ..summary };
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
+    }
+
+    /// The contact with a structure that does not move at all.
+    fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
+        let impact = self.impact_of(Some(0), &mut Kept::default())?;
+        // a tolerance that counts modes left out may be looser than any of the solver's
+        Ok(Impact { structure: Structure::default(), start: None, settings: Settings::default(), ..impact })
     }
 
     /// Solves the impact on an infinite beam or plate; the groups hold the units of the solution.
@@ -81,34 +97,54 @@ impl Scene {
 }
 
 impl Simulation {
-    /// What `simulate --json` prints.
+    /// What `simulate --json` prints; `scene` is the one that was solved.
     ///
     /// # Errors
     /// None that an impact could cause.
-    pub fn json(&self) -> Result<String, Failure> {
-        match self {
-            Simulation::Modal(found) => export::json(&found.summary),
-            Simulation::Infinite { groups, solution } => {
-                export::json(&infinite_structure::Summary::new(solution, Some(groups)))
-            }
-            Simulation::Net(answer) => export::json(answer),
-        }
+    pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
+        export::json(&match self {
+            Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
+            Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
+            Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
+        })
     }
 
-    /// Motion and force over time, the table `history.csv`, if the model resolves them.
-    pub fn history(&self) -> Option<Table> {
+    /// Motion and force over time, the table `history.csv`, if the model resolves them: until `until_s`, or a little
+    /// past the last contact. An impact that does not end is known no further than the computation went.
+    pub fn history(&self, until_s: Option<f64>) -> Option<Table> {
         match self {
-            Simulation::Modal(found) => Some(export::history(&found.history)),
-            Simulation::Infinite { groups, solution } => Some(infinite_structure::history(solution, Some(groups))),
+            Simulation::Modal(found) => Some(export::history(&found.history, found.until_s(until_s))),
+            Simulation::Infinite { groups, solution } => {
+                let until = until_s.map(|until_s| until_s / groups.time_s);
+                Some(infinite_structure::history(solution, Some(groups), until))
+            }
             Simulation::Net(_) => None,
         }
     }
 
-    /// The energy of each mode over time, the table `modal_energies.csv`, if there are modes.
-    pub fn modal_energies(&self) -> Option<Table> {
+    /// The energy of each mode over time, the table `modal_energies.csv`, if there are modes; until when, as
+    /// [`Simulation::history`].
+    pub fn modal_energies(&self, until_s: Option<f64>) -> Option<Table> {
         match self {
-            Simulation::Modal(found) => Some(export::modal_energies(&found.history)),
+            Simulation::Modal(found) => Some(export::modal_energies(&found.history, found.until_s(until_s))),
             Simulation::Infinite { .. } | Simulation::Net(_) => None,
         }
     }
 }
+
+impl Resolved {
+    /// How far tables and pictures go (s), where a reader asks for `wanted` or leaves it open. After bodies have parted
+    /// for ever their motion is free and known for ever; after a computation that stopped, or in sustained contact,
+    /// it is not.
+    pub fn until_s(&self, wanted: Option<f64>) -> f64 {
+        let known_s = self.history.duration_s();
+        match (self.summary.outcome, wanted) {
+            ("rebound" | "no contact", Some(wanted)) => wanted,
+            ("rebound" | "no contact", None) => known_s * (1.0 + AFTERMATH),
+            (_, wanted) => wanted.map_or(known_s, |wanted| wanted.min(known_s)),
+        }
+    }
+}
+
+/// How far past the last separation tables and pictures go, as a share of the time until then.
+const AFTERMATH: f64 = 0.1;

@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
-/// What `simulate --json` prints: one object, every name with its unit.
+/// A resolved impact on a structure with modes; [`ResultFile`](crate::ResultFile) is what `simulate --json` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// `rebound`, `no contact`, `sustained` or `stopped`.
@@ -25,6 +25,8 @@ pub struct Summary {
     pub sub_impacts: Vec<Contact>,
     /// Velocity of the striker at the end, positive away from the structure (m/s).
     pub striker_velocity_m_s: f64,
+    /// Motion of a dropped rod at the end; null for other structures.
+    pub rod: Option<RodMotion>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,
     /// Number of modes kept.
@@ -43,6 +45,33 @@ pub struct Summary {
 #[allow(clippy::trivially_copy_pass_by_ref, clippy::ref_option)] // the signature that serde asks for
 pub(crate) fn word<S: Serializer>(reason: &Option<StopReason>, serializer: S) -> Result<S::Ok, S::Error> {
     reason.map(StopReason::as_str).serialize(serializer)
+}
+
+/// How a dropped rod moves as a rigid body, vibration aside.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RodMotion {
+    /// Velocity of the centre of mass, positive away from the floor (m/s).
+    pub centre_velocity_m_s: f64,
+    /// Angular velocity, positive where the end that struck turns away from the floor (rad/s).
+    pub angular_velocity_rad_s: f64,
+    /// Velocity of the end that struck, from these two, positive away from the floor (m/s). Over the speed of the fall it
+    /// is the restitution.
+    pub end_velocity_m_s: f64,
+}
+
+impl RodMotion {
+    /// From the rates of the modes, of which the first two are the rigid-body motions in the order of
+    /// [`vibroimpact_sim::dropped_rod`]; `None` if there are not so many.
+    pub(crate) fn new(length_m: f64, modes: &[Mode], rates: &[f64]) -> Option<RodMotion> {
+        let ([translation, rotation, ..], [rate, turning, ..]) = (modes, rates) else { return None };
+        // the mass-normalised rotation is sqrt(12/m) x/length about the centre, translation 1/sqrt(m); towards the
+        // floor is positive there
+        Some(RodMotion {
+            centre_velocity_m_s: -translation.shape * rate,
+            angular_velocity_rad_s: -12f64.sqrt() * translation.shape * turning / length_m,
+            end_velocity_m_s: -(translation.shape * rate + rotation.shape * turning),
+        })
+    }
 }
 
 /// One contact.
@@ -111,6 +140,7 @@ impl Summary {
             sub_impact_count: solution.sub_impacts.len(),
             sub_impacts: solution.sub_impacts.iter().map(contact).collect(),
             striker_velocity_m_s: solution.striker_velocity_m_s,
+            rod: None,
             end_s: solution.end_s,
             modes: energy.modes_j.len(),
             residual_compliance_m_n,
@@ -128,9 +158,10 @@ impl Summary {
         }
     }
 
-    /// The same with the choice that led to it, whose uncertainty counts.
+    /// The same with the choice that led to it, whose restitution and uncertainty count.
     pub fn chosen(self, choice: Answer) -> Summary {
         Summary {
+            restitution: choice.restitution,
             restitution_uncertainty: choice.restitution_uncertainty,
             uncertainty: choice.uncertainty,
             choice: Some(choice),

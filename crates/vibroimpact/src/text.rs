@@ -8,6 +8,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::report::significant;
+pub use crate::scene::told::{printable, shorten};
 use crate::scene::{Location, Scene, Structure};
 use crate::summary::Summary;
 
@@ -94,7 +95,7 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
     let place = match (scene.location_m, &scene.location) {
         (Some(Location::Along(x)), _) => format!(", at {}", quantity(x, "m")),
         (Some(Location::On([x, y])), _) => format!(", at {}, {}", quantity(x, "m"), quantity(y, "m")),
-        (None, Some(name)) => format!(", at {name}"),
+        (None, Some(name)) => format!(", at {}", shorten(&printable(name))),
         (None, None) => String::new(),
     };
     if striker.mass_kg.is_infinite() {
@@ -136,7 +137,16 @@ pub fn result(summary: &Summary) -> String {
         line("restitution", restitution(value, summary.restitution_uncertainty));
         line("as modelled", restitution(value, summary.uncertainty.solver));
     }
-    line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"));
+    match &summary.rod {
+        Some(rod) => {
+            line("rod leaves at", format!("{} at its centre", quantity(rod.centre_velocity_m_s, "m/s")));
+            line("and turns at", quantity(rod.angular_velocity_rad_s, "rad/s"));
+            line("its end leaves at", format!("{}, vibration aside", quantity(rod.end_velocity_m_s, "m/s")));
+        }
+        // a stop leaves at no speed
+        None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}
+        None => line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")),
+    }
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
     let residual = if summary.residual_compliance_m_n > 0.0 {
         format!(", and {} of residual compliance", quantity(summary.residual_compliance_m_n, "m/N"))
@@ -204,8 +214,8 @@ pub fn modes(modes: &[Mode]) -> String {
     text
 }
 
-/// A net restitution and what it follows from.
-pub fn net_rebound(rebound: &NetRebound) -> String {
+/// A net restitution and what it follows from; `stated` tells whether the user gave the parameters.
+pub fn net_rebound(rebound: &NetRebound, stated: bool) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<14}{value}");
@@ -219,6 +229,17 @@ pub fn net_rebound(rebound: &NetRebound) -> String {
     line("beta1", significant(rebound.beta1, 6));
     line("modes", rebound.modes.to_string());
     line("mass", quantity(rebound.mass_kg * 1e3, "g"));
+    let NetRebound { mu0, alpha0, alpha1, .. } = rebound;
+    line("parameters", format!("mu0 {mu0}, alpha0 {alpha0}, alpha1 {alpha1}"));
+    let origin = if stated {
+        "The parameters are those given. The result is as good as their fit to this structure."
+    } else {
+        "The parameters are the defaults, which were never fitted to this structure: take the result for an order of\n  \
+         magnitude. vibroimpact fit finds parameters from measured or computed restitutions."
+    };
+    let other = "The tier emoc of vibroimpact compare is another law, with a stated error and no parameters to fit, and\n  \
+                 gives another number.";
+    let _ = write!(text, "\n  {origin}\n  {other}\n");
     text
 }
 
@@ -235,7 +256,14 @@ pub fn fit(fit: &FitSummary) -> String {
     let _ = writeln!(text, "  {:<12}{:.6}", "rms", fit.rms);
     let _ = writeln!(text, "  {:<12}{:.6}", "max_error", fit.max_error);
     let _ = writeln!(text, "  {:<12}{} impacts, {} modes in the law", "count", fit.count, fit.modes);
-    if !fit.converged {
+    if !fit.undetermined.is_empty() {
+        let names = fit.undetermined.join(" and ");
+        let _ = writeln!(
+            text,
+            "  not determined by these data: {names}. The error hardly changes however far it goes; only that it is very \
+             small or very large is known."
+        );
+    } else if !fit.converged {
         text += "  the search ended at its limit; these are the best parameters that it met\n";
     }
     text

@@ -140,7 +140,7 @@ fn bad_parameters_are_refused_by_name() {
         ("--alpha1", "inf", "alpha1 = inf is not allowed"),
         ("--mu0", "one", "one"),
         ("--emoc-modes", "-3", "-3"),
-        ("--emoc-modes", "20000", "--emoc-modes = 20000 is not allowed"),
+        ("--emoc-modes", "20000", "a whole number from 1 to 10000"),
     ] {
         let message = refusal(PINNED, None, &["emoc", "scene.json", option, value]);
         assert!(message.contains(part), "{part}: {message}");
@@ -181,7 +181,10 @@ fn bad_tables_are_refused_with_their_line() {
         (format!("\u{feff}{header}0.1,0.2,NaN\n"), "line 2, restitution = NaN"),
         (format!("{header}{good}0.1,0.2,inf\n"), "line 5, restitution = inf"),
         (format!("{header}{good}0.1,0.2,1e300\n"), "line 5, restitution = 1"),
-        (format!("{header}{good}0.1,0.2\n"), "line 5, restitution is missing"),
+        (
+            format!("{header}{good}0.1,0.2\n"),
+            "line 5 = 2 cells is not allowed: as many as the line of names has, which is 3",
+        ),
         (format!("{header}{good}0.1,,0.5\n"), "line 5, location_m is missing"),
         (format!("{header}0.1,1.01,0.5\n{good}"), "line 2, location_m = 1.01 is not allowed"),
         (format!("{header}0.1,-0.01,0.5\n{good}"), "line 2, location_m = -0.01"),
@@ -195,7 +198,9 @@ fn bad_tables_are_refused_with_their_line() {
     assert!(refusal(PINNED, None, &fit).contains("cannot read data.csv"));
     assert!(refusal("{", Some(b""), &fit).contains("ends too early"));
     let fit = [&fit[..], &["--emoc-modes", "20000"]].concat();
-    assert!(refusal(PINNED, Some(format!("{header}{good}").as_bytes()), &fit).contains("--emoc-modes = 20000"));
+    assert!(
+        refusal(PINNED, Some(format!("{header}{good}").as_bytes()), &fit).contains("a whole number from 1 to 10000")
+    );
 }
 
 #[test]
@@ -209,4 +214,21 @@ fn data_that_determine_nothing_still_give_an_answer() {
     let found: Value =
         serde_json::from_str(&stdout(&run(folder.path(), &[&arguments[..], &["--json"]].concat()))).unwrap();
     assert!(found["intervals"].is_null() && number(&found, "rms") == 0.0);
+}
+
+#[test]
+fn emoc_says_where_its_parameters_come_from_and_that_compare_has_another_law() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.json"), PINNED).unwrap();
+    let defaults = stdout(&run(folder.path(), &["emoc", "scene.json"]));
+    assert!(defaults.contains("mu0 1, alpha0 1, alpha1 1") && defaults.contains("never fitted"), "{defaults}");
+    let stated = stdout(&run(folder.path(), &["emoc", "scene.json", "--alpha0", "8"]));
+    assert!(stated.contains("mu0 1, alpha0 8, alpha1 1") && !stated.contains("never fitted"), "{stated}");
+    for text in [&defaults, &stated] {
+        assert!(text.contains("vibroimpact compare is another law"), "{text}");
+    }
+    let found = emoc(PINNED, &["--mu0", "0.5"]);
+    assert_eq!((&found["mu0"], &found["alpha0"], &found["alpha1"]), (&0.5.into(), &1.0.into(), &1.0.into()));
+    let compared = stdout(&run(folder.path(), &["compare", "scene.json"]));
+    assert!(compared.contains("vibroimpact emoc takes the three-parameter law"), "{compared}");
 }

@@ -38,7 +38,7 @@ fn simulate_draws_and_reports_every_kind_of_scene() {
         assert_eq!(names(folder.path()), ["a", "r.html"]);
         assert_eq!(names(&folder.path().join("a")), ["b.svg"]);
         // the same again
-        stdout(&run(folder.path(), &arguments));
+        stdout(&run(folder.path(), &[&arguments[..], &["--force"]].concat()));
         assert_eq!(fs::read_to_string(folder.path().join("a/b.svg")).unwrap(), svg);
         assert_eq!(fs::read_to_string(folder.path().join("r.html")).unwrap(), html);
     }
@@ -80,13 +80,17 @@ fn png_files_are_png() {
 fn modes_are_drawn_along_a_beam_and_as_stems() {
     let folder = tempfile::tempdir().unwrap();
     let draw = |name: &str, count: &str| {
-        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg"]));
+        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg", "--force"]));
         fs::read_to_string(folder.path().join("m.svg")).unwrap()
     };
     let beam = draw("stepped-cantilever", "12");
     assert!(beam.contains("place along the beam (m)") && beam.contains("frequency (kHz)"));
     assert!(!draw("measured-modes", "2").contains("along the beam"));
-    assert!(draw("stepped-cantilever", "0").contains("The first 0 modes"));
+    // each is drawn, as long as they are told apart
+    let named = |svg: &str, number: usize| svg.contains(&format!("\n{number}: "));
+    assert!((1..=12).all(|number| named(&beam, number)) && !named(&beam, 13));
+    let many = draw("stepped-cantilever", "40");
+    assert!(named(&many, 30) && !named(&many, 31) && many.contains("Shapes of the first 30 along"));
 }
 
 #[test]
@@ -118,7 +122,7 @@ fn a_place_that_cannot_be_written_leaves_nothing() {
     assert_eq!(names(folder.path()), ["file"]);
     // a folder stands where the picture should go
     fs::create_dir(folder.path().join("a.svg")).unwrap();
-    let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "a.svg"]);
+    let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "a.svg", "--force"]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(names(folder.path()), ["a.svg", "file"]);
 }

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::fields::KINDS;
 use super::rod::Rod;
-use crate::scene::json::{quote, read};
+use crate::scene::json::{also_known, quote, read};
 use crate::scene::{InvalidInput, MovingMode, Structure};
 
 /// A body; `"kind"` tells which.
@@ -155,19 +155,10 @@ impl Elastic {
             "rod" => Elastics::Rod(Rod::from_value(&own)?),
             _ => Elastics::Structure(Structure::from_value(&own).map_err(|fault| match fault.field.as_str() {
                 "kind" => InvalidInput { allowed: KINDS.into(), ..fault },
-                _ => also(fault),
+                _ => also_known(fault, &BESIDE),
             })?),
         };
         let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })
     }
-}
-
-/// A slip among the fields of the structure is told of those that stand beside them, too.
-fn also(fault: InvalidInput) -> InvalidInput {
-    if fault.allowed.starts_with("no such field") && !fault.field.contains(['.', '[']) {
-        let allowed = format!("{}, {}", fault.allowed, BESIDE.join(", "));
-        return InvalidInput { allowed, ..fault };
-    }
-    fault
 }

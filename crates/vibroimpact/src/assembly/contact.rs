@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::fields::{BETWEEN, FIELDS};
 use crate::scene::fields::look_up;
-use crate::scene::json::{quote, read};
+use crate::scene::json::{also_known, quote, read};
 use crate::scene::{self, InvalidInput, Location, Striker};
 
 /// A contact of two points along `x`.
@@ -126,13 +126,7 @@ impl Contact {
                 "gap_m" => InvalidInput { allowed: "a finite number; negative for an interference".into(), ..fault },
                 _ => fault,
             })?;
-        let law = scene::Contact::from_value(&Value::Object(law)).map_err(|fault| {
-            if fault.allowed.starts_with("no such field") {
-                let allowed = format!("{}, {}", fault.allowed, BESIDE.join(", "));
-                return InvalidInput { allowed, ..fault };
-            }
-            fault
-        })?;
+        let law = scene::Contact::from_value(&Value::Object(law)).map_err(|fault| also_known(fault, &BESIDE))?;
         let between = match between.as_array().map(Vec::as_slice) {
             Some([a, b]) => {
                 let side = |i: usize, side| Side::from_value(side).map_err(|f| f.within(&format!("between[{i}]")));

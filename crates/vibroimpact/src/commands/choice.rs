@@ -7,7 +7,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::{Scene, model, pictures};
 
 use super::headline;
-use super::products::{self, picture_file};
+use super::products::Picture;
 
 pub const PLAN_EXAMPLES: &str = "Examples:
   vibroimpact plan ball.json                     each model: does it apply, expected error, cost
@@ -45,9 +45,8 @@ pub struct CompareArguments {
     /// Print one JSON object in place of the table
     #[arg(long)]
     json: bool,
-    /// Draw restitutions and uncertainties into this file, .svg or .png
-    #[arg(long, value_name = "FILE", value_parser = picture_file)]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    picture: Picture,
 }
 
 /// Carries `plan` out and returns what is to be printed.
@@ -57,13 +56,10 @@ pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Fail
 }
 
 /// Carries `compare` out and returns what is to be printed.
-pub fn compare(CompareArguments { scene, json, plot }: CompareArguments) -> Result<String, Failure> {
+pub fn compare(CompareArguments { scene, json, picture }: CompareArguments) -> Result<String, Failure> {
     let scene = Scene::read(&scene)?;
+    picture.require_room()?;
     let comparison = scene.compare()?;
     let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) };
-    let told = match plot {
-        Some(path) => products::draw(&path, &pictures::of_comparison(&headline(&scene)?, &comparison), json)?,
-        None => String::new(),
-    };
-    Ok(printed + &told)
+    Ok(printed + &picture.draw(json, || Ok(pictures::of_comparison(&headline(&scene)?, &comparison)))?)
 }

@@ -64,37 +64,59 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
                 let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
                 return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
             }
+            products.require_room()?;
             let (groups, solution) = scene.solve_infinite()?;
-            of_scene(&scene, &groups, &solution, &products)
+            let json = export::json(&Summary::new(&solution, Some(&groups)))?;
+            of_scene(&scene, (&groups, &solution), None, json, &products)
         }
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
+            products.require_room()?;
             let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
             let headline = format!("Impact on an infinite beam, S = {s}");
-            result(&headline, &solution, None, &products)
+            let json = export::json(&Summary::new(&solution, None))?;
+            result(&headline, &solution, &Posed { scene: None, groups: None, until: None }, json, &products)
         }
     }
 }
 
-/// Returns what is to be printed of a scene with an infinite structure.
-pub fn of_scene(scene: &Scene, groups: &Groups, solution: &Solution, products: &Products) -> Result<String, Failure> {
+/// Returns what is to be printed of a scene with an infinite structure, whose tables and pictures go until `until_s`;
+/// `json` is the result for programs.
+pub fn of_scene(
+    scene: &Scene,
+    (groups, solution): (&Groups, &Solution),
+    until_s: Option<f64>,
+    json: String,
+    products: &Products,
+) -> Result<String, Failure> {
     let headline = vibroimpact::text::infinite_headline(scene, &scene.infinite_impact()?);
-    result(&headline, solution, Some((scene, groups)), products)
+    let posed = Posed { scene: Some(scene), groups: Some(groups), until: until_s.map(|until| until / groups.time_s) };
+    result(&headline, solution, &posed, json, products)
+}
+
+/// How an impact was posed: in physical units by a scene, or by `S` alone.
+struct Posed<'a> {
+    scene: Option<&'a Scene>,
+    groups: Option<&'a Groups>,
+    /// How far tables and pictures go (units of `T`), if it is stated.
+    until: Option<f64>,
 }
 
 fn result(
     headline: &str,
     solution: &Solution,
-    posed: Option<(&Scene, &Groups)>,
+    posed: &Posed,
+    json: String,
     products: &Products,
 ) -> Result<String, Failure> {
-    let (scene, groups) = posed.unzip();
+    let &Posed { scene, groups, until } = posed;
     let summary = Summary::new(solution, groups);
-    let printed = if products.json { export::json(&summary)? } else { format!("{headline}\n\n{}", text(&summary)) };
+    let printed = if products.json { json.clone() } else { format!("{headline}\n\n{}", text(&summary)) };
+    let figure = || picture(headline, solution, groups, until);
     let told = products.write(
-        || picture(headline, solution, groups),
+        figure,
         |figure| report::of_infinite_impact(headline, scene, &summary, figure),
-        || files(headline, solution, groups),
+        || files(json, solution, groups, until, &figure()),
     )?;
     Ok(printed + &told)
 }

@@ -2,6 +2,7 @@
 
 pub mod bodies;
 pub mod choice;
+pub mod heartbeat;
 pub mod infinite_beam;
 pub mod modes;
 pub mod net;
@@ -12,8 +13,20 @@ pub mod sweep;
 mod products;
 
 use vibroimpact::export::Failure;
+use vibroimpact::scene::MOST_MODES;
 use vibroimpact::vibroimpact_sim::modal::Striker;
-use vibroimpact::{Scene, scene, text};
+use vibroimpact::{InvalidInput, Scene, scene, text};
+
+/// The value of an option that asks for a number of modes.
+fn mode_count(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|count| (1..=MOST_MODES).contains(count));
+    count.ok_or_else(|| format!("allowed is a whole number from 1 to {MOST_MODES}"))
+}
+
+/// A fault in a number of modes that an option gave.
+fn of_option(option: &str) -> impl Fn(InvalidInput) -> InvalidInput {
+    move |fault| if fault.field == "modes" { InvalidInput { field: option.to_owned(), ..fault } } else { fault }
+}
 
 /// A scene in a line.
 fn headline(scene: &Scene) -> Result<String, Failure> {

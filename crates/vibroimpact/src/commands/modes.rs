@@ -7,7 +7,8 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::{Scene, pictures, text};
 
-use super::products::{self, picture_file};
+use super::products::Picture;
+use super::{mode_count, of_option};
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
@@ -23,24 +24,20 @@ pub struct Arguments {
     /// The scene file
     scene: PathBuf,
     /// How many modes, from the lowest
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
     count: usize,
     /// Print one JSON object in place of the table
     #[arg(long)]
     json: bool,
-    /// Draw the modes into this file, .svg or .png
-    #[arg(long, value_name = "FILE", value_parser = picture_file)]
-    plot: Option<PathBuf>,
+    #[command(flatten)]
+    picture: Picture,
 }
 
 /// Carries the command out and returns what is to be printed.
-pub fn run(Arguments { scene, count, json, plot }: Arguments) -> Result<String, Failure> {
+pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
     let scene = Scene::read(&scene)?;
-    let modes = scene.mode_shapes(count)?;
+    picture.require_room()?;
+    let modes = scene.mode_shapes(count).map_err(of_option("--count"))?;
     let printed = if json { export::json(&ModeTable::new(&modes))? } else { text::modes(&modes) };
-    let told = match plot {
-        Some(path) => products::draw(&path, &pictures::modes(&scene, count)?, json)?,
-        None => String::new(),
-    };
-    Ok(printed + &told)
+    Ok(printed + &picture.draw(json, || Ok(pictures::modes(&scene, count)?))?)
 }

@@ -6,7 +6,11 @@ use clap::Args;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
-use vibroimpact::{InvalidInput, Scene, text};
+use vibroimpact::{Scene, text};
+
+use super::{mode_count, of_option};
+
+const EMOC_MODES: &str = "--emoc-modes";
 
 pub const EMOC_EXAMPLES: &str = "Examples:
   vibroimpact emoc ball.json                               all parameters 1, where nothing has been fitted
@@ -19,7 +23,9 @@ inequalities, which has a closed form in the mode shapes at the point of impact,
   beta0 = x/(1+x) with x = alpha0 Z/N,              beta1 = y/(1+y) with y = alpha1 m phi_1^2.
 
 The branch printed is the term that is active. Contact, speed and frequencies do not enter. Parameters for a beam come
-from `vibroimpact fit`.";
+from `vibroimpact fit`; the defaults were fitted to nothing. The tier emoc of `vibroimpact compare` is another law: its
+two parameters are fixed, its error on beams that it was not fitted to is stated, and it takes the duration of the contact
+into account (docs/choosing-the-model.md).";
 
 pub const FIT_EXAMPLES: &str = "Examples:
   vibroimpact fit measured.csv --scene ball.json           the three parameters, their intervals, the error
@@ -41,17 +47,17 @@ a law with three parameters are not: take them as a lower bound on the uncertain
 pub struct EmocArguments {
     /// The scene file
     scene: PathBuf,
-    /// Moderated mass ratio coefficient, not negative
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
-    mu0: f64,
-    /// Modal richness coefficient, not negative
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
-    alpha0: f64,
-    /// Slow response coefficient, not negative
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
-    alpha1: f64,
+    /// Moderated mass ratio coefficient, not negative; 1 when left out
+    #[arg(long, allow_negative_numbers = true)]
+    mu0: Option<f64>,
+    /// Modal richness coefficient, not negative; 1 when left out
+    #[arg(long, allow_negative_numbers = true)]
+    alpha0: Option<f64>,
+    /// Slow response coefficient, not negative; 1 when left out
+    #[arg(long, allow_negative_numbers = true)]
+    alpha1: Option<f64>,
     /// Number of modes in the law; the scene's when left out
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
     emoc_modes: Option<usize>,
     /// Print one JSON object in place of the list
     #[arg(long)]
@@ -67,7 +73,7 @@ pub struct FitArguments {
     #[arg(long)]
     scene: PathBuf,
     /// Number of modes in the law
-    #[arg(long, value_name = "N", default_value_t = 50)]
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = mode_count, allow_negative_numbers = true)]
     emoc_modes: usize,
     /// Print one JSON object in place of the list
     #[arg(long)]
@@ -77,21 +83,18 @@ pub struct FitArguments {
 /// Carries `emoc` out and returns what is to be printed.
 pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     let EmocArguments { scene, mu0, alpha0, alpha1, emoc_modes, json } = arguments;
+    let stated = mu0.is_some() || alpha0.is_some() || alpha1.is_some();
+    let [mu0, alpha0, alpha1] = [mu0, alpha0, alpha1].map(|parameter| parameter.unwrap_or(1.0));
     let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
     let rebound = Scene::read(&scene)?.emoc(&parameters, emoc_modes);
-    let rebound = if emoc_modes.is_some() { rebound.map_err(of_option)? } else { rebound? };
-    if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound)) }
+    let rebound = if emoc_modes.is_some() { rebound.map_err(of_option(EMOC_MODES))? } else { rebound? };
+    if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound, stated)) }
 }
 
 /// Carries `fit` out and returns what is to be printed.
 pub fn fit(FitArguments { data, scene, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
     let scene = Scene::read(&scene)?;
-    let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option)?;
+    let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option(EMOC_MODES))?;
     let fit = FitSummary::new(&observations, emoc_modes)?;
     if json { export::json(&fit) } else { Ok(text::fit(&fit)) }
-}
-
-/// A fault in the number of modes, which an option gave.
-fn of_option(fault: InvalidInput) -> InvalidInput {
-    if fault.field == "modes" { InvalidInput { field: "--emoc-modes".to_owned(), ..fault } } else { fault }
 }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use vibroimpact::InvalidInput;
 use vibroimpact::export::{Failure, Files};
-use vibroimpact::model::Model;
 use vibroimpact::plot::{Figure, Format};
 use vibroimpact::report::{Report, write_whole};
+use vibroimpact::text::printable;
 
 /// How the result is wanted: printed, and as files.
 #[derive(Args)]
@@ -24,10 +24,55 @@ pub struct Products {
     /// Write a report with pictures and tables into this file, .html
     #[arg(long, value_name = "FILE", value_parser = page_file)]
     report: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+/// A picture beside what is printed.
+#[derive(Args)]
+pub struct Picture {
+    /// Draw the result into this file, .svg or .png
+    #[arg(long, value_name = "FILE", value_parser = picture_file)]
+    plot: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+impl Picture {
+    /// Refuses to replace what is there already, before anything is solved.
+    pub fn require_room(&self) -> Result<(), InvalidInput> {
+        require_free("--plot", self.plot.as_deref(), self.force)
+    }
+
+    /// Draws the picture, if one is asked for, and returns what to tell a reader: nothing beside JSON.
+    pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
+        match &self.plot {
+            Some(path) => write_single(path, &picture(path, &figure()?)?, json),
+            None => Ok(String::new()),
+        }
+    }
+}
+
+/// Whether anything has this name, be it a link to nowhere.
+fn is_there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
+    match path {
+        Some(path) if !force && is_there(path) => Err(InvalidInput {
+            field: option.to_owned(),
+            value: Some(path.display().to_string()),
+            allowed: "this file exists; name another, or replace it with --force".to_owned(),
+        }),
+        _ => Ok(()),
+    }
 }
 
 /// A file name with the ending of a picture.
-pub fn picture_file(name: &str) -> Result<PathBuf, String> {
+fn picture_file(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     Format::of(&path).map(|_| path).ok_or_else(|| format!("allowed is {}", Format::ENDINGS))
 }
@@ -39,19 +84,21 @@ fn page_file(name: &str) -> Result<PathBuf, String> {
 }
 
 impl Products {
-    /// Says that this model has no course in time to draw, if a picture or a report is asked for.
-    pub fn refuse_pictures(&self, model: Model) -> Result<(), InvalidInput> {
+    /// Refuses to replace what is there already, before anything is solved.
+    pub fn require_room(&self) -> Result<(), InvalidInput> {
+        if let Some(folder) = &self.out
+            && !self.force
+            && let Some(name) =
+                Files::NAMES.into_iter().chain(Files::NAMES_OF_BODIES).find(|name| is_there(&folder.join(name)))
+        {
+            return Err(InvalidInput {
+                field: "--out".to_owned(),
+                value: Some(folder.display().to_string()),
+                allowed: format!("this folder holds {name} already; name another folder, or replace it with --force"),
+            });
+        }
         for (option, path) in [("--plot", &self.plot), ("--report", &self.report)] {
-            if let Some(path) = path {
-                let name = model.as_str();
-                return Err(InvalidInput {
-                    field: option.to_owned(),
-                    value: Some(path.display().to_string()),
-                    allowed: format!(
-                        "none for the model {name}, which has no course in time; \"model\": \"modal\" has"
-                    ),
-                });
-            }
+            require_free(option, path.as_deref(), self.force)?;
         }
         Ok(())
     }
@@ -74,7 +121,7 @@ impl Products {
                 single.push((path, report(&figure)?.html().into_bytes()));
             }
         }
-        let mut told = self.write_files(files)?;
+        let mut told = self.write_folder(files)?;
         for (path, content) in single {
             told += &write_single(path, &content, self.json)?;
         }
@@ -86,19 +133,17 @@ impl Products {
         self.out.is_some() || self.plot.is_some() || self.report.is_some()
     }
 
-    /// Writes the folder alone, if one is asked for.
-    pub fn write_files(&self, files: impl FnOnce() -> Result<Files, Failure>) -> Result<String, Failure> {
+    fn write_folder(&self, files: impl FnOnce() -> Result<Files, Failure>) -> Result<String, Failure> {
         let Some(folder) = &self.out else { return Ok(String::new()) };
         let files = files()?;
         files.write(folder)?;
         let names: Vec<&str> = files.names().collect();
-        Ok(if self.json { String::new() } else { format!("\n  wrote {} to {}\n", names.join(", "), folder.display()) })
+        Ok(if self.json {
+            String::new()
+        } else {
+            format!("\n  wrote {} to {}\n", names.join(", "), printable(&folder.display().to_string()))
+        })
     }
-}
-
-/// Draws one picture and returns what to tell a reader: nothing beside JSON.
-pub fn draw(path: &Path, figure: &Figure, json: bool) -> Result<String, Failure> {
-    write_single(path, &picture(path, figure)?, json)
 }
 
 fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
@@ -107,5 +152,5 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
 
 fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
-    Ok(if json { String::new() } else { format!("\n  wrote {}\n", path.display()) })
+    Ok(if json { String::new() } else { format!("\n  wrote {}\n", printable(&path.display().to_string())) })
 }

@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
-use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::export::{Failure, Files};
 use vibroimpact::model::{self, Answer};
 use vibroimpact::simulate::{Resolved, Simulation};
-use vibroimpact::{Scene, pictures, report, text};
+use vibroimpact::{InvalidInput, Scene, pictures, report, text};
 
 use super::bodies;
 use super::headline;
+use super::heartbeat::watched;
 use super::infinite_beam;
 use super::products::Products;
 
@@ -19,6 +20,8 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json --json          one JSON object for programs
   vibroimpact simulate ball.json --out ball/     CSV histories, the picture impact.svg, result.json
   vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
+  vibroimpact simulate ball.json --out ball/ --until 0.5
+                                                 histories until half a second after the clock has started
   vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
 
 A scene with bodies in place of structure and striker is followed until its end_s or until it rests; progress is shown
@@ -36,48 +39,77 @@ pub struct Arguments {
     /// List at most so many intervals of contact of a scene of bodies, the first ones; files hold all
     #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
     intervals: usize,
+    /// How far histories and pictures go, from the start of the clock; a little past the last contact when left out
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    until: Option<f64>,
     #[command(flatten)]
     products: Products,
 }
 
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| *seconds > 0.0 && seconds.is_finite());
+    seconds.ok_or_else(|| "allowed is a time in seconds, a finite number greater than 0".to_owned())
+}
+
 /// Carries the command out and returns what is to be printed.
-pub fn run(Arguments { scene, intervals, products }: Arguments) -> Result<String, Failure> {
-    let scene = match AnyScene::read(&scene)? {
-        AnyScene::Impact(scene) => *scene,
-        AnyScene::Bodies(scene) => return bodies::simulate(&scene, intervals, &products),
+pub fn run(Arguments { scene, intervals, until, products }: Arguments) -> Result<String, Failure> {
+    let scene = AnyScene::read(&scene)?;
+    products.require_room()?;
+    let scene = match (scene, until) {
+        (AnyScene::Impact(scene), _) => *scene,
+        // it tells by itself how far it has come
+        (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, &products),
+        (AnyScene::Bodies(_), Some(until)) => {
+            let allowed = "left out for a scene of bodies, whose field end_s says how far it goes".to_owned();
+            return Err(InvalidInput { field: "--until".into(), value: Some(until.to_string()), allowed }.into());
+        }
     };
-    let found = scene.simulate()?;
+    let found = watched("simulate", || scene.simulate())?;
     match &found {
-        Simulation::Modal(resolved) => in_modes(&scene, &found, resolved, &products),
-        Simulation::Infinite { groups, solution } => infinite_beam::of_scene(&scene, groups, solution, &products),
-        Simulation::Net(answer) => without_course(&scene, answer, &products),
+        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, resolved, until, &products),
+        Simulation::Infinite { groups, solution } => {
+            infinite_beam::of_scene(&scene, (groups, solution), until, found.json(&scene)?, &products)
+        }
+        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, answer, &products),
     }
 }
 
-fn in_modes(scene: &Scene, found: &Simulation, resolved: &Resolved, products: &Products) -> Result<String, Failure> {
-    let Resolved { impact, summary, history } = resolved;
+fn in_modes(
+    scene: &Scene,
+    json: String,
+    resolved: &Resolved,
+    until: Option<f64>,
+    products: &Products,
+) -> Result<String, Failure> {
+    let Resolved { impact, summary, .. } = resolved;
     let headline = text::headline(scene, &impact.striker);
-    let printed = if products.json { found.json()? } else { format!("{headline}\n\n{}", text::result(summary)) };
+    let printed = if products.json { json.clone() } else { format!("{headline}\n\n{}", text::result(summary)) };
     let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
     let modelled = report::modelled(scene, impact, reason);
+    let until_s = resolved.until_s(until);
+    let figure = || pictures::impact(&headline, resolved, until_s);
     let told = products.write(
-        || pictures::impact(&headline, summary, history),
-        |figure| report::of_impact(&headline, scene, &modelled, summary, figure),
-        || Files::new(&headline, summary, history),
+        figure,
+        |figure| report::of_impact(&headline, scene, &modelled, resolved, figure),
+        || Files::new(json, resolved, until_s, &figure()),
     )?;
     Ok(printed + &told)
 }
 
 /// A model that has no course in time.
-fn without_course(scene: &Scene, answer: &Answer, products: &Products) -> Result<String, Failure> {
-    products.refuse_pictures(answer.model)?;
-    let result = export::json(answer)?;
-    if products.json {
-        products.write_files(|| Ok(Files::result(result.clone())))?;
-        return Ok(result);
-    }
+fn without_course(scene: &Scene, json: String, answer: &Answer, products: &Products) -> Result<String, Failure> {
     let headline = headline(scene)?;
-    let told = products.write_files(|| Ok(Files::result(result)))?;
-    let hint = "\n  This model has no histories; \"model\": \"modal\" resolves the course in time.\n";
-    Ok(format!("{headline}\n\n{}{told}{hint}", model::net_text(answer)))
+    let printed = if products.json {
+        json.clone()
+    } else {
+        let hint = "\n  This model gives the net result alone; \"model\": \"modal\" resolves the course in time.\n";
+        format!("{headline}\n\n{}{hint}", model::net_text(answer))
+    };
+    let figure = || pictures::of_answer(&headline, answer);
+    let told = products.write(
+        figure,
+        |figure| report::of_net_impact(&headline, scene, answer, figure),
+        || Files::of_net(json, &figure()),
+    )?;
+    Ok(printed + &told)
 }

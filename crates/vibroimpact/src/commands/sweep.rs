@@ -11,6 +11,7 @@ use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 use serde_json::json;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::sweep::{self, Part, Status, Sweep, SweepError, Tally};
+use vibroimpact::text::printable;
 
 pub const SWEEP_EXAMPLES: &str = r#"Examples:
   vibroimpact sweep sweep.json --out results/                  computes, shows how long it takes, goes on if cut off
@@ -29,8 +30,9 @@ The axes of "vary" form a grid, whose last axis runs fastest; each of its points
 gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes do not depend on threads, parts
 or ranks. A scene that cannot be solved is a row with its error.
 
-Ctrl-C stops; the same command goes on from there, also after a crash. Exit codes: 0 finished, 130 stopped, 2 for input
-that cannot be used (nothing is computed), 1 if reading or writing fails."#;
+Ctrl-C stops; the same command goes on from there, also after a crash. A folder that holds anything else is refused.
+Exit codes: 0 finished, 130 stopped, 2 for input that cannot be used (nothing is computed, or no point could be solved),
+1 if reading or writing fails. With the output redirected, a line on the standard error says now and then how far it is."#;
 
 pub const MERGE_EXAMPLES: &str = "Example:
   vibroimpact merge part-*/ --out results/
@@ -101,7 +103,7 @@ pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
         sweep::run(&sweep, part, &arguments.out, threads, &stop, &mut |status| progress.tell(status))?
     };
     progress.finish();
-    printed(&tally, &arguments.out, arguments.json, Some(&progress))
+    solved(&tally, printed(&tally, &arguments.out, arguments.json, Some(&progress))?)
 }
 
 #[cfg(feature = "mpi")]
@@ -122,7 +124,29 @@ fn over_ranks(_: &SweepArguments, _: Part, _: &AtomicBool, _: &mut Progress) -> 
 
 /// Carries the command `merge` out and returns what is to be printed.
 pub fn merge(arguments: MergeArguments) -> Result<String, Failure> {
-    printed(&sweep::merge(&arguments.parts, &arguments.out)?, &arguments.out, arguments.json, None)
+    let tally = sweep::merge(&arguments.parts, &arguments.out)?;
+    solved(&tally, printed(&tally, &arguments.out, arguments.json, None)?)
+}
+
+/// A sweep that came to its end without a single result.
+#[derive(Debug, thiserror::Error)]
+#[error("none of the {points} points could be solved; the first: {first}")]
+pub struct NoPointSolved {
+    /// How many there were.
+    points: u64,
+    /// What was wrong with the first.
+    first: String,
+    /// What is to be printed all the same.
+    pub printed: String,
+}
+
+/// Passes what is to be printed, unless every point failed.
+fn solved(tally: &Tally, printed: String) -> Result<String, Failure> {
+    if tally.points == 0 || tally.failures < tally.points {
+        return Ok(printed);
+    }
+    let first = tally.first_failures.first().map_or_else(String::new, |failed| failed.error.clone());
+    Err(NoPointSolved { points: tally.points, first, printed }.into())
 }
 
 /// The first signal asks for an orderly end, the second is one.
@@ -152,7 +176,7 @@ fn printed(tally: &Tally, out: &Path, as_json: bool, progress: Option<&Progress>
         }
         return export::json(&object);
     }
-    let mut text = format!("{}\n\n{}", out.display(), tally.text());
+    let mut text = format!("{}\n\n{}", printable(&out.display().to_string()), tally.text());
     match (progress, rate) {
         (Some(_), Some(rate)) => {
             text += &format!("  {:<22}{computed} points in {elapsed_s:.1} s, {rate:.0} a second\n", "computed now");
@@ -171,16 +195,18 @@ struct Progress {
     first: Option<Status>,
     last: Option<Status>,
     bar: Option<ProgressBar>,
-    told: Instant,
+    next_line: Instant,
 }
 
-/// Between two lines where there is no terminal.
+/// Before the first line, where there is no terminal.
+const FIRST_LINE: Duration = Duration::from_secs(10);
+/// Between two of them.
 const BETWEEN_LINES: Duration = Duration::from_secs(30);
 
 impl Progress {
     fn new(quiet: bool) -> Progress {
         let now = Instant::now();
-        Progress { quiet, begun: now, first: None, last: None, bar: None, told: now }
+        Progress { quiet, begun: now, first: None, last: None, bar: None, next_line: now + FIRST_LINE }
     }
 
     fn tell(&mut self, status: Status) {
@@ -199,8 +225,8 @@ impl Progress {
         self.last = Some(status);
         if let Some(bar) = &self.bar {
             bar.set_position(status.done);
-        } else if !self.quiet && self.told.elapsed() >= BETWEEN_LINES {
-            self.told = Instant::now();
+        } else if !self.quiet && Instant::now() >= self.next_line {
+            self.next_line = Instant::now() + BETWEEN_LINES;
             let (computed, elapsed_s) = self.work();
             let rate = computed as f64 / elapsed_s;
             let left = Duration::try_from_secs_f64((status.points - status.done) as f64 / rate);

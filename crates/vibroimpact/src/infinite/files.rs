@@ -3,7 +3,7 @@
 use vibroimpact_sim::infinite::{Groups, Solution};
 
 use super::{Sample, Summary, samples, telling_time};
-use crate::export::{Failure, Files, Table, json};
+use crate::export::{Failure, Files, Table};
 use crate::pictures::{Peak, force_panel};
 use crate::plot::{Axis, Colour, Figure, Panel, Series};
 
@@ -12,19 +12,25 @@ const SAMPLES: usize = 1000;
 /// Times that span more than this ratio are drawn on a logarithmic axis.
 const WIDE: f64 = 30.0;
 
-/// `result.json`, `history.csv`, `contacts.csv` and `impact.svg`, ready in memory. With `groups` the tables and the
-/// picture are in SI units, otherwise in units of `T`, `F`, `v T` and `v`.
+/// `result.json`, `history.csv`, `contacts.csv` and `impact.svg`, ready in memory; `result` is the text of the first,
+/// `until` as for [`history`]. With `groups` the tables are in SI units, otherwise in units of `T`, `F`, `v T` and `v`.
 ///
 /// # Errors
 /// None that an impact could cause; those of the writers are passed on.
-pub fn files(title: &str, solution: &Solution, groups: Option<&Groups>) -> Result<Files, Failure> {
+pub fn files(
+    result: String,
+    solution: &Solution,
+    groups: Option<&Groups>,
+    until: Option<f64>,
+    figure: &Figure,
+) -> Result<Files, Failure> {
     let summary = Summary::new(solution, groups);
     let units = Units::new(groups);
     Ok(Files(vec![
-        ("result.json", json(&summary)?.into_bytes()),
-        ("history.csv", history(solution, groups).csv()?),
+        ("result.json", result.into_bytes()),
+        ("history.csv", history(solution, groups, until).csv()?),
         ("contacts.csv", contacts_csv(&summary, &units)?),
-        ("impact.svg", picture(title, solution, groups).svg()?.into_bytes()),
+        ("impact.svg", figure.svg()?.into_bytes()),
     ]))
 }
 
@@ -65,8 +71,9 @@ impl Units {
 
 /// Motion and force over time: what `history.csv` holds, in SI units with `groups`, otherwise in units of the solution.
 /// As elsewhere in this crate, displacements and velocities are positive away from the structure.
-pub fn history(solution: &Solution, groups: Option<&Groups>) -> Table {
-    let samples = samples(solution, telling_time(solution), SAMPLES);
+/// They go until `until` (units of `T`) as far as the motion is known, or a while past the last contact.
+pub fn history(solution: &Solution, groups: Option<&Groups>, until: Option<f64>) -> Table {
+    let samples = samples(solution, until.unwrap_or_else(|| telling_time(solution)), SAMPLES);
     let units = Units::new(groups);
     let [time, force, displacement, speed] = units.suffixes;
     let column = |name: String, of: &dyn Fn(&Sample) -> f64| (name, samples.iter().map(of).collect());
@@ -120,11 +127,11 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
 /// use vibroimpact::infinite::picture;
 /// use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
 /// let solution = solve(Structure::Beam, 15.0, &Settings::default())?;
-/// assert!(picture("S = 15", &solution, None).svg().expect("a picture").contains("time (T)"));
+/// assert!(picture("S = 15", &solution, None, None).svg().expect("a picture").contains("time (T)"));
 /// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
 /// ```
-pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>) -> Figure {
-    let samples = samples(solution, telling_time(solution), SAMPLES);
+pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>, until: Option<f64>) -> Figure {
+    let samples = samples(solution, until.unwrap_or_else(|| telling_time(solution)), SAMPLES);
     let units = Units::new(groups);
     let [time_unit, force_unit, displacement_unit, speed_unit] = units.names;
     let until = samples.last().map_or(0.0, |sample| sample.time);
@@ -139,7 +146,7 @@ pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>) -> Fig
     };
     let column = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).collect::<Vec<f64>>();
     let time = column(&|sample| units.time * sample.time);
-    let starts: Vec<f64> = solution.contacts.iter().map(|c| (units.time * c.start).max(f64::MIN_POSITIVE)).collect();
+    let starts: Vec<f64> = solution.contacts.iter().map(|c| units.time * c.start).collect();
     let ends: Vec<f64> = solution.contacts.iter().map(|c| units.time * c.end.unwrap_or(until)).collect();
     let panel = |label: &str, unit: &str, height_px: f64| {
         Panel::new(time_axis().unlabelled(), Axis::new(label).unit(unit))

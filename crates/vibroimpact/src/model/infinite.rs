@@ -300,30 +300,39 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
 
 /// A structure that has no ends to begin with.
 pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInput> {
-    if !matches!(scene.model, Model::Auto | Model::InfiniteBeam) {
-        let value = format!("\"{}\"", scene.model.as_str());
-        return Err(InvalidInput::new("model", value, "auto or infinite-beam for a structure without ends"));
+    scene.require_infinite_model()?;
+    let (groups, solution) = scene.solve_infinite()?;
+    Ok(Choice { answer: scene.infinite_answer(&groups, &solution), impact: None })
+}
+
+impl Scene {
+    /// Refuses a model that structures without ends do not have.
+    pub(crate) fn require_infinite_model(&self) -> Result<(), InvalidInput> {
+        if matches!(self.model, Model::Auto | Model::InfiniteBeam) {
+            return Ok(());
+        }
+        let value = format!("\"{}\"", self.model.as_str());
+        Err(InvalidInput::new("model", value, "auto or infinite-beam for a structure without ends"))
     }
-    let impact = scene.infinite_impact()?;
-    let groups = impact.groups()?;
-    let settings = infinite::Settings::default();
-    let solution = infinite::solve(impact.structure, groups.s, &settings)?;
-    let restitution = solution.rebound_ratio();
-    // relative to the change of speed
-    let uncertainty = restitution.zip(solution.error).map(|(e, error)| error * (1.0 + e)).filter(|u| u.is_finite());
-    let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
-    let kind = scene.structure.kind().replace('-', " ");
-    let reason = format!("the structure is an {kind}: S = {}", small(groups.s));
-    // no mode is left out
-    let known = Known::new(scene, uncertainty, Ok(0.0)).of(restitution);
-    let answer = Answer {
-        outcome: solution.outcome.as_str(),
-        stopped_by: solution.outcome.stopped_by(),
-        restitution,
-        sub_impact_count: Some(solution.contacts.len()),
-        settled: settled || solution.outcome == Outcome::Sustained,
-        cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
-        ..Answer::new(Model::InfiniteBeam, super::DEFAULT_TOLERANCE, known, reason)
-    };
-    Ok(Choice { answer, impact: None })
+
+    /// The solution for a structure without ends, as an answer.
+    pub(crate) fn infinite_answer(&self, groups: &infinite::Groups, solution: &infinite::Solution) -> Answer {
+        let restitution = solution.rebound_ratio();
+        // relative to the change of speed
+        let uncertainty = restitution.zip(solution.error).map(|(e, error)| error * (1.0 + e)).filter(|u| u.is_finite());
+        let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
+        let kind = self.structure.kind().replace('-', " ");
+        let reason = format!("the structure is an {kind}: S = {}", small(groups.s));
+        // no mode is left out
+        let known = Known::new(self, uncertainty, Ok(0.0)).of(restitution);
+        Answer {
+            outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
+            restitution,
+            sub_impact_count: Some(solution.contacts.len()),
+            settled: settled || solution.outcome == Outcome::Sustained,
+            cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
+            ..Answer::new(Model::InfiniteBeam, super::DEFAULT_TOLERANCE, known, reason)
+        }
+    }
 }

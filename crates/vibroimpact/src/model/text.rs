@@ -153,5 +153,10 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         comparison.best.as_str(),
         if comparison.best_leaves_modes_out() { " as far as it is known; what it leaves out is not" } else { "" }
     );
+    let _ = writeln!(
+        text,
+        "  The tier emoc is a net law with fixed parameters; vibroimpact emoc takes the three-parameter law of thesis\n  \
+         chapter 7, which is to be fitted to the structure, and gives another number."
+    );
     text
 }

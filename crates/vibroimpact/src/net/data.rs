@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::fit::Observations;
-use super::impact_on;
+use super::{impact_on, require_vibration};
 use crate::input::{Row, Table, read_bytes};
+use crate::scene::json::number;
 use crate::scene::{InvalidInput, Scene, SceneError, Structure};
 
 const COLUMNS: [&str; 3] = ["mass_kg", "location_m", "restitution"];
@@ -93,11 +94,12 @@ impl Scene {
         for datum in table {
             let at =
                 |fault: InvalidInput| InvalidInput { field: format!("line {}, {}", datum.line, fault.field), ..fault };
-            if !(-0.5..=1.5).contains(&datum.restitution) {
-                let allowed = "a number from -0.5 to 1.5 (energy allows 0 to 1; the rest is for errors of measurement)";
-                return Err(at(InvalidInput::new("restitution", datum.restitution.to_string(), allowed)));
+            if !(0.0..=1.0).contains(&datum.restitution) {
+                let allowed = "a coefficient of restitution from 0 to 1";
+                return Err(at(InvalidInput::new("restitution", number(datum.restitution), allowed)));
             }
             let seen = modes.seen_from(datum.location_m).map_err(at)?;
+            require_vibration(&seen)?;
             observations.impacts.push(impact_on(&seen, datum.mass_kg).map_err(at)?);
             observations.restitution.push(datum.restitution);
         }

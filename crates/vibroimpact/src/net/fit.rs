@@ -8,6 +8,9 @@ use crate::scene::InvalidInput;
 
 /// Where the parameters are sought; a fit may leave it.
 const SEARCH: (f64, f64) = (1e-3, 1e3);
+/// A parameter beyond these is not known: the law has reached the limit that it has there, and the sum of squares
+/// changes no more.
+const DETERMINED: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Starting points. The sum of squares has several minima, because `ebar` treats small and large `Z` alike.
 const STARTS: usize = 24;
 
@@ -21,6 +24,17 @@ pub struct Observations {
 }
 
 impl Observations {
+    /// How many of them differ in what the law sees, counted up to `most`: impacts that were repeated count once.
+    pub fn distinct(&self, most: usize) -> usize {
+        let mut seen: Vec<&Impact> = Vec::new();
+        for impact in self.impacts.iter().take(self.count()) {
+            if seen.len() < most && !seen.contains(&impact) {
+                seen.push(impact);
+            }
+        }
+        seen.len()
+    }
+
     /// How many.
     pub fn count(&self) -> usize {
         self.impacts.len().min(self.restitution.len())
@@ -102,15 +116,19 @@ pub struct FitSummary {
     pub modes: usize,
     /// 95 % intervals of the three; null where the observations do not determine them.
     pub intervals: Option<[[f64; 2]; 3]>,
-    /// Whether the search ended at a minimum rather than at its limit.
+    /// Whether the search ended at a minimum that all three parameters have a part in, rather than at its limit or far
+    /// out where the sum of squares no longer changes.
     pub converged: bool,
+    /// The names of the parameters that ran off so far (below 1e-6 or above 1e6) that the law no longer feels them: the
+    /// observations do not determine them, and their values mean "very small" or "very large".
+    pub undetermined: Vec<&'static str>,
 }
 
 impl FitSummary {
     /// Fits the parameters to the observations and sums up.
     ///
     /// # Errors
-    /// Fewer than three observations, or such that the law is not finite.
+    /// Fewer than three different impacts, or such that the law is not finite.
     pub fn new(observations: &Observations, modes: usize) -> Result<FitSummary, InvalidInput> {
         let lines = observations.count();
         let needed = Observations::parameters().len();
@@ -118,10 +136,18 @@ impl FitSummary {
         if lines < needed {
             return Err(fault(format!("at least {needed}, one for each parameter")));
         }
+        let distinct = observations.distinct(needed);
+        if distinct < needed {
+            let allowed = format!("at least {needed}, one for each parameter; repeated lines count once");
+            return Err(InvalidInput::new("lines of data that differ in mass or place", distinct.to_string(), allowed));
+        }
         let fit = observations.fit().map_err(|error| fault(format!("such as can be fitted ({error})")))?;
-        let intervals = fit.intervals(LEVEL).ok().flatten();
-        let ends = |k: usize| intervals.as_ref().and_then(|all| all.get(k)).map(|found| [found.low, found.high]);
         let [mu0, alpha0, alpha1] = [0, 1, 2].map(|k| fit.parameters.get(k).copied().unwrap_or(f64::NAN));
+        let named = [("mu0", mu0), ("alpha0", alpha0), ("alpha1", alpha1)];
+        let undetermined: Vec<&str> =
+            named.iter().filter(|(_, value)| !DETERMINED.contains(value)).map(|(name, _)| *name).collect();
+        let intervals = fit.intervals(LEVEL).ok().flatten().filter(|_| undetermined.is_empty());
+        let ends = |k: usize| intervals.as_ref().and_then(|all| all.get(k)).map(|found| [found.low, found.high]);
         Ok(FitSummary {
             mu0,
             alpha0,
@@ -131,7 +157,8 @@ impl FitSummary {
             count: fit.report.count,
             modes,
             intervals: ends(0).zip(ends(1)).zip(ends(2)).map(|((a, b), c)| [a, b, c]),
-            converged: fit.outcome == Outcome::Converged,
+            converged: fit.outcome == Outcome::Converged && undetermined.is_empty(),
+            undetermined,
         })
     }
 }

@@ -41,6 +41,12 @@ pub struct NetRebound {
     pub modes: usize,
     /// Mass in the law (kg): the striker's, or less if the structure has rigid-body modes.
     pub mass_kg: f64,
+    /// Moderated mass ratio coefficient (Eq. 7.4).
+    pub mu0: f64,
+    /// Modal richness coefficient (Eq. 7.6).
+    pub alpha0: f64,
+    /// Slow response coefficient (Eq. 7.7).
+    pub alpha1: f64,
 }
 
 impl Scene {
@@ -73,6 +79,7 @@ impl Scene {
             None if model::chooses_modes(self) => self.mode_shapes(LAW_MODES)?,
             None => self.structure.modes(self.place(), self.modes.count())?,
         };
+        require_vibration(&modes)?;
         // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
         let resolved = self.impact_of(self.modes.count().or(Some(modes.len())), &mut Kept::default())?;
         Solver::new(&resolved.structure).map_err(in_scene)?;
@@ -91,8 +98,20 @@ impl Scene {
             branch: rebound.branch.as_str(),
             modes: vibrating(&modes).len(),
             mass_kg: impact.mass_kg,
+            mu0: parameters.mu0,
+            alpha0: parameters.alpha0,
+            alpha1: parameters.alpha1,
         })
     }
+}
+
+/// The law divides by the number of vibration modes.
+fn require_vibration(modes: &[Mode]) -> Result<(), InvalidInput> {
+    if modes.iter().any(|mode| mode.omega_rad_s > 0.0) {
+        return Ok(());
+    }
+    let allowed = "enough for at least one mode that vibrates; rigid-body modes are none";
+    Err(InvalidInput::new("modes", modes.len().to_string(), allowed))
 }
 
 /// Shapes of the modes that are no rigid-body motion.

@@ -1,6 +1,6 @@
 //! Results of several models beside each other.
 
-use crate::model::Comparison;
+use crate::model::{Answer, Comparison};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use crate::text::restitution as with_uncertainty;
 
@@ -39,10 +39,14 @@ pub fn comparison(
         true => with_uncertainty(restitution[i], error(i)),
         false => String::new(),
     });
+    // all of the range that a restitution usually has, and of what lies outside
+    let found = || restitution.iter().copied().filter(|e| e.is_finite());
+    let range = (found().fold(0.0, f64::min), found().fold(1.0, f64::max));
     let ticks = || line.iter().zip(names).map(|(&y, name)| (y, name.as_ref().to_owned()));
-    let y = || Axis::new("").ticks_at(ticks()).limits(0.4, count as f64 + 0.8);
+    let y = || Axis::new("").ticks_at(ticks()).limits(0.4, count as f64 + 0.6);
     let height_px = 20.0 + 34.0 * count as f64;
-    let results = Panel::new(Axis::new("restitution"), y())
+    let margin = 0.03 * (range.1 - range.0);
+    let results = Panel::new(Axis::new("restitution").limits(range.0 - margin, range.1 + margin), y())
         .height(height_px)
         .with(Series::level_error_bars(&restitution, &line, &half, Marker::Dot).colour(Colour::Blue))
         .with(Series::labels(&restitution, &line, texts));
@@ -62,13 +66,31 @@ pub fn of_comparison(title: &str, comparison: &Comparison) -> Figure {
         .iter()
         .map(|answer| {
             let chosen = if answer.model == comparison.chosen.model { " (chosen)" } else { "" };
+            // a row without a point says why
+            let outcome = match answer.restitution {
+                Some(_) => String::new(),
+                None => format!(": {}", answer.outcome),
+            };
             match answer.modes {
-                0 => format!("{}{chosen}", answer.model.as_str()),
-                modes => format!("{}, {modes} modes{chosen}", answer.model.as_str()),
+                0 => format!("{}{chosen}{outcome}", answer.model.as_str()),
+                modes => format!("{}, {modes} modes{chosen}{outcome}", answer.model.as_str()),
             }
         })
         .collect();
     let restitution: Vec<f64> = answers.iter().map(|answer| answer.restitution.unwrap_or(f64::NAN)).collect();
     let uncertainty: Vec<f64> = answers.iter().map(|a| a.restitution_uncertainty.unwrap_or(f64::NAN)).collect();
     self::comparison(title, &names, &restitution, &uncertainty, &[])
+}
+
+/// An answer of a model that resolves no course in time: the restitution and how well it is known.
+pub fn of_answer(title: &str, answer: &Answer) -> Figure {
+    let title = format!("{title}\n{}: the net result, without a course in time", answer.model.as_str());
+    let value = |number: Option<f64>| [number.unwrap_or(f64::NAN)];
+    comparison(
+        &title,
+        &[answer.model.as_str()],
+        &value(answer.restitution),
+        &value(answer.restitution_uncertainty),
+        &[],
+    )
 }

@@ -1,10 +1,11 @@
 //! One impact on a modal structure.
 
-use contact_models::Law;
-use vibroimpact_sim::modal::{History, Sample};
+use vibroimpact_sim::modal::Sample;
 
 use super::{Peak, force_panel};
+use crate::Impact;
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+use crate::simulate::Resolved;
 use crate::summary::{Contact, Summary};
 use crate::text::{quantity, restitution};
 
@@ -12,33 +13,32 @@ use crate::text::{quantity, restitution};
 const INTERVALS: usize = 1000;
 /// Most points of the energies' course.
 const ENERGY_POINTS: f64 = 1200.0;
-/// How far past the last separation the picture goes, as a share of the time until then.
-const AFTERMATH: f64 = 0.1;
 /// Contacts drawn over their own duration.
 const OVERLAID: usize = 6;
 /// Modes whose energy lies this far below the largest are not worth a decade of the axis.
 const LEAST_MODAL_ENERGY: f64 = 1e-6;
 
-/// Where the bodies were, how fast the striker went, the force, where the energy was; below, each contact over its own
-/// duration, and the energy left in each mode. Grey stripes are the times in contact; numbers are those of the contacts
-/// in the summary.
+/// Where the bodies were, how fast they went, the force, where the energy was; below, each contact over its own duration,
+/// and the energy left in each mode. Grey stripes are the times in contact; numbers are those of the contacts in the
+/// summary. All of it until `until_s`. The velocity is that of the body that moves as a whole: the striker's, the
+/// structure's at the contact where the striker is a stop, or both where both move before the impact.
 ///
 /// ```
-/// use vibroimpact::{Scene, pictures, summary::Summary};
+/// use vibroimpact::simulate::Simulation;
+/// use vibroimpact::{Scene, pictures};
 ///
 /// let scene = Scene::from_json(r#"{
 ///     "structure": { "kind": "modal", "omega_rad_s": [6.283], "shape_at_location": [1] },
 ///     "striker": { "mass_kg": 1, "speed_m_s": 1 },
 ///     "contact": { "law": "linear-spring", "stiffness_n_m": 1000 }
 /// }"#)?;
-/// let (solution, history) = scene.impact()?.record()?;
-/// let summary = Summary::new(&solution, history.energy_ledger(), 0.0);
-/// let svg = pictures::impact("A mass on a spring", &summary, &history).svg().expect("a picture");
+/// let Simulation::Modal(resolved) = scene.simulate()? else { panic!("a structure with modes") };
+/// let svg = pictures::impact("A mass on a spring", &resolved, resolved.until_s(None)).svg().expect("a picture");
 /// assert!(svg.contains("contact force (N)"));
 /// # Ok::<(), vibroimpact::SceneError>(())
 /// ```
-pub fn impact(title: &str, summary: &Summary, history: &History<Law>) -> Figure {
-    let until_s = history.duration_s() * (1.0 + AFTERMATH);
+pub fn impact(title: &str, resolved: &Resolved, until_s: f64) -> Figure {
+    let Resolved { impact, summary, history } = resolved;
     let samples: Vec<Sample> = history.times(until_s, INTERVALS).into_iter().map(|t| history.at(t)).collect();
     let column = |of: fn(&Sample) -> f64| samples.iter().map(of).collect::<Vec<f64>>();
     let time = column(|s| s.time_s);
@@ -51,23 +51,36 @@ pub fn impact(title: &str, summary: &Summary, history: &History<Law>) -> Figure 
             .height(height_px)
             .with(Series::spans(&starts, &ends))
     };
+    let [structure, striker] = names(impact);
+    let moving = impact.striker.mass_kg.is_finite();
     let displacement = panel("displacement", "m", 130.0)
-        .with(Series::line(&time, &column(|s| s.structure_displacement_m)).label("structure").colour(Colour::Vermilion))
-        .with(Series::line(&time, &column(|s| s.striker_displacement_m)).label("striker").colour(Colour::Blue));
-    let velocity = panel("velocity", "m/s", 100.0)
-        .with(Series::horizontal_rule(0.0))
-        .with(Series::line(&time, &column(|s| s.striker_velocity_m_s)).colour(Colour::Blue));
+        .with(Series::line(&time, &column(|s| s.structure_displacement_m)).label(structure).colour(Colour::Vermilion))
+        .with(Series::line(&time, &column(|s| s.striker_displacement_m)).label(striker).colour(Colour::Blue));
+    let mut velocity = panel("velocity", "m/s", 100.0).with(Series::horizontal_rule(0.0));
+    if impact.start.is_some() || !moving {
+        let line = Series::line(&time, &column(|s| s.structure_velocity_m_s)).line_width(0.8);
+        velocity = velocity.with(line.label(format!("{structure} at the contact")).colour(Colour::Vermilion));
+    }
+    if moving {
+        let line = Series::line(&time, &column(|s| s.striker_velocity_m_s));
+        velocity = velocity.with(line.label(striker).colour(Colour::Blue));
+    }
     let peaks: Vec<Peak> = contacts.iter().map(|contact| peak(contact, &samples)).collect();
     let force = force_panel(time_axis().unlabelled(), "N", &time, &column(|s| s.force_n), &peaks);
     let figure = Figure::new(format!("{title}\n{}", result(summary)))
         .row([displacement])
         .row([velocity])
         .row([force])
-        .row([shares(history, summary, until_s)]);
+        .row([shares(resolved, until_s)]);
     match summary.modes {
         0 => figure.row([each_contact(contacts, &samples)]),
         _ => figure.row([each_contact(contacts, &samples), modal_energies(&summary.energy.modes_j)]),
     }
+}
+
+/// What the two bodies are called: a dropped rod is the structure, and the floor its striker.
+fn names(impact: &Impact) -> [&'static str; 2] {
+    if impact.striker.mass_kg.is_finite() { ["structure", "striker"] } else { ["structure", "stop"] }
 }
 
 /// The result in one line.
@@ -97,35 +110,45 @@ fn peak(contact: &Contact, samples: &[Sample]) -> Peak {
     Peak { time: highest.map_or(contact.start_s, |s| s.time_s), force: contact.peak_force_n }
 }
 
+/// Energy of the striker, which a stop has none of, and of the structure (J).
+fn energies_j(resolved: &Resolved, time_s: f64) -> [f64; 2] {
+    let Resolved { impact, history, .. } = resolved;
+    let mass_kg = impact.striker.mass_kg;
+    let striker_j =
+        if mass_kg.is_finite() { 0.5 * mass_kg * history.at(time_s).striker_velocity_m_s.powi(2) } else { 0.0 };
+    [striker_j, history.modal_energies_j(time_s).iter().sum()]
+}
+
 /// Where the energy was: striker, structure, and the rest, which the contact stores or has lost together with damping.
-fn shares(history: &History<Law>, summary: &Summary, until_s: f64) -> Panel {
+fn shares(resolved: &Resolved, until_s: f64) -> Panel {
+    let Resolved { impact, summary, history } = resolved;
     let mut time: Vec<f64> = Vec::new();
     for t in history.times(until_s, 400) {
         if time.last().is_none_or(|last| t - last >= until_s / ENERGY_POINTS) {
             time.push(t);
         }
     }
-    let initial_j = summary.energy.initial_j;
-    // the structure starts at rest: all energy is the striker's
-    let speed_m_s = history.at(0.0).striker_velocity_m_s;
-    let percent = |part: f64| (100.0 * part).clamp(0.0, 100.0);
-    let striker: Vec<f64> =
-        time.iter().map(|&t| percent((history.at(t).striker_velocity_m_s / speed_m_s).powi(2))).collect();
-    let both: Vec<f64> = time
-        .iter()
-        .zip(&striker)
-        .map(|(&t, s)| (s + 100.0 * history.modal_energies_j(t).iter().sum::<f64>() / initial_j).clamp(0.0, 100.0))
-        .collect();
+    let percent = |energy_j: f64| (100.0 * energy_j / summary.energy.initial_j).clamp(0.0, 100.0);
+    let energies: Vec<[f64; 2]> = time.iter().map(|&t| energies_j(resolved, t)).collect();
+    let striker: Vec<f64> = energies.iter().map(|[striker, _]| percent(*striker)).collect();
+    let both: Vec<f64> = energies.iter().map(|[striker, structure]| percent(striker + structure)).collect();
     let (floor, ceiling) = (vec![0.0; time.len()], vec![100.0; time.len()]);
     let axis = Axis::new("energy").unit("%").limits(0.0, 100.0);
     let band = |low: &[f64], high: &[f64], label: &str, colour| {
         Series::band(&time, low, high).label(label).colour(colour).opacity(0.5)
     };
-    Panel::new(Axis::new("time").unit("s").limits(0.0, until_s), axis)
-        .height(110.0)
-        .with(band(&floor, &striker, "striker", Colour::Blue))
-        .with(band(&striker, &both, "structure", Colour::Vermilion))
-        .with(band(&both, &ceiling, "in the contact, or lost in it and by damping", Colour::Grey))
+    let panel = Panel::new(Axis::new("time").unit("s").limits(0.0, until_s), axis).height(110.0);
+    let panel = if impact.striker.mass_kg.is_finite() {
+        panel.with(band(&floor, &striker, "striker", Colour::Blue))
+    } else {
+        panel
+    };
+    panel.with(band(&striker, &both, "structure", Colour::Vermilion)).with(band(
+        &both,
+        &ceiling,
+        "in the contact, or lost in it and by damping",
+        Colour::Grey,
+    ))
 }
 
 /// The force of the first contacts, each from its touch on.
@@ -154,4 +177,39 @@ fn modal_energies(energies_j: &[f64]) -> Panel {
         .title("Left in each mode at the end")
         .height(130.0)
         .with(Series::stem(&number, energies_j, Marker::Dot).colour(Colour::Vermilion).line_width(0.8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::Simulation;
+
+    /// What is drawn is what the ledger says, of every kind of scene: whichever body moves first.
+    #[test]
+    fn the_energies_drawn_are_those_of_the_ledger() {
+        let beam = |striker: &str, start: &str| {
+            format!(
+                r#"{{ "structure": {{ "kind": "modal", "omega_rad_s": [100, 700], "shape_at_location": [1, 0.8],
+                                     "damping_ratios": [0.02, 0.02] }},
+                     "striker": {striker}, "start": {start}, "contact": {{ "law": "hertz", "stiffness_n_m1_5": 1e9 }} }}"#
+            )
+        };
+        let moving = r#"{ "gap_m": 1e-4, "moving_modes": [{ "mode": 1, "velocity_m_s": 0.5 }] }"#;
+        for (scene, at_first) in [
+            (beam(r#"{ "mass_kg": 0.1, "speed_m_s": 1 }"#, "{}"), [0.05, 0.0]),
+            (beam(r#"{ "mass_kg": 0.1, "speed_m_s": 1 }"#, moving), [0.05, 0.125]),
+            (beam(r#"{ "mass_kg": 0.1, "speed_m_s": 0 }"#, moving), [0.0, 0.125]),
+            (beam(r#"{ "immovable": true, "speed_m_s": 0 }"#, moving), [0.0, 0.125]),
+        ] {
+            let scene = crate::Scene::from_json(&scene).unwrap();
+            let Simulation::Modal(resolved) = scene.simulate().unwrap() else { panic!("a structure with modes") };
+            let near = |found: [f64; 2], wanted: [f64; 2]| {
+                found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-10)
+            };
+            let energy = &resolved.summary.energy;
+            assert!(near(energies_j(&resolved, 0.0), at_first), "{scene:?}");
+            let at_last = energies_j(&resolved, resolved.summary.end_s);
+            assert!(near(at_last, [energy.striker_j, energy.structure_j]), "{at_last:?} {energy:?}");
+        }
+    }
 }

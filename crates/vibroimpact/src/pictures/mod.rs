@@ -8,7 +8,7 @@ mod comparison;
 mod impact;
 mod modes;
 
-pub use comparison::{comparison, of_comparison};
+pub use comparison::{comparison, of_answer, of_comparison};
 pub use impact::impact;
 pub use modes::modes;
 
@@ -39,10 +39,13 @@ pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f6
         (false, true) => axis.limits(0.0, 1.2 * high),
         (false, false) => axis,
     };
+    // without contact there is no logarithm: the line goes down past the axis
+    let lowest = if axis.logarithmic { 1e-3 * low } else { f64::NEG_INFINITY };
+    let force: Vec<f64> = force.iter().map(|force| force.max(lowest)).collect();
     let few = peaks.len() <= NUMBERED;
     let panel = Panel::new(time_axis, axis)
         .height(140.0)
-        .with(Series::line(time, force).colour(Colour::Black).line_width(if few { 1.0 } else { 0.5 }))
+        .with(Series::line(time, &force).colour(Colour::Black).line_width(if few { 1.0 } else { 0.5 }))
         .with(Series::points(&times, &forces, Marker::Dot).colour(Colour::Vermilion));
     if few { panel.with(Series::labels(&times, &forces, (1..=peaks.len()).map(|n| n.to_string()))) } else { panel }
 }

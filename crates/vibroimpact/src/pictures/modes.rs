@@ -7,13 +7,15 @@ use crate::scene::{Beam, InvalidInput, Location, Scene, Structure};
 use crate::text::quantity;
 
 /// Modes whose shape along the beam is drawn.
-const DRAWN: usize = 10;
+const DRAWN: usize = 30;
 /// Points along a beam, beside the place of impact.
 const POINTS: usize = 400;
+/// Height of many shapes (px).
+const TALLEST_PX: f64 = 760.0;
 /// Largest displacement of a shape, where neighbours are 1 apart.
 const AMPLITUDE: f64 = 0.42;
 
-/// The shapes of the first ten of `count` modes along a beam, each scaled to its largest displacement, with the place
+/// The shapes of the first thirty of `count` modes along a beam, each scaled to its largest displacement, with the place
 /// of impact; below, the mass-normalised shape at that place of all `count` modes against frequency. Of a structure
 /// that is given by its modes only the latter is known.
 ///
@@ -47,14 +49,14 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
     Ok(match (&scene.structure, scene.location_m) {
         (Structure::Beam(beam), Some(Location::Along(location_m))) => {
             let drawn = frequency.get(..count.min(DRAWN)).unwrap_or(&frequency);
-            figure.row([along(beam, location_m, drawn)?]).row([at_place])
+            figure.row([along(beam, location_m, drawn, count)?]).row([at_place])
         }
         _ => figure.row([at_place]),
     })
 }
 
-/// Shapes above each other, the first at the bottom.
-fn along(beam: &Beam, location_m: f64, frequency_hz: &[f64]) -> Result<Panel, InvalidInput> {
+/// Shapes above each other, the first at the bottom; `count` modes were asked for.
+fn along(beam: &Beam, location_m: f64, frequency_hz: &[f64], count: usize) -> Result<Panel, InvalidInput> {
     let in_scene = |fault: beam_modes::InvalidInput| InvalidInput::from(fault).within("structure");
     let body = beam.to_beam().map_err(|fault| fault.within("structure"))?;
     let modes = body.modes(frequency_hz.len()).map_err(in_scene)?;
@@ -72,9 +74,15 @@ fn along(beam: &Beam, location_m: f64, frequency_hz: &[f64]) -> Result<Panel, In
     };
     let names = frequency_hz.iter().enumerate().map(|(k, &f)| ((k + 1) as f64, name(k + 1, f)));
     let y = Axis::new("").ticks_at(names).limits(0.4, frequency_hz.len() as f64 + 0.6);
+    let title = match frequency_hz.len() {
+        drawn if drawn < count => {
+            format!("Shapes of the first {drawn} along the beam; the rule is the place of impact")
+        }
+        _ => "Shapes along the beam; the rule is the place of impact".to_owned(),
+    };
     let mut panel = Panel::new(Axis::new("place along the beam").unit("m").limits(0.0, length_m), y)
-        .title("Shapes along the beam; the rule is the place of impact")
-        .height(38.0 * frequency_hz.len() as f64 + 20.0);
+        .title(title)
+        .height((38.0 * frequency_hz.len() as f64).min(TALLEST_PX) + 20.0);
     let mut joint_m = 0.0;
     for segment in beam.segments.iter().rev().skip(1).rev() {
         joint_m += segment.length_m;

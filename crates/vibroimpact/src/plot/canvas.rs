@@ -183,7 +183,7 @@ pub(super) fn picture(
         canvas.area.present().map_err(|e| io::Error::other(e.to_string()))?;
     }
     let rest = body.split_once('>').map_or("", |(_, rest)| rest);
-    let title = printable(title).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let title = printable(&title.replace('\n', "; ")).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {} {}\" \
          role=\"img\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n<title>{title}</title>{rest}",

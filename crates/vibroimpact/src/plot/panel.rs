@@ -109,7 +109,9 @@ fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, 
         }
         Mark::Spans => {
             for (&from, &to) in series.x.iter().zip(&series.spread) {
-                draw_span(canvas, r, colour, at(from, 1.0).zip(at(to, 1.0)))?;
+                // what begins at nothing on a logarithmic axis comes from beyond its low end
+                let begin = at(from, 1.0).or_else(|| (from <= 0.0).then_some((r.left, r.top)));
+                draw_span(canvas, r, colour, begin.zip(at(to, 1.0)))?;
             }
             Ok(())
         }

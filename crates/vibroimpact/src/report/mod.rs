@@ -21,7 +21,7 @@ mod html;
 mod simulation;
 
 pub use comparison::{Comparison, Expected, Verdict, significant};
-pub use simulation::{modelled, of_impact, of_infinite_impact};
+pub use simulation::{modelled, of_impact, of_infinite_impact, of_net_impact};
 
 use crate::plot::Figure;
 use std::collections::BTreeMap;

@@ -5,14 +5,16 @@ use std::io;
 use super::{Report, literal};
 use crate::Impact;
 use crate::infinite;
+use crate::model::Answer;
 use crate::plot::Figure;
 use crate::scene::{PlateTheory, Scene, Structure};
+use crate::simulate::Resolved;
 use crate::summary::Summary;
 use crate::text::{quantity, restitution, stopped};
 
 /// Under the picture of an impact.
 const PICTURE_CAPTION: &str =
-    "Grey stripes are the times in contact; the velocity is the striker's; numbers are those of the contacts below.";
+    "Grey stripes are the times in contact; numbers are those of the contacts in the table below.";
 /// Contacts in the table; the rest are counted.
 const LISTED: usize = 200;
 
@@ -25,11 +27,12 @@ pub fn of_impact(
     headline: &str,
     scene: &Scene,
     modelled: &[String],
-    summary: &Summary,
+    resolved: &Resolved,
     figure: &Figure,
 ) -> io::Result<Report> {
+    let Resolved { impact, summary, .. } = resolved;
     let mut report = begun(headline, Some(scene));
-    report.table(&["result", ""], &result(summary));
+    report.table(&["result", ""], &result(impact, summary));
     report.heading("What was modelled, and why");
     report.list(modelled);
     report.heading("The impact");
@@ -54,7 +57,7 @@ pub fn of_impact(
     report.table(&["contact", "from", "to", "impulse", "largest force", "largest compression"], &rows);
     more(&mut report, summary.sub_impact_count);
     report.heading("Energy");
-    report.table(&["where", "energy", "share"], &energy(summary));
+    report.table(&["where", "energy", "share"], &energy(impact, summary));
     report.text(
         "The last row is what the others leave of the energy before the impact: a measure of the computation's \
          accuracy.",
@@ -126,6 +129,30 @@ pub fn of_infinite_impact(
     Ok(report)
 }
 
+/// The report on an answer of a model that resolves no course in time.
+///
+/// # Errors
+/// Those of the figure.
+pub fn of_net_impact(headline: &str, scene: &Scene, answer: &Answer, figure: &Figure) -> io::Result<Report> {
+    let mut report = begun(headline, Some(scene));
+    let mut rows = vec![row("outcome", answer.outcome.to_owned())];
+    if let Some(value) = answer.restitution {
+        rows.push(row("restitution", format!("**{}**", restitution(value, answer.restitution_uncertainty))));
+    }
+    report.table(&["result", ""], &rows);
+    report.heading("What was modelled, and why");
+    report.list(&[
+        format!("Model: {}.", literal(&answer.reason)),
+        "This model gives the net result alone. The scene with `\"model\": \"modal\"` resolves contacts, motion and \
+         energy in time."
+            .to_owned(),
+    ]);
+    report.heading("The impact");
+    report.figure("impact", figure, "The restitution, with the range that its uncertainty allows.")?;
+    ended(&mut report, Some(scene), "vibroimpact simulate scene.json");
+    Ok(report)
+}
+
 /// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item. `reason` is that of
 /// the choice of the model, [`Answer::reason`](crate::model::Answer::reason).
 pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
@@ -152,6 +179,9 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
             if plate.theory == PlateTheory::Mindlin { "Mindlin" } else { "Kirchhoff" },
             plate.damping_ratio
         ),
+        Structure::DroppedRod(_) => "The rod by its rigid-body motions and its bending and axial modes, seen from the \
+                                     end that strikes."
+            .to_owned(),
         _ => "The structure by the modes that the scene gives.".to_owned(),
     };
     let residual = match impact.structure.residual_compliance_m_n {
@@ -167,18 +197,25 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
         structure,
         format!("{} modes{range}.", modes.len()),
         residual,
-        format!(
-            "A striker of {} at {}; the contact law is {}.",
-            quantity(impact.striker.mass_kg * 1e3, "g"),
-            quantity(impact.striker.speed_m_s, "m/s"),
-            scene.contact.law_name()
-        ),
+        format!("{}; the contact law is {}.", striker(scene, impact), scene.contact.law_name()),
         format!(
             "Modes move exactly, and only the contact force is approximated; the accuracy aimed at in the restitution \
              is {:e}.",
             impact.settings.tolerance
         ),
     ]
+}
+
+fn striker(scene: &Scene, impact: &Impact) -> String {
+    let speed = |speed_m_s: f64| quantity(speed_m_s, "m/s");
+    match &scene.structure {
+        Structure::DroppedRod(_) => format!("A floor that does not move, met at {}", speed(scene.striker.speed_m_s)),
+        _ if impact.striker.mass_kg.is_infinite() => "A stop that does not move".to_owned(),
+        _ => {
+            let mass = quantity(impact.striker.mass_kg * 1e3, "g");
+            format!("A striker of {mass} at {}", speed(impact.striker.speed_m_s))
+        }
+    }
 }
 
 fn begun(headline: &str, scene: Option<&Scene>) -> Report {
@@ -193,18 +230,26 @@ fn row(name: &str, value: String) -> Vec<String> {
     vec![name.to_owned(), value]
 }
 
-fn result(summary: &Summary) -> Vec<Vec<String>> {
+fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
     let mut rows = vec![row("outcome", stopped(summary.stopped_by).unwrap_or_else(|| summary.outcome.to_owned()))];
     if let Some(value) = summary.restitution {
         let value = restitution(value, summary.restitution_uncertainty);
         rows.push(row("restitution", format!("**{value}**")));
     }
-    rows.push(row("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")));
+    match &summary.rod {
+        Some(rod) => {
+            rows.push(row("velocity of the rod's centre", quantity(rod.centre_velocity_m_s, "m/s")));
+            rows.push(row("angular velocity of the rod", quantity(rod.angular_velocity_rad_s, "rad/s")));
+            rows.push(row("velocity of the end that struck, vibration aside", quantity(rod.end_velocity_m_s, "m/s")));
+        }
+        None if impact.striker.mass_kg.is_infinite() => {}
+        None => rows.push(row("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"))),
+    }
     rows.push(row("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s"))));
     rows
 }
 
-fn energy(summary: &Summary) -> Vec<Vec<String>> {
+fn energy(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
     let energy = &summary.energy;
     let parts = [
         ("before the impact", energy.initial_j),
@@ -216,7 +261,9 @@ fn energy(summary: &Summary) -> Vec<Vec<String>> {
     ];
     let share = |part: f64| if energy.initial_j > 0.0 { 100.0 * part / energy.initial_j } else { 0.0 };
     let cells = |(name, part): (&str, f64)| vec![name.to_owned(), quantity(part, "J"), percent(share(part))];
-    parts.map(cells).into()
+    // a stop has no energy
+    let stop = impact.striker.mass_kg.is_infinite();
+    parts.into_iter().filter(|(name, _)| !(stop && *name == "striker")).map(cells).collect()
 }
 
 fn percent(share: f64) -> String {

@@ -63,6 +63,13 @@ pub struct Segment {
     pub diameter_m: Option<f64>,
 }
 
+/// The ways in which a section is given.
+pub(super) const SECTIONS: [&[&str]; 3] = [
+    &["flexural_rigidity_n_m2", "mass_per_length_kg_m"],
+    &["youngs_modulus_pa", "density_kg_m3", "width_m", "thickness_m"],
+    &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
+];
+
 impl Beam {
     /// The beam in the terms of [`beam_modes`].
     ///
@@ -155,12 +162,7 @@ impl Segment {
             ("thickness_m", self.thickness_m),
             ("diameter_m", self.diameter_m),
         ];
-        let sets: [&[&str]; 3] = [
-            &["flexural_rigidity_n_m2", "mass_per_length_kg_m"],
-            &["youngs_modulus_pa", "density_kg_m3", "width_m", "thickness_m"],
-            &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
-        ];
-        let set = one_of_sets(&given, &sets)?;
+        let set = one_of_sets(&given, &SECTIONS)?;
         let [rigidity, mass, modulus, density, width, thickness, diameter] =
             given.map(|(_, value)| value.unwrap_or_default());
         for (field, value) in std::iter::once(("length_m", Some(self.length_m))).chain(given) {

@@ -9,9 +9,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::error::InvalidInput;
-use super::json::{quote, read};
+use super::json::{quote, read, unknown_field};
 use super::materials::{HertzStiffness, Materials, in_contact};
 use super::sets::one_of_sets;
+use super::told::did_you_mean_one_of;
 use super::{Striker, fields};
 
 /// The law of the contact; `"law"` in JSON tells which, beside its parameters. A `restitution` is that at an immovable
@@ -129,7 +130,10 @@ impl Contact {
     pub(crate) fn from_value(value: &Value) -> Result<Contact, InvalidInput> {
         let fault = |field: &str, value: Option<&Value>| {
             let name = if field.is_empty() { "contact" } else { field };
-            let allowed = fields::allowed(name).unwrap_or("a number").to_owned();
+            let mut allowed = fields::allowed(name).unwrap_or("a number").to_owned();
+            if let Some(Value::String(word)) = value {
+                allowed += &did_you_mean_one_of(word, &allowed);
+            }
             InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
         };
         let Value::Object(entries) = value else { return Err(fault("", Some(value))) };
@@ -148,9 +152,8 @@ impl Contact {
         match entries.iter().find(|(field, _)| written.get(field).is_none()) {
             None => Ok(contact),
             Some((field, value)) => {
-                let known: Vec<&str> =
-                    written.as_object().into_iter().flatten().map(|(field, _)| field.as_str()).collect();
-                Err(InvalidInput::new(field, quote(value), format!("no such field; here stand {}", known.join(", "))))
+                let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
+                Err(unknown_field(field.clone(), Some(value), known))
             }
         }
     }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use super::json::number;
+use super::told::{printable, shorten, shorten_path};
 
 /// A field of a scene that cannot be used: where it stands, what it holds, and what would be allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,10 +70,12 @@ impl From<emoc::InvalidInput> for InvalidInput {
 
 impl fmt::Display for InvalidInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let field = if self.field.is_empty() { "the scene" } else { &self.field };
+        // names and values come from files and may hold anything
+        let field = if self.field.is_empty() { "the scene".to_owned() } else { shorten_path(&printable(&self.field)) };
+        let allowed = printable(&self.allowed);
         match &self.value {
-            Some(value) => write!(f, "{field} = {value} is not allowed: {}", self.allowed),
-            None => write!(f, "{field} is missing: {}", self.allowed),
+            Some(value) => write!(f, "{field} = {} is not allowed: {allowed}", shorten(&printable(value))),
+            None => write!(f, "{field} is missing: {allowed}"),
         }
     }
 }
@@ -83,7 +86,7 @@ impl std::error::Error for InvalidInput {}
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file could not be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}", printable(&path.display().to_string()))]
     Read {
         /// The file.
         path: PathBuf,
@@ -91,7 +94,7 @@ pub enum SceneError {
         source: std::io::Error,
     },
     /// The text is not JSON, or ends too early.
-    #[error("line {line}, column {column}{}: {reason}", if field.is_empty() { String::new() } else { format!(", in {field}") })]
+    #[error("line {line}, column {column}{}: {}", within(field), printable(reason))]
     Syntax {
         /// Line of the fault, from 1.
         line: usize,
@@ -105,4 +108,8 @@ pub enum SceneError {
     /// A field cannot be used.
     #[error(transparent)]
     Invalid(#[from] InvalidInput),
+}
+
+fn within(field: &str) -> String {
+    if field.is_empty() { String::new() } else { format!(", in {}", shorten_path(&printable(field))) }
 }

@@ -5,6 +5,9 @@ use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
 pub(crate) const POSITIVE: &str = "a finite number greater than 0";
 pub(crate) const NOT_NEGATIVE: &str = "a finite number not less than 0";
+/// A damping ratio; the largest is that of the solver.
+pub(crate) const DAMPING: &str = "a number from 0 to 1e6";
+pub(crate) const MOST_DAMPING: f64 = 1e6;
 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
@@ -38,7 +41,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("theory", "one of kirchhoff, mindlin"),
     ("shear_coefficient", POSITIVE),
     ("tension_n", POSITIVE),
-    ("damping_ratio", NOT_NEGATIVE),
+    ("damping_ratio", DAMPING),
     ("length_m", POSITIVE),
     ("flexural_rigidity_n_m2", POSITIVE),
     ("mass_per_length_kg_m", POSITIVE),
@@ -51,8 +54,8 @@ const FIELDS: &[(&str, &str)] = &[
     ("omega_rad_s[]", NOT_NEGATIVE),
     ("shape_at_location", "a list of finite numbers, one a mode"),
     ("shape_at_location[]", "a finite number"),
-    ("damping_ratios", "a list of finite numbers not less than 0, one a mode"),
-    ("damping_ratios[]", NOT_NEGATIVE),
+    ("damping_ratios", "a list of numbers from 0 to 1e6, one a mode"),
+    ("damping_ratios[]", DAMPING),
     ("modal_mass_kg", "a list of finite numbers greater than 0, one a mode"),
     ("modal_mass_kg[]", POSITIVE),
     ("points", "an object with one object for each named point, which holds its shape"),
@@ -121,6 +124,7 @@ pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
     let of_text = |text: &str| match text {
         POSITIVE => Some((Excluded(0.0), Unbounded)),
         NOT_NEGATIVE => Some((Included(0.0), Unbounded)),
+        DAMPING => Some((Included(0.0), Included(MOST_DAMPING))),
         _ => None,
     };
     match name {

@@ -13,9 +13,7 @@ use serde_path_to_error::{Path, Segment};
 
 use super::error::{InvalidInput, SceneError};
 use super::fields;
-
-/// Longest piece of a value that a message repeats.
-const LONGEST_QUOTE: usize = 60;
+use super::told::{did_you_mean, did_you_mean_one_of, shorten};
 
 /// A JSON tree in which no key occurs twice (a plain `Value` keeps the last silently).
 struct Tree(Value);
@@ -96,7 +94,7 @@ fn syntax_error(text: &str, what: &str, field: String, fault: &serde_json::Error
     let word = word_at(text, fault.line(), fault.column());
     if !field.is_empty() && word.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
         let allowed = fields::allowed(&field).unwrap_or("a finite number").to_owned();
-        return InvalidInput { field, value: Some(word.to_owned()), allowed }.into();
+        return InvalidInput { field, value: Some(shorten(word)), allowed }.into();
     }
     let told = fault.to_string();
     let fault_text = told.split(" at line ").next().unwrap_or(&told);
@@ -105,7 +103,7 @@ fn syntax_error(text: &str, what: &str, field: String, fault: &serde_json::Error
     } else {
         fault_text.to_owned()
     };
-    SceneError::Syntax { line: fault.line(), column: fault.column(), field: shorten(field), reason }
+    SceneError::Syntax { line: fault.line(), column: fault.column(), field, reason }
 }
 
 /// The word of letters, digits and signs around a place in the text.
@@ -174,20 +172,47 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput
             // the path may or may not end in the unknown key
             let holder = render(path);
             let holder = holder.strip_suffix(key).map_or(holder.as_str(), |rest| rest.trim_end_matches('.')).to_owned();
-            let known = told.split_once("expected ").map_or("nothing", |(_, known)| known).replace('`', "");
-            let known = known.strip_prefix("one of ").unwrap_or(&known).to_owned();
+            let known = told.split_once("expected ").map_or("", |(_, known)| known).replace('`', "");
+            let known = known.strip_prefix("one of ").unwrap_or(&known).replace(" or ", ", ");
             let found = at(value, path).map(|inner| inner.get(key).unwrap_or(inner));
-            return InvalidInput {
-                field: join(holder, key),
-                value: found.map(quote),
-                allowed: format!("no such field; here stand {known}"),
-            };
+            return unknown_field(join(holder, key), found, known.split(", "));
         }
         let field = render(path);
         let expected = told.split_once("expected ").map_or(told.as_str(), |(_, expected)| expected);
-        let allowed = fields::allowed(&field).unwrap_or(expected).to_owned();
-        InvalidInput { value: Some(at(value, path).map_or_else(String::new, quote)), field, allowed }
+        let found = at(value, path);
+        let mut allowed = fields::allowed(&field).unwrap_or(expected).to_owned();
+        if let Some(Value::String(word)) = found {
+            allowed += &did_you_mean_one_of(word, &allowed);
+        }
+        InvalidInput { value: Some(found.map_or_else(String::new, quote)), field, allowed }
     })
+}
+
+/// A name that its object does not have, and those that it has.
+pub(crate) fn unknown_field<'a>(
+    field: String,
+    value: Option<&Value>,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> InvalidInput {
+    let key = field.rsplit('.').next().unwrap_or_default();
+    let meant = did_you_mean(key, known.clone());
+    let names: Vec<&str> = known.collect();
+    let allowed = format!("{UNKNOWN_FIELD}{}{meant}", names.join(", "));
+    InvalidInput { value: value.map(quote), field, allowed }
+}
+
+/// How the fault of a name that its object does not have begins.
+pub(crate) const UNKNOWN_FIELD: &str = "unknown field; the fields here are ";
+
+/// The fault of an object whose fields are read in two parts: an unknown field is told of those of the other part, too.
+pub(crate) fn also_known(fault: InvalidInput, beside: &[&str]) -> InvalidInput {
+    let listed = fault.allowed.strip_prefix(UNKNOWN_FIELD).filter(|_| !fault.field.contains(['.', '[']));
+    let Some(listed) = listed.map(|listed| listed.split(';').next().unwrap_or_default().to_owned()) else {
+        return fault;
+    };
+    let InvalidInput { field, value, .. } = fault;
+    let known = listed.split(", ").chain(beside.iter().copied());
+    InvalidInput { value, ..unknown_field(field, None, known) }
 }
 
 /// Takes the entry `tag`, which names the kind of an object, out of the object; the rest is what the kind holds.
@@ -197,7 +222,8 @@ pub(crate) fn split_tag<'k>(
     kinds: &[&'k str],
 ) -> Result<(&'k str, Map<String, Value>), InvalidInput> {
     let fault = |field: &str, value: Option<&Value>| {
-        let allowed = fields::allowed(tag).unwrap_or_default().to_owned();
+        let mut allowed = fields::allowed(tag).unwrap_or_default().to_owned();
+        allowed += &value.and_then(Value::as_str).map_or_else(String::new, |word| did_you_mean(word, kinds.to_vec()));
         InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
     };
     let Value::Object(map) = value else { return Err(fault("", Some(value))) };
@@ -209,14 +235,7 @@ pub(crate) fn split_tag<'k>(
 
 /// A value as the text of a message.
 pub(crate) fn quote(value: &Value) -> String {
-    shorten(value.to_string())
-}
-
-fn shorten(text: String) -> String {
-    match text.char_indices().nth(LONGEST_QUOTE) {
-        Some((cut, _)) => format!("{}...", &text[..cut]),
-        None => text,
-    }
+    shorten(&value.to_string())
 }
 
 /// A number as the text of a message.

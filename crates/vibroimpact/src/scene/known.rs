@@ -66,7 +66,7 @@ impl KnownModes {
 
 /// Passes a damping ratio of a structure.
 pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
-    if damping_ratio >= 0.0 && damping_ratio.is_finite() {
+    if (0.0..=fields::MOST_DAMPING).contains(&damping_ratio) {
         return Ok(());
     }
     let allowed = fields::allowed("damping_ratio").unwrap_or_default();

@@ -45,6 +45,7 @@ mod start;
 mod striker;
 mod string;
 mod structure;
+pub(crate) mod told;
 pub(crate) mod toml;
 
 use std::path::Path;
@@ -69,7 +70,7 @@ pub use plate::{Edge, Plate, PlateTheory};
 pub use start::{MovingMode, Start};
 pub use striker::Striker;
 pub use string::TautString;
-pub use structure::Structure;
+pub use structure::{MOST_MODES, Structure};
 
 use crate::input::read_bytes;
 pub(crate) use modes_file::table_path;
@@ -253,7 +254,8 @@ impl Scene {
         toml::write(&self.tree())
     }
 
-    fn tree(&self) -> Value {
+    /// The scene as a JSON tree, with its version and without the fields that are left out.
+    pub(crate) fn tree(&self) -> Value {
         versioned_tree(self)
     }
 
@@ -281,7 +283,25 @@ pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
     };
     let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    if is_toml { toml::parse(&text) } else { json::parse(&text, what) }
+    if is_toml {
+        toml::parse(&text).map_err(|found| hinted(found, json::parse(&text, what).is_ok(), "JSON", ".json"))
+    } else {
+        let is_toml = || !text.trim().is_empty() && toml::parse(&text).is_ok();
+        json::parse(&text, what).map_err(|found| hinted(found, is_toml(), "TOML", ".toml"))
+    }
+}
+
+/// A fault in the syntax of a text that would be none in another format: the name decides the format.
+fn hinted(found: SceneError, is_other: bool, format: &str, ending: &str) -> SceneError {
+    match found {
+        SceneError::Syntax { line, column, field, reason } if is_other => SceneError::Syntax {
+            line,
+            column,
+            field,
+            reason: format!("{reason}; the text is {format}, which is read from a file whose name ends in {ending}"),
+        },
+        other => other,
+    }
 }
 
 /// Puts the numbers of a `modes-file` into the tree of a scene that stands in `folder`. The tree need not be a whole

@@ -10,6 +10,7 @@ use vibroimpact_sim::modal::{Mode, Solver, Structure};
 use super::error::InvalidInput;
 use super::fields;
 use super::json::{named_objects, number, read};
+use super::told::did_you_mean;
 
 /// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
 /// either at the one place of the impact (`shape_at_location`), or at several `points` of which the scene's `location`
@@ -31,6 +32,7 @@ use super::json::{named_objects, number, read};
 #[serde(deny_unknown_fields)]
 pub struct Modal {
     /// Angular frequencies (rad/s); 0 for a rigid-body mode.
+    #[schemars(length(min = 1))]
     pub omega_rad_s: Vec<f64>,
     /// Damping ratios, one a mode; all 0 when left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -71,7 +73,12 @@ struct Seen<'a> {
 impl Modal {
     pub(super) fn from_value(value: &Value) -> Result<Modal, InvalidInput> {
         let modal: Modal = read(value)?;
-        if !modal.omega_rad_s.is_empty() && modal.shape_at_location.is_empty() && value.get("points").is_none() {
+        if modal.omega_rad_s.is_empty() {
+            let allowed =
+                "a list of at least one frequency; a place that cannot move is a striker of \"immovable\": true";
+            return Err(InvalidInput::new("omega_rad_s", "[]", allowed));
+        }
+        if modal.shape_at_location.is_empty() && value.get("points").is_none() {
             let allowed = "a list of finite numbers, one a mode; or give points, each with its shape";
             return Err(match value.get("shape_at_location") {
                 Some(_) => InvalidInput::new("shape_at_location", "[]", allowed),
@@ -109,7 +116,10 @@ impl Modal {
             (name, false) => {
                 let names = || format!("one of the structure's points, {}", shown(self.points.keys()));
                 let name = name.ok_or_else(|| InvalidInput::missing("location", names()))?;
-                let missing = || InvalidInput::new("location", format!("{name:?}"), names());
+                let missing = || {
+                    let meant = did_you_mean(name, self.points.keys().map(String::as_str));
+                    InvalidInput::new("location", format!("{name:?}"), names() + &meant)
+                };
                 let point = self.points.get(name).ok_or_else(missing)?;
                 Ok(Seen {
                     shape: &point.shape,

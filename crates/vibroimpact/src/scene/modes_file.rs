@@ -76,9 +76,8 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
         }
     };
     let (damping, mass) = (column("damping_ratio")?, column("modal_mass_kg")?);
-    if let Some(row) = table.rows.iter().find(|row| row.len() != table.header.len()) {
-        let allowed = format!("as many as the line of names has, which is {}", table.header.len());
-        return Err(InvalidInput::new(format!("line {}", row.line), format!("{} cells", row.len()), allowed));
+    if table.rows.is_empty() {
+        return Err(InvalidInput::new("number of modes", "0", "at least one line below the line of names, one a mode"));
     }
     let list = |place: Option<usize>, name: &str, allowed: (&str, fn(f64) -> bool)| match place {
         None => Ok(Vec::new()),
@@ -88,7 +87,11 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
     let omega = list(Some(frequency), name, not_negative)?;
     let mut modal = Modal {
         omega_rad_s: omega.iter().map(|value| to_omega * value).collect(),
-        damping_ratios: list(damping, "damping_ratio", not_negative)?,
+        damping_ratios: list(
+            damping,
+            "damping_ratio",
+            (fields::DAMPING, |value| (0.0..=fields::MOST_DAMPING).contains(&value)),
+        )?,
         modal_mass_kg: list(mass, "modal_mass_kg", (fields::POSITIVE, |value| value > 0.0))?,
         ..Modal::default()
     };

@@ -8,17 +8,92 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
+use super::beam::SECTIONS;
 use super::{FORMAT_VERSION, Scene, fields};
 
-/// The JSON Schema (draft 2020-12) of scene files. What it lets pass has the right shape; quantities that can be given in
-/// more than one way, and ranges that depend on other fields, are left to [`Scene::impact`].
+/// The JSON Schema (draft 2020-12) of scene files. What it lets pass has the right shape, a place where the structure needs
+/// one, a mass given in one way, and sections given in one way. It cannot compare numbers of different fields: that a
+/// place lies on the beam, that lists are equally long, and that a name is one of the points is left to
+/// [`Scene::impact`].
 ///
 /// ```
 /// let schema = vibroimpact::scene::schema::of_scenes();
 /// assert_eq!(schema["properties"]["location_m"]["type"][0], "number");
 /// ```
 pub fn of_scenes() -> Value {
-    of::<Scene>(FORMAT_VERSION)
+    let mut schema = of::<Scene>(FORMAT_VERSION);
+    if let Some(root) = schema.as_object_mut() {
+        root.insert("allOf".to_owned(), dependent_fields());
+    }
+    schema
+}
+
+/// What the kind of structure asks of the fields beside it.
+fn dependent_fields() -> Value {
+    let none = |fields: &[&str]| -> Map<String, Value> {
+        fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect()
+    };
+    let of_kind = |kinds: &[&str], structure: Value, then: Value| {
+        let kind = json!({ "properties": { "kind": { "enum": kinds } }, "required": ["kind"] });
+        let here = json!({ "properties": { "structure": { "allOf": [kind, structure] } }, "required": ["structure"] });
+        json!({ "if": here, "then": then })
+    };
+    let any = || json!({});
+    let with_points = || json!({ "required": ["points"] });
+    let placed = |field: &str, kind: &str, other: &str| {
+        let mut properties = none(&[other]);
+        properties.insert(field.to_owned(), json!({ "type": kind }));
+        json!({ "required": [field], "properties": properties })
+    };
+    let mass_or_sphere = one_of_sets(&[&["mass_kg"], &["density_kg_m3", "radius_m"]]);
+    // a radius may stand beside a mass, for the contact
+    let mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
+    let mut stop = none(&["mass_kg", "density_kg_m3"]);
+    stop.insert("immovable".to_owned(), json!({ "const": true }));
+    stop.insert("speed_m_s".to_owned(), json!({ "const": 0 }));
+    let striker = json!({
+        "if": { "required": ["immovable"], "properties": { "immovable": { "const": true } } },
+        "then": { "properties": stop },
+        "else": { "oneOf": mass_or_sphere }
+    });
+    let infinite = none(&["location_m", "location", "start", "tolerance"]);
+    let mut rod = none(&["location_m", "location", "start", "residual_compliance"]);
+    rod.insert("striker".to_owned(), json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m"]) }));
+    let struck = ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate"];
+    json!([
+        of_kind(&["beam", "string"], any(), placed("location_m", "number", "location")),
+        of_kind(&["plate"], any(), placed("location_m", "array", "location")),
+        of_kind(&["modes-file"], any(), placed("location", "string", "location_m")),
+        of_kind(&["modal"], with_points(), placed("location", "string", "location_m")),
+        of_kind(
+            &["modal"],
+            json!({ "not": with_points() }),
+            json!({ "properties": none(&["location_m", "location"]) })
+        ),
+        of_kind(&["infinite-beam", "infinite-plate"], any(), json!({ "properties": infinite })),
+        of_kind(&["dropped-rod"], any(), json!({ "properties": rod })),
+        of_kind(&struck, any(), json!({ "properties": { "striker": striker } })),
+    ])
+}
+
+/// Exactly one of the sets of fields is given, and nothing of the others. A field that is null is not given.
+fn one_of_sets(sets: &[&[&str]]) -> Value {
+    let all = sets.concat();
+    let set = |set: &&[&str]| {
+        let kind = |field: &str| if set.contains(&field) { "number" } else { "null" };
+        let properties: Map<String, Value> =
+            all.iter().map(|field| ((*field).to_owned(), json!({ "type": kind(field) }))).collect();
+        json!({ "required": set, "properties": properties })
+    };
+    sets.iter().map(set).collect()
+}
+
+/// The sets, in one of which a field may stand or not.
+fn without(mut sets: Value, number: usize, field: &str) -> Value {
+    if let Some(properties) = sets.pointer_mut(&format!("/{number}/properties")).and_then(Value::as_object_mut) {
+        properties.remove(field);
+    }
+    sets
 }
 
 /// The schema of a type that is read from a whole file of this format version.
@@ -48,8 +123,13 @@ fn refine(schema: &mut Schema) {
             bound(items, &format!("{name}[]"));
         }
     }
+    let has_section = SECTIONS.concat().iter().all(|field| properties.contains_key(*field));
+    // what is put in below is no object of the format, and is gone through again
     if properties.contains_key("law") {
         schema.insert("unevaluatedProperties".to_owned(), false.into());
+    }
+    if has_section && schema.get("type").is_some() {
+        schema.insert("oneOf".to_owned(), one_of_sets(&SECTIONS));
     }
 }
 

@@ -251,10 +251,10 @@ impl Structure {
 }
 
 /// Largest number of modes that a scene may ask for.
-const MAX_MODES: usize = 10_000;
+pub const MOST_MODES: usize = 10_000;
 
 pub(crate) fn require_count(count: usize) -> Result<(), InvalidInput> {
-    if count <= MAX_MODES {
+    if count <= MOST_MODES {
         Ok(())
     } else {
         Err(InvalidInput::new("modes", count.to_string(), fields::allowed("modes").unwrap_or_default()))

@@ -233,7 +233,7 @@ impl Sweep {
     fn blame(&self, fault: InvalidInput) -> InvalidInput {
         match self.varies(&fault) {
             None => fault.within("scene"),
-            Some(i) if fault.allowed.starts_with("no such field") => {
+            Some(i) if fault.allowed.starts_with(crate::scene::json::UNKNOWN_FIELD) => {
                 let name = format!("{}.field", self.entry(i));
                 InvalidInput::new(name, format!("\"{}\"", fault.field), fault.allowed)
             }

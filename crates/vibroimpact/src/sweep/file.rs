@@ -222,7 +222,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
 /// Reads an object; what is allowed is told in the terms of sweeps.
 fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
     json::read(value).map_err(|found| {
-        let told = if found.allowed.starts_with("no such field") { None } else { look_up(FIELDS, &found.field) };
+        let told = if found.allowed.starts_with(json::UNKNOWN_FIELD) { None } else { look_up(FIELDS, &found.field) };
         let field = if found.field.is_empty() { "the sweep".to_owned() } else { found.field };
         InvalidInput { field, allowed: told.map_or(found.allowed, str::to_owned), ..found }
     })

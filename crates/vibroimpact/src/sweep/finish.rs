@@ -12,8 +12,8 @@ use super::row::{Row, columns};
 use super::table::Table;
 use super::tally::Tally;
 
-const TABLE: &str = "results.parquet";
-const SUMMARY: &str = "summary.json";
+pub(super) const TABLE: &str = "results.parquet";
+pub(super) const SUMMARY: &str = "summary.json";
 
 /// Makes the rest of a folder's files, whose rows are complete. A part has a summary only: the rest is made when the
 /// parts are merged.

@@ -100,6 +100,9 @@ pub(super) const RECORD: &str = "sweep.json";
 pub(super) const RESULTS: &str = "results.csv";
 const PROGRESS: &str = "progress.json";
 const LOCK: &str = "lock";
+/// What a sweep writes beside its record. Where there is no record these are another's, and are not replaced.
+const WRITTEN: [&str; 7] =
+    [RESULTS, PROGRESS, super::finish::TABLE, super::finish::SUMMARY, "report.html", "report.md", "figures"];
 
 impl Folder {
     /// Opens the folder of a sweep to begin, or to go on.
@@ -111,9 +114,9 @@ impl Folder {
         let found = read_json::<Record>(&path.join(RECORD))?;
         if let Some(found) = &found {
             same_sweep(path, found, &record)?;
-        } else if path.join(RESULTS).exists() {
-            let text =
-                format!("{} holds results, but no {RECORD}: not of a sweep; choose another folder", path.display());
+        } else if let Some(name) = WRITTEN.into_iter().find(|name| path.join(name).symlink_metadata().is_ok()) {
+            let folder = path.display();
+            let text = format!("{folder} holds {name}, but no {RECORD}: not of a sweep; choose another folder");
             return Err(SweepError::Refused(text));
         }
         fs::create_dir_all(path).map_err(SweepError::io(path))?;
@@ -249,7 +252,9 @@ fn same_sweep(path: &Path, found: &Record, wanted: &Record) -> Result<(), SweepE
 
 fn lock(path: &Path) -> Result<File, SweepError> {
     let file = path.join(LOCK);
-    let lock = File::create(&file).map_err(SweepError::io(&file))?;
+    // a file that stands there under this name keeps what it holds
+    let opened = OpenOptions::new().write(true).create(true).truncate(false).open(&file);
+    let lock = opened.map_err(SweepError::io(&file))?;
     match lock.try_lock() {
         Ok(()) => Ok(lock),
         Err(TryLockError::WouldBlock) => {

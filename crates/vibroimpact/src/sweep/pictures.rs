@@ -22,6 +22,19 @@ const MOST_DOTS: u64 = 4000;
 /// The share of the draws within a band is that between these quantiles.
 const BAND: RangeInclusive<f64> = 0.05..=0.95;
 
+/// Under curves that are not drawn as lines.
+const UNRESOLVED: &str = " Points that jump to and fro are not joined: finer steps would show what lies between them.";
+/// A curve that turns round at more than this share of its points is not resolved by them.
+const TURNING: f64 = 0.25;
+/// Fewer points say nothing about that.
+const FEWEST: usize = 8;
+/// Smaller steps to and fro are no jumps; as a share of the range of all points.
+const JUMP: f64 = 0.02;
+
+/// One for each curve, so that points in one place are told apart.
+const MARKERS: [Marker; MOST_CURVES as usize] =
+    [Marker::Dot, Marker::Circle, Marker::Cross, Marker::Square, Marker::Triangle, Marker::Plus];
+
 /// A longer description does not fit over a picture.
 const LONGEST_TITLE: usize = 90;
 
@@ -84,22 +97,32 @@ impl<'a> Pictures<'a> {
         let mut restitution = Panel::new(self.axis(along), Axis::new("restitution"));
         let mut sub_impacts = Panel::new(self.axis(along), Axis::new("sub-impacts").integers());
         let others = self.others(&[along]);
+        let mut unresolved = false;
         for (number, other) in others.iter().enumerate() {
             let at = |place: &Place| self.at(points, other, &[(along, place.number)]);
             let spread: Vec<[f64; 3]> = places.iter().map(|place| self.spread(at(place))).collect();
             let column = |k: usize| spread.iter().map(|value| value[k]).collect::<Vec<f64>>();
             let counts: Vec<f64> = places.iter().map(|place| median(at(place), |drawn| drawn.sub_impacts)).collect();
             let colour = crate::plot::Colour::of_series(number);
+            let marker = MARKERS[number % MARKERS.len()];
             let label = self.name(other, &[along]);
             let band = Series::band(&x, &column(0), &column(2)).colour(colour);
-            let line = Series::line(&x, &column(1)).colour(colour).label(label.clone());
-            restitution = restitution.with(band).with(line);
-            sub_impacts = sub_impacts.with(Series::points(&x, &counts, Marker::Dot).colour(colour).label(label));
+            let middle = column(1);
+            // points that jump to and fro do not tell what lies between them
+            let line = if is_resolved(&middle) {
+                Series::line(&x, &middle)
+            } else {
+                unresolved = true;
+                Series::points(&x, &middle, marker)
+            };
+            restitution = restitution.with(band).with(line.colour(colour).label(label.clone()));
+            sub_impacts = sub_impacts.with(Series::points(&x, &counts, marker).colour(colour).label(label));
         }
         let title = self.title(&format!("Restitution against {}", label_and_unit(&self.sweep.axes[along].field).0));
         let figure = Figure::new(title).row([restitution.height(240.0)]).row([sub_impacts]);
         let shown = self.told(&[along], others.len(), x.len() as u64);
-        ("lines", figure, format!("{} {shown}", self.told_band()))
+        let joined = if unresolved { UNRESOLVED } else { "" };
+        ("lines", figure, format!("{}{joined} {shown}", self.told_band()))
     }
 
     fn maps(&self, points: &[Drawn], x: usize, y: usize) -> (&'static str, Figure, String) {
@@ -121,12 +144,12 @@ impl<'a> Pictures<'a> {
                 };
                 let rows = lines.iter().map(|line| columns.iter().map(|column| cell(line, column)).collect()).collect();
                 let map = HeatMap::new(&xs, &ys, rows, value);
-                Panel::new(self.axis(x), self.axis(y)).title(name.clone()).height(230.0).map(map)
+                Panel::new(self.axis(x), self.axis(y)).title(name.clone()).height(300.0).map(map)
             }));
         }
         let shown = self.told(&[x, y], others.len(), xs.len().max(ys.len()) as u64);
         let draws = if self.sweep.draws() > 1 { " Medians over the draws." } else { "" };
-        ("maps", figure.width(860.0), format!("Grey: no restitution.{draws} {shown}"))
+        ("maps", figure.width(1080.0), format!("Grey: no restitution.{draws} {shown}"))
     }
 
     fn dots(&self, points: &[Drawn]) -> (&'static str, Figure, String) {
@@ -264,6 +287,21 @@ fn evenly(count: u64, most: u64) -> Vec<u64> {
     (0..picked).map(|i| i * (count - 1) / (picked - 1).max(1)).collect()
 }
 
+/// Whether points that follow each other may be joined by lines.
+fn is_resolved(values: &[f64]) -> bool {
+    let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    if known.len() < FEWEST {
+        return true;
+    }
+    let (low, high) = known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let jump = JUMP * (high - low);
+    let turns = known.windows(3).filter(|w| {
+        let (before, after) = (w[1] - w[0], w[2] - w[1]);
+        before * after < 0.0 && before.abs() > jump && after.abs() > jump
+    });
+    turns.count() as f64 <= TURNING * known.len() as f64
+}
+
 fn median(draws: &[Drawn], of: fn(&Drawn) -> f64) -> f64 {
     quantile(draws, 0.5, of)
 }
@@ -328,6 +366,16 @@ mod tests {
         assert_eq!(of("contact.stiffness_n_m1_5"), ("contact stiffness".into(), "N/m^1.5"));
         assert_eq!(of("contact.theta_m"), ("contact theta m".into(), ""));
         assert_eq!(of("modes"), ("modes".into(), ""));
+    }
+
+    #[test]
+    fn a_curve_that_jumps_to_and_fro_is_not_joined() {
+        let curve = |of: fn(f64) -> f64| (0..40).map(|i| of(f64::from(i))).collect::<Vec<f64>>();
+        assert!(is_resolved(&curve(|x| (0.3 * x).sin())));
+        assert!(!is_resolved(&curve(|x| (2.5 * x).sin())));
+        // noise of rounding on a smooth curve is no jump
+        assert!(is_resolved(&curve(|x| x + 1e-9 * (2.5 * x).sin())));
+        assert!(is_resolved(&[0.0, 1.0, 0.0, 1.0]));
     }
 
     #[test]

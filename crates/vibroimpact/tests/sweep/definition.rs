@@ -77,7 +77,7 @@ fn faults_of_the_sweep_file_name_their_field() {
         |file| file["vary"][0]["scale"] = json!("cubic"),
         "vary[0].scale = \"cubic\" is not allowed: linear or log",
     );
-    refused(|file| file["vary"][0]["step"] = json!(1), "vary[0].step = 1 is not allowed: no such field");
+    refused(|file| file["vary"][0]["step"] = json!(1), "vary[0].step = 1 is not allowed: unknown field");
     refused(|file| file["vary"][1]["values"] = json!([]), "vary[1].values = [] is not allowed: a list of at least one");
     refused(|file| file["vary"][1]["count"] = json!(3), "vary[1].values = [1,3,4] is not allowed");
     refused(|file| drop(file["vary"][0].as_object_mut().unwrap().remove("count")), "vary[0].count is missing");
@@ -98,7 +98,7 @@ fn faults_of_the_sweep_file_name_their_field() {
 #[test]
 fn fields_that_the_scene_does_not_have_are_refused() {
     let field = |path: &'static str| move |file: &mut Value| file["vary"][0]["field"] = json!(path);
-    refused(field("striker.mas_kg"), "vary[0].field = \"striker.mas_kg\" is not allowed: no such field");
+    refused(field("striker.mas_kg"), "vary[0].field = \"striker.mas_kg\" is not allowed: unknown field");
     refused(
         field("strike.mass_kg"),
         "vary[0].field = \"strike.mass_kg\" is not allowed: the path of a field of the scene; the scene has no strike",

@@ -163,9 +163,10 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
     let (rebound, sustained) = (of(Outcome::Rebound), of(Outcome::Sustained));
     let mut panel = Panel::new(Axis::new("S").log().limits(1e-2, 1e6), Axis::new("separations").integers())
         .height(220.0)
-        .with(Series::vertical_rule(critical.s));
+        .with(Series::vertical_rule(critical.s).label(format!("critical S = {:.4}", critical.s)));
     if let Some(last) = turnings.first() {
-        panel = panel.with(Series::vertical_rule(last.s));
+        let label = format!("last turning point, S = {:.0}", last.s);
+        panel = panel.with(Series::vertical_rule(last.s).dashed().label(label));
     }
     let panel = panel
         .with(
@@ -213,7 +214,7 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
     let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
     let time = Axis::new("time").unit("T").log().limits(0.3, LATEST);
-    let mut upper = Panel::new(Axis::new("S").log().limits(1e-10, 2e5), time).title("(a)").height(320.0);
+    let mut upper = Panel::new(Axis::new("S").log().limits(1e-10, 2e5), time).title("(a) all contacts").height(320.0);
     let x = Axis::new("S above its critical value").log().limits(0.02, 1e3);
     let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
         .title("(b) the later contacts, magnified")
@@ -238,7 +239,14 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         let end = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(width);
         upper = upper.with(start(&s, &starts)).with(end(&s, &ends));
         let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
-        lower = lower.with(start(&distance, &relative(&starts))).with(end(&distance, &relative(&ends)));
+        let (relative_starts, relative_ends) = (relative(&starts), relative(&ends));
+        // the number of the contact where its end is last seen: at the turning point
+        if let Some(last) = (0..s.len()).filter(|&i| ends[i].is_finite()).max_by(|&a, &b| s[a].total_cmp(&s[b])) {
+            let number = |x: f64, y: f64| Series::labels(&[x], &[y], [(k + 1).to_string()]).colour(colour);
+            upper = upper.with(number(s[last], ends[last]));
+            lower = lower.with(number(distance[last], relative_ends[last]));
+        }
+        lower = lower.with(start(&distance, &relative_starts)).with(end(&distance, &relative_ends));
         // the printed figure has both axes linear there
         let scaled = |times: &[f64]| near.clone().map(|i| 1e-5 * times[i]).collect::<Vec<f64>>();
         let (x, starts, ends) = (&s[near.clone()], scaled(&starts), scaled(&ends));
@@ -251,7 +259,8 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
             .row([upper.with(Series::vertical_rule(critical.s))])
             .row([lower])
             .row([linear, inset]),
-        "A curve of separation and the next curve of touch meet at a turning point. Colours repeat. All curves approach \
+        "A curve of separation and the next curve of touch meet at a turning point, where the number is that of the \
+         contact that ends there. Colours repeat. All curves approach \
          the critical S, where the second contact comes after infinite time.",
     )
 }

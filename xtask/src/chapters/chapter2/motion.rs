@@ -24,8 +24,10 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             .height(150.0)
             .with(Series::line(&course.time, &course.beam).colour(Colour::Vermilion).label("y, beam"))
             .with(Series::line(&course.time, &course.body).colour(Colour::Blue).label("z, body"));
+        // without contact there is no logarithm: the line goes down past the axis
+        let drawn: Vec<f64> = course.force.iter().map(|f| if several { f.max(1e-9) } else { *f }).collect();
         let force =
-            Panel::new(time, force).height(150.0).with(Series::line(&course.time, &course.force).colour(Colour::Black));
+            Panel::new(time, force).height(150.0).with(Series::line(&course.time, &drawn).colour(Colour::Black));
         figure = figure.row([motion, force]);
         study.claim(Statement::printed(
             format!("separations at S = {}", significant(*s, 3)),

@@ -31,12 +31,8 @@ impl Table<'_> {
         let numbers: Vec<f64> = (0..self.balls.len()).map(|j| j as f64).collect();
         let ticks = self.balls.iter().zip(&numbers).map(|(ball, j)| (*j, format!("{:.4}", ball.mass_kg)));
         let y = Axis::new("mass of the ball").unit("kg").ticks_at(ticks);
-        Panel::new(Axis::new("location b").unit("m"), y).height(200.0).map(HeatMap::new(
-            &self.places_m,
-            &numbers,
-            values,
-            value,
-        ))
+        let x = Axis::new("location b").unit("m").limits(0.0, self.beam.model.length_m());
+        Panel::new(x, y).height(200.0).map(HeatMap::new(&self.places_m, &numbers, values, value))
     }
 
     /// Mean of a number over the results chosen; NaN if there are none.
@@ -101,7 +97,9 @@ fn figure(table: &Table, number: usize) -> Figure {
     let e = table.map(table.by_ball(Row::e), Axis::new("restitution e").limits(0.0, 1.0)).title("(a) restitution");
     let contacts = table.by_ball(|r| r.sub_impacts as f64);
     let contacts = table.map(contacts, Axis::new("sub-impacts").integers()).title("(b) sub-impacts");
-    let lines = Panel::new(Axis::new("location b").unit("m"), Axis::new("restitution e")).height(230.0).title("(c)");
+    let lines = Panel::new(Axis::new("location b").unit("m"), Axis::new("restitution e"))
+        .height(230.0)
+        .title("(c) restitution along the beam, every other ball");
     let by_ball = table.by_ball(Row::e);
     let markers = [Marker::Circle, Marker::Cross, Marker::Square, Marker::Triangle, Marker::Plus, Marker::Dot];
     let every_other = (0..table.balls.len()).rev().step_by(2).collect::<Vec<_>>().into_iter().rev();

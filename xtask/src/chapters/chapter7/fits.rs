@@ -322,7 +322,11 @@ pub(super) fn against_modes(study: &mut Study, data: &[Dataset]) -> Result<(), F
         );
         rows.extend(fits);
     }
-    panel = panel.with(Series::vertical_rule(LAW_MODES as f64).colour(Colour::Grey));
+    panel = panel.with(
+        Series::vertical_rule(LAW_MODES as f64)
+            .colour(Colour::Grey)
+            .label(format!("N = {LAW_MODES}, as in the thesis")),
+    );
     study.figure(
         "fig-7-07",
         &Figure::new("Fig. 7.7  Error of the fit against the number of modes").row([panel]).width(760.0),

@@ -97,7 +97,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
 
     study.figure(
         "fig-8-02",
-        &by_rod("Fig. 8.2", parameters, &points, &found)?,
+        &by_rod("Fig. 8.2", RESOLVED, parameters, &points, &found)?,
         "Red: the drop resolved in time (not the experiment). Blue: the law, one set of parameters for all rods.",
     )?;
     let longest = parameters.lengths_m[0];
@@ -201,8 +201,8 @@ fn law_curve(parameters: &Parameters, found: &Fit, length_m: f64, axial_modes: u
         .collect()
 }
 
-/// The points in a legend.
-const POINTS: &str = "points fitted";
+/// The points of the chapter's own figures in a legend.
+const RESOLVED: &str = "resolved in time";
 
 fn panel(title: String, points: &[Point], length_m: f64, label: &str) -> Panel {
     let of_rod = points.iter().filter(|point| point.length_m == length_m);
@@ -212,8 +212,14 @@ fn panel(title: String, points: &[Point], length_m: f64, label: &str) -> Panel {
     Panel::new(x, y).title(title).with(Series::points(&angle, &e, Marker::Plus).colour(Colour::Vermilion).label(label))
 }
 
-/// One panel a rod, as Fig. 8.2.
-pub(super) fn by_rod(name: &str, parameters: &Parameters, points: &[Point], found: &Fit) -> Result<Figure, Failure> {
+/// One panel a rod, as Fig. 8.2; `source` says in the legend what the points are.
+pub(super) fn by_rod(
+    name: &str,
+    source: &str,
+    parameters: &Parameters,
+    points: &[Point],
+    found: &Fit,
+) -> Result<Figure, Failure> {
     let mut lengths: Vec<f64> = points.iter().map(|point| point.length_m).collect();
     lengths.sort_by(|a, b| b.total_cmp(a));
     lengths.dedup();
@@ -225,7 +231,7 @@ pub(super) fn by_rod(name: &str, parameters: &Parameters, points: &[Point], foun
             let modes = parameters.rod(length, 45.0).bending_modes_below_first_axial()?;
             let title = format!("{:.0} mm, {modes} bending modes", 1e3 * length);
             let curve = law_curve(parameters, found, length, 0)?;
-            let [of_points, of_law] = if k == 0 { [POINTS, "algebraic law"] } else { [""; 2] };
+            let [of_points, of_law] = if k == 0 { [source, "algebraic law"] } else { [""; 2] };
             let line = Series::line(&fine, &curve).colour(Colour::Blue).label(of_law);
             Ok(panel(title, points, length, of_points).height(150.0).with(line))
         })
@@ -237,7 +243,7 @@ pub(super) fn by_rod(name: &str, parameters: &Parameters, points: &[Point], foun
 
 fn axial_figure(parameters: &Parameters, points: &[Point], found: &Fit, length_m: f64) -> Result<Figure, Failure> {
     let fine = fine_angles();
-    let mut panel = panel(String::new(), points, length_m, POINTS).height(260.0);
+    let mut panel = panel(String::new(), points, length_m, RESOLVED).height(260.0);
     for (axial, colour, label) in [(0, Colour::Blue, "bending modes only"), (1, Colour::Green, "and one axial mode")] {
         let curve = law_curve(parameters, found, length_m, axial)?;
         panel = panel.with(Series::line(&fine, &curve).colour(colour).label(label));

@@ -1,0 +1,56 @@
+//! A sign of life from work that cannot tell how far it has come.
+
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Before this nobody wonders.
+const FIRST: Duration = Duration::from_secs(10);
+/// Each silence is twice as long as the last, up to this.
+const LONGEST: Duration = Duration::from_secs(300);
+
+/// Does the work; as long as it takes, a line now and then on the standard error says that it goes on.
+pub fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
+    watched_from(FIRST, |elapsed| eprintln!("{name}: {} s so far, still computing", elapsed.as_secs()), work)
+}
+
+fn watched_from<T>(first: Duration, tell: impl Fn(Duration) + Send, work: impl FnOnce() -> T) -> T {
+    let (done, waiting) = channel::<()>();
+    let begun = Instant::now();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            let mut silence = first;
+            while waiting.recv_timeout(silence) == Err(RecvTimeoutError::Timeout) {
+                tell(begun.elapsed());
+                silence = (2 * silence).min(LONGEST);
+            }
+        });
+        let result = work();
+        // ends the silence, and with it the thread
+        drop(done);
+        result
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+
+    #[test]
+    fn long_work_is_heard_of_and_short_work_is_not() {
+        let heard = Mutex::new(Vec::new());
+        let tell = |elapsed| heard.lock().unwrap().push(elapsed);
+        assert_eq!(watched_from(FIRST, tell, || 7), 7);
+        assert!(heard.lock().unwrap().is_empty());
+        // the work waits until it has been heard of three times
+        let count = || heard.lock().unwrap().len();
+        watched_from(Duration::from_millis(1), tell, || {
+            while count() < 3 {
+                thread::yield_now();
+            }
+        });
+        assert!(heard.lock().unwrap().windows(2).all(|pair| pair[0] < pair[1]));
+    }
+}

@@ -1,0 +1,190 @@
+//! The result of `simulate` for programs: one shape, whichever model answered.
+
+use serde::Serialize;
+use serde_json::Value;
+use vibroimpact_sim::StopReason;
+use vibroimpact_sim::infinite::{Groups, Solution};
+
+use crate::infinite;
+use crate::model::{Answer, Uncertainty};
+use crate::scene::{InvalidInput, Scene, Structure};
+use crate::summary::{Contact, Cost, Energy, RodMotion, Summary, word};
+
+/// What `simulate --json` prints and `result.json` holds. The keys are always the same; what a model does not resolve is
+/// null. Every name carries its unit.
+///
+/// ```
+/// let scene = vibroimpact::Scene::from_json(r#"{
+///     "structure": { "kind": "modal", "omega_rad_s": [100], "shape_at_location": [1] },
+///     "striker": { "mass_kg": 1, "speed_m_s": 1 },
+///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1e10 }
+/// }"#)?;
+/// let result: serde_json::Value = serde_json::from_str(&scene.simulate()?.json(&scene).unwrap()).unwrap();
+/// assert_eq!(result["outcome"], "rebound");
+/// assert_eq!(result["scene"]["striker"]["mass_kg"], 1.0);
+/// assert!(result["infinite"].is_null());
+/// # Ok::<(), vibroimpact::SceneError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ResultFile {
+    /// Version of the program.
+    pub vibroimpact: &'static str,
+    /// The scene as it was solved: a table of modes is written out, and `version` is that of the format.
+    pub scene: Value,
+    /// As [`Summary::outcome`].
+    pub outcome: &'static str,
+    /// Why the computation stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    #[serde(serialize_with = "word")]
+    pub stopped_by: Option<StopReason>,
+    /// Net restitution; null where the impact did not end in a rebound from an approach.
+    pub restitution: Option<f64>,
+    /// Estimated error of the restitution: the whole of what can be estimated; null where nothing can.
+    pub restitution_uncertainty: Option<f64>,
+    /// Its parts; null where a part cannot be known, which `choice.not_known` explains.
+    pub uncertainty: Uncertainty,
+    /// Number of separate contacts; null for a model that does not resolve them.
+    pub sub_impact_count: Option<usize>,
+    /// The contacts in order of time; null for a model that does not resolve them.
+    pub sub_impacts: Option<Vec<SubImpact>>,
+    /// Velocity of the striker at the end, positive away from the structure (m/s).
+    pub striker_velocity_m_s: Option<f64>,
+    /// Motion of a dropped rod at the end; null for everything else.
+    pub rod: Option<RodMotion>,
+    /// Time of the last separation, or at which the computation stopped (s).
+    pub end_s: Option<f64>,
+    /// Number of modes kept.
+    pub modes: usize,
+    /// Static compliance of the modes left out, as far as it was asked for (m/N).
+    pub residual_compliance_m_n: f64,
+    /// Where the energy went; null for a model that does not resolve it.
+    pub energy: Option<Energy>,
+    /// What the last solution cost; null for a model that solves nothing in time. The whole cost is that of `choice`.
+    pub counts: Option<Cost>,
+    /// Which model, why, how near it came to the tolerance, and the whole cost.
+    pub choice: Option<Answer>,
+    /// The solution for an infinite structure, as `infinite-beam --json` prints it; null for everything else.
+    pub infinite: Option<infinite::Summary>,
+}
+
+/// One contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SubImpact {
+    /// First touch (s).
+    pub start_s: f64,
+    /// Separation (s); null if the contact does not end.
+    pub end_s: Option<f64>,
+    /// Impulse of the contact force (N s); null if the contact does not end.
+    pub impulse_n_s: Option<f64>,
+    /// Largest force (N).
+    pub peak_force_n: f64,
+    /// Largest compression (m).
+    pub peak_compression_m: f64,
+}
+
+impl ResultFile {
+    /// A resolved impact on a structure with modes.
+    pub fn of_modes(scene: &Scene, summary: &Summary) -> ResultFile {
+        let Summary {
+            outcome,
+            stopped_by,
+            restitution,
+            restitution_uncertainty,
+            uncertainty,
+            sub_impact_count,
+            sub_impacts,
+            striker_velocity_m_s,
+            rod,
+            end_s,
+            modes,
+            residual_compliance_m_n,
+            energy,
+            counts,
+            choice,
+        } = summary.clone();
+        let contact = |Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }| SubImpact {
+            start_s,
+            end_s: Some(end_s),
+            impulse_n_s: Some(impulse_n_s),
+            peak_force_n,
+            peak_compression_m,
+        };
+        ResultFile {
+            vibroimpact: env!("CARGO_PKG_VERSION"),
+            scene: scene.tree(),
+            outcome,
+            stopped_by,
+            restitution,
+            restitution_uncertainty,
+            uncertainty,
+            sub_impact_count: Some(sub_impact_count),
+            sub_impacts: Some(sub_impacts.into_iter().map(contact).collect()),
+            striker_velocity_m_s: Some(striker_velocity_m_s),
+            rod,
+            end_s: Some(end_s),
+            modes,
+            residual_compliance_m_n,
+            energy: Some(energy),
+            counts: Some(counts),
+            choice,
+            infinite: None,
+        }
+    }
+
+    /// An answer of a model that resolves no course in time.
+    pub fn of_answer(scene: &Scene, answer: &Answer) -> ResultFile {
+        ResultFile {
+            vibroimpact: env!("CARGO_PKG_VERSION"),
+            scene: scene.tree(),
+            outcome: answer.outcome,
+            stopped_by: answer.stopped_by,
+            restitution: answer.restitution,
+            restitution_uncertainty: answer.restitution_uncertainty,
+            uncertainty: answer.uncertainty,
+            sub_impact_count: answer.sub_impact_count,
+            sub_impacts: None,
+            // the structure is at rest before the impact, and the restitution is the striker's
+            striker_velocity_m_s: match scene.structure {
+                Structure::DroppedRod(_) => None,
+                _ => answer.restitution.map(|e| e * scene.striker.speed_m_s),
+            },
+            rod: None,
+            end_s: None,
+            modes: answer.modes,
+            residual_compliance_m_n: answer.residual_compliance_m_n,
+            energy: None,
+            counts: None,
+            choice: Some(answer.clone()),
+            infinite: None,
+        }
+    }
+
+    /// An impact on an infinite beam or plate.
+    ///
+    /// # Errors
+    /// As [`Scene::infinite_impact`].
+    pub fn of_infinite(scene: &Scene, groups: &Groups, solution: &Solution) -> Result<ResultFile, InvalidInput> {
+        let answer = scene.infinite_answer(groups, solution);
+        let found = infinite::Summary::new(solution, Some(groups));
+        let momentum = scene.infinite_impact()?.mass_kg * groups.speed_m_s;
+        let mut compression = vec![0.0_f64; solution.contacts.len()];
+        for extremum in &solution.extrema {
+            if let Some(peak) = compression.get_mut(extremum.contact) {
+                *peak = peak.max(extremum.compression);
+            }
+        }
+        let contacts = solution.contacts.iter().zip(&found.contacts).zip(compression);
+        let contacts = contacts.map(|((contact, told), compression)| SubImpact {
+            start_s: groups.time_s * contact.start,
+            end_s: contact.end.map(|end| groups.time_s * end),
+            impulse_n_s: contact.body_speed_at_end.map(|end| momentum * (contact.body_speed_at_start - end)),
+            peak_force_n: groups.force_n * told.peak_force,
+            peak_compression_m: groups.displacement_m * compression,
+        });
+        Ok(ResultFile {
+            sub_impacts: Some(contacts.collect()),
+            end_s: solution.contacts.last().and_then(|contact| contact.end).map(|end| groups.time_s * end),
+            infinite: Some(found),
+            ..ResultFile::of_answer(scene, &answer)
+        })
+    }
+}

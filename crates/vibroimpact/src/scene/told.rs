@@ -1,0 +1,111 @@
+//! What messages repeat of the input: short, without control characters, and with the name that was probably meant.
+
+/// Longest piece of a value that a message repeats (characters).
+const LONGEST_QUOTE: usize = 60;
+/// Longest path of a field (characters).
+const LONGEST_PATH: usize = 90;
+/// Longest name that is compared with those that are allowed (characters).
+const LONGEST_NAME: usize = 60;
+/// Names less alike than this (Jaro similarity) are no slip of one another.
+const ALIKE: f64 = 0.75;
+/// A shorter piece of a name says too little to name the whole.
+const SHORTEST_PIECE: usize = 3;
+
+/// A text cut to a length that fits a message. Cutting it again changes nothing.
+pub fn shorten(text: &str) -> String {
+    cut(text, LONGEST_QUOTE)
+}
+
+/// The path of a field, which may hold names of the user's, cut to a length that fits a message.
+pub(crate) fn shorten_path(path: &str) -> String {
+    cut(path, LONGEST_PATH)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    const DOTS: &str = "...";
+    match text.char_indices().nth(most) {
+        None => text.to_owned(),
+        Some(_) => text.chars().take(most - DOTS.len()).chain(DOTS.chars()).collect(),
+    }
+}
+
+/// A text that cannot steer a terminal: control characters other than line breaks and tabs, and characters that turn
+/// the direction of writing, are shown by their number.
+///
+/// ```
+/// assert_eq!(vibroimpact::text::printable("a\u{1b}[2J"), "a\\u{1b}[2J");
+/// ```
+pub fn printable(text: &str) -> String {
+    let steers = |c: char| {
+        (c.is_control() && c != '\n' && c != '\t') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if steers(c) { shown.extend(c.escape_unicode()) } else { shown.push(c) }
+    }
+    shown
+}
+
+/// `; did you mean ...?` where one of the names is like the word, otherwise nothing. Of names that are equally alike the
+/// first is taken.
+pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    if word.chars().count() > LONGEST_NAME {
+        return String::new();
+    }
+    let word = word.to_lowercase();
+    let likeness = |name: &str| {
+        let name = name.to_lowercase();
+        let is_piece = word.chars().count() >= SHORTEST_PIECE && name.contains(&word);
+        // a piece of a name is nearer than a word that merely resembles it
+        strsim::jaro(&word, &name) + if is_piece { 1.0 } else { 0.0 }
+    };
+    let mut nearest: Option<(f64, &str)> = None;
+    for name in names {
+        let alike = likeness(name);
+        if alike >= ALIKE && nearest.is_none_or(|(best, _)| alike > best) {
+            nearest = Some((alike, name));
+        }
+    }
+    nearest.map_or_else(String::new, |(_, name)| format!("; did you mean {name}?"))
+}
+
+/// As [`did_you_mean`], with the names that a message lists after `one of`.
+pub(crate) fn did_you_mean_one_of(word: &str, allowed: &str) -> String {
+    let listed = allowed.split_once("one of ").map_or("", |(_, listed)| listed);
+    did_you_mean(word, listed.split(", ").map(|name| name.trim_matches(['"', '`'])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_find_the_name_that_was_meant() {
+        let kinds = "one of beam, modal, modes-file, infinite-beam, infinite-plate, dropped-rod";
+        for (word, meant) in [
+            ("bem", "beam"),
+            ("Beam", "beam"),
+            ("plate", "infinite-plate"),
+            ("dropped_rod", "dropped-rod"),
+            ("modes_file", "modes-file"),
+        ] {
+            assert_eq!(did_you_mean_one_of(word, kinds), format!("; did you mean {meant}?"), "{word}");
+        }
+        for word in ["", "xyzzy", "steel", &"beam".repeat(100)] {
+            assert_eq!(did_you_mean_one_of(word, kinds), "", "{word}");
+        }
+        let fields = ["mass_kg", "speed_m_s", "length_m", "density_kg_m3"];
+        for (word, meant) in [("mass", "mass_kg"), ("lenght_m", "length_m"), ("velocity", "")] {
+            let told = if meant.is_empty() { String::new() } else { format!("; did you mean {meant}?") };
+            assert_eq!(did_you_mean(word, fields), told, "{word}");
+        }
+    }
+
+    #[test]
+    fn what_is_cut_stays_as_it_is() {
+        let long = "9".repeat(400);
+        assert_eq!(shorten(&long).chars().count(), LONGEST_QUOTE);
+        assert_eq!(shorten(&shorten(&long)), shorten(&long));
+        assert_eq!(shorten("short"), "short");
+    }
+}

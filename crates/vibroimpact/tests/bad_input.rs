@@ -1,0 +1,300 @@
+//! Input that must not get through, as a user meets it: exit code 2, a message that says what would be allowed, and
+//! nothing written.
+
+mod program;
+
+use std::fs;
+use std::path::Path;
+
+use program::{run, stdout};
+use serde_json::Value;
+use tempfile::TempDir;
+
+const BEAM: &str = r#"{
+    "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+                   "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+    "striker": { "mass_kg": 0.2, "speed_m_s": 1 },
+    "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 },
+    "location_m": 0.3
+}"#;
+const TABLE: &str = "mass_kg,location_m,restitution\n0.1,0.2,0.5\n0.2,0.4,0.4\n0.3,0.3,0.3\n0.1,0.5,0.35\n";
+
+/// A folder with files of these names.
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+/// Runs the program, which must refuse and write nothing, and returns the message.
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let names = || {
+        let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = names();
+    let output = run(folder, arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert_eq!(names(), before, "{arguments:?}");
+    message
+}
+
+#[test]
+fn fit_takes_only_data_that_can_be_fitted() {
+    let header = "mass_kg,location_m,restitution\n";
+    let fit = ["fit", "data.csv", "--scene", "scene.json"];
+    for (table, part) in [
+        (TABLE.replace("0.35", "1.3"), "line 5, restitution = 1.3 is not allowed: a coefficient of restitution from 0"),
+        (TABLE.replace("0.35", "-0.3"), "line 5, restitution = -0.3"),
+        (TABLE.replace("0.4\n", "0.4,7\n"), "line 3 = 4 cells is not allowed"),
+        (TABLE.replace(",0.4\n", "\n"), "line 3 = 2 cells is not allowed"),
+        (format!("{header}{}", "0.1,0.2,0.5\n".repeat(5)), "lines of data that differ in mass or place = 1"),
+        (format!("{header}{}", "0.1,0.2,0.5\n0.2,0.2,0.5\n".repeat(5)), "differ in mass or place = 2"),
+    ] {
+        let folder = folder(&[("scene.json", BEAM), ("data.csv", &table)]);
+        let message = refused(folder.path(), &fit);
+        assert!(message.contains(part), "{part}: {message}");
+    }
+}
+
+#[test]
+fn a_parameter_that_the_data_do_not_determine_is_not_called_converged() {
+    // light strikers alone: alpha0 may be anything from large on
+    let table: String = (1..10).map(|i| format!("{},0.{i},0.99\n", 1e-4 * f64::from(i))).collect();
+    let table = format!("mass_kg,location_m,restitution\n{table}");
+    let folder = folder(&[("scene.json", BEAM), ("data.csv", &table)]);
+    let fit = ["fit", "data.csv", "--scene", "scene.json"];
+    let found: Value = serde_json::from_str(&stdout(&run(folder.path(), &[&fit[..], &["--json"]].concat()))).unwrap();
+    let runaway: Vec<&str> = ["mu0", "alpha0", "alpha1"]
+        .into_iter()
+        .filter(|name| !(1e-6..=1e6).contains(&found[*name].as_f64().unwrap()))
+        .collect();
+    assert!(!runaway.is_empty(), "{found}");
+    assert_eq!(found["undetermined"], serde_json::json!(runaway));
+    assert_eq!((&found["converged"], &found["intervals"]), (&Value::Bool(false), &Value::Null));
+    assert!(stdout(&run(folder.path(), &fit)).contains("not determined by these data"));
+}
+
+#[test]
+fn no_modes_at_all_are_refused() {
+    let folder = folder(&[
+        ("scene.json", BEAM),
+        ("data.csv", TABLE),
+        ("modes.csv", "omega_rad_s,tip\n"),
+        (
+            "table.json",
+            r#"{ "structure": { "kind": "modes-file", "file": "modes.csv" }, "location": "tip",
+                 "striker": { "mass_kg": 1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#,
+        ),
+        (
+            "list.json",
+            r#"{ "structure": { "kind": "modal", "omega_rad_s": [], "shape_at_location": [] },
+                 "striker": { "mass_kg": 1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#,
+        ),
+        ("rigid.json", &BEAM.replace("\"location_m\"", "\"modes\": 0, \"location_m\"")),
+    ]);
+    for (arguments, part) in [
+        (&["modes", "scene.json", "--count", "0"][..], "from 1 to 10000"),
+        (&["modes", "scene.json", "--count", "1000000000"], "from 1 to 10000"),
+        (&["modes", "scene.json", "--count", "-1"], "from 1 to 10000"),
+        (&["modes", "scene.json", "--count", "many"], "from 1 to 10000"),
+        (&["emoc", "scene.json", "--emoc-modes", "0"], "from 1 to 10000"),
+        (&["fit", "data.csv", "--scene", "scene.json", "--emoc-modes", "0"], "from 1 to 10000"),
+        (&["emoc", "rigid.json"], "modes = 0 is not allowed"),
+        (&["simulate", "table.json"], "modes.csv, number of modes = 0 is not allowed"),
+        (&["simulate", "list.json"], "structure.omega_rad_s = [] is not allowed"),
+    ] {
+        let message = refused(folder.path(), arguments);
+        assert!(message.contains(part) && !message.contains("auto"), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn a_damping_ratio_is_blamed_by_the_name_that_it_has_in_the_scene() {
+    let folder = folder(&[
+        ("scene.json", &BEAM.replace("0.02", "1e7")),
+        ("stated.json", &BEAM.replace("0.02", "1e7").replace("\"location_m\"", "\"modes\": 4, \"location_m\"")),
+        ("modes.csv", "omega_rad_s,damping_ratio,tip\n10,1e7,1\n"),
+        (
+            "table.json",
+            r#"{ "structure": { "kind": "modes-file", "file": "modes.csv" }, "location": "tip",
+                 "striker": { "mass_kg": 1, "speed_m_s": 1 }, "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#,
+        ),
+    ]);
+    for (scene, part) in [
+        ("scene.json", "structure.damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
+        ("stated.json", "structure.damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
+        ("table.json", "modes.csv, line 2, damping_ratio = 10000000.0 is not allowed: a number from 0 to 1e6"),
+    ] {
+        let message = refused(folder.path(), &["simulate", scene]);
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn a_mistyped_name_is_answered_by_the_one_that_was_probably_meant() {
+    for (from, to, meant) in [
+        ("\"beam\"", "\"bem\"", "beam"),
+        ("\"beam\"", "\"plate\"", "infinite-plate"),
+        ("\"hertz\"", "\"herz\"", "hertz"),
+        ("\"pinned\", \"pinned\"", "\"pined\", \"pinned\"", "pinned"),
+        ("\"length_m\"", "\"lenght_m\"", "length_m"),
+        ("\"speed_m_s\"", "\"speed\"", "speed_m_s"),
+        ("\"stiffness_n_m1_5\"", "\"stiffness\"", "stiffness_n_m1_5"),
+        ("\"location_m\"", "\"locaton_m\"", "location_m"),
+        ("\"location_m\"", "\"model\": \"modl\", \"location_m\"", "modal"),
+    ] {
+        let folder = folder(&[("scene.json", &BEAM.replacen(from, to, 1))]);
+        let message = refused(folder.path(), &["simulate", "scene.json"]);
+        assert!(message.contains(&format!("did you mean {meant}?")), "{to}: {message}");
+    }
+    let folder = folder(&[("scene.json", &BEAM.replace("\"hertz\"", "\"granite\""))]);
+    assert!(!refused(folder.path(), &["simulate", "scene.json"]).contains("did you mean"));
+    let message = refused(folder.path(), &["simulat", "scene.json"]);
+    assert!(message.contains("simulate"), "{message}");
+}
+
+#[test]
+fn messages_repeat_nothing_that_steers_a_terminal_and_nothing_at_length() {
+    let escape = '\u{1b}';
+    let digits = "9".repeat(400);
+    let folder = folder(&[
+        ("value.json", &BEAM.replace("\"hertz\"", r#""her\u001b[2Jtz""#)),
+        ("name.json", &BEAM.replace("\"location_m\"", r#""loc\u001b[2Jation_m""#)),
+        ("broken.json", &BEAM.replace("\"hertz\"", &format!("{escape}[2J"))),
+        ("toml.toml", &format!("location_m = {escape}[2J")),
+        ("long.json", &BEAM.replace("0.3", &digits)),
+        ("long_name.json", &BEAM.replace("\"location_m\"", &format!("\"{digits}\""))),
+        ("data.csv", &TABLE.replace("0.35", &format!("{escape}[2J"))),
+        ("scene.json", BEAM),
+    ]);
+    let name = format!("a{escape}[2J.json");
+    let endless = format!("--s={digits}x");
+    for arguments in [
+        &["simulate", "value.json"][..],
+        &["simulate", "name.json"],
+        &["simulate", "broken.json"],
+        &["simulate", "toml.toml"],
+        &["simulate", "long.json"],
+        &["simulate", "long_name.json"],
+        &["simulate", &name],
+        &["simulate", "scene.json", "--plot", &name],
+        &["fit", "data.csv", "--scene", "scene.json"],
+        &["modes", "scene.json", "--count", &digits],
+        &["modes", "scene.json", "--count", &name],
+        &["infinite-beam", &endless],
+    ] {
+        let message = refused(folder.path(), arguments);
+        assert!(!message.contains(escape), "{arguments:?}: {message:?}");
+        assert!(!message.contains(&digits[..100]), "{arguments:?}: {message:?}");
+    }
+    // a name that is allowed is printed, but steers nothing either
+    let points = r#"{ "structure": { "kind": "modal", "omega_rad_s": [9], "points": { "t\u001b[2J": { "shape": [1] } } },
+        "location": "t\u001b[2J", "striker": { "mass_kg": 1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#;
+    fs::write(folder.path().join("points.json"), points).unwrap();
+    let printed = stdout(&run(folder.path(), &["simulate", "points.json"]));
+    assert!(printed.contains(", at t\\u{1b}[2J;") && !printed.contains(escape), "{printed:?}");
+}
+
+#[test]
+fn a_text_under_the_ending_of_another_format_is_told_so() {
+    let toml = "location_m = 0.3\n[structure]\nkind = 'beam'\n";
+    let folder = folder(&[("scene.json", toml), ("scene.toml", BEAM), ("neither.json", "location_m"), ("e.json", "")]);
+    let message = refused(folder.path(), &["simulate", "scene.json"]);
+    assert!(message.contains("the text is TOML") && message.contains("ends in .toml"), "{message}");
+    let message = refused(folder.path(), &["simulate", "scene.toml"]);
+    assert!(message.contains("the text is JSON") && message.contains("ends in .json"), "{message}");
+    for name in ["neither.json", "e.json"] {
+        assert!(!refused(folder.path(), &["simulate", name]).contains("the text is TOML"));
+    }
+}
+
+#[test]
+fn nothing_that_exists_is_replaced_without_force() {
+    let quick = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
+    let folder = folder(&[("scene.json", &quick), ("mine.svg", "mine"), ("mine.html", "mine")]);
+    fs::create_dir(folder.path().join("out")).unwrap();
+    fs::write(folder.path().join("out/result.json"), "mine").unwrap();
+    fs::write(folder.path().join("out/contacts.csv"), "mine").unwrap();
+    let simulate = ["simulate", "scene.json"];
+    let modes = ["modes", "scene.json", "--count", "3"];
+    let infinite = ["infinite-beam", "--s", "1"];
+    let (plot, report, out) = (["--plot", "mine.svg"], ["--report", "mine.html"], ["--out", "out"]);
+    let commands = [
+        [&simulate[..], &plot].concat(),
+        [&simulate[..], &report].concat(),
+        [&simulate[..], &out].concat(),
+        [&infinite[..], &plot].concat(),
+        [&infinite[..], &report].concat(),
+        [&infinite[..], &out].concat(),
+        [&modes[..], &plot].concat(),
+        [&["compare", "scene.json"][..], &plot].concat(),
+    ];
+    for command in &commands {
+        let message = refused(folder.path(), command);
+        assert!(message.contains("--force"), "{message}");
+    }
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    for name in ["mine.svg", "mine.html", "out/result.json", "out/contacts.csv"] {
+        assert_eq!(read(name), "mine");
+    }
+    for command in &commands {
+        stdout(&run(folder.path(), &[&command[..], &["--force"]].concat()));
+    }
+    for name in ["mine.svg", "mine.html", "out/result.json"] {
+        assert_ne!(read(name), "mine");
+    }
+    // what stays of an earlier result would be taken for a part of this one
+    stdout(&run(folder.path(), &[&simulate[..], &out, &["--force"]].concat()));
+    assert!(!folder.path().join("out/contacts.csv").exists() && folder.path().join("out/history.csv").exists());
+}
+
+#[test]
+fn a_sweep_takes_no_folder_of_something_else() {
+    let sweep = format!(
+        r#"{{ "scene": {}, "vary": [{{ "field": "striker.speed_m_s", "values": [1, 2] }}] }}"#,
+        BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"")
+    );
+    let folder = folder(&[("sweep.json", &sweep)]);
+    for name in ["report.html", "report.md", "summary.json", "results.parquet", "progress.json", "results.csv"] {
+        fs::create_dir_all(folder.path().join("out")).unwrap();
+        fs::write(folder.path().join("out").join(name), "mine").unwrap();
+        let message = refused(folder.path(), &["sweep", "sweep.json", "--out", "out"]);
+        assert!(message.contains(&format!("out holds {name}")), "{message}");
+        assert_eq!(fs::read_to_string(folder.path().join("out").join(name)).unwrap(), "mine");
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
+    }
+    stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"]));
+    // its own folder it takes again
+    assert!(stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"])).contains("all was there"));
+}
+
+#[test]
+fn a_sweep_without_a_single_result_does_not_end_well() {
+    // the first point is checked only as far as that costs nothing: its speed is found when it is solved
+    let sweep = |speeds: &str| {
+        let scene = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
+        format!(r#"{{ "scene": {scene}, "vary": [{{ "field": "striker.speed_m_s", "values": {speeds} }}] }}"#)
+    };
+    for (speeds, code) in [("[1e300, 2e300]", 2), ("[1e300, 1]", 0)] {
+        let folder = folder(&[("sweep.json", &sweep(speeds))]);
+        // the same again when all is there, and for a program that reads the object
+        for option in ["--quiet", "--quiet", "--json"] {
+            let output = run(folder.path(), &["sweep", "sweep.json", "--out", "out", option]);
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(code), "{message}");
+            assert!(String::from_utf8(output.stdout).unwrap().contains("striker.speed_m_s = 1e+300"));
+            assert_eq!(
+                message.contains("none of the 2 points could be solved; the first: striker.speed_m_s"),
+                code == 2
+            );
+        }
+        assert!(folder.path().join("out/report.html").exists());
+    }
+}
