@@ -2,6 +2,7 @@
 
 use contact_models::{Law, LinearSpring};
 use std::f64::consts::PI;
+use vibroimpact_sim::InvalidInput;
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, OrbitOutcome, OrbitSettings,
     Point, Settings, Special, find_orbit, follow_branch, run,
@@ -156,7 +157,7 @@ fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
     let e = 0.8;
     let mut settings = BranchSettings::over(0.6, 1.3);
     settings.orbit.transient_periods = 0;
-    let branch = follow_branch(|gamma| Ok(shaken(gamma, e)), &settings, |_| true).unwrap();
+    let branch = follow_branch(|gamma| Ok::<_, InvalidInput>(shaken(gamma, e)), &settings, |_| true).unwrap();
     assert!(branch.complete, "{:?}", branch.points.last());
     let doubling: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::PeriodDoubling).collect();
     assert_eq!(doubling.len(), 1, "{:?}", branch.special);
@@ -171,7 +172,7 @@ fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
     let build = |omega: f64| {
         let mut assembly = driven(0.02, 0.05, 0.6, omega);
         assembly.contacts[0].law = Law::from(LinearSpring::new(2000.0).unwrap());
-        Ok(assembly)
+        Ok::<_, InvalidInput>(assembly)
     };
     let mut settings = BranchSettings::over(8.0, 20.0);
     settings.step = 0.01;

@@ -54,6 +54,7 @@ pub mod export;
 pub mod infinite;
 pub mod model;
 pub mod net;
+pub mod orbit;
 pub mod pictures;
 pub mod plot;
 pub mod report;

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
-use commands::{choice, infinite_beam, modes, net, shell, simulate, sweep};
+use commands::{choice, infinite_beam, modes, net, orbit, shell, simulate, sweep};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
@@ -63,6 +63,9 @@ enum Command {
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
+    /// Find the periodic motion of bodies under a harmonic load, and follow it over a field
+    #[command(after_help = orbit::EXAMPLES)]
+    Orbit(orbit::Arguments),
     /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
     #[command(after_help = sweep::SWEEP_EXAMPLES)]
     Sweep(sweep::SweepArguments),
@@ -133,6 +136,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::Emoc(arguments) => watched("emoc", || net::emoc(arguments)),
         Command::Fit(arguments) => watched("fit", || net::fit(arguments)),
         Command::InfiniteBeam(arguments) => watched("infinite-beam", || infinite_beam::run(arguments)),
+        Command::Orbit(arguments) => watched("orbit", || orbit::run(arguments)),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Completions(arguments) => shell::completions(arguments, Cli::command()),

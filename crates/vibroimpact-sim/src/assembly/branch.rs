@@ -127,11 +127,11 @@ pub struct Branch {
 ///
 /// # Errors
 /// Settings out of range, input that poses no problem, or what `build` finds wrong.
-pub fn follow_branch<L: ContactLaw + Clone>(
-    build: impl Fn(f64) -> Result<Assembly<L>, InvalidInput>,
+pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
+    build: impl Fn(f64) -> Result<Assembly<L>, E>,
     settings: &BranchSettings,
     mut progress: impl FnMut(&BranchPoint) -> bool,
-) -> Result<Branch, InvalidInput> {
+) -> Result<Branch, E> {
     settings.check()?;
     let OrbitOutcome::Found(first) = find_orbit(&build(settings.from)?, &settings.orbit)? else {
         return Ok(Branch::default());
@@ -208,16 +208,17 @@ struct Follower<'a, F> {
     phase_part: f64,
 }
 
-impl<L, F> Follower<'_, F>
+impl<L, E, F> Follower<'_, F>
 where
     L: ContactLaw + Clone,
-    F: Fn(f64) -> Result<Assembly<L>, InvalidInput>,
+    E: From<InvalidInput>,
+    F: Fn(f64) -> Result<Assembly<L>, E>,
 {
     fn range(&self) -> f64 {
         self.settings.to - self.settings.from
     }
 
-    fn map(&self, parameter: f64) -> Result<PeriodMap<L>, InvalidInput> {
+    fn map(&self, parameter: f64) -> Result<PeriodMap<L>, E> {
         let map = PeriodMap::new((self.build)(parameter)?, &self.settings.orbit)?;
         let phase = self.phase_part * map.period_s();
         Ok(map.at_phase(phase))
@@ -234,7 +235,7 @@ where
         state.insert_row(n, point.parameter / self.range())
     }
 
-    fn scales(&self, point: &BranchPoint) -> Result<DVector<f64>, InvalidInput> {
+    fn scales(&self, point: &BranchPoint) -> Result<DVector<f64>, E> {
         let state = Self::state(&point.orbit);
         Ok(self.map(point.parameter)?.scales(&state, &state))
     }
@@ -245,7 +246,7 @@ where
         state: &DVector<f64>,
         parameter: f64,
         scales: &DVector<f64>,
-    ) -> Result<Option<DMatrix<f64>>, InvalidInput> {
+    ) -> Result<Option<DMatrix<f64>>, E> {
         let n = state.len();
         let map = self.map(parameter)?;
         let Ok(jacobian) = map.derivative(state, scales)? else { return Ok(None) };
@@ -264,7 +265,7 @@ where
     }
 
     /// The unit vector along the branch, with the parameter towards the end of its range.
-    fn first_tangent(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, InvalidInput> {
+    fn first_tangent(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, E> {
         let scales = self.scales(point)?;
         let state = Self::state(&point.orbit);
         let n = state.len();
@@ -284,12 +285,7 @@ where
     }
 
     /// The orbit a step further along the tangent, and the iterations that it took; `None` if none was found.
-    fn step(
-        &self,
-        from: &BranchPoint,
-        tangent: &DVector<f64>,
-        step: f64,
-    ) -> Result<Option<(BranchPoint, u32)>, InvalidInput> {
+    fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Option<(BranchPoint, u32)>, E> {
         let scales = self.scales(from)?;
         let base = self.scaled(from, &scales);
         let n = scales.len();
@@ -329,7 +325,7 @@ where
         tangent: &DVector<f64>,
         step: f64,
         kind: Special,
-    ) -> Result<(f64, f64), InvalidInput> {
+    ) -> Result<(f64, f64), E> {
         let (mut low, mut high) = (0.0, step);
         let (mut below, mut above) = (from.parameter, f64::NAN);
         for _ in 0..HALVINGS {

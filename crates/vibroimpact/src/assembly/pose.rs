@@ -287,7 +287,7 @@ fn is_free(seen: &Seen, participation: &[f64]) -> bool {
 
 impl Posed {
     /// The solver's fault under the names that scenes use.
-    pub(super) fn in_scene(&self, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
+    pub(crate) fn in_scene(&self, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
         let fault = InvalidInput::from(fault);
         let indexed = |list: &str| {
             let (index, rest) = fault.field.strip_prefix(list)?.strip_prefix('[')?.split_once(']')?;

@@ -6,6 +6,7 @@ pub mod heartbeat;
 pub mod infinite_beam;
 pub mod modes;
 pub mod net;
+pub mod orbit;
 pub mod shell;
 pub mod simulate;
 pub mod sweep;

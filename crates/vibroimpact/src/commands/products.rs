@@ -46,6 +46,11 @@ impl Picture {
         require_free("--plot", self.plot.as_deref(), self.force)
     }
 
+    /// Refuses likewise to replace another file, which an option names.
+    pub fn require_room_for(&self, option: &str, path: Option<&Path>) -> Result<(), InvalidInput> {
+        require_free(option, path, self.force)
+    }
+
     /// Draws the picture, if one is asked for, and returns what to tell a reader: nothing beside JSON.
     pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
         match &self.plot {
@@ -150,7 +155,8 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
     Ok(figure.bytes(Format::of(path).ok_or(Format::ENDINGS)?)?)
 }
 
-fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
+/// Writes one file and returns what to tell a reader: nothing beside JSON.
+pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
     Ok(if json { String::new() } else { format!("\n  wrote {}\n", printable(&path.display().to_string())) })
 }

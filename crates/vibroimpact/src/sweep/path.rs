@@ -16,7 +16,7 @@ enum Step {
 
 impl FieldPath {
     /// Reads a path; `None` for what is none.
-    pub(super) fn parse(text: &str) -> Option<FieldPath> {
+    pub(crate) fn parse(text: &str) -> Option<FieldPath> {
         let mut steps = Vec::new();
         for piece in text.split('.') {
             let (key, mut rest) = piece.split_at(piece.find('[').unwrap_or(piece.len()));
@@ -36,11 +36,19 @@ impl FieldPath {
         Some(FieldPath(steps))
     }
 
+    /// What stands in its place.
+    pub(crate) fn get<'a>(&self, tree: &'a Value) -> Option<&'a Value> {
+        self.0.iter().try_fold(tree, |place, step| match step {
+            Step::Key(key) => place.get(key),
+            Step::Index(index) => place.get(index),
+        })
+    }
+
     /// Puts a value in its place. All that stands above the field must be there already; the field itself need not.
     ///
     /// # Errors
     /// Says what is not there.
-    pub(super) fn set(&self, tree: &mut Value, value: Value) -> Result<(), String> {
+    pub(crate) fn set(&self, tree: &mut Value, value: Value) -> Result<(), String> {
         let mut place = tree;
         for (depth, step) in self.0.iter().enumerate() {
             let last = depth + 1 == self.0.len();

@@ -1,0 +1,92 @@
+//! The command `orbit`.
+
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+use vibroimpact::assembly::{self, AssemblyScene};
+use vibroimpact::export::{self, Failure};
+use vibroimpact::orbit::{self, Over};
+use vibroimpact::vibroimpact_sim::assembly::OrbitSettings;
+
+use super::products::{Picture, write_single};
+use super::sweep::stop_on_signal;
+
+pub const EXAMPLES: &str = "Examples:
+  vibroimpact orbit rig.json                     the periodic motion to which the start leads
+  vibroimpact orbit rig.json --periods 2         one that repeats itself after two periods of the load
+  vibroimpact orbit rig.json --over 'loads[0].frequency_hz' --from 20 --to 80 --plot response.svg
+                                                 the frequency response, with its unstable parts
+  vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --json --csv branch.csv
+
+The scene is one of bodies with a harmonic load. After a transient from its start, Newton's method finds the periodic
+motion; its Floquet multipliers tell whether it is stable. Over a field (a path as in a sweep) the branch is followed
+round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. Which motion a start
+leads to is mapped by a sweep over fields of the start.
+
+The exit code is 0 for every result, 2 for a scene or a field that cannot be used, 1 if writing fails.";
+
+/// Which motion is looked for, and where to put it.
+#[derive(Args)]
+pub struct Arguments {
+    /// The scene file, with bodies and a harmonic load
+    scene: PathBuf,
+    /// Periods of the load after which the motion repeats itself
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    periods: u32,
+    /// Periods of the load that are followed from the start before the search
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    transient: u32,
+    /// Follow the branch over this field of the scene
+    #[arg(long, value_name = "FIELD", requires = "to")]
+    over: Option<String>,
+    /// First value of the field; the scene's own when left out
+    #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Value towards which the branch is followed
+    #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
+    to: Option<f64>,
+    /// First step, as a part of the range
+    #[arg(long, value_name = "PART", requires = "over", default_value_t = 0.02)]
+    step: f64,
+    /// Print one JSON object in place of the summary
+    #[arg(long)]
+    json: bool,
+    /// Write the branch as a table into this file
+    #[arg(long, value_name = "FILE", requires = "over")]
+    csv: Option<PathBuf>,
+    #[command(flatten)]
+    picture: Picture,
+}
+
+/// Carries the command out and returns what is to be printed.
+pub fn run(arguments: Arguments) -> Result<String, Failure> {
+    arguments.picture.require_room()?;
+    arguments.picture.require_room_for("--csv", arguments.csv.as_deref())?;
+    let scene = AssemblyScene::read(&arguments.scene)?;
+    let headline = assembly::headline(&scene, &scene.pose()?);
+    let settings = OrbitSettings {
+        forcing_periods: arguments.periods,
+        transient_periods: arguments.transient,
+        ..OrbitSettings::default()
+    };
+    let (Some(field), Some(to)) = (&arguments.over, arguments.to) else {
+        let found = scene.orbit(&settings)?;
+        return match arguments.json {
+            true => export::json(&found),
+            false => Ok(format!("{headline}\n\n{}", orbit::text(&found))),
+        };
+    };
+    let over = Over { field, from: arguments.from, to, step: arguments.step };
+    let stop = stop_on_signal()?;
+    let branch = scene.orbit_branch(&over, &settings, |_| !stop.load(Ordering::Relaxed))?;
+    let mut printed = match arguments.json {
+        true => export::json(&branch)?,
+        false => format!("{headline}\n\n{}", branch.text()),
+    };
+    if let Some(path) = &arguments.csv {
+        printed += &write_single(path, &branch.csv()?, arguments.json)?;
+    }
+    printed += &arguments.picture.draw(arguments.json, || Ok(orbit::picture(&headline, &branch)))?;
+    Ok(printed)
+}

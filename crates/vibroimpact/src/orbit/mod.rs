@@ -1,0 +1,251 @@
+//! Periodic motions of scenes of bodies under harmonic loads, and their branches over a field of the scene.
+
+mod picture;
+mod text;
+
+use serde::Serialize;
+use serde_json::Value;
+use vibroimpact_sim::assembly::{
+    self, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, follow_branch,
+};
+
+use crate::assembly::{AssemblyScene, Posed};
+use crate::scene::InvalidInput;
+use crate::sweep::FieldPath;
+
+pub use picture::picture;
+pub use text::text;
+
+/// A periodic motion as it is printed and written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OrbitSummary {
+    /// Period of the motion (s).
+    pub period_s: f64,
+    /// Periods of the loads in it.
+    pub forcing_periods: u32,
+    /// The moment of the loads' period at which `floquet_multipliers` compare states (s).
+    pub phase_s: f64,
+    /// By how much the motion misses itself after a period, relative to its size.
+    pub closure: f64,
+    /// Floquet multipliers, real and imaginary part, the largest first.
+    pub floquet_multipliers: Vec<[f64; 2]>,
+    /// Whether none of them lies outside the unit circle.
+    pub stable: bool,
+    /// Intervals of contact within a period, of all contacts together.
+    pub intervals_per_period: u64,
+    /// The motion of both sides of every contact.
+    pub points: Vec<PointMotion>,
+}
+
+/// One side of a contact on a periodic motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PointMotion {
+    /// Name of the contact.
+    pub contact: String,
+    /// 0 for the first of the two that the contact is between, 1 for the second.
+    pub side: usize,
+    /// Intervals of this contact within a period.
+    pub intervals_per_period: u64,
+    /// Amplitude of the displacement at the loads' lowest frequency (m).
+    pub displacement_first_harmonic_m: f64,
+    /// Largest displacement (m).
+    pub displacement_max_m: f64,
+    /// Least displacement (m).
+    pub displacement_min_m: f64,
+}
+
+/// What the search for a periodic motion came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// `found`, `not found`, or `stopped`.
+    pub outcome: &'static str,
+    /// The motion, where it was found.
+    #[serde(flatten)]
+    pub orbit: Option<OrbitSummary>,
+    /// How near Newton's method came where it was not, relative to the size of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest_closure: Option<f64>,
+}
+
+/// An orbit of a branch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BranchOrbit {
+    /// The field's value.
+    pub value: f64,
+    /// The motion there.
+    #[serde(flatten)]
+    pub orbit: OrbitSummary,
+}
+
+/// A point at which stability or the pattern of contacts changes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpecialPoint {
+    /// `fold`, `period doubling`, `Neimark-Sacker` or `grazing`.
+    pub kind: &'static str,
+    /// The field's value.
+    pub value: f64,
+    /// By how much that may be off.
+    pub uncertainty: f64,
+    /// Number, from 0, of the orbit that follows it.
+    pub before_orbit: usize,
+}
+
+/// A branch of periodic motions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BranchSummary {
+    /// The field that is followed.
+    pub field: String,
+    /// Whether the branch was followed to an end of the range.
+    pub complete: bool,
+    /// The orbits in order.
+    pub orbits: Vec<BranchOrbit>,
+    /// What was found between them.
+    pub special_points: Vec<SpecialPoint>,
+}
+
+/// Over which field a branch is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Over<'a> {
+    /// The field's path, as in a sweep.
+    pub field: &'a str,
+    /// First value; that of the scene when left out.
+    pub from: Option<f64>,
+    /// The value towards which the branch is followed.
+    pub to: f64,
+    /// First and longest step, as parts of the range.
+    pub step: f64,
+}
+
+impl AssemblyScene {
+    /// Finds the periodic motion to which the scene's start leads, or one near it.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::pose`]; a scene without a harmonic load.
+    pub fn orbit(&self, settings: &OrbitSettings) -> Result<Found, InvalidInput> {
+        let posed = self.pose()?;
+        let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
+        let found = find_orbit(&posed.assembly, &settings).map_err(|fault| fault_of(&posed, fault))?;
+        Ok(match found {
+            OrbitOutcome::Found(orbit) => {
+                Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), nearest_closure: None }
+            }
+            OrbitOutcome::NotFound { closure } => {
+                Found { outcome: "not found", orbit: None, nearest_closure: Some(closure) }
+            }
+            _ => Found { outcome: "stopped", orbit: None, nearest_closure: None },
+        })
+    }
+
+    /// Follows the branch of periodic motions over a field. `tell` is given each value and says whether to go on.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::orbit`]; a field that the scene does not have, or that is no number.
+    pub fn orbit_branch(
+        &self,
+        over: &Over,
+        settings: &OrbitSettings,
+        mut tell: impl FnMut(f64) -> bool,
+    ) -> Result<BranchSummary, InvalidInput> {
+        let posed = self.pose()?;
+        let tree: Value = serde_json::from_str(&self.to_json()).unwrap_or_default();
+        let allowed = "the path of a number in the scene, such as loads[0].frequency_hz";
+        let fault = |why: String| InvalidInput::new("--over", crate::scene::json::quote(&over.field.into()), why);
+        let path = FieldPath::parse(over.field).ok_or_else(|| fault(allowed.to_owned()))?;
+        let present = path.get(&tree).and_then(Value::as_f64);
+        let from = over.from.or(present).ok_or_else(|| fault(format!("{allowed}; --from states a first value")))?;
+        let build = |value: f64| -> Result<assembly::Assembly<contact_models::Law>, InvalidInput> {
+            let mut tree = tree.clone();
+            path.set(&mut tree, value.into()).map_err(&fault)?;
+            Ok(AssemblyScene::from_value(&tree)?.pose()?.assembly)
+        };
+        let orbit = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
+        let branch = BranchSettings {
+            orbit,
+            step: over.step,
+            longest_step: over.step.max(0.05),
+            ..BranchSettings::over(from, over.to)
+        };
+        let found = follow_branch(build, &branch, |point| tell(point.parameter))?;
+        let orbits = found.points.iter();
+        let special = found.special.iter();
+        Ok(BranchSummary {
+            field: over.field.to_owned(),
+            complete: found.complete,
+            orbits: orbits
+                .map(|point| BranchOrbit { value: point.parameter, orbit: OrbitSummary::new(&posed, &point.orbit) })
+                .collect(),
+            special_points: special
+                .map(|point| SpecialPoint {
+                    kind: point.kind.as_str(),
+                    value: point.parameter,
+                    uncertainty: point.uncertainty,
+                    before_orbit: point.before_orbit,
+                })
+                .collect(),
+        })
+    }
+}
+
+fn fault_of(posed: &Posed, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
+    posed.in_scene(fault)
+}
+
+impl OrbitSummary {
+    fn new(posed: &Posed, orbit: &Orbit) -> OrbitSummary {
+        let point = |c: usize, side: usize, motion: &SideMotion| PointMotion {
+            contact: posed.contacts[c].clone(),
+            side,
+            intervals_per_period: orbit.intervals_per_period[c],
+            displacement_first_harmonic_m: motion.displacement_first_harmonic_m,
+            displacement_max_m: motion.displacement_max_m,
+            displacement_min_m: motion.displacement_min_m,
+        };
+        let sides = orbit.sides.iter().enumerate();
+        OrbitSummary {
+            period_s: orbit.period_s,
+            forcing_periods: orbit.forcing_periods,
+            phase_s: orbit.phase_s,
+            closure: orbit.closure,
+            floquet_multipliers: orbit.floquet_multipliers.clone(),
+            stable: orbit.stable,
+            intervals_per_period: orbit.intervals_per_period.iter().sum(),
+            points: sides.flat_map(|(c, sides)| [point(c, 0, &sides[0]), point(c, 1, &sides[1])]).collect(),
+        }
+    }
+}
+
+impl BranchSummary {
+    /// The orbits as a table: a row each, the largest multiplier and the motion of every side.
+    ///
+    /// # Errors
+    /// Never for numbers; the writer's own.
+    pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let points = self.orbits.first().map_or(&[][..], |first| &first.orbit.points);
+        let mut header: Vec<String> = [&self.field, "period_s", "stable", "intervals_per_period", "largest_multiplier"]
+            .map(str::to_owned)
+            .to_vec();
+        for point in points {
+            for quantity in ["displacement_first_harmonic_m", "displacement_max_m", "displacement_min_m"] {
+                header.push(format!("{}.{}.{quantity}", point.contact, point.side));
+            }
+        }
+        table.write_record(&header)?;
+        for BranchOrbit { value, orbit } in &self.orbits {
+            let largest = orbit.floquet_multipliers.first().map_or(0.0, |m| m[0].hypot(m[1]));
+            let mut row = vec![
+                value.to_string(),
+                orbit.period_s.to_string(),
+                orbit.stable.to_string(),
+                orbit.intervals_per_period.to_string(),
+                largest.to_string(),
+            ];
+            for point in &orbit.points {
+                let motion = [point.displacement_first_harmonic_m, point.displacement_max_m, point.displacement_min_m];
+                row.extend(motion.map(|value| value.to_string()));
+            }
+            table.write_record(&row)?;
+        }
+        table.into_inner().map_err(|fault| fault.into_error().into())
+    }
+}

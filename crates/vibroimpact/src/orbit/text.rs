@@ -1,0 +1,73 @@
+//! Periodic motions as a person reads them in a terminal.
+
+use std::fmt::Write;
+
+use super::{BranchSummary, Found, OrbitSummary};
+use crate::text::quantity;
+
+/// A periodic motion, or why there is none.
+pub fn text(found: &Found) -> String {
+    match (&found.orbit, found.nearest_closure) {
+        (Some(orbit), _) => orbit_text(orbit),
+        (None, Some(closure)) => format!(
+            "  outcome               not found: the motion misses itself by {closure:.1e} of its size after a period.\n  \
+             A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n"
+        ),
+        (None, None) => "  outcome               stopped: a run over one period did not reach its end.\n".to_owned(),
+    }
+}
+
+fn orbit_text(orbit: &OrbitSummary) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:<22}{value}");
+    };
+    let periods = match orbit.forcing_periods {
+        1 => "one period of the load".to_owned(),
+        n => format!("{n} periods of the load"),
+    };
+    line("period", format!("{}, {periods}", quantity(orbit.period_s, "s")));
+    line("stability", if orbit.stable { "stable" } else { "unstable" }.to_owned());
+    line("contacts a period", orbit.intervals_per_period.to_string());
+    line("repeats itself within", format!("{:.1e} of its size", orbit.closure));
+    const LISTED: usize = 6;
+    let multipliers = orbit.floquet_multipliers.iter().take(LISTED);
+    let shown: Vec<String> =
+        multipliers.map(|[re, im]| if *im == 0.0 { format!("{re:.6}") } else { format!("{re:.6}{im:+.6}i") }).collect();
+    let more = orbit.floquet_multipliers.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!(", and {more} smaller") } else { String::new() };
+    line("Floquet multipliers", format!("{}{more}", shown.join(", ")));
+    text += "\n  contact, side          first harmonic        largest          least\n";
+    for point in &orbit.points {
+        let name = format!("{}, {}", point.contact, point.side);
+        let _ = writeln!(
+            text,
+            "  {name:<22}{:>15}{:>15}{:>15}",
+            quantity(point.displacement_first_harmonic_m, "m"),
+            quantity(point.displacement_max_m, "m"),
+            quantity(point.displacement_min_m, "m"),
+        );
+    }
+    text
+}
+
+impl BranchSummary {
+    /// The branch in a few lines: how far it goes, where it is stable, what was found on it.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let (Some(first), Some(last)) = (self.orbits.first(), self.orbits.last()) else {
+            return "  no periodic motion was found to begin with; a longer --transient may lead to one\n".to_owned();
+        };
+        let stable = self.orbits.iter().filter(|point| point.orbit.stable).count();
+        let end = if self.complete { "" } else { "; it could not be followed further" };
+        let _ = writeln!(text, "  {:<22}from {:.6} to {:.6}{end}", self.field, first.value, last.value);
+        let _ = writeln!(text, "  {:<22}{}, {stable} of them stable", "orbits", self.orbits.len());
+        if !self.special_points.is_empty() {
+            text += "\n  found on the way       value            within\n";
+        }
+        for point in &self.special_points {
+            let _ = writeln!(text, "  {:<22}{:<17.9}{:.1e}", point.kind, point.value, point.uncertainty);
+        }
+        text
+    }
+}
