@@ -9,7 +9,7 @@ use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
 use crate::report::significant;
 pub use crate::scene::told::{printable, shorten};
-use crate::scene::{Location, Scene, Structure};
+use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
 
 /// Shares of the energy below this are rounding, and shown as zero.
@@ -68,7 +68,11 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
             let length: f64 = beam.segments.iter().map(|segment| segment.length_m).sum();
             let steps =
                 if beam.segments.len() > 1 { format!(" of {} segments", beam.segments.len()) } else { String::new() };
-            format!("{left}-{right} beam{steps}, {}", quantity(length, "m"))
+            let theory = match beam.solved_by() {
+                Ok(BeamTheory::Timoshenko) => "Timoshenko ",
+                _ => "",
+            };
+            format!("{left}-{right} {theory}beam{steps}, {}", quantity(length, "m"))
         }
         Structure::TautString(string) => {
             format!("string of {} under {}", quantity(string.length_m, "m"), quantity(string.tension_n, "N"))

@@ -123,9 +123,8 @@ fn the_hammer_of_c4_is_pressed_by_the_waves_from_the_near_end() {
 fn the_bat_is_the_beam_that_its_table_was_made_from_and_has_a_sweet_spot() {
     let pieces = [(0.2, 0.056), (0.08, 0.05), (0.08, 0.042), (0.08, 0.034), (0.3, 0.025), (0.022, 0.046)];
     let bat = Beam {
-        ends: [End::Free, End::Free],
         segments: pieces.map(|(length, diameter)| Segment::circular(length, 1.29e10, 640.0, diameter)).into(),
-        damping_ratio: 0.0,
+        ..Beam::new([End::Free, End::Free])
     };
     let modes = bat.to_beam().unwrap().modes(8).unwrap();
     let mut scene = named("baseball-bat");

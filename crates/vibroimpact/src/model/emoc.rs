@@ -66,6 +66,9 @@ fn class(pose: &Pose) -> Result<Result<(), String>, InvalidInput> {
     let Source::Beam { beam, .. } = &pose.source else {
         return Ok(Err("the law was validated for beams".to_owned()));
     };
+    if let Some(more) = beam.beyond_slender().map_err(|fault| fault.within("structure"))? {
+        return Ok(Err(format!("the law was validated for beams without {more}")));
+    }
     let built = beam.to_beam().map_err(|fault| fault.within("structure"))?;
     let damping = beam.damping_ratio;
     let within = |value: f64, [low, high]: [f64; 2]| (low..=high).contains(&value);

@@ -98,6 +98,9 @@ impl Uniform {
         if !matches!(pose.law, Law::Hertz(_)) {
             return Ok(Err("the infinite beam is solved for hertz contact".to_owned()));
         }
+        if let Some(more) = beam.beyond_slender().map_err(|fault| fault.within("structure"))? {
+            return Ok(Err(format!("the beam has {more}, the infinite beam has not")));
+        }
         let built = beam.to_beam().map_err(|fault| fault.within("structure"))?;
         let Some(first) = built.segments.first() else { return Ok(Err("there is no beam".to_owned())) };
         let alike = built.segments.iter().all(|other| {

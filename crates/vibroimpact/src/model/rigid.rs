@@ -29,7 +29,9 @@ const STILL: f64 = 1e-12;
 /// How far the restitution can be from that at a wall; `Err` says why no bound is known.
 pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, String>, InvalidInput> {
     let rigid_bodies = match &pose.source {
-        Source::Beam { beam, .. } => beam.to_beam().map_err(|fault| fault.within("structure"))?.rigid_body_count(),
+        Source::Beam { beam, .. } => {
+            beam.to_system().and_then(|beam| Ok(beam.rigid_body_count()?)).map_err(|fault| fault.within("structure"))?
+        }
         Source::Computed { structure, .. } => structure.rigid_body_count()?,
         Source::Listed { modes, .. } => modes.len(),
     };
@@ -45,9 +47,12 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
         return Ok(Err("the static compliance of the structure is not known".to_owned()));
     };
     let damping = match &pose.source {
-        Source::Beam { beam, .. } => beam.damping_ratio,
-        Source::Computed { structure, .. } => structure.damping_ratio(),
-        Source::Listed { modes, .. } => modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max),
+        Source::Beam { beam, .. } => beam.largest_damping_ratio(),
+        Source::Computed { structure, .. } => Some(structure.damping_ratio()),
+        Source::Listed { modes, .. } => Some(modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max)),
+    };
+    let Some(damping) = damping else {
+        return Ok(Err("the damping of the structure has no bound over its modes".to_owned()));
     };
     let energy = mass * pose.striker.speed_m_s.powi(2);
     let epsilon = 16.0 * whole.max(0.0) * pose.wall.force_n.powi(2) / energy * (1.0 + 64.0 * damping);

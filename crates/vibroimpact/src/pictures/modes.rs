@@ -58,7 +58,7 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
 /// Shapes above each other, the first at the bottom; `count` modes were asked for.
 fn along(beam: &Beam, location_m: f64, frequency_hz: &[f64], count: usize) -> Result<Panel, InvalidInput> {
     let in_scene = |fault: beam_modes::InvalidInput| InvalidInput::from(fault).within("structure");
-    let body = beam.to_beam().map_err(|fault| fault.within("structure"))?;
+    let body = beam.to_system().map_err(|fault| fault.within("structure"))?;
     let modes = body.modes(frequency_hz.len()).map_err(in_scene)?;
     let length_m = modes.length_m();
     let mut places: Vec<f64> = (0..=POINTS).map(|i| length_m * i as f64 / POINTS as f64).collect();
@@ -87,6 +87,9 @@ fn along(beam: &Beam, location_m: f64, frequency_hz: &[f64], count: usize) -> Re
     for segment in beam.segments.iter().rev().skip(1).rev() {
         joint_m += segment.length_m;
         panel = panel.with(Series::vertical_rule(joint_m).dashed());
+    }
+    for fitted_m in beam.attachments.iter().map(|a| a.location_m).chain(beam.supports.iter().map(|s| s.location_m)) {
+        panel = panel.with(Series::vertical_rule(fitted_m));
     }
     panel = panel.with(Series::vertical_rule(location_m).colour(Colour::Vermilion));
     let here = places.iter().position(|&x| x == location_m);

@@ -7,7 +7,7 @@ use crate::Impact;
 use crate::infinite;
 use crate::model::Answer;
 use crate::plot::Figure;
-use crate::scene::{PlateTheory, Scene, Structure};
+use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
 use crate::text::{quantity, restitution, stopped};
@@ -164,11 +164,21 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     };
     let structure = match &scene.structure {
         Structure::Beam(beam) => format!(
-            "The structure by its modes, because it has ends from which waves return: an Euler-Bernoulli beam of {} \
-             segment{}, damping ratio {} in every mode.",
+            "The structure by its modes, because it has ends from which waves return: {} beam of {} \
+             segment{}, damping ratio {} in every mode{}.",
+            match beam.solved_by() {
+                Ok(BeamTheory::Timoshenko) => "a Timoshenko",
+                _ => "an Euler-Bernoulli",
+            },
             beam.segments.len(),
             if beam.segments.len() == 1 { "" } else { "s" },
-            beam.damping_ratio
+            beam.damping_ratio,
+            match (beam.damping_ratios.len(), beam.largest_damping_ratio()) {
+                (0, Some(_)) => "",
+                (_, Some(_)) => " but the first",
+                (0, None) => " and Rayleigh damping",
+                (_, None) => " but the first, and Rayleigh damping",
+            }
         ),
         Structure::TautString(string) => format!(
             "The structure by its modes: a string between two pinned ends, damping ratio {} in every mode.",

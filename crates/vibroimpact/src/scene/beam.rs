@@ -1,16 +1,15 @@
 //! A beam of uniform segments, and its modes.
 
-use std::f64::consts::PI;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal;
 
 use super::error::InvalidInput;
-use super::json::objects;
-use super::known::{require_damping, shapes_as_modes};
-use super::sets::one_of_sets;
+use super::fittings::{Attachment, Damping, Support};
+use super::json::{number, objects};
+use super::segment::Segment;
 use super::structure::require_count;
+use super::theory::BeamTheory;
 
 /// A straight beam of uniform segments, from left to right.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,9 +20,38 @@ pub struct Beam {
     /// The segments from left to right; at least one.
     #[serde(deserialize_with = "objects")]
     pub segments: Vec<Segment>,
+    /// Theory of bending. When left out: `"auto"` where the program chooses the modes, otherwise `"euler-bernoulli"`, as
+    /// in the thesis.
+    pub theory: Option<BeamTheory>,
     /// Damping ratio of every mode; 0 when left out.
     #[serde(default)]
     pub damping_ratio: f64,
+    /// Damping ratios of the first elastic modes; those beyond have `damping_ratio`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping_ratios: Vec<f64>,
+    /// Rayleigh damping by mass (1/s): adds `rayleigh_mass_per_s / (2 omega)` to the damping ratio of every elastic mode.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rayleigh_mass_per_s: f64,
+    /// Rayleigh damping by stiffness (s): adds `rayleigh_stiffness_s omega / 2` to the damping ratio of every mode.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rayleigh_stiffness_s: f64,
+    /// Masses and springs fixed to the beam.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "objects")]
+    pub attachments: Vec<Attachment>,
+    /// Rigid supports between the ends.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "objects")]
+    pub supports: Vec<Support>,
+    /// Axial force (N), tension positive, which keeps its direction; Euler-Bernoulli only; 0 when left out.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub axial_force_n: f64,
+    /// Stiffness per length of an elastic foundation under the whole beam (N/m^2); Euler-Bernoulli only; 0 when left
+    /// out.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub foundation_n_m2: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// How an end of a beam is held.
@@ -40,44 +68,45 @@ pub enum End {
     Guided,
 }
 
-/// A uniform piece of a beam: its length, and its section in one of three ways: flexural rigidity and mass per
-/// length; material, width and thickness; or material and diameter.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Segment {
-    /// Length (m).
-    pub length_m: f64,
-    /// Flexural rigidity `EI` (N m^2).
-    pub flexural_rigidity_n_m2: Option<f64>,
-    /// Mass per length (kg/m).
-    pub mass_per_length_kg_m: Option<f64>,
-    /// Young's modulus (Pa).
-    pub youngs_modulus_pa: Option<f64>,
-    /// Density (kg/m^3).
-    pub density_kg_m3: Option<f64>,
-    /// Width of a rectangular section, across the direction of the blow (m).
-    pub width_m: Option<f64>,
-    /// Thickness of a rectangular section, along the direction of the blow (m).
-    pub thickness_m: Option<f64>,
-    /// Diameter of a circular section (m).
-    pub diameter_m: Option<f64>,
-}
-
-/// The ways in which a section is given.
-pub(super) const SECTIONS: [&[&str]; 3] = [
-    &["flexural_rigidity_n_m2", "mass_per_length_kg_m"],
-    &["youngs_modulus_pa", "density_kg_m3", "width_m", "thickness_m"],
-    &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
-];
-
 impl Beam {
-    /// The beam in the terms of [`beam_modes`].
+    /// A beam of these ends, with no segments yet and all else left out.
+    pub fn new(ends: [End; 2]) -> Beam {
+        Beam {
+            ends,
+            segments: Vec::new(),
+            theory: None,
+            damping_ratio: 0.0,
+            damping_ratios: Vec::new(),
+            rayleigh_mass_per_s: 0.0,
+            rayleigh_stiffness_s: 0.0,
+            attachments: Vec::new(),
+            supports: Vec::new(),
+            axial_force_n: 0.0,
+            foundation_n_m2: 0.0,
+        }
+    }
+
+    /// Segments and ends in the terms of [`beam_modes`], by Euler-Bernoulli's theory and without what is fixed to them;
+    /// [`to_system`](Self::to_system) has all.
     ///
     /// # Errors
     /// A segment whose section is not given in exactly one way, or by numbers that are not positive.
     pub fn to_beam(&self) -> Result<beam_modes::Beam, InvalidInput> {
+        let length_m: f64 = self.segments.iter().map(|segment| segment.length_m).sum();
         let segment = |(i, segment): (usize, &Segment)| {
-            segment.to_segment().map_err(|fault| fault.within(&format!("segments[{i}]")))
+            let within = |fault: InvalidInput| fault.within(&format!("segments[{i}]"));
+            let bending = segment.to_segment().map_err(within)?;
+            match segment.thickness() {
+                Some((field, thickness)) if length_m < 2.0 * thickness => {
+                    let allowed = format!(
+                        "at most half the length of the whole beam, {} m: what is shorter than twice its thickness bends \
+                         as no beam does; flexural_rigidity_n_m2 and mass_per_length_kg_m take it as it is",
+                        number(length_m)
+                    );
+                    Err(within(InvalidInput::new(field, number(thickness), allowed)))
+                }
+                _ => Ok(bending),
+            }
         };
         Ok(beam_modes::Beam {
             segments: self.segments.iter().enumerate().map(segment).collect::<Result<_, _>>()?,
@@ -90,20 +119,87 @@ impl Beam {
         })
     }
 
+    /// The beam with all that the scene says of it, by the theory that [`solved_by`](Self::solved_by) tells.
+    ///
+    /// # Errors
+    /// As [`to_beam`](Self::to_beam), and a segment that lacks what Timoshenko's theory needs where that is asked for.
+    pub fn to_system(&self) -> Result<beam_modes::BeamSystem, InvalidInput> {
+        let beam = self.to_beam()?;
+        let theory = self.solved_by()?;
+        let mut shear = Vec::with_capacity(self.segments.len());
+        for (i, segment) in self.segments.iter().enumerate() {
+            let within = |fault: InvalidInput| fault.within(&format!("segments[{i}]"));
+            // checked even where it is not used
+            match segment.to_shear().map_err(within)? {
+                Some(section) => shear.push(section),
+                None if theory == BeamTheory::Timoshenko => return Err(within(segment.lacks_shear())),
+                None => {}
+            }
+        }
+        let attachment = |attachment: &Attachment| beam_modes::Attachment {
+            location_m: attachment.location_m,
+            mass_kg: attachment.mass_kg,
+            rotary_inertia_kg_m2: attachment.rotary_inertia_kg_m2,
+            spring_n_m: attachment.spring_n_m,
+            rotational_spring_n_m_rad: attachment.rotational_spring_n_m_rad,
+        };
+        Ok(beam_modes::BeamSystem {
+            beam,
+            shear: (theory == BeamTheory::Timoshenko).then_some(shear),
+            attachments: self.attachments.iter().map(attachment).collect(),
+            supports: self.supports.iter().map(|s| beam_modes::Support { location_m: s.location_m }).collect(),
+            axial_force_n: self.axial_force_n,
+            foundation_n_m2: self.foundation_n_m2,
+        })
+    }
+
+    /// What this beam has beyond the slender, uniformly damped one of the thesis, if anything.
+    pub(crate) fn beyond_slender(&self) -> Result<Option<&'static str>, InvalidInput> {
+        Ok(match self.solved_by()? {
+            BeamTheory::Timoshenko => Some("shear and rotary inertia"),
+            _ if !self.attachments.is_empty() => Some("attachments"),
+            _ if !self.supports.is_empty() => Some("supports between its ends"),
+            _ if self.axial_force_n != 0.0 => Some("an axial force"),
+            _ if self.foundation_n_m2 != 0.0 => Some("a foundation"),
+            _ if !self.damping_ratios.is_empty() => Some("a damping ratio for each mode"),
+            _ if self.rayleigh_mass_per_s != 0.0 || self.rayleigh_stiffness_s != 0.0 => Some("Rayleigh damping"),
+            _ => None,
+        })
+    }
+
+    /// The largest damping ratio of its modes; `None` where it grows with the frequency or against it.
+    pub(crate) fn largest_damping_ratio(&self) -> Option<f64> {
+        let constant = self.rayleigh_mass_per_s == 0.0 && self.rayleigh_stiffness_s == 0.0;
+        constant.then(|| self.damping_ratios.iter().copied().fold(self.damping_ratio, f64::max))
+    }
+
+    fn damping(&self) -> Damping<'_> {
+        Damping {
+            ratio: self.damping_ratio,
+            ratios: &self.damping_ratios,
+            rayleigh: [self.rayleigh_mass_per_s, self.rayleigh_stiffness_s],
+        }
+    }
+
     /// The first `count` modes, to be seen from any place.
     pub(crate) fn modes(&self, count: usize) -> Result<BeamModes, InvalidInput> {
         require_count(count)?;
-        require_damping(self.damping_ratio)?;
-        let modes = || Ok(self.to_beam()?.modes(count)?);
-        let within = |fault: InvalidInput| fault.within("structure");
-        Ok(BeamModes { modes: modes().map_err(within)?, damping_ratio: self.damping_ratio })
+        let modes = || {
+            self.damping().check()?;
+            let modes = self.to_system()?.modes(count)?;
+            let rigid = modes.rigid_body_count();
+            let ratio = |(k, &omega): (usize, &f64)| self.damping().of(k.checked_sub(rigid), omega);
+            let damping_ratios = modes.omega_rad_s().iter().enumerate().map(ratio).collect();
+            Ok(BeamModes { modes, damping_ratios })
+        };
+        modes().map_err(|fault: InvalidInput| fault.within("structure"))
     }
 }
 
 /// The modes of a beam.
 pub(crate) struct BeamModes {
     modes: beam_modes::Modes,
-    damping_ratio: f64,
+    damping_ratios: Vec<f64>,
 }
 
 impl BeamModes {
@@ -118,65 +214,8 @@ impl BeamModes {
             "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
             _ => InvalidInput::from(fault).within("structure"),
         })?;
-        Ok(shapes_as_modes(self.modes.omega_rad_s(), shapes, self.damping_ratio))
-    }
-}
-
-impl Segment {
-    /// A piece of rectangular section: length, material, width and thickness (along the blow) in SI units.
-    pub fn rectangular(
-        length_m: f64,
-        youngs_modulus_pa: f64,
-        density_kg_m3: f64,
-        width_m: f64,
-        thickness_m: f64,
-    ) -> Segment {
-        Segment {
-            length_m,
-            youngs_modulus_pa: Some(youngs_modulus_pa),
-            density_kg_m3: Some(density_kg_m3),
-            width_m: Some(width_m),
-            thickness_m: Some(thickness_m),
-            ..Segment::default()
-        }
-    }
-
-    /// A piece of circular section: length, material and diameter in SI units.
-    pub fn circular(length_m: f64, youngs_modulus_pa: f64, density_kg_m3: f64, diameter_m: f64) -> Segment {
-        Segment {
-            length_m,
-            youngs_modulus_pa: Some(youngs_modulus_pa),
-            density_kg_m3: Some(density_kg_m3),
-            diameter_m: Some(diameter_m),
-            ..Segment::default()
-        }
-    }
-
-    pub(super) fn to_segment(self) -> Result<beam_modes::Segment, InvalidInput> {
-        let given = [
-            ("flexural_rigidity_n_m2", self.flexural_rigidity_n_m2),
-            ("mass_per_length_kg_m", self.mass_per_length_kg_m),
-            ("youngs_modulus_pa", self.youngs_modulus_pa),
-            ("density_kg_m3", self.density_kg_m3),
-            ("width_m", self.width_m),
-            ("thickness_m", self.thickness_m),
-            ("diameter_m", self.diameter_m),
-        ];
-        let set = one_of_sets(&given, &SECTIONS)?;
-        let [rigidity, mass, modulus, density, width, thickness, diameter] =
-            given.map(|(_, value)| value.unwrap_or_default());
-        for (field, value) in std::iter::once(("length_m", Some(self.length_m))).chain(given) {
-            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
-        }
-        let length_m = self.length_m;
-        Ok(match set {
-            0 => beam_modes::Segment { length_m, flexural_rigidity_n_m2: rigidity, mass_per_length_kg_m: mass },
-            1 => beam_modes::Segment::rectangular(length_m, modulus, density, width, thickness),
-            _ => beam_modes::Segment {
-                length_m,
-                flexural_rigidity_n_m2: modulus * PI * diameter.powi(4) / 64.0,
-                mass_per_length_kg_m: density * PI * diameter.powi(2) / 4.0,
-            },
-        })
+        let each = self.modes.omega_rad_s().iter().zip(&self.damping_ratios).zip(shapes);
+        let mode = |((&omega_rad_s, &damping_ratio), shape)| modal::Mode { omega_rad_s, damping_ratio, shape };
+        Ok(each.map(mode).collect())
     }
 }

@@ -138,6 +138,7 @@ impl InfiniteBeam {
             width_m,
             thickness_m,
             diameter_m,
+            ..Segment::default()
         }
         .to_segment()
     }

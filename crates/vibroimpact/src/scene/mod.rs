@@ -11,9 +11,9 @@
 //! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, Scene, Segment, Striker};
 //!
 //! let beam = Beam {
-//!     ends: [End::Pinned, End::Pinned],
 //!     segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)],
 //!     damping_ratio: 0.02,
+//!     ..Beam::new([End::Pinned, End::Pinned])
 //! };
 //! let scene = Scene {
 //!     location_m: Some(0.6180339887498949.into()),
@@ -31,6 +31,7 @@ mod contact;
 mod dropped_rod;
 mod error;
 pub(crate) mod fields;
+mod fittings;
 mod infinite;
 pub(crate) mod json;
 mod known;
@@ -40,11 +41,13 @@ mod modal;
 mod modes_file;
 mod plate;
 pub mod schema;
+mod segment;
 pub(crate) mod sets;
 mod start;
 mod striker;
 mod string;
 mod structure;
+mod theory;
 pub(crate) mod told;
 pub(crate) mod toml;
 
@@ -56,10 +59,11 @@ use serde_json::Value;
 
 use crate::model::{Model, Modes};
 
-pub use beam::{Beam, End, Segment};
+pub use beam::{Beam, End};
 pub use contact::Contact;
 pub use dropped_rod::DroppedRod;
 pub use error::{InvalidInput, SceneError};
+pub use fittings::{Attachment, Support};
 pub use infinite::{InfiniteBeam, InfinitePlate};
 pub(crate) use known::KnownModes;
 pub use location::Location;
@@ -67,10 +71,12 @@ pub use materials::{HertzStiffness, Materials};
 pub use modal::{Modal, Point};
 pub use modes_file::ModesFile;
 pub use plate::{Edge, Plate, PlateTheory};
+pub use segment::Segment;
 pub use start::{MovingMode, Start};
 pub use striker::Striker;
 pub use string::TautString;
 pub use structure::{MOST_MODES, Structure};
+pub use theory::{BeamTheory, TheoryVariant};
 
 use crate::input::read_bytes;
 pub(crate) use modes_file::table_path;
@@ -202,7 +208,7 @@ impl Scene {
         }
         let outline: Outline = json::read(value)?;
         let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
-        Ok(Scene {
+        let mut scene = Scene {
             description: outline.description,
             structure: Structure::from_value(&outline.structure).map_err(|fault| fault.within("structure"))?,
             striker: outline.striker,
@@ -214,7 +220,14 @@ impl Scene {
             residual_compliance: outline.residual_compliance,
             start,
             tolerance: outline.tolerance,
-        })
+        };
+        let stated = !crate::model::chooses_modes(&scene);
+        if let Structure::Beam(beam) = &mut scene.structure
+            && stated
+        {
+            beam.as_the_thesis();
+        }
+        Ok(scene)
     }
 
     /// Reads a scene from a file: TOML if its name ends in `.toml`, JSON otherwise. A table of modes that the scene

@@ -8,7 +8,7 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
-use super::beam::SECTIONS;
+use super::segment::SECTIONS;
 use super::{FORMAT_VERSION, Scene, fields};
 
 /// The JSON Schema (draft 2020-12) of scene files. What it lets pass has the right shape, a place where the structure needs

@@ -23,7 +23,7 @@ use super::string::TautString;
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Structure {
-    /// `"beam"`: an Euler-Bernoulli beam of uniform segments, whose modes are computed.
+    /// `"beam"`: a beam of uniform segments by Euler-Bernoulli's or Timoshenko's theory, whose modes are computed.
     Beam(Beam),
     /// `"string"`: a string under tension, with or without stiffness.
     #[serde(rename = "string")]
@@ -238,7 +238,7 @@ impl Structure {
     pub(crate) fn static_compliance_m_n(&self, place: Place) -> Result<f64, InvalidInput> {
         match self {
             Structure::Beam(beam) => beam
-                .to_beam()
+                .to_system()
                 .and_then(|beam| Ok(beam.static_compliance(place.on_structure()?.along()?)?))
                 .map_err(|fault| if fault.field == "location_m" { fault } else { fault.within("structure") }),
             Structure::TautString(string) => string.static_compliance_m_n(place.on_structure()?.along()?),

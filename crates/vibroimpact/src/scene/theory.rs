@@ -1,0 +1,111 @@
+//! Which theory of bending a beam is solved by, and its neighbours: the other theory, another shear coefficient.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::beam::Beam;
+use super::error::InvalidInput;
+
+/// Theory of bending of a beam.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BeamTheory {
+    /// Sections stay normal to the axis and have no rotary inertia.
+    EulerBernoulli,
+    /// With shear and rotary inertia.
+    Timoshenko,
+    /// Timoshenko's where every segment gives what it needs, and no axial force and no foundation is there; otherwise
+    /// Euler-Bernoulli's.
+    Auto,
+}
+
+/// How a beam differs from the one that a scene poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TheoryVariant {
+    /// The other theory of bending.
+    OtherTheory,
+    /// Timoshenko's theory with the shear coefficient 2 % smaller.
+    SmallerShearCoefficient,
+    /// Timoshenko's theory with the shear coefficient 2 % larger.
+    LargerShearCoefficient,
+}
+
+/// Shear coefficients in use differ by about this much.
+const SHEAR_COEFFICIENT_SPREAD: f64 = 0.02;
+
+impl Beam {
+    /// The theory that the beam is solved by, never `Auto`. (A scene file that states its modes but no theory is read as
+    /// one that states Euler-Bernoulli's, as in the thesis.)
+    ///
+    /// # Errors
+    /// Timoshenko's theory asked for where a segment lacks what it needs.
+    pub fn solved_by(&self) -> Result<BeamTheory, InvalidInput> {
+        let possible = self.axial_force_n == 0.0 && self.foundation_n_m2 == 0.0;
+        match self.theory.unwrap_or(BeamTheory::Auto) {
+            BeamTheory::Auto if possible && self.has_shear()? => Ok(BeamTheory::Timoshenko),
+            BeamTheory::Auto => Ok(BeamTheory::EulerBernoulli),
+            stated => Ok(stated),
+        }
+    }
+
+    /// States Euler-Bernoulli's theory where the choice is open and there is one: for scenes that state their modes.
+    pub(super) fn as_the_thesis(&mut self) {
+        if self.theory.is_none() && self.has_shear() == Ok(true) {
+            self.theory = Some(BeamTheory::EulerBernoulli);
+        }
+    }
+
+    /// Whether every segment gives what Timoshenko's theory needs.
+    fn has_shear(&self) -> Result<bool, InvalidInput> {
+        let mut all = !self.segments.is_empty();
+        for (i, segment) in self.segments.iter().enumerate() {
+            let shear = segment.to_shear().map_err(|fault| fault.within(&format!("segments[{i}]")))?;
+            all &= shear.is_some();
+        }
+        Ok(all)
+    }
+
+    /// The beams whose impacts tell how far the theory of bending can be trusted: the same beam by the other theory, and
+    /// with a shear coefficient 2 % smaller and larger, as far as they can be solved. The uncertainty `beam_theory` of
+    /// a result is what the restitution changes by between them.
+    ///
+    /// None where no segment gives what Timoshenko's theory needs, and where axial force or foundation ask for
+    /// Euler-Bernoulli's.
+    ///
+    /// ```
+    /// use vibroimpact::scene::{Beam, BeamTheory, End, Segment, TheoryVariant};
+    /// let segment = Segment { poissons_ratio: Some(0.3), ..Segment::rectangular(1.0, 2e11, 7800.0, 0.0113, 0.0113) };
+    /// let beam = Beam { segments: vec![segment], ..Beam::new([End::Pinned, End::Pinned]) };
+    /// assert_eq!(beam.solved_by()?, BeamTheory::Timoshenko);
+    /// let variants = beam.theory_variants()?;
+    /// assert_eq!(variants.len(), 3);
+    /// assert_eq!(variants[0].0, TheoryVariant::OtherTheory);
+    /// assert_eq!(variants[0].1.solved_by()?, BeamTheory::EulerBernoulli);
+    /// # Ok::<(), vibroimpact::InvalidInput>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`to_system`](Self::to_system).
+    pub fn theory_variants(&self) -> Result<Vec<(TheoryVariant, Beam)>, InvalidInput> {
+        let theory = self.solved_by()?;
+        if self.axial_force_n != 0.0 || self.foundation_n_m2 != 0.0 || !self.has_shear()? {
+            return Ok(Vec::new());
+        }
+        let with = |theory| Beam { theory: Some(theory), ..self.clone() };
+        if theory == BeamTheory::EulerBernoulli {
+            return Ok(vec![(TheoryVariant::OtherTheory, with(BeamTheory::Timoshenko))]);
+        }
+        let mut variants = vec![(TheoryVariant::OtherTheory, with(BeamTheory::EulerBernoulli))];
+        for (variant, factor) in [
+            (TheoryVariant::SmallerShearCoefficient, 1.0 - SHEAR_COEFFICIENT_SPREAD),
+            (TheoryVariant::LargerShearCoefficient, 1.0 + SHEAR_COEFFICIENT_SPREAD),
+        ] {
+            let mut beam = with(BeamTheory::Timoshenko);
+            for segment in &mut beam.segments {
+                *segment = segment.with_shear_times(factor);
+            }
+            variants.push((variant, beam));
+        }
+        Ok(variants)
+    }
+}
