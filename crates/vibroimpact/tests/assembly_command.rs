@@ -19,6 +19,7 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     let printed = stdout(&run(folder.path(), &["simulate", &scene("sdnl105"), "--json"]));
     let result: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!((result["outcome"].as_str(), result["end_s"].as_f64()), (Some("end"), Some(1.0)));
+    assert_eq!(result["reliable_until_s"], result["end_s"]);
     let contact = &result["contacts"]["1-2"];
     assert_eq!(contact["count"], contact["intervals"].as_array().unwrap().len());
     let last = contact["intervals"].as_array().unwrap().last().unwrap();
@@ -30,6 +31,15 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     for key in ["time_share", "rms_force_n", "largest_force_n", "contact_work_rate_w"] {
         assert!(contact[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {contact}");
     }
+    // what the load has done is where it must be
+    let energy = &result["energy"];
+    let joule = |value: &Value| value.as_f64().unwrap();
+    let bodies = energy["bodies"].as_object().unwrap();
+    assert_eq!(bodies.len(), 3);
+    let gained: f64 = bodies.values().map(|body| joule(&body["end_j"]) - joule(&body["start_j"])).sum();
+    let rest = joule(&energy["load_work_j"]) - gained - joule(&energy["contacts_stored_j"]);
+    assert!(rest.abs() < 1e-9 * joule(&energy["load_work_j"]), "{energy}");
+    assert!(joule(&energy["residual_j"]).abs() < 1e-9 * joule(&energy["load_work_j"]), "{energy}");
     let points = result["points"].as_array().unwrap();
     assert_eq!(points.len(), 4);
     assert_eq!((points[1]["contact"].as_str(), points[1]["side"].as_u64()), (Some("1-2"), Some(1)));
@@ -37,10 +47,10 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     // the list is cut where it is told to be, and the statistics are not
     let short = stdout(&run(folder.path(), &["simulate", &scene("sdnl105"), "--json", "--intervals", "1"]));
     let short: Value = serde_json::from_str(&short).unwrap();
-    // the first to end is listed
-    assert_eq!(short["contacts"]["2-3"]["intervals"].as_array().unwrap().len(), 1);
-    assert_eq!(short["contacts"]["2-3"]["intervals_left_out"], 3);
-    assert_eq!(short["contacts"]["1-2"]["intervals_left_out"], 2);
+    // the first to begin is listed
+    assert_eq!(short["contacts"]["1-2"]["intervals"].as_array().unwrap().len(), 1);
+    assert_eq!(short["contacts"]["1-2"]["intervals_left_out"], 1);
+    assert_eq!(short["contacts"]["2-3"]["intervals_left_out"], 4);
     assert_eq!(short["contacts"]["2-3"]["rms_force_n"], result["contacts"]["2-3"]["rms_force_n"]);
 }
 

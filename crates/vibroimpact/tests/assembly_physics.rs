@@ -50,6 +50,30 @@ fn sdnl104_has_the_exact_figures_of_its_modes() {
 }
 
 #[test]
+fn remainder_modes_stand_for_the_modes_left_out() {
+    let mut scene = assembly("sdnl104");
+    let Some(Body::Elastic(beam)) = scene.bodies.get_mut("beam") else { panic!() };
+    (beam.modes, beam.residual_compliance) = (Some(10), true);
+    // one remainder mode for the one place of contact and load
+    let posed = scene.pose().unwrap();
+    assert_eq!(posed.assembly.bodies[0].modes.len(), 11);
+    // its compliance makes that of the tip whole, L^3 / 3 EI
+    let shape = match &posed.assembly.contacts[0].sides[0] {
+        vibroimpact::vibroimpact_sim::assembly::Point::OfBody { shape, .. } => shape.clone(),
+        ground => panic!("{ground:?}"),
+    };
+    let modes = posed.assembly.bodies[0].modes.iter().zip(&shape);
+    let compliance: f64 = modes.map(|(mode, phi)| (phi / mode.omega_rad_s).powi(2)).sum();
+    assert_near(compliance, 1.0 / (3.0 * 1e10 * PI * 0.2f64.powi(4) / 64.0), 1e-9);
+    // ten modes and their residual compliance, exact in time by the second method
+    let found = until(&scene, 0.16);
+    assert_near(found.intervals[0][0].start_s, 0.03614, 1e-4);
+    assert_near(found.intervals[0][0].end_s.unwrap(), 0.09256, 1e-4);
+    let tip = until(&scene, 0.1315).run.contacts[0].displacement_m[0];
+    assert!((tip + 1.838e-6).abs() < 2e-9, "{tip}");
+}
+
+#[test]
 fn sdnl105_is_met_by_the_modes_of_its_mesh() {
     let scene = assembly("sdnl105");
     let Body::Elastic(tube) = &scene.bodies["tube-1"] else { panic!() };
@@ -147,9 +171,10 @@ fn a_dropped_ball_lies_on_the_beam_at_last() {
     let contact = &found.run.contacts[0];
     assert!(found.intervals[0].len() > 10);
     assert!(found.intervals[0].last().is_some_and(|last| last.end_s.is_none()));
-    // what is left is the ball's weight, which bends the beam at rest
+    assert_eq!(found.run.outcome, Outcome::Rest);
+    // what is left is the ball's weight, and a vibration that opens the contact no more
     assert_near(contact.force_n, 0.11027 * 9.81, 1e-2);
-    assert!(contact.velocity_m_s.iter().all(|velocity| velocity.abs() < 1e-4), "{:?}", contact.velocity_m_s);
+    assert!(contact.velocity_m_s.iter().all(|velocity| velocity.abs() < 2e-3), "{:?}", contact.velocity_m_s);
     // the first touch: 5 mm of free fall onto the sagged beam
     let sag = found.posed.assembly.bodies[1].amplitude.iter().zip(shape(&found)).map(|(a, phi)| a * phi).sum::<f64>();
     assert_near(found.intervals[0][0].start_s, (2.0 * (0.005 - sag) / 9.81).sqrt(), 1e-9);

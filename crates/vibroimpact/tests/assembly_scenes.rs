@@ -181,6 +181,8 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
         ("/bodies/beam/modes", json!(10_001), "bodies.beam.modes"),
         ("/bodies/beam/modes", json!("auto"), "bodies.beam.modes"),
         ("/bodies/beam/residual_compliance", json!("yes"), "bodies.beam.residual_compliance"),
+        ("/bodies/rod/residual_compliance", json!(true), "bodies.rod.residual_compliance"),
+        ("/bodies/rig/residual_compliance", json!(true), "bodies.rig.residual_compliance"),
         ("/bodies/beam/velocity_m_s", json!(1), "bodies.beam.velocity_m_s"),
         ("/bodies/beam/damping_ratio", json!(-0.1), "bodies.beam.damping_ratio"),
         ("/bodies/beam/colour", json!("red"), "bodies.beam.colour"),
@@ -281,6 +283,11 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
         ("/description", json!(1), "description"),
         ("/structure", json!({}), "structure"),
     ];
+    // with remainder modes, a place off the beam is still that of its contact
+    let mut off = scene();
+    off["bodies"]["beam"]["residual_compliance"] = json!(true);
+    off["contacts"][0]["between"][1]["location_m"] = json!(1.5);
+    assert_eq!(pose(&off).unwrap_err().field, "contacts[0].between[1].location_m");
     for (place, value, expected) in cases {
         let mut spoilt = scene();
         let (holder, key) = place.rsplit_once('/').unwrap();

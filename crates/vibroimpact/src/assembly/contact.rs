@@ -24,12 +24,13 @@ pub struct Contact {
     pub between: [Side; 2],
     /// Distance of the surfaces when both bodies are undeformed and in place (m), negative for an interference; 0 when left
     /// out.
+    #[serde(default)]
     #[schemars(schema_with = "any_number")]
     pub gap_m: f64,
     /// Whether a second contact stands on the other side of A, at the same distance and with the same law, as in a
     /// clearance; `false` when left out. `NAME+` is the contact as it stands here, which pushes A along `+x`, `NAME-` the one
     /// that pushes A along `-x`.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub two_sided: bool,
     /// Relative radius of curvature at the contact, `1/R = 1/R_A + 1/R_B` (m); needed where the stiffness comes from
     /// materials.

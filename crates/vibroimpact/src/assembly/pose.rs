@@ -53,7 +53,7 @@ impl AssemblyScene {
     /// ```
     pub fn pose(&self) -> Result<Posed, InvalidInput> {
         let settings = self.settings()?;
-        let mut bodies = Bodies::new(&self.bodies)?;
+        let mut bodies = Bodies::new(self)?;
         let (mut contacts, mut names, mut of_scene) = (Vec::new(), Vec::new(), Vec::new());
         for (i, contact) in self.contacts.iter().enumerate() {
             let posed = bodies.contact(contact).map_err(|fault| beside(fault, &format!("contacts[{i}]")))?;
@@ -161,14 +161,28 @@ struct Bodies<'a> {
 }
 
 impl<'a> Bodies<'a> {
-    fn new(given: &'a BTreeMap<String, Body>) -> Result<Bodies<'a>, InvalidInput> {
+    fn new(scene: &'a AssemblyScene) -> Result<Bodies<'a>, InvalidInput> {
+        let given = &scene.bodies;
         if given.is_empty() {
             return Err(InvalidInput::new("bodies", "{}", "an object with at least one named body"));
         }
         if let Some(name) = given.keys().find(|name| ["", "ground"].contains(&name.as_str())) {
             return Err(InvalidInput::new("bodies", format!("{name:?}"), "bodies with names other than \"ground\""));
         }
-        let seen = given.iter().map(|(name, body)| Seen::new(name, body)).collect::<Result<_, _>>()?;
+        let sides = scene.contacts.iter().flat_map(|contact| &contact.between).filter_map(|side| match side {
+            Side::Ground(_) => None,
+            Side::Body(point) => Some((&point.body, point.location_m?.along().ok()?)),
+        });
+        let loads = scene.loads.iter().filter_map(|load| Some((&load.body, load.location_m?.along().ok()?)));
+        let points: Vec<(&String, f64)> = sides.chain(loads).collect();
+        let places_m = |name: &String| {
+            let mut places: Vec<f64> =
+                points.iter().filter(|(body, _)| *body == name).map(|(_, place)| *place).collect();
+            places.sort_by(f64::total_cmp);
+            places.dedup();
+            places
+        };
+        let seen = given.iter().map(|(name, body)| Seen::new(name, body, places_m(name))).collect::<Result<_, _>>()?;
         Ok(Bodies { given, seen })
     }
 

@@ -4,7 +4,9 @@ use std::io;
 
 use super::AssemblyScene;
 use super::summary::Summary;
-use super::text::{CONTACT, INTERVAL, contact_rows, energy_rows, first_intervals, interval_cells, outcome};
+use super::text::{
+    CONTACT, INTERVAL, contact_rows, energy_rows, first_intervals, interval_cells, outcome, reliability,
+};
 use crate::plot::Figure;
 use crate::report::{Report, literal};
 
@@ -20,7 +22,11 @@ pub fn report(headline: &str, scene: &AssemblyScene, summary: &Summary, figure: 
     if let Some(description) = &scene.description {
         report.text(&literal(description));
     }
-    report.table(&["result", ""], &[vec!["outcome".to_owned(), outcome(summary)]]);
+    let mut rows = vec![vec!["outcome".to_owned(), outcome(summary)]];
+    if let Some(reliable) = reliability(summary) {
+        rows.push(vec!["touches and releases are certain until".to_owned(), reliable]);
+    }
+    report.table(&["result", ""], &rows);
     report.figure("run", figure, "Gaps and forces over time (grey: in contact), and what they come to.")?;
     report.heading("Contacts");
     report.table(&CONTACT, &contact_rows(summary));

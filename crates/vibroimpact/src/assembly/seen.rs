@@ -1,6 +1,6 @@
 //! A body as its points see it: modes and their shapes.
 
-use beam_modes::Modes;
+use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
 use vibroimpact_sim::modal::Mode;
 
@@ -15,15 +15,20 @@ pub(super) struct Seen<'a> {
     body: &'a Body,
     known: KnownModes,
     rod: Option<Modes>,
-    /// The modes.
+    /// Where contacts and loads stand on a beam with residual compliance (m), and the remainder modes that they see.
+    places_m: Vec<f64>,
+    remainder: Vec<PointsMode>,
+    /// The modes, remainder modes last.
     pub modes: Vec<BodyMode>,
 }
 
 impl<'a> Seen<'a> {
-    /// The modes of the body with this name.
-    pub fn new(name: &str, body: &'a Body) -> Result<Seen<'a>, InvalidInput> {
-        let path = format!("bodies.{name}");
-        let mut seen = Seen { path, body, known: KnownModes::default(), rod: None, modes: Vec::new() };
+    /// The modes of the body with this name, on which contacts and loads stand at `places_m`, as far as they are places on
+    /// a beam or rod.
+    pub fn new(name: &str, body: &'a Body, places_m: Vec<f64>) -> Result<Seen<'a>, InvalidInput> {
+        let (path, known) = (format!("bodies.{name}"), KnownModes::default());
+        let (remainder, modes) = (Vec::new(), Vec::new());
+        let mut seen = Seen { path, body, known, rod: None, places_m, remainder, modes };
         seen.modes = match body {
             Body::Mass(mass) => {
                 InvalidInput::require_positive("mass_kg", mass.mass_kg).map_err(|fault| seen.of_body(fault))?;
@@ -35,19 +40,20 @@ impl<'a> Seen<'a> {
                 vec![BodyMode { omega_rad_s: 0.0, damping_ratio: 0.0 }]
             }
             Body::Elastic(body) => {
-                if body.residual_compliance {
-                    let allowed = "false: a body of a scene of bodies answers with its modes alone";
-                    return Err(seen.of_body(InvalidInput::new("residual_compliance", "true", allowed)));
-                }
                 if let (Elastics::Rod(rod), count) = (&body.structure, body.modes) {
                     seen.rod = Some(modes_of(rod, count).map_err(|fault| seen.of_body(fault))?);
                 }
                 let anywhere = anywhere(body);
                 let modes = seen.elastic(body, Place { location_m: anywhere.0, location: anywhere.1.as_deref() })?;
-                modes
-                    .iter()
-                    .map(|&Mode { omega_rad_s, damping_ratio, .. }| BodyMode { omega_rad_s, damping_ratio })
-                    .collect()
+                if body.residual_compliance {
+                    seen.remainder = seen.remainder_of(body)?;
+                }
+                let listed = modes.iter().map(|mode| (mode.omega_rad_s, mode.damping_ratio));
+                // as that of the last mode kept
+                let damping = modes.last().map_or(0.0, |mode| mode.damping_ratio);
+                let rest = seen.remainder.iter().map(|mode| (mode.omega_rad_s, damping));
+                let mode = |(omega_rad_s, damping_ratio)| BodyMode { omega_rad_s, damping_ratio };
+                listed.chain(rest).map(mode).collect()
             }
         };
         Ok(seen)
@@ -62,10 +68,33 @@ impl<'a> Seen<'a> {
     /// Shapes of the modes at a place (kg^-1/2). A fault of the place has the field `location_m` or `location`, any other
     /// its whole path.
     pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
-        Ok(self.modes_at(place)?.into_iter().map(|mode| mode.shape).collect())
+        let listed = self.modes_at(place)?.into_iter().map(|mode| mode.shape);
+        let point = self.places_m.iter().position(|there| place.location_m == Some((*there).into()));
+        let rest = self.remainder.iter().map(|mode| point.map_or(0.0, |point| mode.shapes[point]));
+        Ok(listed.chain(rest).collect())
     }
 
-    /// The modes as seen from a place; faults as in [`Seen::shape`].
+    /// The remainder modes of a beam, which the block form gives for all its contacts and loads together.
+    fn remainder_of(&self, body: &Elastic) -> Result<Vec<PointsMode>, InvalidInput> {
+        let Elastics::Structure(Structure::Beam(beam)) = &body.structure else {
+            let allowed = "false: only beams know what their modes leave out";
+            return Err(self.of_body(InvalidInput::new("residual_compliance", "true", allowed)));
+        };
+        let kept = body.modes.unwrap_or_default();
+        let on_beam = |place: &f64| *place >= 0.0;
+        // a place off the beam is told of as that of its contact or load
+        match self.places_m.iter().all(on_beam) && !self.places_m.is_empty() {
+            true => {
+                let remainder = beam.to_beam().map_err(|fault| self.of_body(fault))?.remainder_at(&self.places_m, kept);
+                remainder.or_else(
+                    |fault| if fault.field == "x_m" { Ok(Vec::new()) } else { Err(self.of_body(fault.into())) },
+                )
+            }
+            false => Ok(Vec::new()),
+        }
+    }
+
+    /// The modes as seen from a place, remainder modes left out; faults as in [`Seen::shape`].
     pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match self.body {
             Body::Mass(mass) => {
@@ -126,7 +155,11 @@ impl<'a> Seen<'a> {
             Some(_) if !given.is_empty() => {
                 Err(self.of_body(InvalidInput::new(field, values(), "left out: it is computed for this kind")))
             }
-            Some(computed) => Ok(computed),
+            // what the modes left out would sag under their weight is far below what they answer at a point
+            Some(mut computed) => {
+                computed.resize(self.modes.len(), 0.0);
+                Ok(computed)
+            }
             None if given.is_empty() => {
                 let allowed = format!("needed for {needed_for}: a list of finite numbers, one a mode");
                 Err(self.of_body(InvalidInput::missing(field, allowed)))

@@ -3,20 +3,24 @@
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use vibroimpact_sim::assembly::{Force, Interval, Run, run};
+use vibroimpact_sim::assembly::{Force, Interval, Outcome, Reason, Run, Solver};
 
 use super::files::IntervalFiles;
 use super::watch::{Course, Sink, Watch};
 use super::{AssemblyScene, Posed};
 use crate::export::Failure;
 
-/// Most intervals of contact that are kept in memory unless the caller says otherwise; about 60 MB.
+/// Most intervals of contact that are kept in memory unless the caller says otherwise, about 80 MB; those beyond are
+/// counted, and go into files.
 pub const MOST_INTERVALS: usize = 1_000_000;
 
 /// What is wanted of a run.
 pub struct Wanted<'a> {
     /// Intervals of contact that are kept in memory, the first of all contacts together; the rest are counted.
     pub intervals: usize,
+    /// Whether it is found out until when the times of the events are certain, which takes a second run. It needs all
+    /// intervals in memory.
+    pub reliability: bool,
     /// Whether samples of the motion are kept, for histories and pictures.
     pub course: bool,
     /// A folder into which all intervals go as they are found.
@@ -33,6 +37,10 @@ pub struct Simulation {
     pub posed: Posed,
     /// The result.
     pub run: Run,
+    /// Until when touches and releases are certain (s): a second run with a tolerance 32 times as large finds each of them
+    /// within that tolerance of the time since the start. `None` if it was not found out: it was not wanted, not all
+    /// intervals were kept, or the run was interrupted.
+    pub reliable_until_s: Option<f64>,
     /// Intervals of contact, contact by contact, as many as were wanted.
     pub intervals: Vec<Vec<Interval>>,
     /// How many more there were.
@@ -62,6 +70,7 @@ impl AssemblyScene {
     pub fn simulate(&self) -> Result<Simulation, Failure> {
         self.simulate_with(Wanted {
             intervals: MOST_INTERVALS,
+            reliability: true,
             course: false,
             folder: None,
             stop: &AtomicBool::new(false),
@@ -84,7 +93,9 @@ impl AssemblyScene {
         let sink: Sink = &mut take;
         let mut watch =
             Watch::new(posed.contacts.len(), wanted.intervals, Some(sink), course, wanted.stop, wanted.tell);
-        let run = run(&posed.assembly, &posed.settings, &mut watch).map_err(|fault| posed.in_scene(fault))?;
+        let in_scene = |fault| posed.in_scene(fault);
+        let mut solver = Solver::new(&posed.assembly).map_err(in_scene)?;
+        let run = solver.run(&posed.settings, &mut watch).map_err(in_scene)?;
         let Watch { intervals, left_out, fault, course, .. } = watch;
         if let Some(fault) = fault {
             return Err(fault);
@@ -92,7 +103,13 @@ impl AssemblyScene {
         if let Some(files) = files {
             files.close()?;
         }
-        Ok(Simulation { posed, run, intervals, left_out, course })
+        let whole = left_out.iter().all(|count| *count == 0) && run.outcome != Outcome::Stopped(Reason::Interrupted);
+        let reliable_until_s = match wanted.reliability && whole {
+            true => Some(solver.reliable_until(&posed.settings, &intervals, run.end_s).map_err(in_scene)?),
+            false => None,
+        };
+        drop(solver);
+        Ok(Simulation { posed, run, reliable_until_s, intervals, left_out, course })
     }
 }
 

@@ -16,6 +16,9 @@ pub struct Summary {
     pub reason: Option<&'static str>,
     /// When it ended (s).
     pub end_s: f64,
+    /// Until when touches and releases are certain (s), from a second run with a tolerance 32 times as large; from then on
+    /// only statistics mean anything. Null if it was not found out.
+    pub reliable_until_s: Option<f64>,
     /// The contacts by their names.
     pub contacts: BTreeMap<String, Statistics>,
     /// Either side of each contact at the end.
@@ -138,6 +141,22 @@ impl Interval {
 }
 
 impl Summary {
+    /// The same with at most so many intervals listed, those of all contacts together that begin first.
+    pub fn listing(mut self, most: usize) -> Summary {
+        let mut starts: Vec<f64> =
+            self.contacts.values().flat_map(|contact| contact.intervals.iter().map(|one| one.start_s)).collect();
+        if starts.len() > most {
+            starts.sort_by(f64::total_cmp);
+            let first_left_out = starts[most];
+            for contact in self.contacts.values_mut() {
+                let listed = contact.intervals.partition_point(|one| one.start_s < first_left_out);
+                contact.intervals_left_out += (contact.intervals.len() - listed) as u64;
+                contact.intervals.truncate(listed);
+            }
+        }
+        self
+    }
+
     /// Gathers a result for printing.
     pub fn new(found: &Simulation) -> Summary {
         let run = &found.run;
@@ -175,6 +194,7 @@ impl Summary {
                 _ => None,
             },
             end_s,
+            reliable_until_s: found.reliable_until_s,
             contacts: names.iter().enumerate().map(contact).collect(),
             points: names.iter().enumerate().flat_map(point).collect(),
             energy: run.energy.as_ref().map(|ledger| Energy {

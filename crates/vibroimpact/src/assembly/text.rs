@@ -42,6 +42,15 @@ pub(super) fn outcome(summary: &Summary) -> String {
     }
 }
 
+/// Until when the times of the events are certain, in words.
+pub(super) fn reliability(summary: &Summary) -> Option<String> {
+    let until = summary.reliable_until_s?;
+    Some(match until >= summary.end_s {
+        true => format!("{}, the whole run", quantity(until, "s")),
+        false => format!("{}; from there on only statistics mean anything", quantity(until, "s")),
+    })
+}
+
 /// The names of the columns of an interval, and an interval in them.
 pub(super) const INTERVAL: [&str; 7] = ["contact", "from", "to", "impulse", "largest force", "approach", "separation"];
 
@@ -116,6 +125,9 @@ pub fn result(summary: &Summary) -> String {
         let _ = writeln!(text, "  {name:<22}{value}");
     };
     line("outcome", outcome(summary));
+    if let Some(reliable) = reliability(summary) {
+        line("events certain until", reliable);
+    }
     let counts = &summary.counts;
     line("cost", format!("{} steps in contact, {} in flight", counts.contact_steps, counts.flight_steps));
     text += &columns(&CONTACT, contact_rows(summary).into_iter());

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vibroimpact::assembly::{self, AssemblyScene, Summary, Wanted};
+use vibroimpact::assembly::{self, AssemblyScene, MOST_INTERVALS, Summary, Wanted};
 use vibroimpact::export::{self, Failure, Files};
 use vibroimpact::text::quantity;
 
@@ -18,7 +18,8 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     let stop = stop_on_signal()?;
     let mut progress = Progress::new(scene.end_s);
     let wanted = Wanted {
-        intervals,
+        intervals: MOST_INTERVALS,
+        reliability: true,
         course: products.want_course(),
         folder: products.out.as_deref(),
         stop: &stop,
@@ -26,7 +27,7 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     };
     let found = scene.simulate_with(wanted)?;
     progress.finish();
-    let summary = Summary::new(&found);
+    let summary = Summary::new(&found).listing(intervals);
     let printed = match products.json {
         true => export::json(&summary)?,
         false => format!("{headline}\n\n{}", assembly::result(&summary)),
