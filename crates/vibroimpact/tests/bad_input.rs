@@ -140,7 +140,7 @@ fn a_damping_ratio_is_blamed_by_the_name_that_it_has_in_the_scene() {
 fn a_mistyped_name_is_answered_by_the_one_that_was_probably_meant() {
     for (from, to, meant) in [
         ("\"beam\"", "\"bem\"", "beam"),
-        ("\"beam\"", "\"plate\"", "infinite-plate"),
+        ("\"beam\"", "\"dropped_rod\"", "dropped-rod"),
         ("\"hertz\"", "\"herz\"", "hertz"),
         ("\"pinned\", \"pinned\"", "\"pined\", \"pinned\"", "pinned"),
         ("\"length_m\"", "\"lenght_m\"", "length_m"),

@@ -148,7 +148,7 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
         ("rubber-ball", "/striker/density_kg_m3", json!(1000)),
         ("measured-modes", "/location_m", json!(0.1)),
         ("measured-modes", "/structure/omega_rad_s", json!([])),
-        ("simply-supported-plate", "/location", Value::Null),
+        ("baseball-bat", "/location", Value::Null),
         ("infinite-plate", "/location_m", json!(0.1)),
         ("infinite-plate", "/tolerance", json!(1e-3)),
         ("infinite-beam", "/structure/diameter_m", json!(0.1)),
