@@ -178,3 +178,21 @@ fn many_intervals_and_limits() {
     let empty: Assembly<Law> = Assembly { bodies: vec![], contacts: vec![], loads: vec![] };
     assert_eq!(solve(&empty, &Settings::until(1.0)).0.outcome, Outcome::End);
 }
+
+#[test]
+fn a_ball_does_not_fall_through_the_floor_whatever_its_height_and_the_end() {
+    // flights of a rigid ball are one power series as long as the run: its rounding must not hide the floor
+    let (m, g) = (0.1, 9.81);
+    for i in 0..60 {
+        let (height, end_s) = (1e-4 * 1.17f64.powi(i % 20), 0.2 + 0.37 * f64::from(i));
+        let contact = Contact { sides: [mass(0, m), Point::Ground], gap_m: 0.0, law: Hertz::new(1e9).unwrap().into() };
+        let ball = Body::mass(m, height, 0.0);
+        let assembly = Assembly { bodies: vec![ball], contacts: vec![contact], loads: vec![weight(0, m)] };
+        let (found, intervals) = solve(&assembly, &Settings::until(end_s));
+        let (first, second) = (intervals[0][0].start_s, intervals[0][1].start_s);
+        assert!((first - (2.0 * height / g).sqrt()).abs() < 1e-12);
+        let expected = ((end_s - first) / (second - first)).floor() as usize + 1;
+        assert!(intervals[0].len().abs_diff(expected) <= 1, "{i}: {} {expected}", intervals[0].len());
+        assert!(found.contacts[0].displacement_m[0] > -1e-3, "{i}");
+    }
+}

@@ -248,7 +248,8 @@ fn scenes_that_do_not_fit_are_refused_by_field() {
     }
     let message = refusal(&["modes", "scene.json", "--count", "3"], Some(scene().to_string()));
     assert!(
-        message.contains("structure.kind = \"infinite-beam\" is not allowed: beam, modal or dropped-rod"),
+        message
+            .contains("structure.kind = \"infinite-beam\" is not allowed: beam, string, plate, modal or dropped-rod"),
         "{message}"
     );
 }

@@ -57,9 +57,11 @@ fn the_readme_shows_a_scene_of_the_gallery_and_its_restitution() {
     let block = readme.split("```json").nth(1).unwrap().split("```").next().unwrap();
     let gallery = Scene { description: None, ..named("pinned-beam-converged") };
     assert_eq!(Scene::from_json(block).unwrap(), gallery);
-    let printed: f64 =
-        readme.split("  restitution ").nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap();
-    assert!((printed - restitution(&gallery)).abs() < 1e-7);
+    let printed =
+        |line: &str| -> f64 { readme.split(line).nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap() };
+    assert!((printed("  as modelled ") - restitution(&gallery)).abs() < 1e-7);
+    // the headline holds no more digits than the whole uncertainty allows
+    assert!((printed("  restitution ") - restitution(&gallery)).abs() < 1e-4);
 }
 
 #[test]

@@ -12,8 +12,9 @@
 
 use super::load::Loads;
 use super::system::{Link, System};
+use super::terminal::value;
 use crate::modal::flight::first_root_of_parabola;
-use crate::modal::legendre::{BASIS, Q};
+use crate::modal::legendre::{BASIS, Q, TAYLOR};
 use std::sync::LazyLock;
 
 /// Derivatives of the interpolation error that are bounded.
@@ -194,6 +195,35 @@ impl FlightBounds {
         }
         best
     }
+}
+
+/// The first time in `[0, window]` at which an overlap with this power series, approached from below, rises to zero, and
+/// `true`; or a time up to which it does not, and `false`. Its second derivative is at most `curvature`. Overlaps within
+/// `noise`, and within the rounding of the series, count as zero.
+pub(super) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64, noise: f64) -> (f64, bool) {
+    const ITERATIONS_MAX: usize = 10_000;
+    // a grazing touch leaves the surfaces together for so short a time that the overlap stays rounding
+    let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
+    let mut t = 0.0;
+    for _ in 0..ITERATIONS_MAX {
+        let [overlap, rate, _] = value(series, t);
+        let size = series.iter().rev().fold(0.0, |sum, term| sum * t + term.abs());
+        if overlap >= -(noise + 4.0 * f64::EPSILON * size) && rate > 0.0 {
+            return (t, true);
+        }
+        let step = first_root_of_parabola((-overlap).max(0.0), -rate, curvature);
+        let step = if rate > 0.0 { step } else { step.max(least) };
+        let next = (t + step).max(t * (1.0 + f64::EPSILON));
+        if next >= window {
+            return (window, false);
+        }
+        if next == t {
+            // together and at rest against each other: the law tells what follows
+            return (t, true);
+        }
+        t = next;
+    }
+    (t, false)
 }
 
 /// By how much the loads may bend the overlap of a contact within `lasting_s` (m/s^2).

@@ -158,7 +158,12 @@ mod tests {
         // a dip between two nodes, and one that only touches
         for lowest in [0.05, 0.3, 0.5, 0.71, 0.97] {
             let dip = |depth: f64| move |s: f64| (s - lowest).powi(2) * (1.0 + s) - depth;
-            meets(function(dip(1e-6), 0.0).verdict(), lowest - (1e-6 / (1.0 + lowest)).sqrt());
+            let (mut above, mut below) = (0.0, lowest);
+            for _ in 0..60 {
+                let middle = 0.5 * (above + below);
+                *(if dip(1e-6)(middle) > 0.0 { &mut above } else { &mut below }) = middle;
+            }
+            meets(function(dip(1e-6), 0.0).verdict(), above);
             assert_eq!(function(dip(-1e-6), 0.0).verdict(), Verdict::Clear);
             assert_eq!(function(dip(-1e-6), 1e-5).verdict(), Verdict::Doubtful);
         }

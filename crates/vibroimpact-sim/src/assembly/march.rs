@@ -7,7 +7,7 @@
 
 use super::collocate::{Collocated, Unknown, collocate};
 use super::dense::Panel;
-use super::enclosure::{FlightBounds, Pull, bend_of_loads, of_panel};
+use super::enclosure::{FlightBounds, Pull, bend_of_loads, first_closing, of_panel};
 use super::event::{EventFunction, Verdict};
 use super::ledger::{Account, Moment};
 use super::load::Loads;
@@ -19,7 +19,6 @@ use super::system::System;
 use super::tables::Tables;
 use super::terminal::{self, Landed, REACH, Window, series_of, value};
 use crate::modal::contact::Peak;
-use crate::modal::flight::first_root;
 use crate::modal::ladder::{J_MAX, J_MIN, level_within, step_s};
 use crate::modal::legendre::{BASIS, Nodal, Q, evaluate};
 use crate::modal::step::{slopes, truncation};
@@ -463,7 +462,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         } else {
             let by_level = lasting > step_s(near);
             let window = if by_level { step_s(near) } else { lasting };
-            let mut first: Option<(usize, f64)> = None;
+            let (mut first, mut clear): (Option<(usize, f64)>, f64) = (None, window);
             for c in 0..self.states.len() {
                 if self.clear_until(c) >= self.time_s + window {
                     continue;
@@ -472,21 +471,23 @@ impl<'a, L: ContactLaw> March<'a, L> {
                     + bend_of_loads(&self.loads, c, self.time_s, lasting);
                 let mut series = series_of(self.system, &self.loads, c, self.moment(), window);
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
-                if let Some(time) = first_root(&series, curvature, window, self.noise(c))
-                    && first.is_none_or(|(_, earlier)| time < earlier)
-                {
+                let (time, meets) = first_closing(&series, curvature, window, self.noise(c));
+                if !meets {
+                    clear = clear.min(time);
+                } else if first.is_none_or(|(_, earlier)| time < earlier) {
                     first = Some((c, time));
                 }
             }
             match first {
-                Some((c, time)) => {
+                Some((c, time)) if time <= clear => {
                     self.coast(time, false);
                     let (_, rate) = self.overlap_of_modes(c);
                     self.states[c].rate = rate;
                     self.touch(c, 0.0);
                 }
-                None if by_level => self.rotate(near),
-                None => self.coast(window, true),
+                _ if clear < window => self.coast(clear, false),
+                _ if by_level => self.rotate(near),
+                _ => self.coast(window, true),
             }
         }
     }

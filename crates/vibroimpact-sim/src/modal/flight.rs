@@ -144,7 +144,7 @@ pub(crate) fn fly(
 
 /// First time in `[0, reach]` at which the overlap `g(t) = sum series[p] t^p` rises to zero, approached from below.
 /// Overlaps within `noise` count as zero.
-pub(crate) fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64) -> Option<f64> {
+fn first_root(series: &[f64; TAYLOR], curvature: f64, reach: f64, noise: f64) -> Option<f64> {
     let evaluate = |t: f64| {
         let (mut value, mut slope) = (0.0, 0.0);
         for p in (0..TAYLOR).rev() {
