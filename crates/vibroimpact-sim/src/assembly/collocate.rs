@@ -6,7 +6,7 @@
 
 use super::solution::Counts;
 use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, apply, dot};
-use crate::modal::step::{eliminate, slopes};
+use crate::modal::step::{eliminate, slopes, substitute};
 use contact_models::{Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the panel is too long.
@@ -133,7 +133,7 @@ impl Blocks {
             blocks[p * n + p] = Some(diagonal);
             for q in p + 1..n {
                 if let Some(block) = &mut blocks[p * n + q] {
-                    block.iter_mut().for_each(|column| back_substitute(&diagonal, column));
+                    block.iter_mut().for_each(|column| substitute(&diagonal, column));
                 }
             }
             for i in p + 1..n {
@@ -161,7 +161,7 @@ impl Blocks {
                 self.subtract(p, q, right);
             }
             if let Some(diagonal) = &self.blocks[p * n + p] {
-                back_substitute(diagonal, &mut right[p]);
+                substitute(diagonal, &mut right[p]);
             }
         }
         for p in (0..n).rev() {
@@ -198,21 +198,6 @@ fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matr
         }
     }
     block
-}
-
-/// Solves with a factored diagonal block: unit lower and upper triangle in one, by columns, the diagonal inverted.
-fn back_substitute(a: &Matrix, b: &mut Nodal) {
-    for j in 0..Q {
-        for i in j + 1..Q {
-            b[i] -= a[j][i] * b[j];
-        }
-    }
-    for j in (0..Q).rev() {
-        b[j] *= a[j][j];
-        for i in 0..j {
-            b[i] -= a[j][i] * b[j];
-        }
-    }
 }
 
 #[cfg(test)]

@@ -152,19 +152,23 @@ impl Newton {
     }
 
     fn solve(&self, mut b: Nodal) -> Nodal {
-        let a = &self.triangles;
-        for j in 0..Q {
-            for i in j + 1..Q {
-                b[i] -= a[j][i] * b[j];
-            }
-        }
-        for j in (0..Q).rev() {
-            b[j] *= a[j][j];
-            for i in 0..j {
-                b[i] -= a[j][i] * b[j];
-            }
-        }
+        substitute(&self.triangles, &mut b);
         b
+    }
+}
+
+/// Solves in place with a factored matrix: unit lower and upper triangle in one, by columns, the diagonal inverted.
+pub(crate) fn substitute(a: &Matrix, b: &mut Nodal) {
+    for j in 0..Q {
+        for i in j + 1..Q {
+            b[i] -= a[j][i] * b[j];
+        }
+    }
+    for j in (0..Q).rev() {
+        b[j] *= a[j][j];
+        for i in 0..j {
+            b[i] -= a[j][i] * b[j];
+        }
     }
 }
 
