@@ -166,3 +166,9 @@ pub(crate) fn damping_ratio(e: f64) -> f64 {
     }
     0.5 * (low + high) / e
 }
+
+/// The share `L(alpha)/alpha^2` of `m v0^2` that the spring holds at the deepest compression, for a restitution `e`.
+pub(crate) fn share_stored(e: f64) -> f64 {
+    let alpha = damping_ratio(e);
+    if alpha == 0.0 { 0.5 } else { log_excess(alpha) / (alpha * alpha) }
+}

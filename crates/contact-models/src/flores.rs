@@ -1,7 +1,7 @@
 //! Flores, Machado, Silva and Martins's law.
 
 use crate::InvalidInput;
-use crate::damped::{Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 8 (1 - e) / (5 e v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -36,6 +36,17 @@ impl Flores {
     pub fn new(stiffness_n_m1_5: f64, restitution: f64) -> Result<Flores, InvalidInput> {
         let lowest_approach_speed_m_s = LOWEST_APPROACH_SPEED_M_S;
         Flores { stiffness_n_m1_5, restitution, lowest_approach_speed_m_s }.validated()
+    }
+
+    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest: what the law is told to be its
+    /// restitution is then another number, which makes up for the paper's approximation.
+    ///
+    /// # Errors
+    /// As [`Flores::new`].
+    pub fn with_restitution(stiffness_n_m1_5: f64, restitution: f64) -> Result<Flores, InvalidInput> {
+        InvalidInput::require_restitution("restitution", restitution)?;
+        // D v0 = 8 (1 - e) / (5 e), solved for e
+        Flores::new(stiffness_n_m1_5, 1.6 / (1.6 + damped::damping_ratio(restitution)))
     }
 
     /// The law itself if its parameters are in range.

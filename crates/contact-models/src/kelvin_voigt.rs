@@ -43,16 +43,7 @@ impl KelvinVoigt {
         InvalidInput::require_positive("mass_kg", mass_kg)?;
         let allowed = "a coefficient of restitution from 0.001 to below 1";
         InvalidInput::require("restitution", restitution, (0.001..1.0).contains(&restitution), allowed)?;
-        // bisection on zeta, of which the restitution is a falling function: e(0) = 1, e(20) < 0.001
-        let (mut low, mut high) = (0.0, 20.0);
-        for _ in 0..200 {
-            let zeta = 0.5 * (low + high);
-            if zeta <= low || zeta >= high {
-                break;
-            }
-            *(if restitution_at(zeta) > restitution { &mut low } else { &mut high }) = zeta;
-        }
-        KelvinVoigt::new(stiffness_n_m, (low + high) * (stiffness_n_m * mass_kg).sqrt())
+        KelvinVoigt::new(stiffness_n_m, 2.0 * damping_ratio(restitution) * (stiffness_n_m * mass_kg).sqrt())
     }
 
     /// The law itself if its parameters are in range.
@@ -98,6 +89,23 @@ fn restitution_at(zeta: f64) -> f64 {
         return (-2.0_f64).exp();
     }
     if zeta < 1.0 { (-2.0 * zeta * zeta.acos() / root).exp() } else { (-2.0 * zeta * zeta.acosh() / root).exp() }
+}
+
+/// The damping ratio `zeta` that gives the restitution at a wall, `0.001 <= restitution <= 1`.
+pub(crate) fn damping_ratio(restitution: f64) -> f64 {
+    if restitution >= 1.0 {
+        return 0.0;
+    }
+    // bisection on zeta, of which the restitution is a falling function: e(0) = 1, e(20) < 0.001
+    let (mut low, mut high) = (0.0, 20.0);
+    for _ in 0..200 {
+        let zeta = 0.5 * (low + high);
+        if zeta <= low || zeta >= high {
+            break;
+        }
+        *(if restitution_at(zeta) > restitution { &mut low } else { &mut high }) = zeta;
+    }
+    0.5 * (low + high)
 }
 
 impl ContactLaw for KelvinVoigt {

@@ -1,7 +1,7 @@
 //! Lankarani and Nikravesh's law.
 
 use crate::InvalidInput;
-use crate::damped::{Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 3 (1 - e^2) / (4 v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -28,6 +28,9 @@ pub struct LankaraniNikravesh {
 }
 
 impl LankaraniNikravesh {
+    /// The least restitution that the law can have, rounded up: its damping ends at `D v0 = 3/4`.
+    pub const LEAST_RESTITUTION: f64 = 0.663;
+
     /// The law with stiffness `k_H` (N/m^1.5) and intended restitution; the damping is bounded
     /// below an approach speed of 1e-6 m/s.
     ///
@@ -36,6 +39,21 @@ impl LankaraniNikravesh {
     pub fn new(stiffness_n_m1_5: f64, restitution: f64) -> Result<LankaraniNikravesh, InvalidInput> {
         let lowest_approach_speed_m_s = LOWEST_APPROACH_SPEED_M_S;
         LankaraniNikravesh { stiffness_n_m1_5, restitution, lowest_approach_speed_m_s }.validated()
+    }
+
+    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest: what the law is told to be its
+    /// restitution is then another number, which makes up for the paper's approximation.
+    ///
+    /// # Errors
+    /// A stiffness that is not positive, a restitution that the law cannot reach, as its damping ends at `D v0 = 3/4`.
+    pub fn with_restitution(stiffness_n_m1_5: f64, restitution: f64) -> Result<LankaraniNikravesh, InvalidInput> {
+        InvalidInput::require_restitution("restitution", restitution)?;
+        // D v0 = 3 (1 - e^2) / 4, solved for e
+        let squared = 1.0 - damped::damping_ratio(restitution) / 0.75;
+        let allowed =
+            "a coefficient of restitution from 0.663 to 1, as the damping of Lankarani and Nikravesh ends there";
+        InvalidInput::require("restitution", restitution, squared >= 1e-6, allowed)?;
+        LankaraniNikravesh::new(stiffness_n_m1_5, squared.sqrt())
     }
 
     /// The law itself if its parameters are in range.

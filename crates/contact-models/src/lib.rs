@@ -47,6 +47,9 @@
 //! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
 //! has dissipated. [`trace`] drives a law with a prescribed motion.
 //!
+//! The other way round, [`Wanted`] gives the parameters of a law for a wanted restitution, exactly and not by the papers'
+//! approximations, and [`stepped_restitution`] what an engine with a fixed step makes of them.
+//!
 //! The laws give the normal force of one contact. There is no friction, no adhesion (no law pulls), and no wave in the
 //! bodies: those belong to the structure.
 //!
@@ -81,9 +84,11 @@ mod linear;
 mod pair;
 mod power;
 mod quadrature;
+mod stepped;
 mod thornton;
 mod trace;
 mod viscous;
+mod wanted;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
@@ -102,6 +107,8 @@ pub use laws::Law;
 pub use linear::LinearSpring;
 pub use pair::{Body, effective_modulus_pa, effective_radius_m};
 pub use power::Power;
+pub use stepped::{Stepped, stepped_restitution};
 pub use thornton::Thornton;
 pub use trace::{TracePoint, trace};
 pub use viscous::Viscous;
+pub use wanted::{Solref, Wanted, damping_ratio, damping_ratio_if_it_pulled, reduced_mass_kg};

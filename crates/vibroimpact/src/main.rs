@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
-use commands::{choice, infinite_beam, modes, net, orbit, shell, simulate, sweep};
+use commands::{choice, infinite_beam, law, modes, net, orbit, shell, simulate, sweep};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
@@ -60,6 +60,9 @@ enum Command {
     /// Fit the three parameters of `emoc` to a table of restitutions
     #[command(after_help = net::FIT_EXAMPLES)]
     Fit(net::FitArguments),
+    /// Give the parameters of laws of contact for a wanted restitution, exactly and for a fixed step
+    #[command(after_help = law::EXAMPLES)]
+    Law(law::Arguments),
     /// Solve the impact on an infinite beam, posed by its one number S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
@@ -136,6 +139,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::Emoc(arguments) => watched("emoc", || net::emoc(arguments)),
         Command::Fit(arguments) => watched("fit", || net::fit(arguments)),
         Command::InfiniteBeam(arguments) => watched("infinite-beam", || infinite_beam::run(arguments)),
+        Command::Law(arguments) => law::run(arguments),
         Command::Orbit(arguments) => watched("orbit", || orbit::run(arguments)),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),

@@ -4,6 +4,7 @@ pub mod bodies;
 pub mod choice;
 pub mod heartbeat;
 pub mod infinite_beam;
+pub mod law;
 pub mod modes;
 pub mod net;
 pub mod orbit;
