@@ -14,12 +14,10 @@ pub const GRAVITY_M_S2: f64 = 9.81;
 const MODULUS_PA: f64 = 2e11;
 const DENSITY_KG_M3: f64 = 7800.0;
 const POISSON: f64 = 0.3;
-/// Of every mode: the bar still rings a little when the ball comes back.
-const DAMPING: f64 = 0.01;
 /// Modes of the resolved impact; those above answer by their static compliance.
 const MODES: usize = 80;
 /// Modes in the law: to 65 kHz, as far as the 50 of the thesis's beams reach.
-const LAW_MODES: usize = 16;
+pub const LAW_MODES: usize = 16;
 /// Entries of the table of places that the game looks up.
 const TABLE: usize = 300;
 /// A resolved bounce starts with the ball this high above the bar at rest: more than the bar swings.
@@ -29,6 +27,8 @@ const ABOVE_M: f64 = 2e-3;
 pub struct Bar {
     beam: Beam,
     modes: Modes,
+    /// Of every mode.
+    damping_ratio: f64,
 }
 
 /// A steel ball.
@@ -42,23 +42,23 @@ impl Ball {
         DENSITY_KG_M3 * 4.0 / 3.0 * std::f64::consts::PI * self.radius_m.powi(3)
     }
 
-    fn on_flat(self) -> Result<Hertz, Box<dyn Error>> {
+    pub fn on_flat(self) -> Result<Hertz, Box<dyn Error>> {
         let ball = Body { youngs_modulus_pa: MODULUS_PA, poissons_ratio: POISSON, radius_m: self.radius_m };
         Ok(Hertz::from_bodies(&ball, &Body::flat(MODULUS_PA, POISSON))?)
     }
 }
 
 impl Bar {
-    pub fn new() -> Result<Bar, Box<dyn Error>> {
+    pub fn new(damping_ratio: f64) -> Result<Bar, Box<dyn Error>> {
         let segment = Segment::rectangular(LENGTH_M, MODULUS_PA, DENSITY_KG_M3, 0.02, THICKNESS_M);
         let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
-        Ok(Bar { modes: beam.modes(MODES)?, beam })
+        Ok(Bar { modes: beam.modes(MODES)?, beam, damping_ratio })
     }
 
     /// The bar as the solver sees it from a place.
-    fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
+    pub fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
         let shapes = self.modes.shapes_at(x_m)?;
-        let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: DAMPING, shape };
+        let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape };
         let modes: Vec<Mode> = self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect();
         let kept: f64 = modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
         let residual_compliance_m_n = (self.beam.static_compliance(x_m)? - kept).max(0.0);
@@ -84,15 +84,17 @@ impl Bar {
             start.gap_m = ABOVE_M - displacement(&start.amplitude);
             let striker = Striker { mass_kg, speed_m_s: fallen_m_s };
             let found = solver.solve(&striker, &hertz, Some(&start), &settings)?;
-            let duration_s = match (found.sub_impacts.first(), found.sub_impacts.last()) {
-                (Some(first), Some(last)) => last.end_s - first.start_s,
-                _ => break,
-            };
+            let (Some(first), Some(last)) = (found.sub_impacts.first(), found.sub_impacts.last()) else { break };
+            let mut touch = start.clone();
+            ring(&structure.modes, &mut touch, first.start_s);
             (from_m, speed_m_s) = (displacement(&found.amplitude), found.striker_velocity_m_s.max(0.0));
             bounces.push(Bounce {
                 restitution: speed_m_s / fallen_m_s,
                 height_m: speed_m_s.powi(2) / (2.0 * GRAVITY_M_S2),
-                duration_s,
+                duration_s: last.end_s - first.start_s,
+                flight_s: time_s + first.start_s,
+                fallen_m_s,
+                touch,
             });
             (start.amplitude, start.rate) = (found.amplitude, found.rate);
         }
@@ -139,6 +141,12 @@ pub struct Bounce {
     pub height_m: f64,
     /// From the first touch to the last separation.
     pub duration_s: f64,
+    /// From the last separation before, or from where it was let go, to the first touch.
+    pub flight_s: f64,
+    /// Speed at the first touch.
+    pub fallen_m_s: f64,
+    /// How the bar moves then.
+    pub touch: Start,
 }
 
 // ANCHOR: law
@@ -166,7 +174,7 @@ fn flight(drop_m: f64, speed_m_s: f64) -> Option<(f64, f64)> {
 }
 
 /// Lets the bar ring freely.
-fn ring(modes: &[Mode], state: &mut Start, time_s: f64) {
+pub fn ring(modes: &[Mode], state: &mut Start, time_s: f64) {
     for ((mode, a), rate) in modes.iter().zip(&mut state.amplitude).zip(&mut state.rate) {
         let decay = mode.damping_ratio * mode.omega_rad_s;
         let omega_d = mode.omega_rad_s * (1.0 - mode.damping_ratio.powi(2)).sqrt();
