@@ -100,7 +100,8 @@ pub use error::InvalidInput;
 pub use modes::Modes;
 pub use plate::{Edge, Plate, PlateModes, PlateTheory};
 pub use remainder::{
-    MOST_REMAINDER_MODES, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes,
+    MOST_REMAINDER_MODES, PointMode, PointsMode, enough_for_remainder, remainder_at_points, remainder_from_trend,
+    remainder_modes,
 };
 pub use rod::{Rod, RodEnd, RodSegment};
 pub use string::{TautString, TautStringModes};

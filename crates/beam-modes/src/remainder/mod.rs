@@ -13,19 +13,20 @@
 //! answer every force slower than themselves as the whole tail does, and add no algebraic equation to the model. Their
 //! frequencies lie above those of the modes kept.
 //!
-//! Where no solved beam stands behind the modes, [`remainder_from_trend`] makes one remainder mode of the residual
-//! compliance alone. Several points of one body need one common set of modes: [`remainder_at_points`].
+//! Where no solved beam stands behind the modes, [`remainder_from_trend`] makes them of the residual compliance and of
+//! how the modes that are known grow. Several points of one body need one common set of modes: [`remainder_at_points`].
 
 mod beam;
 mod points;
 mod quadrature;
 mod trend;
 
+pub use beam::enough_for_remainder;
 pub use points::{PointsMode, remainder_at_points};
 pub use trend::remainder_from_trend;
 
 use crate::error::InvalidInput;
-use quadrature::{Atom, gauss_quadrature};
+use quadrature::{Atom, gauss_quadrature, power_law_atoms};
 
 /// A mode as seen from one point of the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,9 +68,7 @@ pub const MOST_REMAINDER_MODES: usize = 4;
 /// [`InvalidInput`] for a `count` other than 1 to 4, for frequencies that are not positive, for a compliance that is
 /// negative, for numbers that are not finite or beyond 1e60, and for a compliance beyond an empty `tail`.
 pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
-    if !(1..=MOST_REMAINDER_MODES).contains(&count) {
-        return Err(InvalidInput::new("count", count, "1 to 4"));
-    }
+    require_count(count)?;
     for (k, mode) in tail.iter().enumerate() {
         require_mode(&format!("tail[{k}]"), mode.omega_rad_s, &[mode.shape])?;
     }
@@ -83,33 +82,33 @@ pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -
         .iter()
         .map(|mode| Atom { x: (highest / mode.omega_rad_s).powi(2), weight: (mode.shape / mode.omega_rad_s).powi(2) })
         .collect();
-    atoms.extend(asymptotic_atoms(require_compliance(static_rest_m_n)?));
-    let mode = |atom: Atom| {
-        let omega_rad_s = highest / atom.x.sqrt();
-        PointMode { omega_rad_s, shape: atom.weight.sqrt() * omega_rad_s }
-    };
-    let mut modes: Vec<PointMode> = gauss_quadrature(&atoms, count).into_iter().map(mode).collect();
-    modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
-    Ok(modes)
+    match require_compliance(static_rest_m_n)? {
+        0.0 => {}
+        rest => atoms.extend(power_law_atoms(ASYMPTOTIC_GROWTH, rest, MOST_REMAINDER_MODES)),
+    }
+    Ok(from_atoms(gauss_quadrature(&atoms, count), highest))
 }
 
 /// Mean of `1/omega^2` over compliance that lies beyond `omega_M` by the law of shear waves, in units of
 /// `1/omega_M^2`.
 const ASYMPTOTIC_MEAN: f64 = 1.0 / 3.0;
 
-/// Compliance beyond `omega = 1` whose part beyond `omega` falls as `1/omega`, on intervals of constant ratio; each
-/// atom has the weight and the mean `x = 1/omega^2` of its interval, the last stands for all that is beyond.
-fn asymptotic_atoms(compliance: f64) -> impl Iterator<Item = Atom> {
-    const RATIO: f64 = 1.25;
-    const INTERVALS: i32 = 40;
-    (0..=INTERVALS).filter(move |_| compliance > 0.0).map(move |j| {
-        let near = RATIO.powi(-j);
-        if j == INTERVALS {
-            return Atom { x: ASYMPTOTIC_MEAN * near * near, weight: compliance * near };
-        }
-        let far = near / RATIO;
-        Atom { x: ASYMPTOTIC_MEAN * (near * near + near * far + far * far), weight: compliance * (near - far) }
-    })
+/// By that law the frequencies grow as this power of their number.
+const ASYMPTOTIC_GROWTH: f64 = 1.0;
+
+/// The modes of a quadrature in `(unit / omega)^2`, from the lowest.
+fn from_atoms(atoms: Vec<Atom>, unit_rad_s: f64) -> Vec<PointMode> {
+    let mode = |atom: Atom| {
+        let omega_rad_s = unit_rad_s / atom.x.sqrt();
+        PointMode { omega_rad_s, shape: atom.weight.sqrt() * omega_rad_s }
+    };
+    let mut modes: Vec<PointMode> = atoms.into_iter().map(mode).collect();
+    modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
+    modes
+}
+
+fn require_count(count: usize) -> Result<(), InvalidInput> {
+    if (1..=MOST_REMAINDER_MODES).contains(&count) { Ok(()) } else { Err(InvalidInput::new("count", count, "1 to 4")) }
 }
 
 fn highest(omega_rad_s: impl Iterator<Item = f64>) -> Option<f64> {

@@ -1,4 +1,5 @@
-//! Gauss quadrature of a discrete measure by the Lanczos process (W. Gautschi, Orthogonal Polynomials, 2004, 2.2.3).
+//! Gauss quadrature (W. Gautschi, Orthogonal Polynomials, 2004): of a discrete measure by the Lanczos process (2.2.3), of
+//! a power law by Jacobi's recurrence (1.5).
 
 use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
@@ -46,15 +47,38 @@ pub(crate) fn gauss_quadrature(atoms: &[Atom], count: usize) -> Vec<Atom> {
         next.iter_mut().for_each(|n| *n /= size);
         basis.push(next);
     }
+    let atom = |(x, weight)| Atom { x: x * largest, weight: total * weight };
+    of_recurrence(&diagonal, &off_diagonal)
+        .into_iter()
+        .map(atom)
+        .filter(|atom| atom.x > 0.0 && atom.weight > 0.0)
+        .collect()
+}
+
+/// The `count` nodes of the weight `x^(-1/(2 growth))` on (0, 1), scaled to the sum `total`: what frequencies that grow
+/// as this power of their number, all of one mean square shape, leave beyond `omega = 1` in `x = 1/omega^2`.
+pub(crate) fn power_law_atoms(growth: f64, total: f64, count: usize) -> Vec<Atom> {
+    let b = -0.5 / growth;
+    // Jacobi's weight x^b (1-x)^0, moved from (-1, 1) to (0, 1)
+    let diagonal = |k: f64| {
+        if k == 0.0 { (1.0 + b) / (2.0 + b) } else { 0.5 + 0.5 * b * b / ((2.0 * k + b) * (2.0 * k + 2.0 + b)) }
+    };
+    let off_diagonal = |k: f64| k * (k + b) / ((2.0 * k + b) * ((2.0 * k + b).powi(2) - 1.0).sqrt());
+    let diagonal: Vec<f64> = (0..count).map(|k| diagonal(k as f64)).collect();
+    let off_diagonal: Vec<f64> = (1..count).map(|k| off_diagonal(k as f64)).collect();
+    of_recurrence(&diagonal, &off_diagonal).into_iter().map(|(x, weight)| Atom { x, weight: total * weight }).collect()
+}
+
+/// Nodes, and weights that sum to 1, from the three-term recurrence of the orthonormal polynomials.
+fn of_recurrence(diagonal: &[f64], off_diagonal: &[f64]) -> Vec<(f64, f64)> {
     let n = diagonal.len();
     let jacobi = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
         0 => diagonal[i],
         1 => off_diagonal[i.min(j)],
         _ => 0.0,
     });
-    let Ok(eigen) = SelfAdjointEigen::new(jacobi.as_ref(), Side::Lower) else {
-        return vec![Atom { x: diagonal[0] * largest, weight: total }];
-    };
-    let node = |r: usize| Atom { x: eigen.S()[r] * largest, weight: total * eigen.U()[(0, r)].powi(2) };
-    (0..n).map(node).filter(|atom| atom.x > 0.0 && atom.weight > 0.0).collect()
+    match SelfAdjointEigen::new(jacobi.as_ref(), Side::Lower) {
+        Ok(eigen) => (0..n).map(|r| (eigen.S()[r], eigen.U()[(0, r)].powi(2))).collect(),
+        Err(_) => vec![(diagonal[0], 1.0)],
+    }
 }
