@@ -4,13 +4,16 @@ use contact_models::Law;
 use vibroimpact_sim::modal::{History, Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::model::{self, Kept};
-use crate::scene::{self, InvalidInput, Scene};
+use crate::scene::{self, InvalidInput, Scene, require_elastic};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Impact {
-    /// The modes of the structure at the point of impact.
+    /// The modes of the structure at the point of impact, remainder modes last.
     pub structure: Structure,
+    /// How many of them, at the end, are remainder modes: they stand for all modes left out
+    /// ([`beam_modes::remainder_modes`]).
+    pub remainder_modes: usize,
     /// Mass and speed.
     pub striker: Striker,
     /// The law of the contact, with its parameters.
@@ -22,6 +25,16 @@ pub struct Impact {
 }
 
 impl Impact {
+    /// How many modes of the structure are kept, remainder modes not counted.
+    pub fn kept_modes(&self) -> usize {
+        self.structure.modes.len() - self.remainder_modes.min(self.structure.modes.len())
+    }
+
+    /// Static compliance of the modes left out (m/N), with which the remainder modes answer; 0 without them.
+    pub fn residual_compliance_m_n(&self) -> f64 {
+        compliance(&self.structure.modes[self.kept_modes()..])
+    }
+
     /// Solves the impact.
     ///
     /// # Errors
@@ -62,8 +75,8 @@ pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
 }
 
 impl Scene {
-    /// The structure as the solver sees it: its modes at the point of impact and the static compliance of the modes left
-    /// out, as far as the scene asks for it. See [`Scene::impact`] for `"modes": "auto"`.
+    /// The structure as the solver sees it: its modes at the point of impact and, as far as the scene asks for them, a few
+    /// remainder modes for all others. See [`Scene::impact`] for `"modes": "auto"`.
     ///
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
@@ -74,20 +87,30 @@ impl Scene {
         if model::chooses_modes(self) {
             Ok(self.impact()?.structure)
         } else {
-            self.structure_of(self.modes.count(), &mut Kept::default())
+            Ok(self.structure_of(self.modes.count(), &mut Kept::default())?.0)
         }
     }
 
-    /// The structure with its first `count` modes, or all that are listed.
-    fn structure_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Structure, InvalidInput> {
-        let modes = self.structure.modes_with(self.place(), count, &mut kept.modes)?;
-        let residual_compliance_m_n = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
-            let whole = self.structure.static_compliance_m_n(self.place())?;
-            residual(&self.structure, whole, compliance(&modes))?
+    /// The structure with its first `count` modes, or all that are listed, and how many remainder modes it has beside
+    /// them.
+    fn structure_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<(Structure, usize), InvalidInput> {
+        let place = self.place();
+        let modes = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
+            let enough = count.map(|count| self.structure.enough_for_remainder(count));
+            let mut known = self.structure.modes_with(place, enough, &mut kept.modes)?;
+            let count = count.unwrap_or(known.len()).min(known.len());
+            let whole_m_n = self.structure.static_compliance_m_n(place)?;
+            if matches!((&self.structure, self.modes), (scene::Structure::Modal(_), model::Modes::Count(_))) {
+                require_elastic(&known[..count], whole_m_n)?;
+            }
+            let remainder = self.structure.remainder(&known, count, whole_m_n)?;
+            known.truncate(count);
+            [known, remainder]
         } else {
-            0.0
+            [self.structure.modes_with(place, count, &mut kept.modes)?, Vec::new()]
         };
-        Ok(Structure { modes, residual_compliance_m_n })
+        let remainder = modes[1].len();
+        Ok((Structure { modes: modes.concat(), residual_compliance_m_n: 0.0 }, remainder))
     }
 
     /// The modes of the structure as seen from the point of impact: the first `count`, however many the scene keeps.
@@ -136,10 +159,11 @@ impl Scene {
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return self.drop(rod, settings);
         }
-        let structure = self.structure_of(count, kept)?;
-        let start = self.start(&structure.modes)?;
+        let (structure, remainder_modes) = self.structure_of(count, kept)?;
+        let start = self.start(&structure.modes, remainder_modes)?;
         Ok(Impact {
             structure,
+            remainder_modes,
             striker: Striker {
                 mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
                 speed_m_s: self.striker.speed_m_s,
@@ -154,17 +178,4 @@ impl Scene {
 /// Static compliance of the elastic ones of these modes (m/N).
 pub(crate) fn compliance(modes: &[Mode]) -> f64 {
     modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
-}
-
-/// Static compliance of the whole less that of the modes kept (m/N). Rounding may put a complete set of modes below
-/// zero.
-pub(crate) fn residual(structure: &scene::Structure, whole: f64, kept: f64) -> Result<f64, InvalidInput> {
-    const ROUNDING: f64 = 1e-9;
-    // where both are computed, so that less than nothing is rounding: on a support, of nothing
-    if structure.is_computed() || whole >= kept * (1.0 - ROUNDING) {
-        Ok((whole - kept).max(0.0))
-    } else {
-        let allowed = format!("not less than that of the modes kept, {kept:e}");
-        Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole:e}"), allowed))
-    }
 }

@@ -54,7 +54,9 @@ pub struct ResultFile {
     pub end_s: Option<f64>,
     /// Number of modes kept.
     pub modes: usize,
-    /// Static compliance of the modes left out, as far as it was asked for (m/N).
+    /// Number of remainder modes that stand for all others; they come last in lists of modes.
+    pub remainder_modes: usize,
+    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Where the energy went; null for a model that does not resolve it.
     pub energy: Option<Energy>,
@@ -96,6 +98,7 @@ impl ResultFile {
             rod,
             end_s,
             modes,
+            remainder_modes,
             residual_compliance_m_n,
             energy,
             counts,
@@ -122,6 +125,7 @@ impl ResultFile {
             rod,
             end_s: Some(end_s),
             modes,
+            remainder_modes,
             residual_compliance_m_n,
             energy: Some(energy),
             counts: Some(counts),
@@ -150,6 +154,7 @@ impl ResultFile {
             rod: None,
             end_s: None,
             modes: answer.modes,
+            remainder_modes: answer.remainder_modes,
             residual_compliance_m_n: answer.residual_compliance_m_n,
             energy: None,
             counts: None,

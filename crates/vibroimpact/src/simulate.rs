@@ -67,12 +67,11 @@ impl Scene {
             None => return Ok(Simulation::Net(choice.answer)),
         };
         let (solution, history) = impact.record()?;
-        let residual_m_n = impact.structure.residual_compliance_m_n;
         let rod = match &self.structure {
             scene::Structure::DroppedRod(rod) => RodMotion::new(rod.length_m, &impact.structure.modes, &solution.rate),
             _ => None,
         };
-        let summary = Summary::new(&solution, history.energy_ledger(), residual_m_n).chosen(choice.answer);
+        let summary = Summary::new(&solution, history.energy_ledger(), &impact).chosen(choice.answer);
         let summary = Summary { rod, ..summary };
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }
@@ -81,7 +80,13 @@ impl Scene {
     fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
         let impact = self.impact_of(Some(0), &mut Kept::default())?;
         // a tolerance that counts modes left out may be looser than any of the solver's
-        Ok(Impact { structure: Structure::default(), start: None, settings: Settings::default(), ..impact })
+        Ok(Impact {
+            structure: Structure::default(),
+            remainder_modes: 0,
+            start: None,
+            settings: Settings::default(),
+            ..impact
+        })
     }
 
     /// Solves the impact on an infinite beam or plate; the groups hold the units of the solution.

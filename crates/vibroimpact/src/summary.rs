@@ -1,5 +1,6 @@
 //! The result of a scene as files and people read it.
 
+use crate::impact::Impact;
 use crate::model::{Answer, Uncertainty};
 use serde::{Serialize, Serializer};
 use vibroimpact_sim::StopReason;
@@ -31,7 +32,9 @@ pub struct Summary {
     pub end_s: f64,
     /// Number of modes kept.
     pub modes: usize,
-    /// Static compliance of the modes left out, as far as it was asked for (m/N).
+    /// Number of remainder modes that stand for all others; they come last in lists of modes.
+    pub remainder_modes: usize,
+    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Where the energy went.
     pub energy: Energy,
@@ -104,7 +107,7 @@ pub struct Energy {
     pub contact_j: f64,
     /// Not accounted for.
     pub residual_j: f64,
-    /// Left in each mode.
+    /// Left in each mode, remainder modes last.
     pub modes_j: Vec<f64>,
 }
 
@@ -125,7 +128,7 @@ pub struct Cost {
 
 impl Summary {
     /// Gathers a result for printing.
-    pub fn new(solution: &Solution, energy: EnergyLedger, residual_compliance_m_n: f64) -> Summary {
+    pub fn new(solution: &Solution, energy: EnergyLedger, impact: &Impact) -> Summary {
         let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
             Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
         };
@@ -142,8 +145,9 @@ impl Summary {
             striker_velocity_m_s: solution.striker_velocity_m_s,
             rod: None,
             end_s: solution.end_s,
-            modes: energy.modes_j.len(),
-            residual_compliance_m_n,
+            modes: impact.kept_modes(),
+            remainder_modes: impact.remainder_modes,
+            residual_compliance_m_n: impact.residual_compliance_m_n(),
             energy: Energy {
                 initial_j: energy.initial_j,
                 striker_j: energy.striker_j,

@@ -152,8 +152,9 @@ pub fn result(summary: &Summary) -> String {
         None => line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")),
     }
     line("sub-impacts", format!("{} in {}", summary.sub_impact_count, quantity(summary.end_s, "s")));
-    let residual = if summary.residual_compliance_m_n > 0.0 {
-        format!(", and {} of residual compliance", quantity(summary.residual_compliance_m_n, "m/N"))
+    let residual = if summary.remainder_modes > 0 {
+        let compliance = quantity(summary.residual_compliance_m_n, "m/N");
+        format!(", and {} remainder modes for all others ({compliance})", summary.remainder_modes)
     } else {
         String::new()
     };

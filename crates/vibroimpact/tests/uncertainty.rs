@@ -70,20 +70,7 @@ fn small_balls_near_supports_are_within_their_tolerance() {
 
 /// The plate of the gallery with the shapes of its first `count` modes at the centre, by the closed form.
 fn plate(count: usize) -> Value {
-    let (a, b, mass) = (0.4, 0.3, 7800.0 * 0.005 * 0.4 * 0.3);
-    let rigidity = 2e11 * 0.005f64.powi(3) / (12.0 * (1.0 - 0.09));
-    let mut modes: Vec<(f64, f64)> = Vec::new();
-    for m in 1..400 {
-        for n in 1..400 {
-            let waves = (f64::from(m) / a).powi(2) + (f64::from(n) / b).powi(2);
-            let sine = |k: i32| [0.0, 1.0, 0.0, -1.0][k as usize % 4];
-            modes.push((
-                PI * PI * waves * (rigidity / (7800.0 * 0.005)).sqrt(),
-                2.0 / f64::sqrt(mass) * sine(m) * sine(n),
-            ));
-        }
-    }
-    modes.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let modes = plate_at(usize::MAX, [0.2, 0.15]);
     let whole: f64 = modes.iter().map(|(omega, shape)| (shape / omega).powi(2)).sum();
     let (omega, shape): (Vec<f64>, Vec<f64>) = modes.into_iter().take(count).unzip();
     json!({ "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape, "damping_ratios": vec![0.01; count],
@@ -116,13 +103,15 @@ fn a_list_at_its_end_says_so_and_states_the_last_real_change() {
     let exact = answer(&listed(700));
     assert!(exact.settled && (exact.restitution.unwrap() - 0.0828).abs() < 1e-3, "{exact:?}");
     let mut scenes = vec![(plate_of_40, exact.restitution.unwrap())];
-    for count in [6, 10, 14, 20] {
+    scenes.push((listed(28), exact.restitution.unwrap()));
+    for count in [6, 10, 14, 20, 28, 40] {
         scenes.push((Scene::from_value(&listed_beam(count)).unwrap(), 0.14255));
     }
     for (scene, exact) in scenes {
         let found = answer(&scene);
         let error = (found.restitution.unwrap() - exact).abs();
-        assert!(error > 0.005 && error <= found.restitution_uncertainty.unwrap(), "{error:e} {found:?}");
+        println!("{} modes: {error:e}", found.modes);
+        assert!(error <= found.restitution_uncertainty.unwrap(), "{error:e} {found:?}");
         assert!(!found.settled && found.reason.contains("is at its end"), "{found:?}");
         let last = found.reason.split("changes by ").nth(1).unwrap().split(',').next().unwrap();
         assert!(last.parse::<f64>().is_ok_and(|change| change > 1e-3), "{}", found.reason);
@@ -205,4 +194,56 @@ fn what_is_printed_has_the_digits_that_are_known() {
     let best = serde_json::to_value(scene.compare().unwrap()).unwrap();
     let modal = best["tiers"].as_array().unwrap().iter().find(|tier| tier["model"] == "modal").unwrap();
     assert!(modal["answer"]["restitution_uncertainty"].as_f64().unwrap() > 0.03);
+}
+
+/// What stands for the modes that a list does not have is assumed; on lists of the first modes of plates and beams that are
+/// known in full, it comes some six times nearer than leaving them out, and three to five times nearer than a spring did.
+#[test]
+fn what_stands_for_unlisted_modes_comes_nearer() {
+    let mean = |errors: &[f64]| (errors.iter().map(|e| (e + 1e-6).ln()).sum::<f64>() / errors.len() as f64).exp();
+    let (mut plates, mut truncated) = (Vec::new(), Vec::new());
+    for place in [[0.2, 0.15], [0.13, 0.11], [0.07, 0.21], [0.31, 0.06], [0.15, 0.17]] {
+        for radius in [0.008, 0.0125, 0.015, 0.02] {
+            let exact = restitution_of_list(&plate_at(1500, place), place, radius, true);
+            for count in [40, 56] {
+                let list = plate_at(count, place);
+                plates.push((restitution_of_list(&list, place, radius, true) - exact).abs());
+                truncated.push((restitution_of_list(&list, place, radius, false) - exact).abs());
+            }
+        }
+    }
+    let (nearer, truncated) = (mean(&plates), mean(&truncated));
+    println!("{nearer:e} {truncated:e}");
+    assert!(nearer < 0.012 && truncated > 4.0 * nearer, "{nearer:e} {truncated:e}");
+}
+
+/// The first modes of the gallery's plate at a place, frequencies and shapes, by the closed form.
+fn plate_at(count: usize, [x, y]: [f64; 2]) -> Vec<(f64, f64)> {
+    let (a, b, mass) = (0.4, 0.3, 7800.0 * 0.005 * 0.4 * 0.3);
+    let rigidity = 2e11 * 0.005f64.powi(3) / (12.0 * (1.0 - 0.09));
+    let mut modes: Vec<(f64, f64)> = Vec::new();
+    for m in 1..300 {
+        for n in 1..300 {
+            let [p, q] = [f64::from(m) * PI / a, f64::from(n) * PI / b];
+            let omega = (p * p + q * q) * (rigidity / (7800.0 * 0.005)).sqrt();
+            modes.push((omega, 2.0 / f64::sqrt(mass) * (p * x).sin() * (q * y).sin()));
+        }
+    }
+    modes.sort_by(|one, other| one.0.total_cmp(&other.0));
+    modes.truncate(count);
+    modes
+}
+
+/// A steel ball on the plate known by a list of its modes and its static compliance.
+fn restitution_of_list(list: &[(f64, f64)], place: [f64; 2], radius_m: f64, compliance: bool) -> f64 {
+    let whole: f64 = plate_at(usize::MAX, place).iter().map(|(omega, shape)| (shape / omega).powi(2)).sum();
+    let (omega, shape): (Vec<f64>, Vec<f64>) = list.iter().copied().unzip();
+    let scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape,
+                       "damping_ratios": vec![0.01; list.len()], "static_compliance_m_n": whole },
+        "striker": { "density_kg_m3": 7800, "radius_m": radius_m, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+        "modes": list.len(), "residual_compliance": compliance, "tolerance": 1e-7
+    });
+    Scene::from_value(&scene).unwrap().impact().unwrap().solve().unwrap().restitution.unwrap()
 }

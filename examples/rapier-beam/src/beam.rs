@@ -58,11 +58,14 @@ impl Bar {
     /// The bar as the solver sees it from a place.
     pub fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
         let shapes = self.modes.shapes_at(x_m)?;
-        let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape };
-        let modes: Vec<Mode> = self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect();
-        let kept: f64 = modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
-        let residual_compliance_m_n = (self.beam.static_compliance(x_m)? - kept).max(0.0);
-        Ok(Structure { modes, residual_compliance_m_n })
+        let damping_ratio = self.damping_ratio;
+        let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape };
+        let mut modes: Vec<Mode> = self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect();
+        // two remainder modes for all others
+        for m in self.beam.remainder(x_m, MODES, 2)? {
+            modes.push(Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape });
+        }
+        Ok(Structure { modes, residual_compliance_m_n: 0.0 })
     }
 
     /// Lets the ball fall from a height and resolves every contact of its first bounces. The bar rings on between

@@ -6,6 +6,9 @@ use beam_modes::Modes;
 use serde::Deserialize;
 use vibroimpact_sim::modal::{Mode, Structure};
 
+/// Remainder modes for the modes left out, as the program takes them for Euler-Bernoulli beams.
+const REMAINDER_MODES: usize = 2;
+
 /// How an end of a beam is held, as the parameter files write it.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -63,8 +66,8 @@ impl Beam {
         self.modes.omega_rad_s()
     }
 
-    /// The first `count` modes as a ball at `location_m` meets them; with `residual`, the static
-    /// compliance of all others comes in series with the contact.
+    /// The first `count` modes as a ball at `location_m` meets them; with `residual`, remainder modes answer for all
+    /// others.
     pub fn structure(
         &self,
         location_m: f64,
@@ -75,17 +78,13 @@ impl Beam {
         let omega =
             self.omega_rad_s().get(..count).ok_or_else(|| format!("{count} modes asked for, fewer computed"))?;
         let mut modes = Vec::with_capacity(count);
-        let mut compliance_m_n = 0.0;
         for (k, &omega_rad_s) in omega.iter().enumerate() {
-            let shape = self.modes.shape(k, location_m)?;
-            compliance_m_n += (shape / omega_rad_s).powi(2);
-            modes.push(Mode { omega_rad_s, damping_ratio, shape });
+            modes.push(Mode { omega_rad_s, damping_ratio, shape: self.modes.shape(k, location_m)? });
         }
-        let residual_compliance_m_n = match residual {
-            // rounding may leave a trace of either sign where nothing is left
-            true => (self.model.static_compliance(location_m)? - compliance_m_n).max(0.0),
-            false => 0.0,
-        };
-        Ok(Structure { modes, residual_compliance_m_n })
+        if residual {
+            let remainder = self.model.remainder(location_m, count, REMAINDER_MODES)?;
+            modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
+        }
+        Ok(Structure { modes, residual_compliance_m_n: 0.0 })
     }
 }

@@ -1,5 +1,6 @@
 //! Random impacts: most of them wide of anything ordinary, some at the very limits of what the solvers accept.
 
+use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend};
 use contact_models::{
     Felt, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring,
     Power, Thornton, Viscous,
@@ -140,8 +141,20 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
     for _ in 0..random.u32(0..6).saturating_sub(3) {
         modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: decades(random, -2.0, 1.0) });
     }
-    let residual_compliance_m_n = if once_in(random, 5) { decades(random, -14.0, -5.0) } else { 0.0 };
-    Structure { modes, residual_compliance_m_n }
+    if once_in(random, 5) {
+        // frequencies and compliances that no trend can be told from leave nothing to add
+        let seen = |mode: &Mode| PointMode { omega_rad_s: mode.omega_rad_s, shape: mode.shape };
+        let kept: Vec<PointMode> = modes.iter().map(seen).collect();
+        let remainder =
+            remainder_from_trend(&kept, decades(random, -14.0, -5.0), random.usize(1..=MOST_REMAINDER_MODES));
+        let fit = |mode: &PointMode| mode.omega_rad_s <= 1e15 && mode.shape <= 1e30;
+        modes.extend(remainder.unwrap_or_default().iter().filter(|mode| fit(mode)).map(|mode| Mode {
+            omega_rad_s: mode.omega_rad_s,
+            damping_ratio: damping,
+            shape: mode.shape,
+        }));
+    }
+    Structure { modes, residual_compliance_m_n: 0.0 }
 }
 
 fn start(random: &mut Rng, structure: &Structure, speed_m_s: f64) -> Start {

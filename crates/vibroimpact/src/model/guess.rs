@@ -1,7 +1,6 @@
 //! How many modes will do, before any impact is solved.
 //!
-//! With the static compliance of all other modes in series with the contact, the restitution converges in the number
-//! `N` of modes, fast once mode `N` is fast against the contact: with `k` the contact's stiffness and `c_N` the
+//! With remainder modes for all others, the restitution converges in the number `N` of modes, fast once mode `N` is fast against the contact: with `k` the contact's stiffness and `c_N` the
 //! compliance left out, once
 //!
 //! ```text
@@ -76,7 +75,9 @@ pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), 
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
     let mut computed = (expected(pose, target)? + 2).min(most);
     let found = loop {
-        let modes = pose.first(computed, cost)?.to_vec();
+        let enough = pose.scene.structure.enough_for_remainder(computed);
+        let known = pose.first(enough, cost)?;
+        let modes = known[..computed.min(known.len())].to_vec();
         let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
         let mut answered = compliance(modes.get(..rigid + FEWEST).unwrap_or_default());
         let enough = (rigid + FEWEST..modes.len()).find(|&k| {

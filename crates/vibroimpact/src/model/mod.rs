@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`Model::Rigid`] | the place cannot move | a bound on the energy that the structure can take up says so |
 //! | [`Model::InfiniteBeam`] | no wave comes back from an end | the contact ends first, and the striker is never caught again |
-//! | [`Model::Modal`] | finitely many modes, the others answer statically | everywhere else; raised until the restitution has settled |
+//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | everywhere else; raised until the restitution has settled |
 //! | [`Model::Emoc`] | no course in time at all | asked for, or the tolerance is as wide as the law's validated error |
 //!
 //! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] many scenes of one beam, faster), [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
@@ -169,9 +169,11 @@ pub struct Answer {
     pub tolerance: f64,
     /// Number of separate contacts; null for a model that does not resolve them.
     pub sub_impact_count: Option<usize>,
-    /// Number of modes that were integrated.
+    /// Number of modes kept.
     pub modes: usize,
-    /// Static compliance of all other modes, in series with the contact (m/N); 0 where they were left out.
+    /// Number of remainder modes integrated beside them, which stand for all others; 0 where those were left out.
+    pub remainder_modes: usize,
+    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Whether the tolerance was reached (for stated modes: whether the solver's part of the uncertainty is within ten
     /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
@@ -198,6 +200,7 @@ impl Answer {
             tolerance,
             sub_impact_count: None,
             modes: 0,
+            remainder_modes: 0,
             residual_compliance_m_n: 0.0,
             settled: known.uncertainty.whole().is_some_and(|whole| whole <= tolerance),
             spread: None,

@@ -142,7 +142,7 @@ impl Scene {
         let impact = self.impact_of(self.modes.count(), &mut Kept::default())?;
         let without = |model| Estimate::tried(model, Err(why.to_owned()), FORMULA_S);
         let mut tiers: Vec<Estimate> = [Model::Rigid, Model::Emoc, Model::InfiniteBeam].map(without).into();
-        tiers.push(Estimate::of_stated(impact.structure.modes.len(), impact.settings.tolerance));
+        tiers.push(Estimate::of_stated(impact.kept_modes(), impact.settings.tolerance));
         Ok(Plan { model: Model::Modal, tolerance: impact.settings.tolerance, contact_duration_s: None, tiers })
     }
 }

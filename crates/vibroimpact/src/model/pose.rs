@@ -4,18 +4,15 @@ use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
 
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
-use crate::impact::{compliance, in_scene, residual};
+use crate::impact::{compliance, in_scene};
 use crate::scene::json::number;
-use crate::scene::{self, InvalidInput, Location, Place, Scene};
+use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, require_elastic};
 
 /// Tolerances that can be asked for where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
 /// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
 const UNEXCITED: f64 = 1e-6;
-
-/// Listed modes that leave less than this share of their static compliance to others are all that the structure has.
-pub(super) const COMPLETE: f64 = 1e-9;
 
 /// Modes of a beam are computed in multiples of this.
 const SIZES: usize = 16;
@@ -153,7 +150,11 @@ impl<'a> Pose<'a> {
                 Solver::new(&Structure { modes: modes.clone(), residual_compliance_m_n: 0.0 }).map_err(in_scene)?;
                 let whole_m_n = match listed {
                     scene::Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
-                        Some(scene.structure.static_compliance_m_n(scene.place())?)
+                        let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
+                        if scene.residual_compliance.unwrap_or(chosen) {
+                            require_elastic(&modes, whole_m_n)?;
+                        }
+                        Some(whole_m_n)
                     }
                     _ => None,
                 };
@@ -169,20 +170,23 @@ impl<'a> Pose<'a> {
         self.striker.speed_m_s > 0.0
     }
 
-    /// Those of the first `count` modes that a force at the place excites, and the static compliance of the modes beyond
-    /// `count`, if that is wanted and known. A slow mode that is hardly excited is left out altogether: it stands still
-    /// during the contact, whereas its static compliance would answer at once.
-    pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<Structure, InvalidInput> {
+    /// Those of the first `count` modes that a force at the place excites and, as far as they are wanted and known,
+    /// remainder modes for the modes beyond `count`; how many of these there are. A slow mode that is hardly excited is
+    /// left out altogether: it stands still during the contact, and its static compliance is none of the remainder's.
+    pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<(Structure, usize), InvalidInput> {
         let least = UNEXCITED * self.tolerance / (4.0 * self.striker.mass_kg);
-        let residual_wanted = self.scene.residual_compliance != Some(false);
-        let modes = self.first(count, cost)?;
-        let kept: Vec<Mode> = modes.iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
-        let answered_m_n = compliance(modes);
-        let residual_compliance_m_n = match self.source.whole_m_n() {
-            Some(whole_m_n) if residual_wanted => residual(&self.scene.structure, whole_m_n, answered_m_n)?,
-            _ => 0.0,
+        let scene = self.scene;
+        let structure = &scene.structure;
+        let whole_m_n = self.source.whole_m_n().filter(|_| self.scene.residual_compliance != Some(false));
+        let known = self.first(structure.enough_for_remainder(count), cost)?;
+        let count = count.min(known.len());
+        let remainder = match whole_m_n {
+            Some(whole_m_n) => structure.remainder(known, count, whole_m_n)?,
+            None => Vec::new(),
         };
-        Ok(Structure { modes: kept, residual_compliance_m_n })
+        let mut modes: Vec<Mode> = known[..count].iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
+        modes.extend(&remainder);
+        Ok((Structure { modes, residual_compliance_m_n: 0.0 }, remainder.len()))
     }
 
     /// Whether the modes listed are all that the structure has: they make up its static compliance.
@@ -210,7 +214,7 @@ impl<'a> Pose<'a> {
             }
             Source::Computed { structure, place, modes, .. } => {
                 if modes.len() < count {
-                    let size = count.next_multiple_of(SIZES).min(structure.most_modes());
+                    let size = count.next_multiple_of(SIZES).min(structure.most_modes().max(count));
                     *modes = structure.modes_with(*place, Some(size), &mut self.kept.modes)?;
                     cost.modes_computed += size as u64;
                 }

@@ -63,17 +63,18 @@ struct Rung {
     /// From the lowest; those not excited among them.
     count: usize,
     structure: Structure,
+    remainder_modes: usize,
     settings: Settings,
     solution: Solution,
 }
 
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
-        let structure = pose.structure(count, cost)?;
+        let (structure, remainder_modes) = pose.structure(count, cost)?;
         let solver = pose.kept.solver(&structure)?;
         let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
         cost.add(&solution.counts, structure.modes.len());
-        Ok(Rung { count, structure, settings, solution })
+        Ok(Rung { count, structure, remainder_modes, settings, solution })
     }
 }
 
@@ -254,8 +255,8 @@ fn finish(pose: &mut Pose, rungs: Rungs, settled: bool) -> Choice {
     let reason = reason(pose, &rungs, settled, spread);
     let spread = spread.map(|(spread, _)| spread);
     let left_out = if rungs.is_complete() { 0.0 } else { left_out.max(spread.unwrap_or(0.0)) };
-    let Rung { structure, settings, solution, .. } = rungs.last;
-    let impact = Impact { structure, striker: pose.striker, law: pose.law, start: None, settings };
+    let Rung { structure, remainder_modes, settings, solution, .. } = rungs.last;
+    let impact = Impact { structure, remainder_modes, striker: pose.striker, law: pose.law, start: None, settings };
     let known = Known::new(pose.scene, Some(solver.min(1.0)), Ok(left_out.min(1.0)));
     Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason })
 }
@@ -318,8 +319,9 @@ impl Choice {
             stopped_by: solution.outcome.stopped_by(),
             restitution: solution.restitution,
             sub_impact_count: Some(solution.sub_impacts.len()),
-            modes: impact.structure.modes.len(),
-            residual_compliance_m_n: impact.structure.residual_compliance_m_n,
+            modes: impact.kept_modes(),
+            remainder_modes: impact.remainder_modes,
+            residual_compliance_m_n: impact.residual_compliance_m_n(),
             settled,
             spread,
             ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)

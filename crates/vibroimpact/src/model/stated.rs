@@ -1,7 +1,7 @@
 //! Modes as they are stated, and what those left out would change.
 //!
 //! The impact is solved with the modes stated, and the solver's own estimate tells how exactly. How far these modes are
-//! from the whole structure is judged apart: the same impact with more modes and the static compliance of all others,
+//! from the whole structure is judged apart: the same impact with more modes and remainder modes for all others,
 //! for two numbers of modes,
 //!
 //! ```text
@@ -14,11 +14,11 @@ use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choose::Choice;
 use super::guess::{fewer, guess};
-use super::pose::{COMPLETE, Pose, chooses_modes, modal_only};
+use super::pose::{Pose, chooses_modes, modal_only};
 use super::settle::{Change, Conclusion, RAISE};
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
-use crate::impact::{Impact, compliance, in_scene};
+use crate::impact::{Impact, in_scene};
 use crate::scene::{InvalidInput, Scene, Structure};
 
 /// The comparison begins with the modes that this tolerance is expected to need.
@@ -34,12 +34,12 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
     // without an approach the number of modes does not matter
     let impact = scene.impact_of(if chosen { Some(0) } else { scene.modes.count() }, kept)?;
     let solution = solve(&impact, kept, cost)?;
-    let count = impact.structure.modes.len();
+    let count = impact.kept_modes();
     let reason = match scene.modes {
         Modes::Count(_) => format!("modal: the {count} modes stated"),
         Modes::Auto if chosen => "modal: the striker does not approach".to_owned(),
-        Modes::Auto if impact.structure.residual_compliance_m_n > 0.0 => {
-            format!("modal: all {count} modes listed, and the static compliance of the others")
+        Modes::Auto if impact.remainder_modes > 0 => {
+            format!("modal: all {count} modes listed, and {} for the others", impact.remainder_modes)
         }
         Modes::Auto => format!("modal: all {count} modes listed"),
     };
@@ -58,7 +58,7 @@ pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<
 
 fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, InvalidInput> {
     let solver = kept.solver(&impact.structure)?;
-    let Impact { striker, law, start, settings, structure } = impact;
+    let Impact { striker, law, start, settings, structure, .. } = impact;
     let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?;
     cost.add(&solution.counts, structure.modes.len());
     Ok(solution)
@@ -73,14 +73,14 @@ fn left_out(
     cost: &mut Cost,
 ) -> Result<Result<f64, String>, InvalidInput> {
     let (count, most) = match &scene.structure {
-        Structure::Beam(_) => (impact.structure.modes.len(), usize::MAX),
+        Structure::Beam(_) => (impact.kept_modes(), usize::MAX),
         computed if computed.is_computed() => {
-            let count = impact.structure.modes.len();
+            let count = impact.kept_modes();
             (count, computed.most_modes().max(count))
         }
         Structure::DroppedRod(rod) => (rod.bending_modes + rod.axial_modes, usize::MAX),
         Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
-            (impact.structure.modes.len(), listed.omega_rad_s.len())
+            (impact.kept_modes(), listed.omega_rad_s.len())
         }
         _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
     };
@@ -91,7 +91,7 @@ fn left_out(
         _ => (fewer(wanted), wanted),
     };
     let whole = scene.residual_compliance == Some(true) || matches!(scene.structure, Structure::DroppedRod(_));
-    let complete = |of: &Impact| of.structure.residual_compliance_m_n <= COMPLETE * compliance(&of.structure.modes);
+    let complete = |of: &Impact| of.remainder_modes == 0;
     let mut with = |modes: usize| -> Result<(Solution, bool), InvalidInput> {
         if whole && modes == count {
             return Ok((solution.clone(), complete(impact)));
@@ -134,7 +134,7 @@ fn needed(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usiz
     Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?.1))
 }
 
-/// The scene with so many modes in place of `count`, and the static compliance of the others.
+/// The scene with so many modes in place of `count`, and remainder modes for the others.
 fn with_modes(scene: &Scene, count: usize, modes: usize) -> Scene {
     let mut other = scene.clone();
     match &mut other.structure {

@@ -156,7 +156,7 @@ pub fn of_net_impact(headline: &str, scene: &Scene, answer: &Answer, figure: &Fi
 /// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item. `reason` is that of
 /// the choice of the model, [`Answer::reason`](crate::model::Answer::reason).
 pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
-    let modes = &impact.structure.modes;
+    let modes = &impact.structure.modes[..impact.kept_modes()];
     let hertz = |omega_rad_s: f64| quantity(omega_rad_s / std::f64::consts::TAU, "Hz");
     let range = match (modes.first(), modes.last()) {
         (Some(first), Some(last)) => format!(", {} to {}", hertz(first.omega_rad_s), hertz(last.omega_rad_s)),
@@ -194,12 +194,12 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
             .to_owned(),
         _ => "The structure by the modes that the scene gives.".to_owned(),
     };
-    let residual = match impact.structure.residual_compliance_m_n {
-        0.0 => "Modes beyond those kept do not answer at all.".to_owned(),
-        compliance => format!(
-            "Modes beyond those kept answer with their static compliance, {}, so that the result converges in the \
-             number of modes.",
-            quantity(compliance, "m/N")
+    let residual = match impact.remainder_modes {
+        0 => "Modes beyond those kept do not answer at all.".to_owned(),
+        count => format!(
+            "{count} remainder modes answer for the modes beyond those kept, with their static compliance of {}, so that \
+             the result converges in the number of modes.",
+            quantity(impact.residual_compliance_m_n(), "m/N")
         ),
     };
     vec![

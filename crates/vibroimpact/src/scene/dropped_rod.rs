@@ -1,23 +1,24 @@
 //! A rod that falls on the floor, as a scene.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
-use vibroimpact_sim::modal::{Mode, Settings};
+use vibroimpact_sim::modal::{Mode, Settings, Structure};
 
 use super::error::InvalidInput;
 use super::json::number;
-use super::{Contact, HertzStiffness, Scene, Striker, fields};
-use crate::impact::{Impact, compliance};
+use super::{Contact, HertzStiffness, MOST_MODES, Scene, Striker, fields};
+use crate::impact::Impact;
+use crate::scene;
 
 /// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
 /// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
 /// speed of the fall at first touch; `location_m`, `modes`, `residual_compliance` and `start` are left out. In
 /// `contact`, a striker of another material is the floor; `{ "law": "hertz" }` with nothing beside it is the rod's own
-/// material on a rigid floor. The modes left out always answer with their static compliance. The restitution is that
-/// of the contact point's rigid-body motion.
+/// material on a rigid floor. Remainder modes always answer for the modes left out. The restitution is that of the
+/// contact point's rigid-body motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DroppedRod {
@@ -50,6 +51,10 @@ fn bending_modes() -> usize {
 
 fn axial_modes() -> usize {
     20
+}
+
+fn in_structure(fault: InvalidInput) -> InvalidInput {
+    fault.within("structure")
 }
 
 impl DroppedRod {
@@ -89,10 +94,35 @@ impl DroppedRod {
         Ok(modes)
     }
 
-    /// Static compliance of the whole elastic rod at its lower end (m/N).
+    /// Static compliance of the whole elastic rod at its lower end (m/N): of its modes, both ends free,
+    ///
+    /// ```text
+    /// L^3 cos^2 / (105 E I) + L sin^2 / (3 E A).
+    /// ```
     pub(super) fn static_compliance_m_n(&self) -> Result<f64, InvalidInput> {
-        let structure = self.at_unit_speed()?.structure;
-        Ok(compliance(&structure.modes) + structure.residual_compliance_m_n)
+        let (sin, cos) = self.to_rod()?.inclination_rad.sin_cos();
+        let area_m2 = 0.25 * PI * self.diameter_m.powi(2);
+        let bending = self.length_m.powi(2) / (105.0 * (self.diameter_m / 4.0).powi(2));
+        Ok((bending * cos * cos + sin * sin / 3.0) * self.length_m / (self.youngs_modulus_pa * area_m2))
+    }
+
+    /// The modes as the floor meets them in the order of [`dropped_rod`], remainder modes last, and how many these are.
+    fn with_remainder(&self, drop: &dropped_rod::Drop) -> Result<(Structure, usize), InvalidInput> {
+        let enough = |kept: usize| beam_modes::enough_for_remainder(kept).min(MOST_MODES.max(kept));
+        let richer =
+            DroppedRod { bending_modes: enough(self.bending_modes), axial_modes: enough(self.axial_modes), ..*self };
+        let all = richer.at_unit_speed().map_err(in_structure)?.structure.modes;
+        // two rigid-body motions, bending, axial
+        let (bending, all_bending) = (2 + self.bending_modes, 2 + richer.bending_modes);
+        let kept = bending + self.axial_modes;
+        let mut known = drop.structure.modes[..kept].to_vec();
+        known.extend(&all[bending..all_bending]);
+        known.extend(&all[all_bending + self.axial_modes..all_bending + richer.axial_modes]);
+        let structure = scene::Structure::DroppedRod(*self);
+        let remainder = structure.remainder(&known, kept, self.static_compliance_m_n().map_err(in_structure)?)?;
+        known.truncate(kept);
+        known.extend(&remainder);
+        Ok((Structure { modes: known, residual_compliance_m_n: 0.0 }, remainder.len()))
     }
 }
 
@@ -127,6 +157,10 @@ impl Scene {
                 ..Striker::default()
             })?,
         };
-        Ok(Impact { structure: drop.structure, striker: drop.surface, law, start: Some(drop.start), settings })
+        let (structure, remainder_modes) = rod.with_remainder(&drop)?;
+        let mut start = drop.start;
+        start.amplitude.resize(structure.modes.len(), 0.0);
+        start.rate.resize(structure.modes.len(), 0.0);
+        Ok(Impact { structure, remainder_modes, striker: drop.surface, law, start: Some(start), settings })
     }
 }

@@ -63,9 +63,14 @@ pub struct MovingMode {
 const NODE: f64 = 1e-9;
 
 impl Scene {
-    /// The start in the terms of the solver, for these modes as seen from the point of impact.
-    pub(crate) fn start(&self, modes: &[Mode]) -> Result<Option<modal::Start>, InvalidInput> {
-        self.start.as_ref().map(|start| self.posed(start, modes)).transpose()
+    /// The start in the terms of the solver, for these modes as seen from the point of impact, of which the last
+    /// `remainder` are remainder modes and rest.
+    pub(crate) fn start(&self, modes: &[Mode], remainder: usize) -> Result<Option<modal::Start>, InvalidInput> {
+        let Some(start) = &self.start else { return Ok(None) };
+        let mut posed = self.posed(start, &modes[..modes.len() - remainder])?;
+        posed.amplitude.resize(modes.len(), 0.0);
+        posed.rate.resize(modes.len(), 0.0);
+        Ok(Some(posed))
     }
 
     fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {

@@ -1,5 +1,5 @@
-//! What the thesis could not see: the same studies with the residual compliance of the modes
-//! left out, to N = 400.
+//! What the thesis could not see: the same studies with remainder modes for the modes left out, to
+//! N = 400.
 
 use super::Case;
 use crate::chapters::Failure;
@@ -9,17 +9,17 @@ use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 
-const MEANING: &str = "Modes beyond the N kept move too fast to vibrate during a contact: they answer as a spring. \
+const MEANING: &str = "Modes beyond the N kept move too fast to vibrate much during a contact: they answer nearly as a spring. \
 Leaving them out makes the beam too stiff where the ball presses on it, by the residual compliance \
 c = G(b,b) − Σ φ_k²/ω_k², where G is the static compliance of the whole beam. The omission is small, but through the \
-chain of sub-impacts a small change of the first contact changes all that follow. Putting c in series with the contact \
-mends it without a further mode. With it the damped restitution settles to a number that plain truncation approaches \
+chain of sub-impacts a small change of the first contact changes all that follow. Two remainder modes, which have c and \
+the next three moments of what is left out, mend it. With them the damped restitution settles to a number that plain truncation approaches \
 only slowly; and the undamped restitution, which plain truncation leaves scattered as far as N = 400, settles too, \
 only later. Much of the scatter that the chapter ascribes to missing damping is therefore the stiffness that \
 truncation adds. What damping does is to reduce the number of modes that are needed.";
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
-    study.section("The modes left out: residual compliance, to N = 400");
+    study.section("The modes left out: remainder modes, to N = 400");
     study.text(MEANING);
     let counts = study.thin(&case.parameters.our_choice.residual_modes, 7);
     let zeta = case.parameters.damping_ratio;
@@ -35,14 +35,14 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
                 table.push(summary(name, location_m, residual, &rows));
                 curves.push(match residual {
                     false => Curve::new("plain truncation", Marker::Circle, Colour::Blue, rows),
-                    true => Curve::new("with residual compliance", Marker::Cross, Colour::Vermilion, rows),
+                    true => Curve::new("with remainder modes", Marker::Cross, Colour::Vermilion, rows),
                 });
             }
             columns.push((format!("b = {location_m:.4} m, ζ = {damping_ratio}"), curves));
         }
         let axis = Axis::new("number of modes N").log();
         let figure = restitution(
-            &format!("Restitution with and without residual compliance, {name}"),
+            &format!("Restitution with and without remainder modes, {name}"),
             &axis,
             |r| r.modes as f64,
             &columns,
@@ -50,13 +50,13 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         let file = format!("residual-compliance-{name}");
         let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
         study.csv(&format!("{file}.csv"), &rows)?;
-        let caption = "Blue: the modes kept and nothing else, as in the thesis. Red: the same modes, and the static \
-                       compliance of all others in series with the contact.";
+        let caption = "Blue: the modes kept and nothing else, as in the thesis. Red: the same modes, and two \
+                       remainder modes for all others.";
         study.figure(&file, &figure, caption)?;
     }
     study.text("Spread: largest less smallest restitution over the numbers of modes from 80 or 200 on.");
     study.table(
-        &["damping", "location (m)", "residual compliance", "e at most modes", "spread, N ≥ 80", "spread, N ≥ 200"],
+        &["damping", "location (m)", "remainder modes", "e at most modes", "spread, N ≥ 80", "spread, N ≥ 200"],
         &table,
     );
     Ok(())

@@ -30,7 +30,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
     let coarser = compute(study, case, coarse, true)?;
     let reference = compute(study, case, fine, true)?;
     study.text(&format!(
-        "Reference: {fine} modes with the static compliance of all others in series with the contact. What it has not \
+        "Reference: {fine} modes with remainder modes for all others. What it has not \
          settled itself shows in its difference from the same model with {coarse} modes. Differences of the restitution \
          over all places and balls:"
     ));
@@ -40,8 +40,8 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
         let name = &tables[k].beam.title;
         let models = [
             (format!("N = {modes}, as in the thesis"), &tables[k]),
-            (format!("N = {modes} with residual compliance"), &same_modes[k]),
-            (format!("N = {coarse} with residual compliance"), &coarser[k]),
+            (format!("N = {modes} with remainder modes"), &same_modes[k]),
+            (format!("N = {coarse} with remainder modes"), &coarser[k]),
         ];
         for (model, table) in models {
             rows.push(summary(name, &model, &distances(table, &reference[k])));

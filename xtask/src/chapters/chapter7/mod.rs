@@ -16,8 +16,8 @@ use vibroimpact::net::Observations;
 
 const INTRODUCTION: &str = "The law of energy minimisation under outward constraints (chapter 6, closed form) with the \
 three parameters μ₀, α₀, α₁ is fitted to the restitution tables of chapter 4, one set of parameters a beam. The law has \
-50 modes, the tables have 40, as in the thesis; a second set of tables, 100 modes with the static compliance of all \
-others in series with the contact, is what the same model settles to with more modes. The thesis does not print its \
+50 modes, the tables have 40, as in the thesis; a second set of tables, 100 modes with remainder modes for all \
+others, is what the same model settles to with more modes. The thesis does not print its \
 tables, its parameters, or where its stepped beams have their step, so errors can be compared in kind only. After the \
 thesis's own form the report asks where it fails and why, how one beam's parameters serve another, and sets a law with \
 two parameters beside it that does better on every count.";

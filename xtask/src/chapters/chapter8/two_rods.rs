@@ -4,6 +4,7 @@ use super::Parameters;
 use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_modes};
 use contact_models::LinearSpring;
 use std::f64::consts::PI;
 use vibroimpact::report::significant;
@@ -21,19 +22,25 @@ fn restitution(parameters: &Parameters, lengths_m: [f64; 2]) -> Result<f64, Fail
     let area_m2 = 0.25 * PI * parameters.our_choice.diameter_m.powi(2);
     let speed_of_sound = (modulus / density).sqrt();
     let mut modes = Vec::new();
-    let mut residual_compliance_m_n = 0.0;
+    let (mut tail, mut rest_m_n) = (Vec::new(), 0.0);
     for length_m in lengths_m {
         let mass_kg = density * area_m2 * length_m;
         modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 1.0 / mass_kg.sqrt() });
         // all axial modes together yield L / (3 E A) at the end
-        residual_compliance_m_n += length_m / (3.0 * modulus * area_m2);
-        for k in 1..=AXIAL_MODES {
+        rest_m_n += length_m / (3.0 * modulus * area_m2);
+        for k in 1..=2 * AXIAL_MODES {
             let omega_rad_s = k as f64 * PI * speed_of_sound / length_m;
             let shape = (2.0 / mass_kg).sqrt();
-            residual_compliance_m_n -= (shape / omega_rad_s).powi(2);
-            modes.push(Mode { omega_rad_s, damping_ratio: 0.0, shape });
+            rest_m_n -= (shape / omega_rad_s).powi(2);
+            if k <= AXIAL_MODES {
+                modes.push(Mode { omega_rad_s, damping_ratio: 0.0, shape });
+            } else {
+                tail.push(PointMode { omega_rad_s, shape });
+            }
         }
     }
+    let remainder = remainder_modes(&tail, rest_m_n.max(0.0), MOST_REMAINDER_MODES)?;
+    modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: 0.0, shape: m.shape }));
     let rigid = [0, 1 + AXIAL_MODES].map(|place| (place, modes[place].shape));
     let mut start = Start::at_rest(modes.len());
     start.rate[0] = parameters.our_choice.speed_m_s / rigid[0].1;
@@ -41,7 +48,7 @@ fn restitution(parameters: &Parameters, lengths_m: [f64; 2]) -> Result<f64, Fail
     let wall = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let settings = Settings { tolerance: 1e-7, estimate_uncertainty: false, ..Settings::default() };
     let solution =
-        Solver::new(&Structure { modes, residual_compliance_m_n })?.solve(&wall, &law, Some(&start), &settings)?;
+        Solver::new(&Structure { modes, residual_compliance_m_n: 0.0 })?.solve(&wall, &law, Some(&start), &settings)?;
     let closing: f64 = rigid.iter().map(|(place, shape)| solution.rate[*place] * shape).sum();
     Ok(-closing / parameters.our_choice.speed_m_s)
 }

@@ -61,7 +61,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     study.text(
         "A rod that meets a rigid surface end on leaves it after 2L/c at full speed and without vibration; a soft spring \
          returns it fully too, as a rigid body. In between a part stays behind as vibration. The rod has 200 axial \
-         modes and the static compliance of all others, and no damping; a linear spring stands for the contact.",
+         modes and remainder modes for all others, and no damping; a linear spring stands for the contact.",
     );
     for row in &rows {
         if row.contact_over_rod_stiffness == 1e3 {

@@ -30,7 +30,7 @@ const TIGHTER: f64 = 3.0;
 const INTRODUCTION: &str = "The automatic choice of the model, put to the test on random scenes: beams with \
 every pair of ends, with and without a step, strikers from a millionth to three times the mass of the beam, 0.05 to 5 \
 m/s, four laws of contact, damping ratios from 0.001 to 0.1 and none, tolerances from 1e-5 to 1e-1. The reference has \
-360 modes with the static compliance of all others and a tolerance of 1e-10; the same with 250 modes tells how well it \
+360 modes with remainder modes for all others and a tolerance of 1e-10; the same with 250 modes tells how well it \
 is known itself. Where the reference is not known three times better than the tolerance, the scene is listed and not \
 counted.";
 

@@ -1,0 +1,85 @@
+//! The modes left out of a structure, as a few remainder modes ([`beam_modes::remainder_modes`]).
+//!
+//! Of a structure whose modes are computed, as many more are computed as tell where the tail begins; what lies beyond
+//! them, and all of the tail of a list, follows from the static compliance and from how the frequencies grow.
+
+use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend, remainder_modes};
+use vibroimpact_sim::modal::Mode;
+
+use super::error::InvalidInput;
+use super::structure::MOST_MODES;
+use super::{BeamTheory, Edge, Structure};
+use crate::impact::compliance;
+
+/// Passes a structure whose modes beyond those kept can be told from them: a list by at least one elastic mode.
+pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), InvalidInput> {
+    if whole_m_n == 0.0 || kept.iter().any(|mode| mode.omega_rad_s > 0.0) {
+        return Ok(());
+    }
+    let allowed = "left out, or beside at least one mode with a frequency above 0, which is kept: how the modes that are \
+                   not listed answer is told from those that are";
+    Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole_m_n:e}"), allowed))
+}
+
+/// Remainder modes of a beam by Euler-Bernoulli's theory, whose tail is nearly a spring. All others are wave impedances.
+const OF_SLENDER_BEAM: usize = 2;
+/// Listed modes that leave less than this share of their static compliance to others are all that a structure has.
+pub(crate) const COMPLETE: f64 = 1e-11;
+/// A list may have this much more static compliance than is stated for the whole, by rounding.
+const ROUNDING: f64 = 1e-9;
+/// Modes for a remainder are computed in multiples of this, so that impacts with a few modes more share them.
+const SIZES: usize = 64;
+
+impl Structure {
+    /// How many modes tell enough of those beyond the first `kept`: no more than these for a list, and for a plate whose
+    /// modes take too long.
+    pub(crate) fn enough_for_remainder(&self, kept: usize) -> usize {
+        let cheap = match self {
+            Structure::Beam(_) | Structure::TautString(_) => true,
+            Structure::Plate(plate) => plate.edges == [Edge::Pinned; 4],
+            _ => false,
+        };
+        if cheap {
+            beam_modes::enough_for_remainder(kept).next_multiple_of(SIZES).min(MOST_MODES.max(kept))
+        } else {
+            kept
+        }
+    }
+
+    /// Remainder modes in place of all modes beyond the first `kept` of those `known`, for a structure with this static
+    /// compliance. They are damped as the last mode kept. Of a list of which nothing elastic is kept there are none.
+    pub(crate) fn remainder(&self, known: &[Mode], kept: usize, whole_m_n: f64) -> Result<Vec<Mode>, InvalidInput> {
+        let (first, tail) = known.split_at_checked(kept).unwrap_or((known, &[]));
+        let answered = compliance(first);
+        // where both are computed, less than nothing is rounding
+        if !self.is_computed() && whole_m_n < answered * (1.0 - ROUNDING) {
+            let allowed = format!("not less than that of the modes kept, {answered:e}");
+            return Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole_m_n:e}"), allowed));
+        }
+        if !self.is_computed() && whole_m_n - answered <= COMPLETE * answered {
+            return Ok(Vec::new());
+        }
+        let count = match self {
+            Structure::Beam(beam) if beam.solved_by()? == BeamTheory::EulerBernoulli => OF_SLENDER_BEAM,
+            _ => MOST_REMAINDER_MODES,
+        };
+        let elastic = |modes: &[Mode]| -> Vec<PointMode> {
+            let elastic = modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
+            elastic.map(|mode| PointMode { omega_rad_s: mode.omega_rad_s, shape: mode.shape }).collect()
+        };
+        let (first, tail) = (elastic(first), elastic(tail));
+        let remainder = if tail.is_empty() {
+            remainder_from_trend(&first, whole_m_n - answered, count)
+        } else {
+            remainder_modes(&tail, (whole_m_n - compliance(known)).max(0.0), count)
+        };
+        let remainder = remainder.map_err(|fault| {
+            let allowed = "a structure whose modes and static compliance double precision holds";
+            InvalidInput::new("structure", fault.value, allowed)
+        })?;
+        let last = known[..kept.min(known.len())].last().or(known.first());
+        let damping_ratio = last.map_or(0.0, |mode| mode.damping_ratio);
+        let mode = |mode: PointMode| Mode { omega_rad_s: mode.omega_rad_s, damping_ratio, shape: mode.shape };
+        Ok(remainder.into_iter().map(mode).collect())
+    }
+}
