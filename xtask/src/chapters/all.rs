@@ -5,14 +5,15 @@ use super::tally::{Row, Tally, csv, tell};
 use super::{Failure, Finished, Part, run};
 use std::path::Path;
 use std::time::Instant;
+use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Report, write_whole};
 
 const INTRODUCTION: &str = "Every number and every claim of the thesis's text that can be computed, beside ours, chapter \
 by chapter. A printed number is held to half a unit of its last digit. A number in words and a trend have a tolerance \
 with its reason. A verdict is one of four: ours agrees; it differs; it is indecisive, because the limit lies within \
 its own uncertainty or because the words can be read either way; or it cannot be decided from the text, because it \
-depends on what the text does not print. Identities and self-checks are listed and not counted. The figures are in the \
-chapters' own reports.";
+depends on what the text does not print. Identities and self-checks are listed and not counted. The main figures of every \
+chapter follow its statements; the chapters' own reports have all of them.";
 
 /// Runs all chapters, each into its own folder under `out`, and writes `report.md`, `report.html` and `statements.csv`
 /// beside them. Returns a summary in a few lines.
@@ -25,7 +26,7 @@ pub fn run_all(out: &Path, quick: bool, data: Option<&Path>) -> Result<String, F
         let found = run(part, &out.join(&folder), quick, data)?;
         finished.push((folder, found));
     }
-    report(&finished, quick).write(out)?;
+    report(&finished, quick)?.write(out)?;
     let rows: Vec<Row> = finished.iter().flat_map(|(_, found)| found.rows()).collect();
     write_whole(&out.join("statements.csv"), &csv(&rows)?)?;
 
@@ -42,7 +43,35 @@ pub fn run_all(out: &Path, quick: bool, data: Option<&Path>) -> Result<String, F
     ))
 }
 
-fn report(finished: &[(String, Finished)], quick: bool) -> Report {
+/// Farther deviations stand at the edge of the figure.
+const EDGE: f64 = 12.0;
+
+/// Every number of the text: how far ours lies from it, in units of its tolerance.
+fn deviations(finished: &[(String, Finished)]) -> Figure {
+    let statements = finished.iter().flat_map(|(_, found)| &found.statements);
+    let all: Vec<(Kind, f64, Verdict)> =
+        statements.filter_map(|one| Some((one.kind, one.deviation()?, one.verdict()))).collect();
+    let x = Axis::new("number of the text, in the order of the chapters").integers();
+    let y = Axis::new("(ours − thesis) / tolerance").limits(-1.05 * EDGE, 1.05 * EDGE);
+    let mut panel = Panel::new(x, y).height(240.0);
+    for limit in [-1.0, 1.0] {
+        panel = panel.with(Series::horizontal_rule(limit));
+    }
+    for (kind, verdict, marker, colour) in [
+        (Kind::PrintedNumber, Verdict::Agrees, Marker::Circle, Colour::Blue),
+        (Kind::PrintedNumber, Verdict::Differs, Marker::Circle, Colour::Vermilion),
+        (Kind::LooseNumber, Verdict::Agrees, Marker::Cross, Colour::Blue),
+        (Kind::LooseNumber, Verdict::Differs, Marker::Cross, Colour::Vermilion),
+    ] {
+        let of = all.iter().enumerate().filter(|(_, one)| (one.0, one.2) == (kind, verdict));
+        let (x, y): (Vec<f64>, Vec<f64>) = of.map(|(i, one)| ((i + 1) as f64, one.1.clamp(-EDGE, EDGE))).unzip();
+        let label = format!("{}: {}", kind.title().to_lowercase(), verdict.marked());
+        panel = panel.with(Series::points(&x, &y, marker).colour(colour).label(label));
+    }
+    Figure::new("The numbers of the thesis: ours less the thesis's, in units of the tolerance").row([panel])
+}
+
+fn report(finished: &[(String, Finished)], quick: bool) -> Result<Report, Failure> {
     let mut report = Report::new("The thesis, number by number");
     report.text(INTRODUCTION);
     if quick {
@@ -79,6 +108,12 @@ fn report(finished: &[(String, Finished)], quick: bool) -> Report {
         ],
         &lines,
     );
+    report.figure(
+        "deviations",
+        &deviations(finished),
+        "Between the lines ours agrees; half a unit of the last digit is the tolerance of a printed number. Farther than 12 \
+         stands at the edge.",
+    )?;
     for (heading, verdict) in [
         ("Where we differ", Verdict::Differs),
         ("What our numbers do not decide", Verdict::Indecisive),
@@ -93,6 +128,43 @@ fn report(finished: &[(String, Finished)], quick: bool) -> Report {
     for (_, found) in finished {
         report.heading(&found.title);
         tell(&mut report, &found.rows());
+        report.append(found.shown.clone());
     }
-    report
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::statement::Statement;
+    use super::super::study::Study;
+    use super::*;
+
+    fn found(folder: &Path, ours: f64) -> Vec<(String, Finished)> {
+        let mut study = Study::new(2, folder, true).unwrap();
+        study.claim(Statement::printed("S", "2.5", "1.56", ours));
+        study.claim(Statement::trend("a rise", "2.5", "it rises", (0.0, 1.0), "any amount", 0.5).missing("the scale"));
+        study.claim(Statement::identity("energy", ["2.1", "kept", "rounding"], (0.0, 1e-9), 0.0));
+        let line = Figure::new("Main").row([Panel::new(Axis::new("x"), Axis::new("y"))]);
+        study.main_figure("fig-2-08", &line, "A main figure.").unwrap();
+        vec![("chapter-2".to_owned(), study.finish("Chapter 2", "").unwrap())]
+    }
+
+    #[test]
+    fn one_report_has_headline_verdicts_reasons_and_main_figures() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = report(&found(folder.path(), 1.5605), false).unwrap().markdown();
+        for part in [
+            "Printed numbers (1): 1 agrees. Trends (1): 1 cannot be decided from the text. Not counted",
+            "| S | 2.5 | 1.56 | 1.5605 | ± 0.005 | half a unit of the last digit | ✓ agrees |",
+            "figures/deviations.svg",
+            "figures/chapter-2-fig-2-08.svg",
+            "## What the text does not let anyone decide",
+        ] {
+            assert!(text.contains(part), "{part} is not in {text}");
+        }
+        assert!(!text.contains("## Where we differ"));
+        // a wrong number turns row, section and headline
+        let text = report(&found(folder.path(), 1.566), false).unwrap().markdown();
+        assert!(text.contains("## Where we differ") && text.contains("Printed numbers (1): 1 differs."));
+    }
 }

@@ -91,6 +91,11 @@ enum Bounds {
     Choices,
 }
 
+/// Any amount above nothing, and any below.
+pub const RISES: (f64, f64) = (f64::MIN_POSITIVE, f64::INFINITY);
+/// See [`RISES`].
+pub const FALLS: (f64, f64) = (f64::NEG_INFINITY, -f64::MIN_POSITIVE);
+
 /// From this share of the choices on a statement that depends on a choice counts as borne out, and as refuted where so
 /// many contradict it.
 const MOST: f64 = 0.9;
@@ -244,6 +249,14 @@ impl Statement {
         }
     }
 
+    /// The difference in units of the tolerance, of a statement that has a number.
+    pub fn deviation(&self) -> Option<f64> {
+        match self.bounds {
+            Bounds::Near { value, tolerance } => Some((self.ours - value) / tolerance),
+            _ => None,
+        }
+    }
+
     /// What follows from the numbers. A number that is not finite differs.
     pub fn verdict(&self) -> Verdict {
         let between =
@@ -308,6 +321,8 @@ fn outside(ours: f64, low: f64, high: f64) -> f64 {
 /// Two limits in words.
 pub(super) fn limits(low: f64, high: f64) -> String {
     match (low, high) {
+        RISES => "> 0".to_owned(),
+        FALLS => "< 0".to_owned(),
         (_, f64::INFINITY) => format!("≥ {}", significant(low, 3)),
         (f64::NEG_INFINITY, _) => format!("≤ {}", significant(high, 3)),
         _ if low == high => format!("= {}", significant(low, 3)),
@@ -375,5 +390,46 @@ mod tests {
         let statement = Statement::trend("q", "s", "w", (0.0, 1.0), "r", 0.5);
         assert_eq!(statement.verdict(), Verdict::Agrees);
         assert_eq!(statement.missing("the scale").verdict(), Verdict::Undecidable);
+    }
+
+    #[test]
+    fn a_number_a_little_wrong_turns_the_verdict_of_every_kind() {
+        use Verdict::{Differs, Indecisive};
+        type Make = fn(f64) -> Statement;
+        let made: [(Make, [f64; 2], Verdict); 8] = [
+            (|ours| Statement::printed("q", "s", "74.391", ours), [74.390_6, 74.390_4], Differs),
+            (|ours| Statement::loose("q", "s", "about 70", (70.0, 5.0), "r", ours), [74.9, 75.1], Differs),
+            (
+                |ours| Statement::loose("q", "s", "about 70", (70.0, 5.0), "r", ours).uncertain(0.5),
+                [74.4, 74.6],
+                Indecisive,
+            ),
+            (|ours| Statement::trend("q", "s", "it falls", FALLS, "r", ours), [-1e-12, 0.0], Differs),
+            (|ours| Statement::trend("q", "s", "it rises", RISES, "r", ours), [1e-12, 0.0], Differs),
+            (
+                |ours| Statement::trend("q", "s", "reduced", (0.0, 0.5), "r", ours).open((0.0, 0.7)),
+                [0.49, 0.51],
+                Indecisive,
+            ),
+            (|ours| Statement::identity("q", ["s", "equal", "r"], (0.0, 1e-9), ours), [0.9e-9, 1.1e-9], Differs),
+            (|ours| Statement::self_check("q", ["s", "equal", "r"], (1.0, 1.0), ours), [1.0, 2.0], Differs),
+        ];
+        for (statement, [right, wrong], turned) in made {
+            assert_eq!(statement(right).verdict(), Verdict::Agrees, "{:?}", statement(right));
+            assert_eq!(statement(wrong).verdict(), turned, "{:?}", statement(wrong));
+            assert_eq!(statement(f64::NAN).verdict(), Differs);
+        }
+    }
+
+    #[test]
+    fn a_deviation_counts_tolerances() {
+        assert!((Statement::printed("q", "s", "74.391", 74.392).deviation().unwrap() - 2.0).abs() < 1e-9);
+        assert_eq!(Statement::trend("q", "s", "it rises", RISES, "r", 1.0).deviation(), None);
+    }
+
+    #[test]
+    fn limits_read_as_they_are_meant() {
+        assert_eq!([limits(RISES.0, RISES.1), limits(FALLS.0, FALLS.1)], ["> 0", "< 0"]);
+        assert_eq!([limits(0.5, f64::INFINITY), limits(1.0, 1.0), limits(0.0, 0.1)], ["≥ 0.5", "= 1", "0 to 0.1"]);
     }
 }

@@ -22,6 +22,8 @@ pub(super) struct Study {
     pub quick: bool,
     chapter: u32,
     body: Report,
+    /// The figures that stand in the report of all chapters as well.
+    shown: Report,
     statements: Vec<Statement>,
     /// Targets of a study of our own, with the heading above them.
     targets: Option<(&'static str, Vec<Comparison>)>,
@@ -40,6 +42,8 @@ pub struct Finished {
     chapter: u32,
     /// The thesis's statements beside our numbers.
     pub statements: Vec<Statement>,
+    /// The figures for the report of all chapters.
+    pub shown: Report,
     /// Number of impacts solved.
     pub impacts: usize,
     /// Impacts, time, agreement and the report's place, in a few lines.
@@ -92,6 +96,7 @@ impl Study {
             quick,
             chapter,
             body: Report::new(""),
+            shown: Report::new(""),
             statements: Vec::new(),
             targets: None,
             files: Vec::new(),
@@ -156,6 +161,12 @@ impl Study {
     /// Adds a figure with its caption.
     pub fn figure(&mut self, name: &str, figure: &Figure, caption: &str) -> Result<(), Failure> {
         Ok(self.body.figure(name, figure, caption)?)
+    }
+
+    /// Adds a figure that stands in the report of all chapters as well.
+    pub fn main_figure(&mut self, name: &str, figure: &Figure, caption: &str) -> Result<(), Failure> {
+        self.shown.figure(&format!("chapter-{}-{name}", self.chapter), figure, caption)?;
+        self.figure(name, figure, caption)
     }
 
     /// Adds a paragraph of Markdown.
@@ -246,8 +257,8 @@ impl Study {
             self.remarks.iter().map(|line| format!("{line}\n")).collect::<String>(),
             self.out.join("report.html").display()
         );
-        let (chapter, statements) = (self.chapter, self.statements);
-        Ok(Finished { title: title.to_owned(), chapter, statements, impacts, summary })
+        let (chapter, statements, shown) = (self.chapter, self.statements, self.shown);
+        Ok(Finished { title: title.to_owned(), chapter, statements, shown, impacts, summary })
     }
 }
 

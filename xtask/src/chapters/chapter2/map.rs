@@ -7,6 +7,7 @@ use crate::chapters::study::Study;
 use serde::Serialize;
 use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::{Contact, CriticalS, Outcome, TurningPoint, critical_s, turning_points};
 
 /// How close to a turning point its curves are drawn, as a share of the distance from the critical `S`.
@@ -188,7 +189,8 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
 /// The place of the inset of Fig. 2.8: late contacts at S = 1.72.
 fn inset(study: &mut Study) -> Result<(), Failure> {
     let solution = solved(1.72, 0.0)?;
-    let last = solution.contacts.iter().take(TRACKED).filter_map(|contact| contact.end).fold(0.0, f64::max);
+    let ends: Vec<f64> = solution.contacts.iter().take(TRACKED).filter_map(|contact| contact.end).collect();
+    let last = ends.iter().copied().fold(0.0, f64::max);
     let statement = Statement::loose(
         format!("end of contact {TRACKED} at S = 1.72 (10⁵ T)"),
         "2.5, Fig. 2.8",
@@ -197,12 +199,19 @@ fn inset(study: &mut Study) -> Result<(), Failure> {
         "half a unit of the only digit",
         1e-5 * last,
     );
-    study.claim(statement.note(
-        "The text does not print the factor of the axis; the curves of late contacts crowd there in units of 10⁵, and none \
-         runs at 3 or at 3 times another power of ten.",
-    ));
+    let middle = ends.get(TRACKED / 2).map_or(f64::NAN, |end| 1e-5 * end);
+    study.claim(statement.note(format!(
+        "The text does not print the factor of the axis, but it is linear and its times go up to 5×10⁵. Between contact {} \
+         at {} and contact {TRACKED} at {} the curves crowd there.",
+        TRACKED / 2 + 1,
+        significant(middle, 3),
+        significant(1e-5 * last, 3)
+    )));
     Ok(())
 }
+
+/// Contacts whose number stands in the figure where curves are dense: as many as turning points are printed.
+const NUMBERED: usize = 12;
 
 /// Separations that the thesis has followed.
 const TRACKED: usize = 18;
@@ -210,7 +219,8 @@ const TRACKED: usize = 18;
 /// Fig. 2.8.
 fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Result<(), Failure> {
     let s: Vec<f64> = points.iter().map(|point| point.s).collect();
-    let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0);
+    // the separations that the thesis has followed, and the contact after them
+    let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0).min(TRACKED + 1);
     let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
     let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
     let time = Axis::new("time").unit("T").log().limits(0.3, LATEST);
@@ -233,7 +243,13 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         let value = |of: fn(&Contact) -> Option<f64>| -> Vec<f64> {
             points.iter().map(|point| point.contacts.get(k).and_then(of).unwrap_or(f64::NAN)).collect()
         };
-        let (starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
+        let (mut starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
+        // where both curves are one line, the solid one stands for it
+        for (start, end) in starts.iter_mut().zip(&ends) {
+            if end - *start < 0.01 * *start {
+                *start = f64::NAN;
+            }
+        }
         let width = if k == 0 { 2.4 } else { 1.0 };
         let start = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(1.0).dashed();
         let end = |x: &[f64], y: &[f64]| Series::line(x, y).colour(colour).line_width(width);
@@ -243,24 +259,38 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         // the number of the contact where its end is last seen: at the turning point
         if let Some(last) = (0..s.len()).filter(|&i| ends[i].is_finite()).max_by(|&a, &b| s[a].total_cmp(&s[b])) {
             let number = |x: f64, y: f64| Series::labels(&[x], &[y], [(k + 1).to_string()]).colour(colour);
-            upper = upper.with(number(s[last], ends[last]));
+            // the numbers above these would hide each other
+            if k < NUMBERED {
+                upper = upper.with(number(s[last], ends[last]));
+            }
             lower = lower.with(number(distance[last], relative_ends[last]));
         }
         lower = lower.with(start(&distance, &relative_starts)).with(end(&distance, &relative_ends));
         // the printed figure has both axes linear there
-        let scaled = |times: &[f64]| near.clone().map(|i| 1e-5 * times[i]).collect::<Vec<f64>>();
-        let (x, starts, ends) = (&s[near.clone()], scaled(&starts), scaled(&ends));
-        linear = linear.with(start(x, &starts)).with(end(x, &ends));
-        inset = inset.with(start(x, &starts)).with(end(x, &ends));
+        let (x, ends) = (&s[near.clone()], near.clone().map(|i| 1e-5 * ends[i]).collect::<Vec<f64>>());
+        let number = |height: f64| {
+            let place = x.iter().zip(&ends).find(|(_, end)| **end < height).map_or(f64::NAN, |(s, _)| *s);
+            Series::labels(&[place], &[height], [(k + 1).to_string()]).colour(colour)
+        };
+        if (1..5).contains(&k) {
+            linear = linear.with(number(4.5));
+        }
+        if (4..NUMBERED).contains(&k) {
+            inset = inset.with(number(2.6));
+        }
+        linear = linear.with(end(x, &ends));
+        inset = inset.with(end(x, &ends));
     }
-    study.figure(
+    study.main_figure(
         "fig-2-08",
         &Figure::new("Fig. 2.8  Starts (dashed) and ends (solid) of contacts against S")
             .row([upper.with(Series::vertical_rule(critical.s))])
             .row([lower])
             .row([linear, inset]),
         "A curve of separation and the next curve of touch meet at a turning point, where the number is that of the \
-         contact that ends there. Colours repeat. All curves approach \
-         the critical S, where the second contact comes after infinite time.",
+         contact that ends there; in (c) and (d) it stands at the curve itself, and only \
+         ends are drawn, from which starts cannot be told there. Colours repeat. Drawn are 18 separations, as \
+         many as the thesis has followed. All curves approach the critical S, where the second contact comes after \
+         infinite time.",
     )
 }

@@ -7,6 +7,7 @@ use crate::chapters::study::Study;
 use vibroimpact::infinite::samples;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
+use vibroimpact_sim::infinite::Solution;
 
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
     study.section("Three regimes (Fig. 2.3)");
@@ -36,10 +37,42 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             solution.separations() as f64,
         ));
     }
+    oscillations(study)?;
     study.figure(
         "fig-2-03",
         &figure,
         "The force at S = 15 is drawn on a logarithmic axis: each contact is an order of magnitude weaker than the one \
          before. With S = 4×10⁵ it never reaches zero again.",
     )
+}
+
+/// Section 2.2.5: in sustained contact the force oscillates and the oscillations decay.
+fn oscillations(study: &mut Study) -> Result<(), Failure> {
+    const PLACES: [f64; 4] = [5.0, 15.0, 50.0, 500.0];
+    let found = study.sweep(&PLACES, 1, |s| growth_of_swings(*s))?;
+    let told: Vec<String> = found.iter().map(|ratio| significant(*ratio, 2)).collect();
+    study.claim(
+        Statement::trend(
+            "largest ratio of a swing of the compression, about the mean of its neighbours, to the one before; four S",
+            "2.2.5, Fig. 2.3",
+            "during final sustained contact, the contact force shows decaying oscillations",
+            (0.0, 1.0),
+            "each smaller than the one before",
+            found.iter().copied().fold(0.0, f64::max),
+        )
+        .note(format!("At S = {}: {}.", PLACES.map(|s| significant(s, 3)).join(", "), told.join(", "))),
+    );
+    Ok(())
+}
+
+/// The largest such ratio in the contact that lasts.
+fn growth_of_swings(s: f64) -> Result<f64, Failure> {
+    let start = |solution: &Solution| solution.contacts.last().map_or(0.0, |last| last.start);
+    let solution = solved(s, 3.0 * start(&solved(s, 0.0)?))?;
+    let last = solution.contacts.len().saturating_sub(1);
+    let turns = solution.extrema.iter().filter(|turn| turn.contact == last);
+    let turns: Vec<f64> = turns.map(|turn| turn.compression).collect();
+    // the force falls beneath its oscillations
+    let swings: Vec<f64> = turns.windows(3).map(|three| (three[1] - 0.5 * (three[0] + three[2])).abs()).collect();
+    Ok(swings.windows(2).map(|pair| pair[1] / pair[0]).reduce(f64::max).ok_or("too few oscillations")?)
 }

@@ -3,7 +3,7 @@
 
 use super::{in_ratio, solved};
 use crate::chapters::Failure;
-use crate::chapters::statement::Statement;
+use crate::chapters::statement::{FALLS, Statement};
 use crate::chapters::study::Study;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
@@ -143,50 +143,65 @@ fn straightness(y: &[f64]) -> f64 {
     xy * xy / (xx * yy)
 }
 
-/// Appendix A.1: how force and duration go from contact to contact.
-fn late_contacts(study: &mut Study) -> Result<(), Failure> {
-    study.section("Later contacts (A.1)");
-    const S: f64 = 2.0;
-    let solution: Solution = solved(S, 0.0)?;
+/// Largest force and duration of every contact that ends.
+fn contacts(s: f64) -> Result<[Vec<f64>; 2], Failure> {
+    let solution: Solution = solved(s, 0.0)?;
     let durations: Vec<f64> = solution.contacts.iter().filter_map(|contact| contact.duration).collect();
     let largest = |k: usize| {
         let of = solution.extrema.iter().filter(|extremum| extremum.contact == k && !extremum.minimum);
-        S.sqrt() * of.map(|extremum| extremum.compression).fold(0.0, f64::max).powf(1.5)
+        s.sqrt() * of.map(|extremum| extremum.compression).fold(0.0, f64::max).powf(1.5)
     };
-    let forces: Vec<f64> = (0..durations.len()).map(largest).collect();
+    Ok([(0..durations.len()).map(largest).collect(), durations])
+}
+
+/// Appendix A.1: how force and duration go from contact to contact.
+fn late_contacts(study: &mut Study) -> Result<(), Failure> {
+    study.section("Later contacts (A.1)");
+    // seven contacts and more, of which the appendix speaks
+    const PLACES: [f64; 5] = [1.65, 1.75, 2.0, 2.5, 3.0];
+    let found = study.sweep(&PLACES, 1, |s| contacts(*s))?;
+    let [forces, durations] = &found[2];
     let line = |k: usize| {
         let numbers = [forces[k], durations[k]].map(|number| significant(number, 4));
         [vec![(k + 1).to_string()], numbers.to_vec()].concat()
     };
+    study.text("At S = 2:");
     study.table(&["contact", "largest force (F)", "duration (T)"], &(0..durations.len()).map(line).collect::<Vec<_>>());
     // the first contact is of another kind
     let logs = |values: &[f64]| values.iter().skip(1).map(|value| value.ln()).collect::<Vec<f64>>();
     let from_second = |values: &[f64]| values.iter().skip(1).copied().collect::<Vec<f64>>();
-    for (name, words, values) in [
-        ("largest force", "f decreases roughly exponentially for later sub-impacts", &forces),
-        ("duration", "the contact duration increases roughly exponentially", &durations),
+    for (which, name, words) in [
+        (0, "largest force", "f decreases roughly exponentially for later sub-impacts"),
+        (1, "duration", "the contact duration increases roughly exponentially"),
     ] {
-        let (exponential, linear) = (straightness(&logs(values)), straightness(&from_second(values)));
-        let quantity = format!(
-            "{name} of contacts 2 to {} at S = 2: straightness (R²) of its logarithm less its own",
-            values.len()
-        );
+        let all: Vec<(f64, f64)> =
+            found.iter().map(|of| (straightness(&logs(&of[which])), straightness(&from_second(&of[which])))).collect();
+        let gains = all.iter().map(|(exponential, linear)| exponential - linear);
+        let told = |pairs: &dyn Fn(&(f64, f64)) -> f64| {
+            all.iter().map(|pair| significant(pairs(pair), 3)).collect::<Vec<_>>().join(", ")
+        };
         let statement = Statement::trend(
-            quantity,
+            format!(
+                "{name} of the contacts from the second on: straightness (R²) of its logarithm less its own, least of five S"
+            ),
             "A.1",
             words,
             (0.05, 1.0),
             "0.05 tells a straight line from a curve; less, either way, does not",
-            exponential - linear,
+            gains.fold(f64::INFINITY, f64::min),
         );
         study.claim(statement.open((-0.05, 1.0)).note(format!(
-            "Straightness {} of the logarithm and {} of the quantity itself.",
-            significant(exponential, 4),
-            significant(linear, 4)
+            "At S = {}: {} of the logarithm and {} of the quantity itself.",
+            PLACES.map(|s| significant(s, 3)).join(", "),
+            told(&|pair| pair.0),
+            told(&|pair| pair.1)
         )));
     }
     Ok(())
 }
+
+/// A contact of which the thesis has followed the curve as well.
+const LATE: usize = 10;
 
 /// Section 2.3: the time to the second contact grows without bound towards the critical `S`.
 fn second_contact(study: &mut Study) -> Result<(), Failure> {
@@ -195,19 +210,33 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
     let distances = in_ratio(1e-3, 1e-1, 5);
     let times = study.sweep(&distances, 1, |distance| {
         let solution = solved(critical + distance, 0.0)?;
-        Ok(solution.contacts.get(1).map(|contact| contact.start).ok_or("no second contact")?)
+        let start = |k: usize| solution.contacts.get(k).map(|contact| contact.start).ok_or("a contact is missing");
+        Ok([start(1)?, start(LATE - 1)?])
     })?;
     let lines = distances.iter().zip(&times);
-    let lines: Vec<Vec<String>> = lines.map(|(d, t)| vec![significant(*d, 2), significant(*t, 5)]).collect();
-    study.table(&["S less its critical value", "start of the second contact (T)"], &lines);
-    let power = (times[1] / times[0]).ln() / (distances[1] / distances[0]).ln();
+    let lines: Vec<Vec<String>> = lines
+        .map(|(d, [second, late])| vec![significant(*d, 2), significant(*second, 5), significant(*late, 5)])
+        .collect();
+    study.table(
+        &["S less its critical value", "start of the second contact (T)", &format!("of contact {LATE} (T)")],
+        &lines,
+    );
+    let power = |k: usize| (times[1][k] / times[0][k]).ln() / (distances[1] / distances[0]).ln();
     study.claim(Statement::trend(
         "power of the distance from the critical S with which the second contact's time goes",
         "2.3",
         "as S → 1.56⁺, the time interval between subsequent impacts increases without bound",
-        (f64::NEG_INFINITY, 0.0),
+        FALLS,
         "any negative power; t ≫ √t gives −2",
-        power,
+        power(0),
+    ));
+    study.claim(Statement::trend(
+        format!("the same power for contact {LATE}"),
+        "2.5",
+        "all the contact-time curves approach the same vertical asymptote at S ≈ 1.56",
+        FALLS,
+        "any negative power",
+        power(1),
     ));
     Ok(())
 }

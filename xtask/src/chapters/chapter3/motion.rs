@@ -62,8 +62,6 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "more than a couple",
         solution.sub_impacts.len() as f64,
     ));
-    let net = Statement::printed("net time of the interaction, N = 25, b = 0.4 (s)", "3.3.2", "0.025", solution.end_s);
-    study.claim(net.note("The text does not say which impact its 0.025 s are of; Fig. 3.3 is the one before it."));
     // the beam upright, the ball level: gravity's share of the way
     let travel_mm = 1e3 * 0.5 * 9.81 * solution.end_s.powi(2);
     study.claim(Statement::loose(

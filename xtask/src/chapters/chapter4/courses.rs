@@ -4,7 +4,6 @@ use super::{Case, Histories};
 use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
-use crate::chapters::statement::Statement;
 use crate::chapters::study::{Study, slug};
 use contact_models::Law;
 use vibroimpact::plot::{Figure, Panel};
@@ -56,15 +55,6 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     for (course, letter) in courses.iter().zip(letters) {
         study.course(&format!("fig-4-05-{letter}.csv"), course)?;
     }
-    let fewest = found.iter().map(|(s, _)| s.sub_impacts.len()).min().unwrap_or(0);
-    study.claim(Statement::trend(
-        "fewest sub-impacts of the four cases",
-        "4.2, Fig. 4.5",
-        "multiple",
-        (2.0, f64::INFINITY),
-        "more than one",
-        fewest as f64,
-    ));
     Ok(())
 }
 
@@ -75,12 +65,10 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
     let setups: Vec<Setup> = p.locations_m.iter().map(|&b| case.setup(beam, ball, b)).collect();
     let found = study.sweep(&setups, 1, Setup::record)?;
     let mut figure = Figure::new(format!("Fig. {}  {}, m = {:.3} kg", p.figure, beam.title, ball.mass_kg)).width(860.0);
-    let mut deepest = Vec::new();
     let mut panels = Vec::new();
     for (recorded, setup) in found.iter().zip(&setups) {
         let course = course(recorded);
         study.course(&format!("fig-{}-b-{:.3}.csv", slug(&p.figure), setup.location_m), &course)?;
-        deepest.push(course.structure_mm.iter().map(|y| y.abs()).fold(0.0, f64::max));
         panels.push(course.displacements().title(heading(setup.location_m, &recorded.0)).height(140.0));
     }
     for pair in panels.chunks(2) {
@@ -90,16 +78,5 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
         &format!("fig-{}", slug(&p.figure)),
         &figure,
         "Beam at the contact and ball. The more compliant the place, the deeper the beam yields.",
-    )?;
-    if let [first, .., last] = deepest.as_slice() {
-        study.claim(Statement::trend(
-            format!("deepest displacement at the largest b over that at the smallest, {}", beam.name),
-            &format!("4.2, Fig. {}", p.figure),
-            "for the larger b's, the magnitudes of the displacements increase",
-            (1.0, f64::INFINITY),
-            "any amount",
-            last / first,
-        ));
-    }
-    Ok(())
+    )
 }

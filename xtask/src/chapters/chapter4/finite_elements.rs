@@ -98,16 +98,22 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let mean = |weak: bool| {
         let chosen = all.iter().filter(|(modal, _)| (modal.e() <= WEAK) == weak);
         let gaps: Vec<f64> = chosen.map(|(modal, elements)| (modal.e() - elements.e()).abs()).collect();
-        gaps.iter().sum::<f64>() / gaps.len() as f64
+        let n = gaps.len() as f64;
+        let mean = gaps.iter().sum::<f64>() / n;
+        let variance = gaps.iter().map(|gap| (gap - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        (mean, (variance / n).sqrt() / mean)
     };
+    let (weak, elsewhere) = (mean(true), mean(false));
+    let ratio = weak.0 / elsewhere.0;
     let statement = Statement::trend(
         "mean difference where e is 0.15 or less, over that elsewhere, three balls",
         "A.4",
         "when the rebound was much smaller, e.g. 0.1, the mismatch was a bit larger",
         (1.0, f64::INFINITY),
-        "any amount",
-        mean(true) / mean(false),
-    );
+        "any amount beyond the standard error of the two means",
+        ratio,
+    )
+    .uncertain(ratio * weak.1.hypot(elsewhere.1));
     study.claim(statement.note(format!(
         "{} of {} impacts are so weak; the balls are the three whose masses chapter 4 names.",
         all.iter().filter(|(modal, _)| modal.e() <= WEAK).count(),

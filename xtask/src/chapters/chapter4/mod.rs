@@ -32,7 +32,7 @@ pub(super) struct Parameters {
     pub(super) speed_m_s: f64,
     damping_ratio: f64,
     pub(super) modes: usize,
-    places: usize,
+    pub(super) places: usize,
     finite_elements: usize,
     pub(super) our_choice: Choice,
 }
@@ -45,9 +45,9 @@ pub(super) struct Choice {
     pub(super) beams: Vec<BeamChoice>,
     diameters_m: Vec<f64>,
     pub(super) speed_study: SpeedStudy,
-    convergence_study: ConvergenceStudy,
-    detailed: Detailed,
-    histories: Vec<Histories>,
+    pub(super) convergence_study: ConvergenceStudy,
+    pub(super) detailed: Detailed,
+    pub(super) histories: Vec<Histories>,
     finite_element_study: Target,
     settled_modes: [usize; 2],
     pub(super) ensemble: EnsembleChoice,
@@ -105,28 +105,28 @@ pub(super) struct SpeedStudy {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ConvergenceStudy {
-    beam: String,
-    diameter_m: f64,
-    locations_m: Vec<f64>,
+pub(super) struct ConvergenceStudy {
+    pub(super) beam: String,
+    pub(super) diameter_m: f64,
+    pub(super) locations_m: Vec<f64>,
     most_modes: usize,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Detailed {
-    beam: String,
-    diameter_m: f64,
-    locations_m: Vec<f64>,
+pub(super) struct Detailed {
+    pub(super) beam: String,
+    pub(super) diameter_m: f64,
+    pub(super) locations_m: Vec<f64>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Histories {
-    figure: String,
-    beam: String,
-    diameter_m: f64,
-    locations_m: Vec<f64>,
+pub(super) struct Histories {
+    pub(super) figure: String,
+    pub(super) beam: String,
+    pub(super) diameter_m: f64,
+    pub(super) locations_m: Vec<f64>,
 }
 
 #[derive(Deserialize)]

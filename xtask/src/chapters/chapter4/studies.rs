@@ -4,7 +4,6 @@ use super::Case;
 use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution_and_sub_impacts};
 use crate::chapters::impact::{Row, Setup};
-use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
@@ -67,7 +66,6 @@ fn modes(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let all: Vec<usize> = (1..=p.most_modes).collect();
     let counts = study.thin(&all, 9);
     let mut columns: Vec<Column> = Vec::new();
-    let mut convergence = Vec::new();
     for &location_m in &p.locations_m {
         let damped = case.setup(beam, ball, location_m);
         let mut curves = Vec::new();
@@ -79,19 +77,6 @@ fn modes(study: &mut Study, case: &Case) -> Result<(), Failure> {
                 zeta => Curve::new(format!("ζ = {zeta}"), Marker::Plus, Colour::Vermilion, rows),
             });
         }
-        let late = curves[1].rows.iter().filter(|r| r.modes >= 40).map(Row::e);
-        let (low, high) = late.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h): (f64, f64), e| (l.min(e), h.max(e)));
-        study.claim(Statement::trend(
-            format!("change of e from 40 modes on, damped, b = {location_m}"),
-            "Fig. 4.4",
-            "reasonable convergence is achieved for N ≈ 40",
-            (0.0, 0.05),
-            "a twentieth of the range from 0 to 1",
-            high - low,
-        ));
-        // from half of those modes on, as a share of the restitution
-        let (e, spread) = relative_spread(&curves[1].rows, 20);
-        convergence.push((e, spread));
         columns.push((format!("b = {location_m} m"), curves));
     }
     let axis = Axis::new("number of modes N").integers();
@@ -103,48 +88,5 @@ fn modes(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "Above: restitution; below: sub-impacts; against the number of modes, without and with damping.",
     )?;
     let rows: Vec<Row> = columns.iter().flat_map(|c| &c.1).flat_map(|c| &c.rows).cloned().collect();
-    let at_tip =
-        rows.iter().filter(|r| r.location_m == beam.model.length_m()).map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.claim(Statement::trend(
-        "most sub-impacts at the free end, any N",
-        "4.2",
-        "near the free end of the beam the number of impacts can be quite large",
-        (20.0, f64::INFINITY),
-        "more than any impact of chapter 3 has",
-        at_tip as f64,
-    ));
-    let late =
-        || rows.iter().filter(|r| r.location_m == beam.model.length_m() && r.damping_ratio > 0.0 && r.modes >= 40);
-    let span = |value: fn(&Row) -> f64| {
-        let (low, high) = late().map(value).fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), v| (l.min(v), h.max(v)));
-        high / low - 1.0
-    };
-    study.claim(Statement::trend(
-        "free end, damped, N ≥ 40: span of the number of sub-impacts over that of e, as shares",
-        "4.2",
-        "the number of sub-impacts may change a lot while the net restitution does not change much",
-        (10.0, f64::INFINITY),
-        "ten times",
-        span(|r| r.sub_impacts as f64) / span(Row::e),
-    ));
-    convergence.sort_by(|a: &(f64, f64), b| a.0.total_cmp(&b.0));
-    let slower = convergence.windows(2).filter(|pair| pair[1].1 >= pair[0].1).count();
-    study.claim(Statement::trend(
-        "places where e is higher and its share of change from 20 modes on no smaller, damped",
-        "Fig. 4.4",
-        "convergence is more rapid where restitution is higher",
-        (0.0, 0.0),
-        "three places, in order",
-        slower as f64,
-    ));
     study.csv("fig-4-04.csv", &rows)
-}
-
-/// Mean of the restitution from so many modes on, and its range as a share of that.
-fn relative_spread(rows: &[Row], least: usize) -> (f64, f64) {
-    let values: Vec<f64> = rows.iter().filter(|r| r.modes >= least).map(Row::e).collect();
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h): (f64, f64), e| (l.min(*e), h.max(*e)));
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    (mean, (high - low) / mean)
 }

@@ -88,7 +88,7 @@ pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>
         study.csv(&format!("restitution-{}.csv", table.beam.name), &rows)?;
         let caption = "Above: restitution and number of sub-impacts over place and ball. Below: restitution of every other \
                        ball along the beam.";
-        study.figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
+        study.main_figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
     }
     Ok(tables)
 }

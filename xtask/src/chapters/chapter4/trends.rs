@@ -2,6 +2,7 @@
 
 use super::tables::Table;
 use crate::chapters::impact::Row;
+use crate::chapters::statement;
 use crate::chapters::study::Study;
 use beam_modes::End;
 use vibroimpact::report::significant;
@@ -18,6 +19,8 @@ pub(in crate::chapters) struct Trend {
     pub limits: (f64, f64),
     /// Why these.
     pub reason: &'static str,
+    /// What else the words may mean, so that a number outside the limits refutes nothing; may be empty.
+    pub otherwise: &'static str,
     /// The table's number.
     pub ours: f64,
 }
@@ -28,17 +31,19 @@ impl Trend {
         (self.limits.0..=self.limits.1).contains(&self.ours)
     }
 
-    fn new(quantity: &'static str, words: &'static str, (limits, reason): Limits, ours: f64) -> Trend {
-        Trend { quantity, source: "4.2", words, limits, reason, ours }
+    /// A trend of section 4.2.
+    pub fn new(quantity: &'static str, words: &'static str, (limits, reason): Limits, ours: f64) -> Trend {
+        Trend { quantity, source: "4.2", words, limits, reason, otherwise: "", ours }
     }
 }
 
-type Limits = ((f64, f64), &'static str);
+pub(in crate::chapters) type Limits = ((f64, f64), &'static str);
 
-const RISES: Limits = ((0.0, f64::INFINITY), "any amount");
-const FALLS: Limits = ((f64::NEG_INFINITY, 0.0), "any amount");
+pub(in crate::chapters) const RISES: Limits = (statement::RISES, "any amount");
+const FALLS: Limits = (statement::FALLS, "any amount");
 const CLEARLY: Limits = ((0.1, f64::INFINITY), "a tenth of the range from 0 to 1");
 const VISIBLY: Limits = ((0.05, f64::INFINITY), "a twentieth of the range from 0 to 1");
+const MORE: Limits = ((0.5, f64::INFINITY), "one more in every other impact");
 const ONE: Limits = ((1.0, 1.0), "as stated");
 
 /// All trends that the thesis names for a beam of this kind; always the same ones, in the same order.
@@ -53,8 +58,9 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
     let low = (0..means.len()).min_by(|&a, &b| means[a].total_cmp(&means[b])).unwrap_or(0);
     let [first, least, last] = [0, low, means.len() - 1].map(|k| means[k]);
     let most = table.all().filter(|r| of_ball(lightest.mass_kg)(r)).map(contacts).fold(0.0, f64::max);
-    let heavier = table.balls[table.balls.len() / 4].mass_kg;
-    let more = table.mean(contacts, of_ball(heavier)) - table.mean(contacts, of_ball(lightest.mass_kg));
+    let heavier =
+        table.balls[..table.balls.len().div_ceil(2)].iter().map(|ball| table.mean(contacts, of_ball(ball.mass_kg)));
+    let more = heavier.fold(0.0, f64::max) - table.mean(contacts, of_ball(lightest.mass_kg));
     let words = "for slightly higher m, the number of sub-impacts increases";
     let mut trends = vec![
         Trend::new(
@@ -69,7 +75,12 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
             CLEARLY,
             first - least,
         ),
-        Trend::new("mean contacts away from the ends: fourth ball of twelve less the lightest", words, RISES, more),
+        Trend::new(
+            "mean contacts away from the ends: most of the lighter six balls less the lightest's",
+            words,
+            MORE,
+            more,
+        ),
         Trend::new(
             "mean e away from the ends: heaviest ball less the least of all balls",
             "as m increases further, v_f increases again",
@@ -87,13 +98,38 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
 /// The quantity that depends most on the list of balls.
 pub(in crate::chapters) const FREE_END: &str = "mean e at the free end less that two places before";
 
+const SUDDEN: &str = "there is a sudden rise in restitution very close to pinned or fixed ends";
+const VERY_CLOSE: &str =
+    "whether one place from the end, 42 mm, is very close to it; closer the rise is there, and e is 1 at the end";
+
+/// Rises still closer to held ends than the tables' places are; `closer` is a table of one such place for each held end.
+pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) -> Vec<Trend> {
+    let names = [
+        "mean e a sixteenth of a place from the left, held end less that one place from it",
+        "mean e a sixteenth of a place from the right, held end less that one place from it",
+    ];
+    let nearest = |place_m: f64| {
+        let inside = table.places_m.iter().copied().filter(|b| *b > 0.0 && *b < table.beam.model.length_m());
+        inside.min_by(|a, b| (a - place_m).abs().total_cmp(&(b - place_m).abs())).unwrap_or(f64::NAN)
+    };
+    let rise = |place_m: f64| {
+        let near = nearest(place_m);
+        closer.mean(Row::e, |r| r.location_m == place_m) - table.mean(Row::e, |r| r.location_m == near)
+    };
+    names
+        .into_iter()
+        .zip(&closer.places_m)
+        .map(|(name, place)| Trend::new(name, SUDDEN, VISIBLY, rise(*place)))
+        .collect()
+}
+
 /// Rises towards free and held ends.
 fn ends(table: &Table, trends: &mut Vec<Trend>) {
     let at = |place_m: f64| table.mean(Row::e, |r| r.location_m == place_m);
-    let sudden = "there is a sudden rise in restitution very close to pinned or fixed ends";
+    let one_place = |quantity, ours| Trend { otherwise: VERY_CLOSE, ..Trend::new(quantity, SUDDEN, VISIBLY, ours) };
     if let [_, near, further, ..] = table.places_m.as_slice() {
         let quantity = "mean e one place from the left, held end less two places from it";
-        trends.push(Trend::new(quantity, sudden, VISIBLY, at(*near) - at(*further)));
+        trends.push(one_place(quantity, at(*near) - at(*further)));
     }
     match (table.places_m.as_slice(), table.beam.model.ends[1]) {
         ([.., before, _, end], End::Free) => {
@@ -106,7 +142,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
         }
         ([.., further, near, _], _) => {
             let quantity = "mean e one place from the right, held end less two places from it";
-            trends.push(Trend::new(quantity, sudden, VISIBLY, at(*near) - at(*further)));
+            trends.push(one_place(quantity, at(*near) - at(*further)));
         }
         _ => {}
     }

@@ -231,7 +231,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
     for data in data {
         let beam = data.beam.name.as_str();
         for (other, source, words) in [
-            (LCP, "5.3, 9", "superior to outcomes predicted by the popular linear complementarity formulation"),
+            (LCP, "5.2.1", "a different approach which has some advantages over the LCP"),
             (
                 REGRESSION,
                 "7.3",

@@ -19,9 +19,10 @@ struct PointRow {
     restitution_of_the_law: f64,
 }
 
-/// Every third value: the rest would hide each other.
+/// Every fifth value: the rest would hide each other. Twelve balls follow each other at every place, so that every ball
+/// comes in turn.
 fn thinned(values: &[f64]) -> Vec<f64> {
-    values.iter().copied().step_by(3).collect()
+    values.iter().copied().step_by(5).collect()
 }
 
 pub(super) fn run(study: &mut Study, data: &[Dataset], found: &[Found]) -> Result<(), Failure> {
@@ -51,10 +52,10 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], found: &[Found]) -> Resul
     let figure = panels
         .chunks(3)
         .fold(Figure::new("Nine laws against the tables of chapter 4").width(960.0), |f, row| f.row(row.to_vec()));
-    study.figure(
+    study.main_figure(
         "laws",
         &figure,
-        "Every third impact of the four tables is a point; on the grey line law and table are equal. Below zero the ball would go \
+        "Every fifth impact of the four tables is a point; on the grey line law and table are equal. Below zero the ball would go \
          on into the beam.",
     )
 }

@@ -233,7 +233,6 @@ fn group(row: &AgreementRow) -> &'static str {
 }
 
 fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
-    let z: Vec<f64> = rows.iter().map(|row| row.z).collect();
     let mut panel =
         Panel::new(Axis::new("moderated mass ratio Z").log(), Axis::new("difference of e").log().limits(1e-17, 1e-5));
     panel.height_px = 260.0;
@@ -245,8 +244,10 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
     ];
     let mut lines = Vec::new();
     for (name, difference, marker) in forms {
-        // what agrees to the last bit stands at the foot
-        let shown: Vec<f64> = rows.iter().map(|row| difference(row).map_or(f64::NAN, |d| d.max(1.5e-17))).collect();
+        // what agrees to the last bit stands at the foot, where few points are enough
+        let all = rows.iter().filter_map(|row| Some((row.z, difference(row)?.max(1.5e-17))));
+        let (z, shown): (Vec<f64>, Vec<f64>) =
+            all.enumerate().filter(|(i, (_, d))| *d > 1e-14 || i.is_multiple_of(8)).map(|(_, point)| point).unzip();
         panel = panel.with(Series::points(&z, &shown, marker).label(name));
         for name_of_group in GROUPS {
             let found: Vec<f64> =
@@ -274,7 +275,8 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
     study.figure(
         "agreement",
         &Figure::new("Difference of the restitution from the closed form").row([panel]),
-        "Every case; what agrees to the last bit stands at 1.5×10⁻¹⁷.",
+        "Every case that differs by more than 10⁻¹⁴, and one in eight of the others; what agrees to the last bit stands at \
+         1.5×10⁻¹⁷.",
     )
 }
 
@@ -307,13 +309,13 @@ fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(),
     for (branch, marker) in [("basic", Marker::Circle), ("outward", Marker::Cross)] {
         let of_branch = rows.iter().filter(|row| row.branch == branch && row.ebar > 1e-3 && row.kind == "random");
         let (z, energy): (Vec<f64>, Vec<f64>) =
-            of_branch.map(|row| (row.z, row.energy_ratio / row.ebar.powi(2))).unzip();
+            of_branch.step_by(3).map(|row| (row.z, row.energy_ratio / row.ebar.powi(2))).unzip();
         panel = panel.with(Series::points(&z, &energy, marker).label(branch));
     }
     study.figure(
         "energy",
         &Figure::new("Energy left, as a share of its bound").row([panel]),
-        "Random cases, by the term of the maximum that is active.",
+        "One in three of the random cases, by the term of the maximum that is active.",
     )
 }
 
@@ -333,7 +335,7 @@ fn shape(study: &mut Study) -> Result<(), Failure> {
         left = left.with(Series::line(&z, &e).colour(colour).label(format!("β₀ = {beta0}, β₁ = {beta1}")));
         right = right.with(Series::line(&z, &modal).colour(colour));
     }
-    study.figure(
+    study.main_figure(
         "closed-form",
         &Figure::new("e = ē max(1/(1+Z), (β₀+β₁)/(1+β₀))").row([left, right]).width(900.0),
         "The outward inequality sets a floor under the restitution; below it the modes would swallow a heavy striker.",

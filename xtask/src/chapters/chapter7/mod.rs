@@ -12,6 +12,7 @@ use super::chapter4::tables::{Table, compute};
 use super::impact::Row;
 use super::study::Study;
 use emoc::{Impact, Site};
+use std::time::Instant;
 use vibroimpact::net::Observations;
 
 const INTRODUCTION: &str = "The law of energy minimisation under outward constraints (chapter 6, closed form) with the \
@@ -57,13 +58,15 @@ impl<'a> Dataset<'a> {
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     let case = Case::load()?;
     study.section("The tables");
+    let start = Instant::now();
     let truncated = compute(study, &case, case.parameters.modes, false)?;
+    let seconds = start.elapsed().as_secs_f64();
     let settled = compute(study, &case, SETTLED_MODES, true)?;
     study.text("Computed as in chapter 4; see its report for pictures of them.");
     let [truncated, settled]: [Vec<Dataset>; 2] =
         [&truncated, &settled].map(|tables| tables.iter().map(Dataset::new).collect());
 
-    let fits = fits::run(study, &truncated, &settled)?;
+    let fits = fits::run(study, &truncated, &settled, seconds)?;
     pictures::run(study, &truncated, &fits)?;
     fits::against_modes(study, &truncated)?;
     failure::run(study, &truncated, &fits)?;

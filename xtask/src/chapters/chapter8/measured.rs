@@ -63,7 +63,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, points: &[Point]) 
     let found = observations(parameters, points, 0)?.fit()?;
     study.figure(
         "measured",
-        &by_rod("Points given", "points given", parameters, points, &found)?,
+        &by_rod("Law and points given, one set of parameters:", "points given", parameters, points, &found)?,
         "Red: the points given. Blue: the law, fitted to them, one set of parameters for all rods.",
     )?;
     let p: Vec<String> = found.parameters.iter().map(|p| significant(*p, 4)).collect();

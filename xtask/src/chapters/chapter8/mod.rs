@@ -3,6 +3,7 @@
 mod drops;
 mod law;
 mod measured;
+mod measurements;
 mod two_rods;
 mod upright;
 
@@ -45,6 +46,7 @@ struct Choice {
     bending_modes: usize,
     axial_modes: usize,
     angles: usize,
+    stubby_length_m: f64,
 }
 
 impl Parameters {
@@ -77,6 +79,7 @@ pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str
     upright::run(study, &parameters)?;
     two_rods::run(study, &parameters)?;
     law::run(study, &parameters, &drops)?;
+    measurements::run(study, &parameters, &drops)?;
     if let Some(points) = points {
         measured::run(study, &parameters, &points)?;
     }
