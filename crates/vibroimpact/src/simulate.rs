@@ -107,10 +107,20 @@ impl Simulation {
     /// # Errors
     /// None that an impact could cause.
     pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
+        let scene = &self.scene(scene);
         export::json(&match self {
             Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
             Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
             Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
+        })
+    }
+
+    /// The scene as it was solved: with the theory of bending that answered, where `scene` leaves it open.
+    pub fn scene(&self, scene: &Scene) -> Scene {
+        scene.as_answered(match self {
+            Simulation::Modal(found) => found.summary.choice.as_ref(),
+            Simulation::Infinite { .. } => None,
+            Simulation::Net(answer) => Some(answer),
         })
     }
 

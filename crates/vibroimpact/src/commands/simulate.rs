@@ -65,6 +65,7 @@ pub fn run(Arguments { scene, intervals, until, products }: Arguments) -> Result
         }
     };
     let found = watched("simulate", || scene.simulate())?;
+    let scene = found.scene(&scene);
     match &found {
         Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, resolved, until, &products),
         Simulation::Infinite { groups, solution } => {

@@ -1,6 +1,7 @@
 //! Which model a scene is given to.
 
 use super::pose::{Pose, chooses_modes, modal_only};
+use super::theory::theory_of;
 use super::{Answer, Cost, Kept, Model, infinite, rigid, settle, stated};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene};
@@ -51,10 +52,14 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn choose(&self) -> Result<Choice, InvalidInput> {
-        self.choose_with(&mut Kept::default())
+        let choice = self.choose_with(&mut Kept::default())?;
+        let mut cost = choice.answer.cost;
+        let answer = self.judge_theory(choice.answer, &mut cost)?;
+        Ok(Choice { answer: Answer { cost, ..answer }, ..choice })
     }
 
-    /// As [`Scene::answer`], by what earlier scenes have left: the same answer to the last bit, sooner.
+    /// As [`Scene::answer`], by what earlier scenes have left: the same answer to the last bit, sooner. What another theory
+    /// of bending would change is left open: it takes further impacts.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -67,13 +72,19 @@ impl Scene {
             return infinite::of_infinite_structure(self);
         }
         let mut cost = Cost::default();
-        let mut choice = match (self.model, modal_only(self)) {
-            (Model::Auto | Model::Modal, Some(_)) => stated::stated(self, kept, &mut cost)?,
+        let open = self.with_theory(&mut cost)?;
+        let scene = open.as_ref().map_or(self, |(scene, _)| scene);
+        let mut choice = match (scene.model, modal_only(scene)) {
+            (Model::Auto | Model::Modal, Some(_)) => stated::stated(scene, kept, &mut cost)?,
             (forced, Some(why)) => return Err(refused(forced, format!("auto or modal: {why}"))),
-            (Model::Auto, None) => auto(&mut Pose::new(self, kept)?, &mut cost)?,
-            (forced, None) => forced_tier(forced, &mut Pose::new(self, kept)?, &mut cost)?
+            (Model::Auto, None) => auto(&mut Pose::new(scene, kept)?, &mut cost)?,
+            (forced, None) => forced_tier(forced, &mut Pose::new(scene, kept)?, &mut cost)?
                 .map_err(|reason| refused(forced, reason))?,
         };
+        if let Some((_, why)) = &open {
+            choice.answer.reason += &format!("; {why}");
+        }
+        choice.answer.theory = theory_of(scene);
         choice.answer.cost = cost;
         Ok(choice)
     }
@@ -116,6 +127,8 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
 /// The modal problem with as many modes as the restitution needs to settle.
 pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
     let kept = &mut Kept::default();
+    let open = scene.with_theory(&mut Cost::default())?;
+    let scene = open.as_ref().map_or(scene, |(scene, _)| scene);
     let choice = modal(&mut Pose::new(scene, kept)?, &mut Cost::default())?;
     // the modal tier always has one
     choice.impact.map_or_else(|| scene.impact_of(Some(0), kept), Ok)

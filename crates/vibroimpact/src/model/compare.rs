@@ -47,10 +47,12 @@ impl Scene {
     pub fn compare(&self) -> Result<Comparison, InvalidInput> {
         let scene = Scene { model: Model::Auto, ..self.clone() };
         let chosen = scene.answer()?;
+        // the others by the same theory
+        let this = self.as_answered(Some(&chosen));
         let (mut tiers, mut kept) = (Vec::new(), Kept::default());
         for model in [Model::Rigid, Model::Emoc, Model::InfiniteBeam, Model::Modal] {
             // the tiers see what was asked for, because being asked for widens what they accept
-            let scene = Scene { model, ..self.clone() };
+            let scene = Scene { model, ..this.clone() };
             let found = match (scene.is_infinite(), modal_only(&scene)) {
                 (true, _) if model == Model::InfiniteBeam => Ok(chosen.clone()),
                 (true, _) => Err("the structure has no ends".to_owned()),
@@ -59,7 +61,7 @@ impl Scene {
                 (false, None) => {
                     let mut cost = Cost::default();
                     let tried = forced_tier(model, &mut Pose::new(&scene, &mut kept)?, &mut cost)?;
-                    tried.map(|choice| Answer { cost, ..choice.answer })
+                    tried.map(|choice| Answer { cost, theory: chosen.theory, ..choice.answer })
                 }
             };
             let (answer, refused) = match found {

@@ -13,14 +13,16 @@
 use super::Cost;
 use super::pose::{Pose, Source};
 use super::settle::{LEAST_RAISE, RAISE};
+use super::theory::theory_of;
 use crate::impact::compliance;
-use crate::scene::InvalidInput;
+use crate::scene::{BeamTheory, InvalidInput};
 
 /// More modes than this are not tried.
 pub(super) const MOST_MODES: usize = 1500;
-/// `R` at the guess: `FIRST / tolerance^ORDER`.
-const FIRST: f64 = 0.4;
-const ORDER: f64 = 0.47;
+/// `R` at the guess: `first / tolerance^order`, by Euler-Bernoulli's theory and all others, and by Timoshenko's, whose `c_N`
+/// falls as `1/omega_N` only while remainder modes do as well as for the others.
+const TARGET: [f64; 2] = [0.4, 0.47];
+const TARGET_WITH_SHEAR: [f64; 2] = [0.8, 0.3];
 /// Fewest modes to begin with, besides rigid-body motions.
 const FEWEST: usize = 4;
 
@@ -70,7 +72,11 @@ fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
 
 /// The number of modes with which to begin, and the one that is expected to do.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
-    let target = FIRST * pose.tolerance.powf(-ORDER);
+    let [first, order] = match theory_of(pose.scene) {
+        Some(BeamTheory::Timoshenko) => TARGET_WITH_SHEAR,
+        _ => TARGET,
+    };
+    let target = first * pose.tolerance.powf(-order);
     let most = pose.source.most();
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
     let mut computed = (expected(pose, target)? + 2).min(most);

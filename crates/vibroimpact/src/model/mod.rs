@@ -23,6 +23,7 @@ mod rigid;
 mod settle;
 mod stated;
 mod text;
+mod theory;
 mod uncertainty;
 
 use std::borrow::Cow;
@@ -46,6 +47,7 @@ pub use uncertainty::Uncertainty;
 
 #[cfg(doc)]
 use crate::Scene;
+use crate::scene::BeamTheory;
 
 /// The restitution is wanted this well where the program chooses the modes and the scene states no tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
@@ -152,6 +154,8 @@ impl JsonSchema for Modes {
 pub struct Answer {
     /// The model used; never `auto`.
     pub model: Model,
+    /// The theory by which a beam was solved; null for other structures.
+    pub theory: Option<BeamTheory>,
     /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
     /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
@@ -175,7 +179,7 @@ pub struct Answer {
     pub remainder_modes: usize,
     /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
-    /// Whether the tolerance was reached (for stated modes: whether the solver's part of the uncertainty is within ten
+    /// Whether the tolerance was reached, by the theory used (for stated modes: whether the solver's part of the uncertainty is within ten
     /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
     pub settled: bool,
     /// If it was not: largest less smallest restitution over the last numbers of modes tried.
@@ -191,6 +195,7 @@ impl Answer {
     fn new(model: Model, tolerance: f64, known: uncertainty::Known, reason: String) -> Answer {
         Answer {
             model,
+            theory: None,
             outcome: "rebound",
             stopped_by: None,
             restitution: None,

@@ -85,7 +85,7 @@ impl Estimate {
 
 impl Scene {
     /// Says which model [`Scene::answer`] would use and what each would cost. Closed forms, and the infinite beam, are
-    /// evaluated; no modal impact is solved.
+    /// evaluated; no modal impact is solved but two loose ones by which the theory of bending is chosen, where it is open.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -107,9 +107,10 @@ impl Scene {
         if let Some(why) = modal_only(self) {
             return self.plan_of_modes(why);
         }
-        let mut kept = Kept::default();
-        let mut pose = Pose::new(self, &mut kept)?;
-        let cost = &mut Cost::default();
+        let (mut kept, cost) = (Kept::default(), &mut Cost::default());
+        let open = self.with_theory(cost)?;
+        let (scene, why) = open.as_ref().map_or((self, None), |(scene, why)| (scene, Some(why)));
+        let mut pose = Pose::new(scene, &mut kept)?;
         let cheap: [(Model, Certify, f64); 3] = [
             (Model::Rigid, rigid::certified, FORMULA_S),
             (Model::Emoc, emoc::certified, FORMULA_S),
@@ -119,7 +120,11 @@ impl Scene {
         for (model, certified, time_s) in cheap {
             tiers.push(Estimate::tried(model, certified(&mut pose, cost)?, time_s));
         }
-        tiers.push(modal(&mut pose, cost)?);
+        let mut of_modes = modal(&mut pose, cost)?;
+        if let Some(why) = why {
+            of_modes.reason += &format!("; {why}");
+        }
+        tiers.push(of_modes);
         let model = match self.model {
             Model::Auto if chooses_modes(self) => {
                 tiers.iter().find(|tier| tier.applies).map_or(Model::Modal, |tier| tier.model)

@@ -84,7 +84,7 @@ fn left_out(
         }
         _ => return Ok(Err("the static compliance of the structure is not stated".to_owned())),
     };
-    let wanted = needed(scene, kept, cost)?.unwrap_or(count).clamp(count, RICHER * count.max(1)).min(most);
+    let wanted = needed(scene, LOOSE, kept, cost)?.unwrap_or(count).clamp(count, RICHER * count.max(1)).min(most);
     let (fewer, more) = match &scene.start {
         // the motion before the impact may need every mode stated
         Some(_) if count < most => (count, ((count as f64 * RAISE).ceil() as usize).min(most)),
@@ -119,8 +119,13 @@ fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
     scene.impact_of(scene.modes.count(), kept)
 }
 
-/// The number of modes that a loose tolerance is expected to need, where it can be told.
-fn needed(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usize>, InvalidInput> {
+/// The number of modes that a tolerance is expected to need, where it can be told.
+pub(super) fn needed(
+    scene: &Scene,
+    tolerance: f64,
+    kept: &mut Kept,
+    cost: &mut Cost,
+) -> Result<Option<usize>, InvalidInput> {
     if modal_only(scene).is_some() {
         return Ok(None);
     }
@@ -128,7 +133,7 @@ fn needed(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Option<usiz
         model: Model::Auto,
         modes: Modes::Auto,
         residual_compliance: Some(true),
-        tolerance: Some(LOOSE),
+        tolerance: Some(tolerance),
         ..scene.clone()
     };
     Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?.1))

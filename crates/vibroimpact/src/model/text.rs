@@ -21,7 +21,7 @@ fn wrapped(text: &str, indent: usize) -> String {
 /// How near the estimate of the error is to the tolerance.
 fn against_tolerance(answer: &Answer) -> String {
     let wanted = small(answer.tolerance);
-    match (answer.restitution_uncertainty, answer.settled) {
+    match (answer.uncertainty.of_model(), answer.settled) {
         (Some(u), true) if u <= answer.tolerance => {
             format!("wanted within {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
         }
@@ -42,7 +42,7 @@ fn meaning(part: &str) -> &'static str {
     match part {
         "solver" => "how exactly the equations of this model are solved",
         "modes left out" => "what the structure with all its modes would change",
-        _ => "what a finer theory of the beam would change",
+        _ => "what the other theory of bending, or 2 % of the shear coefficient, would change",
     }
 }
 

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::scene::{Scene, Structure};
+use super::theory::why_not_judged;
+use crate::scene::Scene;
 
 /// The solver's part where nothing is solved: the restitution has a closed form.
 pub(super) const CLOSED_FORM: f64 = 0.0;
@@ -17,7 +18,8 @@ pub struct Uncertainty {
     /// What the modes left out would change: the model against the same structure with all its modes. For the models
     /// that put something else in the place of modes (`rigid`, `infinite-beam`, `emoc`): what that changes.
     pub modes_left_out: Option<f64>,
-    /// How far the theory by which a beam has these modes may be off.
+    /// How far the theory by which a beam has these modes may be off: what Euler-Bernoulli's and Timoshenko's theory differ
+    /// by, or what 2 % of the shear coefficient change if that is more.
     pub beam_theory: Option<f64>,
 }
 
@@ -26,6 +28,12 @@ impl Uncertainty {
     pub fn whole(&self) -> Option<f64> {
         let known: Vec<f64> = self.parts().into_iter().filter_map(|(_, part)| part).collect();
         (!known.is_empty()).then(|| known.iter().sum::<f64>().min(f64::MAX))
+    }
+
+    /// What stands between the restitution and its limit by the same theory: the sum of the parts that are known but that
+    /// of the theory.
+    pub fn of_model(&self) -> Option<f64> {
+        Uncertainty { beam_theory: None, ..*self }.whole()
     }
 
     /// The parts under their names.
@@ -51,7 +59,7 @@ impl Known {
         }
         let modes_left_out =
             modes_left_out.map_err(|why| not_known.push(format!("modes left out: {why}"))).ok().filter(|u| !u.is_nan());
-        not_known.push(format!("beam theory: {}", theory(&scene.structure)));
+        not_known.push(format!("beam theory: {}", why_not_judged(&scene.structure)));
         Known { uncertainty: Uncertainty { solver, modes_left_out, beam_theory: None }, not_known }
     }
 
@@ -63,22 +71,6 @@ impl Known {
     /// The same if there is a restitution that it could be of.
     pub fn of(self, restitution: Option<f64>) -> Known {
         if restitution.is_some() { self } else { Known::default() }
-    }
-}
-
-/// Why it is not known how far the theory of the structure is off.
-fn theory(structure: &Structure) -> &'static str {
-    match structure {
-        Structure::Modal(_) | Structure::ModesFile(_) => {
-            "the modes are given; how well they describe the structure is not known here"
-        }
-        Structure::InfinitePlate(_) => {
-            "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
-        }
-        _ => {
-            "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \
-             thicknesses"
-        }
     }
 }
 

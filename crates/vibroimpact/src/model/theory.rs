@@ -1,0 +1,202 @@
+//! How far the theory by which a beam bends can be trusted, and which theory an impact needs.
+//!
+//! Where a beam can be solved by Euler-Bernoulli's theory and by Timoshenko's, the impact is solved by both, and by
+//! Timoshenko's with the shear coefficient 2 % smaller and larger, as far apart as the coefficients in use. With `e_v` the
+//! four restitutions, one of them `e` by the theory that answers,
+//!
+//! ```text
+//! u = max_v |e_v - e|.
+//! ```
+//!
+//! All four have remainder modes, and twice the modes that the tolerance is expected to need or as many as the answer took,
+//! but not many more than are stated; they are solved once and loosely, so that this costs no more than a few times the impact itself.
+//! Where a scene
+//! leaves the theory open, the cheaper one answers if the two differ by less than half the tolerance.
+
+use vibroimpact_sim::modal::Settings;
+
+use super::pose::chooses_modes;
+use super::stated::needed;
+use super::text::small;
+use super::uncertainty::Uncertainty;
+use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
+use crate::impact::{Impact, in_scene};
+use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure};
+
+/// As many modes as this tolerance needs are enough, and no more than that one is asked for.
+const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
+/// Tolerance of the solver.
+const SOLVER: f64 = 1e-6;
+/// So many times the modes expected to be needed, and at most so many times those stated.
+const RICHER: usize = 2;
+/// The cheaper theory answers where the difference is below this share of the tolerance: it is one part of the whole.
+const SHARE: f64 = 0.5;
+
+/// Restitutions of one impact by both theories.
+struct Theories {
+    euler_bernoulli: f64,
+    timoshenko: f64,
+    /// By Timoshenko's with other shear coefficients.
+    others: Vec<f64>,
+}
+
+impl Theories {
+    /// Of a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. `Err`
+    /// inside says why it is not known.
+    fn of(scene: &Scene, answer: Option<&Answer>, cost: &mut Cost) -> Result<Result<Theories, String>, InvalidInput> {
+        let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is no beam".to_owned())) };
+        let in_structure = |fault: InvalidInput| fault.within("structure");
+        let timoshenko = Beam { theory: Some(BeamTheory::Timoshenko), ..beam.clone() };
+        let mut beams = vec![timoshenko.clone()];
+        beams.extend(timoshenko.theory_variants().map_err(in_structure)?.into_iter().map(|(_, beam)| beam));
+        beams.truncate(if answer.is_some() { 4 } else { 2 });
+        let least = answer.map_or(0, |answer| answer.modes);
+        let mut found = Vec::new();
+        for beam in beams {
+            match restitution(&Scene { structure: beam.into(), ..scene.clone() }, least, cost)? {
+                Some(restitution) => found.push(restitution),
+                None => return Ok(Err("by one of the theories the impact does not end in a rebound".to_owned())),
+            }
+        }
+        let known = |found: &[f64]| match *found {
+            [timoshenko, euler_bernoulli, ref others @ ..] => {
+                Ok(Theories { euler_bernoulli, timoshenko, others: others.to_vec() })
+            }
+            _ => Err("there is no other theory to be compared with".to_owned()),
+        };
+        Ok(known(&found))
+    }
+
+    fn difference(&self) -> f64 {
+        (self.euler_bernoulli - self.timoshenko).abs()
+    }
+
+    /// The largest change from what a theory gives.
+    fn around(&self, theory: BeamTheory) -> f64 {
+        let base = if theory == BeamTheory::Timoshenko { self.timoshenko } else { self.euler_bernoulli };
+        self.others.iter().map(|e| (e - base).abs()).fold(self.difference(), f64::max)
+    }
+}
+
+/// The restitution with as many modes as the tolerance is expected to need, at least so many, and remainder modes.
+fn restitution(scene: &Scene, least: usize, cost: &mut Cost) -> Result<Option<f64>, InvalidInput> {
+    let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
+    // modes of another beam than the one that is kept for the next scene
+    let kept = &mut Kept::default();
+    let count = match (needed(scene, tolerance, kept, cost)?, scene.modes.count()) {
+        (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
+        (Some(needed), None) => (RICHER * needed).max(least),
+        (None, stated) => stated.unwrap_or_default(),
+    };
+    let scene = Scene { modes: Modes::Count(count), residual_compliance: Some(true), ..scene.clone() };
+    let impact = scene.impact_of(Some(count), kept)?;
+    let Impact { structure, striker, law, start, settings, .. } = &impact;
+    let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..*settings };
+    let solution = kept.solver(structure)?.solve(striker, law, start.as_ref(), &settings).map_err(in_scene)?;
+    cost.add(&solution.counts, structure.modes.len());
+    Ok(solution.restitution)
+}
+
+/// Whether the beam of a scene can be solved by both theories.
+fn has_both(scene: &Scene) -> Result<bool, InvalidInput> {
+    let Structure::Beam(beam) = &scene.structure else { return Ok(false) };
+    Ok(!beam.theory_variants().map_err(|fault| fault.within("structure"))?.is_empty())
+}
+
+impl Scene {
+    /// The scene with the cheapest theory of bending that the tolerance allows, and why, where the choice is open.
+    pub(crate) fn with_theory(&self, cost: &mut Cost) -> Result<Option<(Scene, String)>, InvalidInput> {
+        let Structure::Beam(beam) = &self.structure else { return Ok(None) };
+        let open = matches!(beam.theory, None | Some(BeamTheory::Auto));
+        let asked = self.model == Model::Auto || self.model == Model::Modal;
+        // without an approach nothing depends on the theory
+        let approaches = self.striker.speed_m_s > 0.0;
+        if !(open && asked && approaches && chooses_modes(self) && has_both(self)?) {
+            return Ok(None);
+        }
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let (theory, why) = match Theories::of(self, None, cost)? {
+            Ok(theories) if theories.difference() <= SHARE * tolerance => {
+                let difference = small(theories.difference());
+                let why =
+                    format!("by Euler-Bernoulli's theory, from which Timoshenko's differs by some {difference} here");
+                (BeamTheory::EulerBernoulli, why)
+            }
+            Ok(theories) => {
+                let difference = small(theories.difference());
+                let why =
+                    format!("by Timoshenko's theory, from which Euler-Bernoulli's differs by some {difference} here");
+                (BeamTheory::Timoshenko, why)
+            }
+            Err(why) => (BeamTheory::Timoshenko, format!("by Timoshenko's theory: {why}")),
+        };
+        let structure = Beam { theory: Some(theory), ..beam.clone() }.into();
+        Ok(Some((Scene { structure, ..self.clone() }, why)))
+    }
+
+    /// The scene with the theory of bending by which it was answered.
+    pub(crate) fn as_answered(&self, answer: Option<&Answer>) -> Scene {
+        match (&self.structure, answer.and_then(|answer| answer.theory)) {
+            (Structure::Beam(beam), Some(theory)) if matches!(beam.theory, None | Some(BeamTheory::Auto)) => {
+                let structure = Beam { theory: Some(theory), ..beam.clone() }.into();
+                Scene { structure, ..self.clone() }
+            }
+            _ => self.clone(),
+        }
+    }
+
+    /// What another theory of bending would change in an answer to this scene, as a part of its uncertainty.
+    pub(super) fn judge_theory(&self, answer: Answer, cost: &mut Cost) -> Result<Answer, InvalidInput> {
+        let (Some(theory), true) = (answer.theory, answer.restitution.is_some() && has_both(self)?) else {
+            return Ok(answer);
+        };
+        const PART: &str = "beam theory: ";
+        let mut not_known: Vec<String> =
+            answer.not_known.iter().filter(|why| !why.starts_with(PART)).cloned().collect();
+        let beam_theory = match Theories::of(self, Some(&answer), cost)? {
+            Ok(theories) => Some(theories.around(theory).min(1.0)),
+            Err(why) => {
+                not_known.push(format!("{PART}{why}"));
+                None
+            }
+        };
+        let uncertainty = Uncertainty { beam_theory, ..answer.uncertainty };
+        Ok(Answer { restitution_uncertainty: uncertainty.whole(), uncertainty, not_known, ..answer })
+    }
+}
+
+/// Why the theory of a structure is not compared with another.
+pub(super) fn why_not_judged(structure: &Structure) -> &'static str {
+    match structure {
+        Structure::Modal(_) | Structure::ModesFile(_) => {
+            "the modes are given; how well they describe the structure is not known here"
+        }
+        Structure::InfinitePlate(_) | Structure::Plate(_) => {
+            "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
+        }
+        Structure::TautString(_) => "a string has no shear, and turns without inertia",
+        Structure::Beam(beam) if beam.axial_force_n != 0.0 || beam.foundation_n_m2 != 0.0 => {
+            "with axial force or foundation only Euler-Bernoulli's theory can be solved, which leaves out shear and rotary \
+             inertia"
+        }
+        Structure::Beam(beam) if beam.theory_variants().is_ok_and(|variants| !variants.is_empty()) => {
+            "not compared with another here, which takes further impacts"
+        }
+        Structure::Beam(_) => {
+            "Euler-Bernoulli theory leaves out shear and rotary inertia; with poissons_ratio in every segment Timoshenko's \
+             tells what they change"
+        }
+        _ => {
+            "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \
+             thicknesses"
+        }
+    }
+}
+
+/// The theory by which the beam of a scene is solved.
+pub(super) fn theory_of(scene: &Scene) -> Option<BeamTheory> {
+    match &scene.structure {
+        Structure::Beam(beam) => beam.solved_by().ok(),
+        _ => None,
+    }
+}
