@@ -268,11 +268,14 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         lower = lower.with(start(&distance, &relative_starts)).with(end(&distance, &relative_ends));
         // the printed figure has both axes linear there
         let (x, ends) = (&s[near.clone()], near.clone().map(|i| 1e-5 * ends[i]).collect::<Vec<f64>>());
+        // where the curve passes a height
         let number = |height: f64| {
-            let place = x.iter().zip(&ends).find(|(_, end)| **end < height).map_or(f64::NAN, |(s, _)| *s);
+            let passes = (1..x.len()).find(|&i| ends[i - 1] >= height && ends[i] < height);
+            let place =
+                passes.map_or(f64::NAN, |i| x[i] + (height - ends[i]) / (ends[i - 1] - ends[i]) * (x[i - 1] - x[i]));
             Series::labels(&[place], &[height], [(k + 1).to_string()]).colour(colour)
         };
-        if (1..5).contains(&k) {
+        if (1..4).contains(&k) {
             linear = linear.with(number(4.5));
         }
         if (4..NUMBERED).contains(&k) {

@@ -13,6 +13,9 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     damped_and_undamped(study, case)
 }
 
+/// Acceleration of free fall (m/s²).
+const GRAVITY: f64 = 9.81;
+
 /// Fig. 3.3: 25 modes, b = 0.4.
 fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.section("One impact in detail (Fig. 3.3)");
@@ -62,8 +65,30 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "more than a couple",
         solution.sub_impacts.len() as f64,
     ));
+    // how far gravity bends the longest flight, beside the height of the picture of displacements
+    let flights = solution.sub_impacts.windows(2).map(|pair| pair[1].start_s - pair[0].end_s);
+    let longest_s = flights.fold(0.0, f64::max);
+    let bend_mm = 1e3 * GRAVITY / 8.0 * longest_s.powi(2);
+    let drawn = || course.structure_mm.iter().chain(&course.striker_mm).copied();
+    let height_mm = drawn().fold(f64::NEG_INFINITY, f64::max) - drawn().fold(f64::INFINITY, f64::min);
+    let statement = Statement::trend(
+        "bend of the longest flight by gravity, over the height of the figure, N = 25, b = 0.4",
+        "3.3.2, Fig. 3.3",
+        "gravity would merely make the straight line portions very slightly curved",
+        (0.0, 0.02),
+        "a line's width, a fiftieth of a figure's height; a tenth is more than very slight",
+        bend_mm / height_mm,
+    );
+    study.claim(statement.open((0.0, 0.1)).note(format!(
+        "The longest flight lasts {:.1} ms. Over the whole interaction gravity would change the ball's velocity, \
+         {:.2} m/s at the end, by {:.2} m/s, if the ball falls on the beam; level flight against an upright beam, of which the \
+         text speaks next, is free of that.",
+        1e3 * longest_s,
+        solution.striker_velocity_m_s,
+        GRAVITY * solution.end_s
+    )));
     // the beam upright, the ball level: gravity's share of the way
-    let travel_mm = 1e3 * 0.5 * 9.81 * solution.end_s.powi(2);
+    let travel_mm = 1e3 * 0.5 * GRAVITY * solution.end_s.powi(2);
     study.claim(Statement::loose(
         "fall of the ball by its weight in the net time (mm)",
         "3.3.2",

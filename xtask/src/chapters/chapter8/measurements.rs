@@ -69,7 +69,10 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
             "a tenth of the range from 0 to 1",
             stubby,
         )
-        .note(format!("Ranges of the rods: {}.", told.join(", "))),
+        .note(format!(
+            "Ranges of the rods: {}. Euler and Bernoulli's beam is too stiff for so stubby a bar.",
+            told.join(", ")
+        )),
     );
     Ok(())
 }
