@@ -9,6 +9,7 @@ mod fuzz;
 mod pages;
 mod soak;
 
+use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -106,6 +107,12 @@ enum Task {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Run the benchmark of impact for the codes in Rust, and write docs/impactbench.md from the results of all codes
+    Impactbench {
+        /// What benchmarks/impactbench takes: nothing, `problems`, `report`, --quick, --only PROBLEM
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
     StudyAuto {
         /// Fewer scenes through the same code
@@ -162,21 +169,34 @@ fn run(task: Task) -> Result<(), Failure> {
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }
         Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
+        Task::Impactbench { arguments } => impactbench(&arguments),
         Task::StudyAuto { quick, first, out } => say(&chapters::study_auto(&out, quick, first)?),
     }
 }
 
-/// Runs the package of that name, which this one does not depend on: its peers take minutes to compile.
-fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
+/// Runs a package that this one does not depend on, since its peers take minutes to compile.
+fn package(name: &str, arguments: impl FnOnce(&mut Command)) -> Result<(), Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
-    command.args(["run", "--release", "--quiet", "--package", "work-precision", "--"]);
-    command.args(quick.then_some("--quick"));
-    command.args(only.into_iter().flat_map(|only| ["--only", only]));
-    if let Some(out) = out {
-        command.arg("--out").arg(out);
-    }
-    if command.status()?.success() { Ok(()) } else { Err("work-precision failed".into()) }
+    command.args(["run", "--release", "--quiet", "--package", name, "--"]);
+    arguments(&mut command);
+    if command.status()?.success() { Ok(()) } else { Err(format!("{name} failed").into()) }
+}
+
+fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
+    package("work-precision", |command| {
+        command.args(quick.then_some("--quick"));
+        command.args(only.into_iter().flat_map(|only| ["--only", only]));
+        if let Some(out) = out {
+            command.arg("--out").arg(out);
+        }
+    })
+}
+
+fn impactbench(arguments: &[OsString]) -> Result<(), Failure> {
+    package("impactbench", |command| {
+        command.args(arguments);
+    })
 }
 
 /// What `reproduce-chapter` is asked for.

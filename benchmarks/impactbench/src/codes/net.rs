@@ -1,0 +1,38 @@
+//! Models without a course in time: the rigid structure, and EMOC as it stands before anything is fitted.
+
+use super::{laws, sweep};
+use crate::outcome::Outcome;
+use crate::problem::{Family, Problem};
+use emoc::{Impact, Parameters, Site};
+use work_precision::measure::Effort;
+
+/// All runs: one a model, since they have no setting.
+pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
+    let [contact] = problem.contacts.as_slice() else { return Vec::new() };
+    let striker = problem.bodies.iter().find(|body| body.name == contact.upper);
+    let lower = contact.lower.as_ref().and_then(|name| problem.bodies.iter().find(|body| body.name == *name));
+    let Some((striker, mass_kg)) = striker.and_then(|body| Some((body, body.free_mass_kg()?))) else {
+        return Vec::new();
+    };
+    let speed_m_s = -striker.at_point(&striker.rate);
+    let at_ground = matches!(problem.family, Family::Law | Family::Restitution);
+    if !(at_ground || problem.family == Family::Structure) || speed_m_s <= 0.0 {
+        return Vec::new();
+    }
+    let rigid = sweep(problem, "vibroimpact, rigid", &[0.0], effort, |_, _| {
+        if let Some(restitution) = problem.wanted_restitution() {
+            return Ok(vec![restitution * speed_m_s]);
+        }
+        let law = *laws(problem).and_then(|laws| laws.first().copied()).as_ref().ok_or("no law")?;
+        Ok(vec![speed_m_s * law.wall_restitution(mass_kg, speed_m_s).map_err(|error| error.to_string())?])
+    });
+    let emoc = lower.map(|structure| {
+        sweep(problem, "vibroimpact, EMOC", &[0.0], effort, |_, _| {
+            let text = |error: emoc::InvalidInput| error.to_string();
+            let impact = Impact::new(mass_kg, &Site::new(&structure.shape).map_err(text)?).map_err(text)?;
+            let found = Parameters::default().rebound(&impact).map_err(text)?;
+            Ok(vec![speed_m_s * found.restitution])
+        })
+    });
+    [rigid, emoc.unwrap_or_default()].concat()
+}

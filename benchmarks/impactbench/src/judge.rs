@@ -1,0 +1,181 @@
+//! Errors, failures by kind, shares solved.
+
+use crate::outcome::Outcome;
+use crate::problem::{Family, Problem, What};
+use std::collections::BTreeMap;
+
+/// Errors that problems are counted by.
+pub const LEVELS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-6];
+/// Share of the scale that counts as nothing.
+const NOTHING: f64 = 1e-9;
+
+/// What is wrong with a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Failure {
+    /// The ball leaves faster than it came.
+    EnergyGained,
+    /// The ball still moves into the ground or the structure.
+    FellThrough,
+    /// The ball does not leave, but should.
+    Stuck,
+    /// Wrong by more than a tenth in another way.
+    Wrong,
+    /// No answer in the time allowed.
+    TooSlow,
+    /// No answer for another reason.
+    NoAnswer,
+}
+
+impl Failure {
+    /// All kinds, in the order of tables.
+    pub const ALL: [Failure; 6] = [
+        Failure::EnergyGained,
+        Failure::FellThrough,
+        Failure::Stuck,
+        Failure::Wrong,
+        Failure::TooSlow,
+        Failure::NoAnswer,
+    ];
+
+    /// Its name in tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Failure::EnergyGained => "energy gained",
+            Failure::FellThrough => "fell through",
+            Failure::Stuck => "stuck",
+            Failure::Wrong => "wrong by more than 0.1",
+            Failure::TooSlow => "too slow",
+            Failure::NoAnswer => "no answer",
+        }
+    }
+}
+
+/// A run with its error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged<'a> {
+    /// The run.
+    pub outcome: &'a Outcome,
+    /// Its error, not below what the reference knows; none without an answer.
+    pub error: Option<f64>,
+    /// What is wrong with it.
+    pub failure: Option<Failure>,
+}
+
+/// Judges every run of a problem that is known, by problem.
+pub fn judge<'a>(problems: &'a [Problem], outcomes: &'a [Outcome]) -> BTreeMap<&'a str, Vec<Judged<'a>>> {
+    let mut judged: BTreeMap<&str, Vec<Judged>> = BTreeMap::new();
+    for outcome in outcomes {
+        let Some(problem) = problems.iter().find(|problem| problem.name == outcome.problem) else { continue };
+        let answer = outcome.answer().filter(|values| values.len() == problem.quantities.len());
+        let error = answer.as_ref().map(|values| problem.error(values)).filter(|error| error.is_finite());
+        let failure = match (&answer, error) {
+            (Some(values), Some(error)) => failure(problem, values, error),
+            _ if outcome.status == "too slow" => Some(Failure::TooSlow),
+            _ => Some(Failure::NoAnswer),
+        };
+        let error = error.map(|error| error.max(problem.floor()));
+        judged.entry(&problem.name).or_default().push(Judged { outcome, error, failure });
+    }
+    judged
+}
+
+/// What is wrong with an answer. How a rebound fails can be told of one ball that leaves.
+fn failure(problem: &Problem, values: &[f64], error: f64) -> Option<Failure> {
+    let of_rebound = matches!(problem.family, Family::Law | Family::Restitution | Family::Structure);
+    let wrong = (error > 0.1).then_some(Failure::Wrong);
+    let ([quantity], [value], true) = (problem.quantities.as_slice(), values, of_rebound) else { return wrong };
+    let (ratio, wanted) = (value / quantity.scale, quantity.value / quantity.scale);
+    match ratio {
+        _ if quantity.what != What::VelocityMS => wrong,
+        ratio if ratio > 1.0 + 1e-6 => Some(Failure::EnergyGained),
+        ratio if ratio < -NOTHING && wanted >= 0.0 => Some(Failure::FellThrough),
+        ratio if ratio.abs() <= NOTHING && wanted > 0.01 => Some(Failure::Stuck),
+        _ => wrong,
+    }
+}
+
+/// The names of the codes, in the order in which they come.
+pub fn codes(outcomes: &[Outcome]) -> Vec<&str> {
+    let mut codes: Vec<&str> = Vec::new();
+    for outcome in outcomes {
+        if !codes.contains(&outcome.code.as_str()) {
+            codes.push(&outcome.code);
+        }
+    }
+    codes
+}
+
+/// The least error of a code on a problem.
+pub fn least_error(judged: &[Judged], code: &str) -> Option<f64> {
+    judged.iter().filter(|run| run.outcome.code == code).filter_map(|run| run.error).min_by(f64::total_cmp)
+}
+
+/// The least time in which a code comes within an error (s).
+pub fn time_at(judged: &[Judged], code: &str, error: f64) -> Option<f64> {
+    let within = judged.iter().filter(|run| run.outcome.code == code && run.error.is_some_and(|found| found <= error));
+    within.filter_map(|run| run.outcome.time_s).min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::{Body, Contact, LawOfContact, Quantity};
+
+    fn problem() -> Problem {
+        let quantity =
+            Quantity { body: "ball".into(), what: What::VelocityMS, value: 1.0, uncertainty: 1e-9, scale: 2.0 };
+        Problem {
+            name: "p".into(),
+            family: Family::Law,
+            statement: String::new(),
+            needs: vec![],
+            bodies: vec![Body::mass("ball", 1.0, 0.0, -2.0)],
+            contacts: vec![Contact {
+                upper: "ball".into(),
+                lower: None,
+                gap_m: 0.0,
+                law: LawOfContact::LinearSpring { stiffness_n_m: 1.0 },
+            }],
+            gravity_m_s2: 0.0,
+            infinite_beam_s: None,
+            end_s: 1.0,
+            quantities: vec![quantity],
+            reference: String::new(),
+        }
+    }
+
+    #[test]
+    fn errors_and_failures() {
+        let row = |status: &str, values: &str, time_s: f64| Outcome {
+            problem: "p".into(),
+            code: "c".into(),
+            setting: 0.1,
+            time_s: Some(time_s),
+            status: status.into(),
+            values: values.into(),
+        };
+        let rows = [
+            row("ok", "1", 3.0),
+            row("ok", "1.02", 1.0),
+            row("ok", "2.1", 1.0),
+            row("ok", "-1", 1.0),
+            row("ok", "0", 1.0),
+            row("ok", "1.5", 1.0),
+            row("too slow", "", 1.0),
+            row("diverged", "", 1.0),
+            row("ok", "1 2", 1.0),
+        ];
+        let problems = [problem()];
+        let judged = judge(&problems, &rows);
+        let found: Vec<_> = judged["p"].iter().map(|run| run.failure).collect();
+        use Failure::*;
+        let wanted = [EnergyGained, FellThrough, Stuck, Wrong, TooSlow, NoAnswer, NoAnswer].map(Some);
+        assert_eq!(found, [[None, None].as_slice(), &wanted].concat());
+        // the error is no less than what the reference knows
+        assert_eq!(least_error(&judged["p"], "c"), Some(5e-10));
+        assert_eq!(time_at(&judged["p"], "c", 0.02), Some(1.0));
+        assert_eq!(time_at(&judged["p"], "c", 1e-6), Some(3.0));
+        assert_eq!((time_at(&judged["p"], "c", 1e-12), least_error(&judged["p"], "d")), (None, None));
+        assert_eq!(codes(&rows), ["c"]);
+    }
+}

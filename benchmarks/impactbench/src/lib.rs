@@ -1,0 +1,35 @@
+//! A benchmark of impact for any code.
+//!
+//! `cargo xtask impactbench` runs this package; `docs/impactbench.md` is what came out, and tells how to add a code.
+//!
+//! A problem is a file in `problems`: bodies in their modes, contacts between them, and what is asked for, with its
+//! reference. All bodies together obey
+//!
+//! ```text
+//! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = phi_k (sum of the forces at the body's point)          (1)
+//! ```
+//!
+//! with mass-normalised modes: a free mass has one, of frequency 0 and shape `m^(-1/2)`. A contact pushes its upper body up
+//! and its lower one, if it is not the ground, down, with the force of its law at the compression
+//!
+//! ```text
+//! xi = sum phi_k a_k (lower) - sum phi_k a_k (upper) - gap.                                              (2)
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`problem`] | the file of a problem |
+//! | [`library`] | the problems as they are made, with their references |
+//! | [`system`] | a problem as a system of ordinary differential equations, and as an assembly of this workspace |
+//! | [`codes`] | the codes in Rust, each with its settings |
+//! | [`outcome`] | what a code answers: a line of a table of results |
+//! | [`judge`] | errors, failures by kind, shares solved |
+//! | [`report`] | the page and its figures |
+
+pub mod codes;
+pub mod judge;
+pub mod library;
+pub mod outcome;
+pub mod problem;
+pub mod report;
+pub mod system;

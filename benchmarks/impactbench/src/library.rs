@@ -1,0 +1,374 @@
+//! The problems as they are made, with their references.
+//!
+//! A reference is exact where there is a closed form. Otherwise it is that of two methods that share no code: this
+//! workspace's assembly, which propagates modes exactly and collocates forces, and DOP853 on the equations as they stand;
+//! its uncertainty is their difference. The eight impacts of the thesis have references in quadruple precision.
+
+use crate::codes::{dop853, own_assembly};
+use crate::problem::{Body, Contact, Family, LawOfContact, Problem, Quantity, What};
+use contact_models::Law;
+use std::time::{Duration, Instant};
+use vibroimpact::Scene;
+use vibroimpact::model::Modes;
+use work_precision::{impact, infinite};
+
+/// A steel ball of 30 mm.
+const BALL_KG: f64 = 0.11027;
+/// Hertz's stiffness of it on steel.
+const K_H: f64 = 1.7945e10;
+const HERTZ: LawOfContact = LawOfContact::Hertz { stiffness_n_m1_5: K_H };
+/// Longest run of a method that makes references.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// No reference claims more.
+const ROUNDING: f64 = 4e-16;
+
+/// Every problem.
+///
+/// # Errors
+/// A problem whose reference cannot be made.
+pub fn problems() -> Result<Vec<Problem>, String> {
+    let mut problems = restitutions();
+    problems.extend(infinite_beams()?);
+    for problem in [laws(), structures()?, several(), stops()].concat() {
+        problems.push(if problem.reference.is_empty() { referenced(problem)? } else { problem });
+    }
+    Ok(problems)
+}
+
+fn quantity(body: &str, what: What, scale: f64) -> Quantity {
+    Quantity { body: body.into(), what, value: f64::NAN, uncertainty: 0.0, scale }
+}
+
+fn needs(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// Makes the reference by two methods.
+fn referenced(mut problem: Problem) -> Result<Problem, String> {
+    let named = |error: String| format!("{}: {error}", problem.name);
+    let laws: Option<Vec<Law>> = problem.contacts.iter().map(|contact| contact.law.law().ok().flatten()).collect();
+    let laws = laws.ok_or_else(|| named("no laws".into()))?;
+    let values = own_assembly(&problem, &laws, 1e-12).map_err(named)?;
+    let others = dop853(&problem, &laws, 1e-14, Instant::now() + PATIENCE).map_err(named)?;
+    for ((quantity, value), other) in problem.quantities.iter_mut().zip(values).zip(others) {
+        quantity.value = value;
+        quantity.uncertainty = (value - other).abs().max(ROUNDING * quantity.scale);
+    }
+    problem.reference = "assembly (tolerance 1e-12) and DOP853 (1e-14), which share no code; the uncertainty is their \
+                         difference"
+        .into();
+    Ok(problem)
+}
+
+/// A ball at an immovable ground.
+fn at_ground(name: &str, family: Family, statement: String, law: LawOfContact, speed_m_s: f64, end_s: f64) -> Problem {
+    Problem {
+        name: name.into(),
+        family,
+        statement,
+        needs: needs(&["one free mass", "immovable ground"]),
+        bodies: vec![Body::mass("ball", BALL_KG, 0.0, -speed_m_s)],
+        contacts: vec![Contact { upper: "ball".into(), lower: None, gap_m: 0.0, law }],
+        gravity_m_s2: 0.0,
+        infinite_beam_s: None,
+        end_s,
+        quantities: vec![quantity("ball", What::VelocityMS, speed_m_s)],
+        reference: String::new(),
+    }
+}
+
+/// Laws at the ground.
+fn laws() -> Vec<Problem> {
+    use LawOfContact as Of;
+    let omega = (1e8 / BALL_KG).sqrt();
+    let laws = [
+        ("law-hertz", HERTZ),
+        ("law-linear", Of::LinearSpring { stiffness_n_m: 1e8 }),
+        ("law-viscous", Of::Viscous { stiffness_n_m1_5: K_H, damping_s_m: 0.08 }),
+        ("law-viscous-strong", Of::Viscous { stiffness_n_m1_5: K_H, damping_s_m: 3.0 }),
+        (
+            "law-hysteretic",
+            Of::Hysteretic { stiffness_n_m1_5: K_H / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 },
+        ),
+        ("law-kelvin-voigt", Of::KelvinVoigt { stiffness_n_m: 1e8, damping_n_s_m: 0.3 * BALL_KG * omega }),
+        ("law-kelvin-voigt-strong", Of::KelvinVoigt { stiffness_n_m: 1e8, damping_n_s_m: 1.6 * BALL_KG * omega }),
+        ("law-hunt-crossley", Of::HuntCrossley { stiffness_n_m_n: 1e12, exponent: 2.2, damping_s_m: 0.3 }),
+        ("law-lankarani-nikravesh", Of::LankaraniNikravesh { stiffness_n_m1_5: K_H, restitution: 0.8 }),
+        ("law-flores", Of::Flores { stiffness_n_m1_5: K_H, restitution: 0.3 }),
+        ("law-felt", Of::Felt { stiffness_n_m_n: 1e12, exponent: 2.5, retardation_time_s: 1e-5 }),
+        (
+            "law-thornton",
+            Of::Thornton { effective_modulus_pa: 1.1e11, effective_radius_m: 0.015, yield_pressure_pa: 1.2e9 },
+        ),
+    ];
+    let statement = "A ball of 110.27 g meets an immovable ground at 1 m/s, without gravity; the law is given. How fast \
+                     does it leave?";
+    let problem = |(name, law)| {
+        let mut problem = at_ground(name, Family::Law, statement.into(), law, 1.0, 1e-3);
+        problem.needs.push("the law of the contact".into());
+        problem
+    };
+    laws.map(problem).into()
+}
+
+/// Restitutions asked for.
+fn restitutions() -> Vec<Problem> {
+    let at_one = [0.0, 0.25, 0.5, 0.75, 0.95, 1.0].map(|restitution| (restitution, 1.0));
+    let cases = at_one.into_iter().chain([1e-3, 0.1, 10.0].map(|speed| (0.5, speed)));
+    let problem = |(restitution, speed_m_s): (f64, f64)| {
+        let statement = format!(
+            "A ball of 110.27 g and 15 mm radius meets an immovable ground at {speed_m_s} m/s, without gravity, and shall \
+             leave with {restitution} of its speed; how is the code's choice. How fast does it leave?"
+        );
+        let name = format!("restitution-{restitution}-at-{speed_m_s}");
+        let law = LawOfContact::Restitution { restitution };
+        let mut problem = at_ground(&name, Family::Restitution, statement, law, speed_m_s, 1.0);
+        problem.quantities[0].value = restitution * speed_m_s;
+        problem.quantities[0].uncertainty = ROUNDING * speed_m_s;
+        problem.reference = "by definition".into();
+        problem
+    };
+    cases.map(problem).collect()
+}
+
+/// Hertz's contact with infinite beams.
+fn infinite_beams() -> Result<Vec<Problem>, String> {
+    let problem = |s: f64| {
+        let (_, ratio) = infinite::first_contact(s)?;
+        Ok(Problem {
+            name: format!("infinite-beam-{s}"),
+            family: Family::InfiniteBeam,
+            statement: format!(
+                "A ball strikes an infinite beam, S = {s}. How fast does it move away after the first contact, over the \
+                 speed of impact?"
+            ),
+            needs: needs(&["an infinite beam"]),
+            bodies: vec![],
+            contacts: vec![],
+            gravity_m_s2: 0.0,
+            infinite_beam_s: Some(s),
+            end_s: 1e3,
+            quantities: vec![Quantity {
+                body: String::new(),
+                what: What::FirstReboundRatio,
+                value: ratio,
+                uncertainty: ROUNDING,
+                scale: 1.0,
+            }],
+            reference: "one global panel in 25 digits".into(),
+        })
+    };
+    [1e-3, 1.0, 1.5, 15.0, 1e3].into_iter().map(problem).collect()
+}
+
+/// A ball that meets a structure at the speed, touching at the start.
+fn on_structure(name: &str, statement: String, body: Body, ball: (f64, f64), law: LawOfContact, end_s: f64) -> Problem {
+    let (mass_kg, speed_m_s) = ball;
+    let mut problem = at_ground(name, Family::Structure, statement, law, speed_m_s, end_s);
+    problem.needs =
+        needs(&["one free mass", "a structure in its modes, or one that is equivalent", "the law of the contact"]);
+    let touching = body.at_point(&body.amplitude);
+    problem.bodies = vec![Body::mass("ball", mass_kg, touching, -speed_m_s), body];
+    problem.contacts[0].lower = Some("structure".into());
+    problem
+}
+
+/// Balls on beams and plates.
+fn structures() -> Result<Vec<Problem>, String> {
+    let mut problems = Vec::new();
+    for of in impact::library()? {
+        let reference = impact::reference(of.name)?;
+        let modes = &of.structure.modes;
+        let zeros = vec![0.0; modes.len()];
+        let body = Body {
+            name: "structure".into(),
+            omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
+            damping_ratio: modes.iter().map(|mode| mode.damping_ratio).collect(),
+            shape: modes.iter().map(|mode| mode.shape).collect(),
+            amplitude: zeros.clone(),
+            rate: zeros,
+        };
+        let statement =
+            format!("{}, in its modes as listed. How fast does the ball leave, all contacts over?", of.about);
+        let ball = (of.striker.mass_kg, of.striker.speed_m_s);
+        let mut problem = on_structure(of.name, statement, body, ball, by_name(&of.law)?, reference.end_s());
+        problem.quantities[0].value = reference.outcome.restitution * of.striker.speed_m_s;
+        problem.quantities[0].uncertainty = reference.restitution_error.max(ROUNDING);
+        problem.reference = "quadruple precision; the uncertainty is the difference from a coarser run".into();
+        problems.push(problem);
+    }
+    for (file, name, count, end_s) in [
+        ("simply-supported-plate.json", "plate", 60, 0.01),
+        ("cantilever-plate.json", "cantilever-plate", 60, 0.01),
+        ("measured-modes.json", "measured-modes", 0, 0.01),
+        ("linear-stop.json", "soft-contact", 20, 0.05),
+    ] {
+        problems.push(of_scene(file, name, count, end_s)?);
+    }
+    Ok(problems)
+}
+
+/// A scene of the gallery with this many modes; with all it has if none.
+fn of_scene(file: &str, name: &str, count: usize, end_s: f64) -> Result<Problem, String> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes/");
+    let mut scene = Scene::read(format!("{folder}{file}").as_ref()).map_err(|error| error.to_string())?;
+    if count > 0 {
+        scene.modes = Modes::Count(count);
+        scene.residual_compliance = Some(false);
+    }
+    let found = scene.impact().map_err(|error| error.to_string())?;
+    let modes = &found.structure.modes;
+    let zeros = vec![0.0; modes.len()];
+    let body = Body {
+        name: "structure".into(),
+        omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
+        damping_ratio: modes.iter().map(|mode| mode.damping_ratio).collect(),
+        shape: modes.iter().map(|mode| mode.shape).collect(),
+        amplitude: zeros.clone(),
+        rate: zeros,
+    };
+    let statement = format!(
+        "The scene {file} of the gallery with {} modes, as listed. How fast does the ball move after {end_s} s?",
+        modes.len()
+    );
+    let ball = (found.striker.mass_kg, found.striker.speed_m_s);
+    Ok(on_structure(name, statement, body, ball, by_name(&found.law)?, end_s))
+}
+
+/// The law as a file states it.
+fn by_name(law: &Law) -> Result<LawOfContact, String> {
+    Ok(match *law {
+        Law::Hertz(law) => LawOfContact::Hertz { stiffness_n_m1_5: law.stiffness_n_m1_5 },
+        Law::LinearSpring(law) => LawOfContact::LinearSpring { stiffness_n_m: law.stiffness_n_m },
+        Law::KelvinVoigt(law) => {
+            LawOfContact::KelvinVoigt { stiffness_n_m: law.stiffness_n_m, damping_n_s_m: law.damping_n_s_m }
+        }
+        Law::Viscous(law) => {
+            LawOfContact::Viscous { stiffness_n_m1_5: law.stiffness_n_m1_5, damping_s_m: law.damping_s_m }
+        }
+        Law::Hysteretic(law) => LawOfContact::Hysteretic {
+            stiffness_n_m1_5: law.stiffness_n_m1_5,
+            theta_m: law.theta_m,
+            beta: law.beta,
+            k_bar: law.k_bar,
+            epsilon_m: law.epsilon_m,
+        },
+        _ => return Err(format!("a law without a name here: {}", law.name())),
+    })
+}
+
+/// Rows of balls, and bodies that fall.
+fn several() -> Vec<Problem> {
+    let row = |name: &str, masses_kg: &[f64], law: LawOfContact, about: &str| {
+        let names: Vec<String> = (1..=masses_kg.len()).map(|i| format!("ball-{i}")).collect();
+        let ball = |(i, mass_kg): (usize, &f64)| Body::mass(&names[i], *mass_kg, 0.0, if i == 0 { -1.0 } else { 0.0 });
+        let pair = |pair: &[String]| Contact { upper: pair[0].clone(), lower: Some(pair[1].clone()), gap_m: 0.0, law };
+        Problem {
+            name: name.into(),
+            family: Family::Several,
+            statement: format!(
+                "{about} They touch at the start, the first moves towards the others at 1 m/s. How fast does each move in \
+                 the end?"
+            ),
+            needs: needs(&["several free masses", "the law of the contact"]),
+            bodies: masses_kg.iter().enumerate().map(ball).collect(),
+            contacts: names.windows(2).map(pair).collect(),
+            gravity_m_s2: 0.0,
+            infinite_beam_s: None,
+            end_s: 1e-3,
+            quantities: names.iter().map(|name| quantity(name, What::VelocityMS, 1.0)).collect(),
+            reference: String::new(),
+        }
+    };
+    let viscous = LawOfContact::Viscous { stiffness_n_m1_5: 1e10, damping_s_m: 0.5 };
+    let hertz = LawOfContact::Hertz { stiffness_n_m1_5: 1e10 };
+    let mut fall = at_ground(
+        "bounces",
+        Family::Several,
+        "A ball of 110.27 g falls from 50 mm on an immovable ground, Hertz's contact, elastic. How high is it and how fast \
+         after 1 s, bounces later?"
+            .into(),
+        HERTZ,
+        0.0,
+        1.0,
+    );
+    fall.bodies = vec![Body::mass("ball", BALL_KG, 0.05, 0.0)];
+    fall.gravity_m_s2 = 9.81;
+    fall.needs = needs(&["one free mass", "immovable ground", "gravity", "the law of the contact"]);
+    fall.quantities = vec![quantity("ball", What::DisplacementM, 0.05), quantity("ball", What::VelocityMS, 1.0)];
+    let mut damped = fall.clone();
+    damped.name = "bounces-damped".into();
+    damped.statement = damped.statement.replace("elastic", "with viscous losses of 0.5 s/m");
+    damped.contacts[0].law = LawOfContact::Viscous { stiffness_n_m1_5: K_H, damping_s_m: 0.5 };
+    vec![
+        row("cradle-2", &[0.1, 0.1], hertz, "Two balls of 100 g, Hertz's contact, elastic."),
+        row("cradle-3", &[0.1; 3], hertz, "Three balls of 100 g, Hertz's contacts, elastic."),
+        row("cradle-5", &[0.1; 5], hertz, "Newton's cradle: five balls of 100 g, Hertz's contacts, elastic."),
+        row("cradle-5-damped", &[0.1; 5], viscous, "Five balls of 100 g, Hertz's contacts with viscous losses."),
+        row("row-unequal", &[0.3, 0.05, 0.1, 0.02], hertz, "Balls of 300, 50, 100 and 20 g, Hertz's contacts."),
+        fall,
+        damped,
+    ]
+}
+
+/// Masses on springs that meet elastic stops: straight pieces, each with a closed form.
+fn stops() -> Vec<Problem> {
+    let oscillator = |name: &str, mass_kg: f64, omega: f64, speed_m_s: f64| Body {
+        name: name.into(),
+        omega_rad_s: vec![omega],
+        damping_ratio: vec![0.0],
+        shape: vec![mass_kg.sqrt().recip()],
+        amplitude: vec![0.0],
+        rate: vec![-speed_m_s * mass_kg.sqrt()],
+    };
+    let problem = |name: &str, statement: &str, body: Body, gap_m: f64, stiffness_n_m: f64, end_s: f64, scale: f64| {
+        let law = LawOfContact::LinearSpring { stiffness_n_m };
+        let contacts = vec![Contact { upper: "mass".into(), lower: None, gap_m, law }];
+        Problem {
+            name: name.into(),
+            family: Family::Stop,
+            statement: statement.into(),
+            needs: needs(&["an oscillator", "an elastic stop"]),
+            bodies: vec![body],
+            contacts,
+            gravity_m_s2: 0.0,
+            infinite_beam_s: None,
+            end_s,
+            quantities: vec![quantity("mass", What::VelocityMS, scale)],
+            reference: String::new(),
+        }
+    };
+    // Code_Aster's SDND122 at three quarters of its tenth period, whose exact frequency is 0.64663104064 Hz
+    let energy_j: f64 = 0.00650108331626;
+    let speed = (2.0 * energy_j).sqrt();
+    let sdnd101 = problem(
+        "sdnd101",
+        "Code_Aster's SDND101: 100 kg on a spring of 1e4 N/m move at 1 m/s against a stop of 1e6 N/m that they touch. How \
+         fast do they move after 1 s and three contacts?",
+        oscillator("mass", 100.0, 10.0, 1.0),
+        0.0,
+        1e6,
+        1.0,
+        1.0,
+    );
+    let sdnd122 = problem(
+        "sdnd122",
+        "Code_Aster's SDND122: 1 kg on a spring of 10 N/m with an energy of 0.00650108331626 J meets a stop of 50 N/m at \
+         10 mm. How fast does it move after 15 s? (The test's own \"analytic\" frequency is off by 6.4e-4.)",
+        oscillator("mass", 1.0, 10f64.sqrt(), speed),
+        0.01,
+        50.0,
+        15.0,
+        speed,
+    );
+    let hard = problem(
+        "hard-stop",
+        "1 kg on a spring of 1000 N/m meets a stop of 1e8 N/m at 1 mm again and again. How fast does it move after 2 s?",
+        oscillator("mass", 1.0, 1000f64.sqrt(), 0.1),
+        1e-3,
+        1e8,
+        2.0,
+        0.1,
+    );
+    vec![sdnd101, sdnd122, hard]
+}

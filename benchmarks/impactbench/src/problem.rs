@@ -1,0 +1,270 @@
+//! The file of a problem.
+
+use contact_models::{
+    Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Thornton,
+    Viscous,
+};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A problem: what happens, what is asked for, and the answer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Problem {
+    /// Short name, that of the file.
+    pub name: String,
+    /// The family that it belongs to.
+    pub family: Family,
+    /// What happens, for people.
+    pub statement: String,
+    /// What a code must be able to do to take part.
+    pub needs: Vec<String>,
+    /// The bodies.
+    pub bodies: Vec<Body>,
+    /// The contacts.
+    pub contacts: Vec<Contact>,
+    /// Acceleration of gravity, which acts downwards on free masses (m/s^2).
+    pub gravity_m_s2: f64,
+    /// The one number of an impact on an infinite beam, which then has no bodies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub infinite_beam_s: Option<f64>,
+    /// When the quantities are read (s).
+    pub end_s: f64,
+    /// What is asked for.
+    pub quantities: Vec<Quantity>,
+    /// How the reference was made.
+    pub reference: String,
+}
+
+/// Problems of a kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Family {
+    /// A ball at an immovable ground, its law given.
+    Law,
+    /// The same, where only the restitution is asked for.
+    Restitution,
+    /// A ball on a structure in its modes.
+    Structure,
+    /// A ball on an infinite beam.
+    InfiniteBeam,
+    /// Several bodies and contacts at once.
+    Several,
+    /// Bodies that swing against elastic stops.
+    Stop,
+}
+
+/// A body, which is touched at one point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Circular frequencies of its modes (rad/s); 0 of a free mass.
+    pub omega_rad_s: Vec<f64>,
+    /// Damping ratio of each mode.
+    pub damping_ratio: Vec<f64>,
+    /// Mass-normalised shape of each mode at the point (kg^-1/2), `m^(-1/2)` of a free mass.
+    pub shape: Vec<f64>,
+    /// Amplitudes at the start (kg^1/2 m).
+    pub amplitude: Vec<f64>,
+    /// Their rates (kg^1/2 m/s).
+    pub rate: Vec<f64>,
+}
+
+/// A contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Name of the body that is pushed up.
+    pub upper: String,
+    /// Name of the body that is pushed down; the ground when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower: Option<String>,
+    /// Distance at zero displacement (m).
+    pub gap_m: f64,
+    /// The law.
+    pub law: LawOfContact,
+}
+
+/// The law of a contact, by name and parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[expect(missing_docs, reason = "the fields are those of the laws in contact-models")]
+pub enum LawOfContact {
+    Hertz {
+        stiffness_n_m1_5: f64,
+    },
+    LinearSpring {
+        stiffness_n_m: f64,
+    },
+    Viscous {
+        stiffness_n_m1_5: f64,
+        damping_s_m: f64,
+    },
+    Hysteretic {
+        stiffness_n_m1_5: f64,
+        theta_m: f64,
+        beta: f64,
+        k_bar: f64,
+        epsilon_m: f64,
+    },
+    KelvinVoigt {
+        stiffness_n_m: f64,
+        damping_n_s_m: f64,
+    },
+    HuntCrossley {
+        stiffness_n_m_n: f64,
+        exponent: f64,
+        damping_s_m: f64,
+    },
+    LankaraniNikravesh {
+        stiffness_n_m1_5: f64,
+        restitution: f64,
+    },
+    Flores {
+        stiffness_n_m1_5: f64,
+        restitution: f64,
+    },
+    Felt {
+        stiffness_n_m_n: f64,
+        exponent: f64,
+        retardation_time_s: f64,
+    },
+    Thornton {
+        effective_modulus_pa: f64,
+        effective_radius_m: f64,
+        yield_pressure_pa: f64,
+    },
+    /// No law is given, but the restitution that is wanted.
+    Restitution {
+        restitution: f64,
+    },
+}
+
+/// A number that is asked for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quantity {
+    /// Name of the body; empty for an infinite beam.
+    pub body: String,
+    /// What of its point.
+    pub what: What,
+    /// The answer.
+    pub value: f64,
+    /// How far the answer may be off.
+    pub uncertainty: f64,
+    /// What an error is divided by.
+    pub scale: f64,
+}
+
+/// What of a body's point is asked for at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum What {
+    /// Velocity, positive upwards (m/s).
+    VelocityMS,
+    /// Displacement (m).
+    DisplacementM,
+    /// Speed after the first contact over that before, on an infinite beam.
+    FirstReboundRatio,
+}
+
+impl Body {
+    /// A free mass.
+    pub fn mass(name: &str, mass_kg: f64, displacement_m: f64, velocity_m_s: f64) -> Body {
+        let root = mass_kg.sqrt();
+        Body {
+            name: name.into(),
+            omega_rad_s: vec![0.0],
+            damping_ratio: vec![0.0],
+            shape: vec![1.0 / root],
+            amplitude: vec![root * displacement_m],
+            rate: vec![root * velocity_m_s],
+        }
+    }
+
+    /// The mass of a free mass (kg).
+    pub fn free_mass_kg(&self) -> Option<f64> {
+        match (self.omega_rad_s.as_slice(), self.shape.as_slice()) {
+            ([0.0], [shape]) => Some(shape.powi(-2)),
+            _ => None,
+        }
+    }
+
+    /// Displacement of the point, or its velocity, from amplitudes or rates.
+    pub fn at_point(&self, modal: &[f64]) -> f64 {
+        self.shape.iter().zip(modal).map(|(shape, value)| shape * value).sum()
+    }
+}
+
+impl LawOfContact {
+    /// The law itself; none where only a restitution is asked for.
+    ///
+    /// # Errors
+    /// A parameter out of range.
+    pub fn law(&self) -> Result<Option<Law>, contact_models::InvalidInput> {
+        use LawOfContact as Of;
+        Ok(Some(match *self {
+            Of::Hertz { stiffness_n_m1_5 } => Hertz::new(stiffness_n_m1_5)?.into(),
+            Of::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m)?.into(),
+            Of::Viscous { stiffness_n_m1_5, damping_s_m } => Viscous::new(stiffness_n_m1_5, damping_s_m)?.into(),
+            Of::Hysteretic { stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m } => {
+                Hysteretic::new(stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m)?.into()
+            }
+            Of::KelvinVoigt { stiffness_n_m, damping_n_s_m } => KelvinVoigt::new(stiffness_n_m, damping_n_s_m)?.into(),
+            Of::HuntCrossley { stiffness_n_m_n, exponent, damping_s_m } => {
+                HuntCrossley::new(stiffness_n_m_n, exponent, damping_s_m)?.into()
+            }
+            Of::LankaraniNikravesh { stiffness_n_m1_5, restitution } => {
+                LankaraniNikravesh::new(stiffness_n_m1_5, restitution)?.into()
+            }
+            Of::Flores { stiffness_n_m1_5, restitution } => Flores::new(stiffness_n_m1_5, restitution)?.into(),
+            Of::Felt { stiffness_n_m_n, exponent, retardation_time_s } => {
+                Felt::new(stiffness_n_m_n, exponent, retardation_time_s)?.into()
+            }
+            Of::Thornton { effective_modulus_pa, effective_radius_m, yield_pressure_pa } => {
+                Thornton::new(effective_modulus_pa, effective_radius_m, yield_pressure_pa)?.into()
+            }
+            Of::Restitution { .. } => return Ok(None),
+        }))
+    }
+}
+
+impl Problem {
+    /// Every problem of a folder, in order of families and names.
+    ///
+    /// # Errors
+    /// A file that cannot be read, by its name.
+    pub fn read_all(folder: &Path) -> Result<Vec<Problem>, String> {
+        let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let mut problems = Vec::new();
+        for entry in entries {
+            let path = entry.map_err(|error| error.to_string())?.path();
+            let told = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+            let text = std::fs::read_to_string(&path).map_err(|error| told(&error))?;
+            problems.push(serde_json::from_str::<Problem>(&text).map_err(|error| told(&error))?);
+        }
+        problems.sort_by(|a, b| (a.family, &a.name).cmp(&(b.family, &b.name)));
+        Ok(problems)
+    }
+
+    /// How far the answer itself may be off, as an error counts.
+    pub fn floor(&self) -> f64 {
+        self.quantities.iter().map(|quantity| quantity.uncertainty / quantity.scale).fold(1e-16, f64::max)
+    }
+
+    /// The error of an answer: the greatest over the quantities.
+    pub fn error(&self, values: &[f64]) -> f64 {
+        let of = |(quantity, value): (&Quantity, &f64)| (value - quantity.value).abs() / quantity.scale;
+        self.quantities.iter().zip(values).map(of).fold(0.0, f64::max)
+    }
+
+    /// The restitution wanted of the only contact, where no law is given.
+    pub fn wanted_restitution(&self) -> Option<f64> {
+        match self.contacts.as_slice() {
+            [Contact { law: LawOfContact::Restitution { restitution }, .. }] => Some(*restitution),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! The page and its figures.
+
+use crate::judge::{Failure, Judged, LEVELS, codes, judge, least_error, time_at};
+use crate::outcome::Outcome;
+use crate::problem::{Family, Problem};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
+
+/// Text that stands above the numbers, and below.
+const ABOVE: &str = include_str!("above.md");
+const BELOW: &str = include_str!("below.md");
+const FAMILIES: [(Family, &str, &str); 6] = [
+    (Family::Law, "A law at the ground", "law"),
+    (Family::Restitution, "A restitution asked for", "restitution"),
+    (Family::Structure, "Beams and plates", "structure"),
+    (Family::InfiniteBeam, "Infinite beams", "infinite-beam"),
+    (Family::Several, "Several bodies, many contacts", "several"),
+    (Family::Stop, "Elastic stops", "stop"),
+];
+const COLOURS: [Colour; 7] =
+    [Colour::Blue, Colour::Vermilion, Colour::Green, Colour::Orange, Colour::Purple, Colour::Sky, Colour::Grey];
+const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Cross];
+
+type ByProblem<'a> = BTreeMap<&'a str, Vec<Judged<'a>>>;
+
+/// A page and the figures that it links to.
+#[derive(Debug)]
+pub struct Page {
+    /// The text, in Markdown.
+    pub text: String,
+    /// Paths relative to the page, and SVG documents.
+    pub figures: Vec<(String, String)>,
+}
+
+/// The page on these results; `about` tells on what each was made.
+///
+/// # Errors
+/// If a figure cannot be drawn.
+pub fn page(problems: &[Problem], outcomes: &[Outcome], about: &str) -> Result<Page, String> {
+    let judged = judge(problems, outcomes);
+    let codes = codes(outcomes);
+    let mut text = format!("# impactbench\n\n{}\n\n{}\n", ABOVE.trim(), about.trim());
+    text += &shares(problems, &judged, &codes);
+    text += &failures(problems, &judged, &codes);
+    let mut figures = Vec::new();
+    for (family, title, name) in FAMILIES {
+        let of: Vec<&Problem> = problems.iter().filter(|problem| problem.family == family).collect();
+        if of.is_empty() {
+            continue;
+        }
+        let path = format!("figures/impactbench-{name}.svg");
+        let _ = write!(text, "\n## {title}\n\n![Error against time: {title}]({path})\n");
+        text += &table("Least error", &of, &judged, &codes, |runs, code| {
+            least_error(runs, code).map(|error| format!("{error:.0e}"))
+        });
+        text += &table("Least time to an error of 1e-6", &of, &judged, &codes, |runs, code| {
+            time_at(runs, code, 1e-6).map(duration)
+        });
+        let figure = figure(title, &of, &judged, &codes);
+        figures.push((path, figure.svg().map_err(|error| error.to_string())?));
+    }
+    text += &statements(problems);
+    let _ = write!(text, "\n{}\n", BELOW.trim());
+    Ok(Page { text, figures })
+}
+
+/// On what the results of each code were made: the texts beside the tables.
+///
+/// # Errors
+/// A file that cannot be read, by its name.
+pub fn machines(folder: &Path) -> Result<String, String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "txt"));
+    paths.sort();
+    let mut text = String::new();
+    for path in paths {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let about = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        text += &format!("- `{name}`: {}\n", about.trim());
+    }
+    Ok(text)
+}
+
+/// How many problems each code solves.
+fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
+    let count = problems.len();
+    let mut text = format!("\n## Solved\n\nOf {count} problems, at the best setting:\n\n| code | takes part in |");
+    for level in LEVELS {
+        let _ = write!(text, " within {level:.0e} |");
+    }
+    text += "\n| --- | --- |";
+    text += &" --- |".repeat(LEVELS.len());
+    for code in codes {
+        let errors: Vec<Option<f64>> = judged
+            .values()
+            .filter(|runs| runs.iter().any(|run| run.outcome.code == *code))
+            .map(|runs| least_error(runs, code))
+            .collect();
+        let _ = write!(text, "\n| {code} | {} |", errors.len());
+        for level in LEVELS {
+            let _ = write!(text, " {} |", errors.iter().flatten().filter(|error| **error <= level).count());
+        }
+    }
+    text + "\n"
+}
+
+/// How many runs of each code fail, by kind.
+fn failures(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
+    let known = |name: &str| problems.iter().any(|problem| problem.name == name);
+    let mut text = "\n## Failures\n\nRuns at all settings, the coarse ones included:\n\n| code | runs |".to_owned();
+    for kind in Failure::ALL {
+        let _ = write!(text, " {} |", kind.as_str());
+    }
+    text += "\n| --- | --- |";
+    text += &" --- |".repeat(Failure::ALL.len());
+    for code in codes {
+        let runs = judged.iter().filter(|(name, _)| known(name)).flat_map(|(_, runs)| runs);
+        let runs: Vec<&Judged> = runs.filter(|run| run.outcome.code == *code).collect();
+        let _ = write!(text, "\n| {code} | {} |", runs.len());
+        for kind in Failure::ALL {
+            let _ = write!(text, " {} |", runs.iter().filter(|run| run.failure == Some(kind)).count());
+        }
+    }
+    text + "\n"
+}
+
+/// A cell for each problem and each code that takes part in the family; a dash for what a code cannot do or does not reach.
+fn table(
+    title: &str,
+    problems: &[&Problem],
+    judged: &ByProblem,
+    codes: &[&str],
+    cell: impl Fn(&[Judged], &str) -> Option<String>,
+) -> String {
+    let runs = |problem: &Problem| judged.get(problem.name.as_str()).map_or(&[][..], Vec::as_slice);
+    let takes_part =
+        |code: &&&str| problems.iter().any(|problem| runs(problem).iter().any(|run| run.outcome.code == ***code));
+    let codes: Vec<&&str> = codes.iter().filter(takes_part).collect();
+    let mut text = format!("\n{title}:\n\n| problem |");
+    for code in &codes {
+        let _ = write!(text, " {code} |");
+    }
+    text += "\n| --- |";
+    text += &" --- |".repeat(codes.len());
+    for problem in problems {
+        let _ = write!(text, "\n| {} |", problem.name);
+        for code in &codes {
+            let _ = write!(text, " {} |", cell(runs(problem), code).unwrap_or_else(|| "-".into()));
+        }
+    }
+    text + "\n"
+}
+
+/// Error against time, a panel a problem, two in a row.
+fn figure(title: &str, problems: &[&Problem], judged: &ByProblem, codes: &[&str]) -> Figure {
+    let panel = |problem: &&Problem| {
+        let time = Axis::new(format!("{}: time", problem.name)).unit("s").log();
+        let mut panel = Panel::new(time, Axis::new("error").log()).height(230.0);
+        let runs = judged.get(problem.name.as_str()).map_or(&[][..], Vec::as_slice);
+        for (i, code) in codes.iter().enumerate() {
+            let points = runs.iter().filter(|run| run.outcome.code == *code);
+            let found: Vec<(f64, f64)> = points
+                .filter_map(|run| Some((run.outcome.time_s?, run.error?)))
+                .filter(|(time, _)| *time > 0.0)
+                .collect();
+            if found.is_empty() {
+                continue;
+            }
+            let (times, errors): (Vec<f64>, Vec<f64>) = found.into_iter().unzip();
+            let series = Series::line_points(&times, &errors, MARKERS[i / COLOURS.len() % MARKERS.len()]);
+            panel = panel.with(series.label(*code).colour(COLOURS[i % COLOURS.len()]));
+        }
+        panel
+    };
+    let panels: Vec<Panel> = problems.iter().map(panel).collect();
+    let mut figure = Figure::new(title).width(980.0);
+    let mut panels = panels.into_iter();
+    while let Some(first) = panels.next() {
+        figure = match panels.next() {
+            Some(second) => figure.row([first, second]),
+            None => figure.row([first]),
+        };
+    }
+    figure
+}
+
+/// What each problem says, and how it is known.
+fn statements(problems: &[Problem]) -> String {
+    let mut text = "\n## The problems\n\n| problem | what happens | answer | its uncertainty | how it is known |\n\
+                    | --- | --- | --- | --- | --- |\n"
+        .to_owned();
+    for problem in problems {
+        let values: Vec<String> = problem.quantities.iter().map(|quantity| format!("{:.9}", quantity.value)).collect();
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.0e} | {} |",
+            problem.name,
+            problem.statement,
+            values.join(", "),
+            problem.floor(),
+            problem.reference
+        );
+    }
+    text
+}
+
+/// A time in a unit that suits it.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-6 => format!("{:.0} ns", s * 1e9),
+        s if s < 1e-3 => format!("{:.3} us", s * 1e6),
+        s if s < 1.0 => format!("{:.2} ms", s * 1e3),
+        s => format!("{s:.2} s"),
+    }
+}
