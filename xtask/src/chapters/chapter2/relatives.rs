@@ -222,12 +222,14 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
         &lines,
     );
     let power = |k: usize| (times[1][k] / times[0][k]).ln() / (distances[1] / distances[0]).ln();
-    study.claim(Statement::trend(
+    study.claim(Statement::identity(
         "power of the distance from the critical S with which the second contact's time goes",
-        "2.3",
-        "as S → 1.56⁺, the time interval between subsequent impacts increases without bound",
-        FALLS,
-        "any negative power; t ≫ √t gives −2",
+        [
+            "2.3",
+            "as S → 1.56⁺, the time interval between subsequent impacts increases without bound",
+            "the rebound velocity vanishes in proportion to the distance, and v_f t = c √t gives −2",
+        ],
+        (-2.05, -1.95),
         power(0),
     ));
     study.claim(Statement::trend(

@@ -8,7 +8,7 @@ use crate::chapters::study::Study;
 
 /// From so many modes on the text speaks of convergence (3.3.5 and 3.5).
 pub(super) const MANY: usize = 25;
-/// A scatter of at most this share of another is a significant reduction: the text calls the 0.41 of Fig. 3.11 one.
+/// A scatter of at most this share of another is a significant reduction.
 const REDUCED: f64 = 0.5;
 /// A scatter of at least this share is none.
 const NOT_REDUCED: f64 = 0.7;
@@ -63,8 +63,7 @@ pub(super) fn reduction(study: &mut Study, quantity: String, source: &str, words
 }
 
 fn reduced(quantity: String, source: &str, words: &str, (ratio, error): (f64, f64)) -> Statement {
-    let reason =
-        "half or less is significant (the text calls 0.41 so), 0.7 and more is not; error of a ratio of scatters";
+    let reason = "half or less is significant, 0.7 and more is not; error of a ratio of scatters";
     let statement = Statement::trend(quantity, source, words, (0.0, REDUCED), reason, ratio);
     statement.open((0.0, NOT_REDUCED)).uncertain(error)
 }

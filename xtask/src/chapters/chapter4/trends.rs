@@ -44,7 +44,7 @@ const FALLS: Limits = (statement::FALLS, "any amount");
 const CLEARLY: Limits = ((0.1, f64::INFINITY), "a tenth of the range from 0 to 1");
 const VISIBLY: Limits = ((0.05, f64::INFINITY), "a twentieth of the range from 0 to 1");
 const MORE: Limits = ((0.5, f64::INFINITY), "one more in every other impact");
-const TWICE: Limits = ((2.0, f64::INFINITY), "twice, as the text calls a reduction to 0.41 significant in 3.3.5");
+const TWICE: Limits = ((2.0, f64::INFINITY), "twice, as half or less counts as a significant reduction in chapter 3");
 const ONE: Limits = ((1.0, 1.0), "as stated");
 
 /// All trends that the thesis names for a beam of this kind; always the same ones, in the same order.

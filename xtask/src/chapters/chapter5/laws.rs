@@ -209,12 +209,14 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
     ));
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (low_rebound, multiple) = (todorov.by_beam.concat(), impulse.by_beam.concat());
-    study.claim(Statement::trend(
+    study.claim(Statement::identity(
         "mean restitution of least energy under the fundamental constraints alone",
-        "9",
-        "implemented directly, the impact will turn out to have very poor rebound",
-        (f64::NEG_INFINITY, 0.1),
-        "a tenth of the range from 0 to 1",
+        [
+            "9",
+            "implemented directly, the impact will turn out to have very poor rebound",
+            "−Z/(1 + Z) is never above 0",
+        ],
+        (f64::NEG_INFINITY, 0.0),
         mean(&low_rebound),
     ));
     study.claim(Statement::trend(
