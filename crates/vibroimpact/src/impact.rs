@@ -154,6 +154,7 @@ impl Scene {
 
     /// The impact with the first `count` modes, or all that are listed.
     pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
+        self.require_yield_strength()?;
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {

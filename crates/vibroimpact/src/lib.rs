@@ -30,6 +30,7 @@
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
+//! | [`trust`] | how far the theories behind a result can be trusted |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
@@ -63,6 +64,7 @@ pub mod simulate;
 pub mod summary;
 pub mod sweep;
 pub mod text;
+pub mod trust;
 
 pub use beam_modes;
 pub use contact_models;

@@ -9,6 +9,7 @@ use crate::infinite;
 use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
 use crate::summary::{Contact, Cost, Energy, RodMotion, Summary, word};
+use crate::trust::Check;
 
 /// What `simulate --json` prints and `result.json` holds. The keys are always the same; what a model does not resolve is
 /// null. Every name carries its unit.
@@ -64,6 +65,8 @@ pub struct ResultFile {
     pub counts: Option<Cost>,
     /// Which model, why, how near it came to the tolerance, and the whole cost.
     pub choice: Option<Answer>,
+    /// How far the theories behind the result can be trusted, [`Scene::trust`]; empty where nothing can be told.
+    pub trust: Vec<Check>,
     /// The solution for an infinite structure, as `infinite-beam --json` prints it; null for everything else.
     pub infinite: Option<infinite::Summary>,
 }
@@ -130,6 +133,7 @@ impl ResultFile {
             energy: Some(energy),
             counts: Some(counts),
             choice,
+            trust: Vec::new(),
             infinite: None,
         }
     }
@@ -159,6 +163,7 @@ impl ResultFile {
             energy: None,
             counts: None,
             choice: Some(answer.clone()),
+            trust: Vec::new(),
             infinite: None,
         }
     }

@@ -77,7 +77,7 @@ impl Scene {
     }
 
     /// The contact with a structure that does not move at all.
-    fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
+    pub(crate) fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
         let impact = self.impact_of(Some(0), &mut Kept::default())?;
         // a tolerance that counts modes left out may be looser than any of the solver's
         Ok(Impact {
@@ -105,14 +105,16 @@ impl Simulation {
     /// What `simulate --json` prints; `scene` is the one that was solved.
     ///
     /// # Errors
-    /// None that an impact could cause.
+    /// As [`Scene::simulate`], for a simulation of another scene.
     pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
         let scene = &self.scene(scene);
-        export::json(&match self {
+        let trust = scene.trust(self)?;
+        let result = match self {
             Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
             Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
             Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
-        })
+        };
+        export::json(&ResultFile { trust, ..result })
     }
 
     /// The scene as it was solved: with the theory of bending that answered, where `scene` leaves it open.

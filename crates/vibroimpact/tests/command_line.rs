@@ -164,10 +164,12 @@ fn modes_lists_frequencies_and_shapes_that_a_modal_structure_takes() {
     let result = |name: &str| {
         let mut result: Value =
             serde_json::from_str(&stdout(&run(folder.path(), &["simulate", name, "--json"]))).unwrap();
-        // all but the words of the reason, the scene, and what is known of the modes left out: nothing, of a list
+        // all but the words of the reason, the scene, and what is known of the modes left out and of the thickness:
+        // nothing, of a list
         let fields = result.as_object_mut().unwrap();
         let choice = fields.remove("choice").unwrap();
         fields.remove("scene");
+        fields.remove("trust");
         fields.remove("restitution_uncertainty").unwrap();
         let uncertainty = fields.remove("uncertainty").unwrap();
         (result, choice["restitution"].clone(), uncertainty["solver"].clone())

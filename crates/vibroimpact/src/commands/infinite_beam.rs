@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 use vibroimpact::export::{self, Failure};
 use vibroimpact::infinite::{Summary, TurningPoints, files, picture, text, turning_points_text};
 use vibroimpact::report;
+use vibroimpact::trust::{Check, trust_text};
 use vibroimpact::vibroimpact_sim::infinite::{Groups, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
@@ -67,7 +68,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             products.require_room()?;
             let (groups, solution) = scene.solve_infinite()?;
             let json = export::json(&Summary::new(&solution, Some(&groups)))?;
-            of_scene(&scene, (&groups, &solution), None, json, &products)
+            of_scene(&scene, (&groups, &solution), &[], None, json, &products)
         }
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
@@ -75,7 +76,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;
-            result(&headline, &solution, &Posed { scene: None, groups: None, until: None }, json, &products)
+            result(&headline, &solution, &Posed { scene: None, groups: None, trust: &[], until: None }, json, &products)
         }
     }
 }
@@ -85,12 +86,14 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
 pub fn of_scene(
     scene: &Scene,
     (groups, solution): (&Groups, &Solution),
+    trust: &[Check],
     until_s: Option<f64>,
     json: String,
     products: &Products,
 ) -> Result<String, Failure> {
     let headline = vibroimpact::text::infinite_headline(scene, &scene.infinite_impact()?);
-    let posed = Posed { scene: Some(scene), groups: Some(groups), until: until_s.map(|until| until / groups.time_s) };
+    let until = until_s.map(|until| until / groups.time_s);
+    let posed = Posed { scene: Some(scene), groups: Some(groups), trust, until };
     result(&headline, solution, &posed, json, products)
 }
 
@@ -98,6 +101,8 @@ pub fn of_scene(
 struct Posed<'a> {
     scene: Option<&'a Scene>,
     groups: Option<&'a Groups>,
+    /// How far its theory can be trusted.
+    trust: &'a [Check],
     /// How far tables and pictures go (units of `T`), if it is stated.
     until: Option<f64>,
 }
@@ -109,9 +114,10 @@ fn result(
     json: String,
     products: &Products,
 ) -> Result<String, Failure> {
-    let &Posed { scene, groups, until } = posed;
+    let &Posed { scene, groups, trust, until } = posed;
     let summary = Summary::new(solution, groups);
-    let printed = if products.json { json.clone() } else { format!("{headline}\n\n{}", text(&summary)) };
+    let printed =
+        if products.json { json.clone() } else { format!("{headline}\n\n{}{}", text(&summary), trust_text(trust)) };
     let figure = || picture(headline, solution, groups, until);
     let told = products.write(
         figure,

@@ -7,7 +7,8 @@ use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
 use vibroimpact::export::{Failure, Files};
 use vibroimpact::model::{self, Answer};
 use vibroimpact::simulate::{Resolved, Simulation};
-use vibroimpact::{InvalidInput, Scene, pictures, report, text};
+use vibroimpact::trust::Check;
+use vibroimpact::{InvalidInput, Scene, pictures, report, text, trust};
 
 use super::bodies;
 use super::headline;
@@ -66,50 +67,63 @@ pub fn run(Arguments { scene, intervals, until, products }: Arguments) -> Result
     };
     let found = watched("simulate", || scene.simulate())?;
     let scene = found.scene(&scene);
+    let trust = scene.trust(&found)?;
     match &found {
-        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, resolved, until, &products),
+        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, until, &products),
         Simulation::Infinite { groups, solution } => {
-            infinite_beam::of_scene(&scene, (groups, solution), until, found.json(&scene)?, &products)
+            infinite_beam::of_scene(&scene, (groups, solution), &trust, until, found.json(&scene)?, &products)
         }
-        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, answer, &products),
+        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, &trust, answer, &products),
     }
 }
 
 fn in_modes(
     scene: &Scene,
     json: String,
+    trust: &[Check],
     resolved: &Resolved,
     until: Option<f64>,
     products: &Products,
 ) -> Result<String, Failure> {
     let Resolved { impact, summary, .. } = resolved;
     let headline = text::headline(scene, &impact.striker);
-    let printed = if products.json { json.clone() } else { format!("{headline}\n\n{}", text::result(summary)) };
+    let printed = if products.json {
+        json.clone()
+    } else {
+        format!("{headline}\n\n{}{}", text::result(summary), trust::trust_text(trust))
+    };
     let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
     let modelled = report::modelled(scene, impact, reason);
     let until_s = resolved.until_s(until);
     let figure = || pictures::impact(&headline, resolved, until_s);
     let told = products.write(
         figure,
-        |figure| report::of_impact(&headline, scene, &modelled, resolved, figure),
+        |figure| report::of_impact(&headline, scene, &modelled, trust, resolved, figure),
         || Files::new(json, resolved, until_s, &figure()),
     )?;
     Ok(printed + &told)
 }
 
 /// A model that has no course in time.
-fn without_course(scene: &Scene, json: String, answer: &Answer, products: &Products) -> Result<String, Failure> {
+fn without_course(
+    scene: &Scene,
+    json: String,
+    trust: &[Check],
+    answer: &Answer,
+    products: &Products,
+) -> Result<String, Failure> {
     let headline = headline(scene)?;
     let printed = if products.json {
         json.clone()
     } else {
+        let trust = trust::trust_text(trust);
         let hint = "\n  This model gives the net result alone; \"model\": \"modal\" resolves the course in time.\n";
-        format!("{headline}\n\n{}{hint}", model::net_text(answer))
+        format!("{headline}\n\n{}{trust}{hint}", model::net_text(answer))
     };
     let figure = || pictures::of_answer(&headline, answer);
     let told = products.write(
         figure,
-        |figure| report::of_net_impact(&headline, scene, answer, figure),
+        |figure| report::of_net_impact(&headline, scene, trust, answer, figure),
         || Files::of_net(json, &figure()),
     )?;
     Ok(printed + &told)

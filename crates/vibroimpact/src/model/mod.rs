@@ -42,6 +42,7 @@ pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;
 pub use plan::{Estimate, Plan};
 pub(crate) use pose::chooses_modes;
+pub(crate) use text::small;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
 pub use uncertainty::Uncertainty;
 

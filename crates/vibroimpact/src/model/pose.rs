@@ -111,6 +111,7 @@ pub(super) enum Source<'a> {
 impl<'a> Pose<'a> {
     /// Poses a scene that is not infinite.
     pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
+        scene.require_yield_strength()?;
         let striker = Striker {
             mass_kg: scene.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
             speed_m_s: scene.striker.speed_m_s,

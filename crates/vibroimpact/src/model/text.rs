@@ -6,7 +6,7 @@ use super::{Answer, Comparison, Plan};
 use crate::text::{filled, quantity, restitution, stopped};
 
 /// A number in passing: two significant digits.
-pub(super) fn small(value: f64) -> String {
+pub(crate) fn small(value: f64) -> String {
     crate::report::significant(value, 2)
 }
 

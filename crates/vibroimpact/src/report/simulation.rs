@@ -11,6 +11,7 @@ use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
 use crate::text::{quantity, restitution, stopped};
+use crate::trust::Check;
 
 /// Under the picture of an impact.
 const PICTURE_CAPTION: &str =
@@ -27,6 +28,7 @@ pub fn of_impact(
     headline: &str,
     scene: &Scene,
     modelled: &[String],
+    trust: &[Check],
     resolved: &Resolved,
     figure: &Figure,
 ) -> io::Result<Report> {
@@ -62,8 +64,22 @@ pub fn of_impact(
         "The last row is what the others leave of the energy before the impact: a measure of the computation's \
          accuracy.",
     );
+    trusted(&mut report, trust);
     ended(&mut report, Some(scene), "vibroimpact simulate scene.json");
     Ok(report)
+}
+
+/// What the theories behind a result can bear.
+fn trusted(report: &mut Report, trust: &[Check]) {
+    if trust.is_empty() {
+        return;
+    }
+    report.heading("How far to trust it");
+    let rows: Vec<Vec<String>> = trust
+        .iter()
+        .map(|check| vec![check.check.replace('_', " "), check.verdict.as_str().to_owned(), check.says.clone()])
+        .collect();
+    report.table(&["check", "range of the theory", "what shows it"], &rows);
 }
 
 /// The report on an impact on an infinite beam or plate; without a scene it was posed by `S` alone.
@@ -133,7 +149,13 @@ pub fn of_infinite_impact(
 ///
 /// # Errors
 /// Those of the figure.
-pub fn of_net_impact(headline: &str, scene: &Scene, answer: &Answer, figure: &Figure) -> io::Result<Report> {
+pub fn of_net_impact(
+    headline: &str,
+    scene: &Scene,
+    trust: &[Check],
+    answer: &Answer,
+    figure: &Figure,
+) -> io::Result<Report> {
     let mut report = begun(headline, Some(scene));
     let mut rows = vec![row("outcome", answer.outcome.to_owned())];
     if let Some(value) = answer.restitution {
@@ -149,6 +171,7 @@ pub fn of_net_impact(headline: &str, scene: &Scene, answer: &Answer, figure: &Fi
     ]);
     report.heading("The impact");
     report.figure("impact", figure, "The restitution, with the range that its uncertainty allows.")?;
+    trusted(&mut report, trust);
     ended(&mut report, Some(scene), "vibroimpact simulate scene.json");
     Ok(report)
 }

@@ -175,6 +175,28 @@ impl Contact {
         }
     }
 
+    /// What the bodies are made of, where a law takes its stiffness from that.
+    pub(crate) fn materials(&self) -> Option<&Materials> {
+        match self {
+            Contact::Hertz(stiffness)
+            | Contact::Viscous { stiffness, .. }
+            | Contact::Hysteretic { stiffness, .. }
+            | Contact::HuntCrossley { stiffness, .. }
+            | Contact::LankaraniNikravesh { stiffness, .. }
+            | Contact::Flores { stiffness, .. } => Some(&stiffness.materials),
+            Contact::Elastoplastic { materials, .. } => Some(materials),
+            Contact::LinearSpring { .. }
+            | Contact::Power { .. }
+            | Contact::Felt { .. }
+            | Contact::KelvinVoigt { .. } => None,
+        }
+    }
+
+    /// Whether the contact is loaded as Hertz's is.
+    pub(crate) fn is_hertzian(&self) -> bool {
+        self.materials().is_some() && !matches!(self, Contact::HuntCrossley { exponent: Some(_), .. })
+    }
+
     /// The law with its parameters, for this striker.
     pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
         let speed = striker.speed_m_s;

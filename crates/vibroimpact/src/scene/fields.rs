@@ -32,6 +32,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("modes", "\"auto\", or a whole number from 0 to 10000"),
     ("residual_compliance", "true or false"),
     ("tolerance", "a number from 1e-13 to 0.1; from 1e-10 to 0.5 where the program chooses the modes"),
+    ("yield_strength_pa", POSITIVE),
     ("ends", "a list of two, the left and the right end, each one of clamped, pinned, free, guided"),
     ("ends[]", "one of clamped, pinned, free, guided"),
     ("segments", "a list of segments, each an object with length_m and a section"),

@@ -73,6 +73,7 @@ impl Scene {
             Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure has no such thing")),
             None => Ok(()),
         };
+        self.require_yield_strength()?;
         left_out("location_m", self.location_m.map(|place| place.to_string()))?;
         left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
         left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
@@ -119,7 +120,7 @@ impl Scene {
 
 impl InfiniteBeam {
     /// Rigidity and mass of any piece of it.
-    fn section(&self) -> Result<beam_modes::Segment, InvalidInput> {
+    pub(crate) fn section(&self) -> Result<beam_modes::Segment, InvalidInput> {
         let InfiniteBeam {
             flexural_rigidity_n_m2,
             mass_per_length_kg_m,

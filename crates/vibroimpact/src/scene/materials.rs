@@ -48,6 +48,12 @@ impl Materials {
         ]
     }
 
+    /// Young's modulus and Poisson's ratio of the striker, where they are given.
+    pub(crate) fn of_striker(&self) -> Option<[f64; 2]> {
+        let modulus = self.striker_youngs_modulus_pa.or(self.youngs_modulus_pa)?;
+        Some([modulus, self.striker_poissons_ratio.or(self.poissons_ratio)?])
+    }
+
     /// Striker and structure; the structure's surface is flat.
     pub(crate) fn bodies(&self, striker: &Striker) -> Result<(Body, Body), InvalidInput> {
         one_of_sets(&self.fields(), &[BOTH, EACH]).map_err(in_contact)?;

@@ -121,6 +121,8 @@ pub struct Scene {
     /// Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses the
     /// modes; that of [`vibroimpact_sim::modal::Settings`] where the modes are given.
     pub tolerance: Option<f64>,
+    /// Yield strength of the softer body (Pa), against which the pressure in the contact is judged; it changes no result.
+    pub yield_strength_pa: Option<f64>,
 }
 
 /// The file before its two tagged objects are read, so that a fault in them keeps its path.
@@ -145,6 +147,7 @@ struct Outline {
     residual_compliance: Option<bool>,
     start: Option<Value>,
     tolerance: Option<f64>,
+    yield_strength_pa: Option<f64>,
 }
 
 impl Scene {
@@ -162,7 +165,13 @@ impl Scene {
             residual_compliance: None,
             start: None,
             tolerance: None,
+            yield_strength_pa: None,
         }
+    }
+
+    /// Passes a yield strength that can be one.
+    pub(crate) fn require_yield_strength(&self) -> Result<(), InvalidInput> {
+        self.yield_strength_pa.map_or(Ok(()), |strength| InvalidInput::require_positive("yield_strength_pa", strength))
     }
 
     /// Reads a scene from JSON text.
@@ -222,6 +231,7 @@ impl Scene {
             residual_compliance: outline.residual_compliance,
             start,
             tolerance: outline.tolerance,
+            yield_strength_pa: outline.yield_strength_pa,
         };
         let stated = !crate::model::chooses_modes(&scene);
         if let Structure::Beam(beam) = &mut scene.structure

@@ -225,7 +225,7 @@ impl Segment {
     }
 
     /// The extent along the blow, where the section has one, with its field.
-    pub(super) fn thickness(&self) -> Option<(&'static str, f64)> {
+    pub(crate) fn thickness(&self) -> Option<(&'static str, f64)> {
         self.thickness_m.map(|h| ("thickness_m", h)).or(self.diameter_m.map(|d| ("diameter_m", d)))
     }
 }

@@ -1,0 +1,137 @@
+//! How far to trust an answer: what its theories can bear, each with a number.
+//!
+//! No solver knows whether its equations hold. These figures tell, computed from the impact as it was solved; each has a
+//! limit within which the theory holds and one beyond which it does not:
+//!
+//! | check | figure | within | outside |
+//! |---|---|---|---|
+//! | `wavelength` | half the wavelength of the fastest mode that matters, over the thickness | at least 6 (0.5 with shear) | below 2.2 (0.25) |
+//! | `spectrum` | share of the contact force's spectrum that is faster than the first of these limits | at most 0.01 | above 0.1 |
+//! | `pressure` | largest Hertz pressure over the yield strength, where that is given | at most 1.6 | above 4.5 |
+//! | `contact_radius` | largest contact radius over the radius of the ball | at most 0.1 | above 0.3 |
+//! | `indentation` | the same over the thickness of the structure | at most 0.2 | above 0.5 |
+//! | `ball` | duration of the hardest contact over the lowest period of the ball | at least 5 | below 2 |
+//! | `gravity` | speed gained in a fall as long as the interaction, over the speed of impact | at most 0.01 | above 0.1 |
+//!
+//! *Waves.* Euler-Bernoulli's frequencies are 5 % too high where half a wavelength is six times the thickness, and 27 %
+//! where it is 2.2 times; so are Kirchhoff's for plates. Timoshenko's follow Rayleigh and Lamb's within 0.4 % down to 0.44.
+//! A mode matters if it is among the slowest that take 99 % of the energy `1/2 phi_k^2 |F(omega_k)|^2` that the contacts
+//! put into vibration, each for itself. `F` is the Fourier transform of the force of a contact, and by Parseval the share
+//! beyond `omega` is
+//!
+//! ```text
+//! 1 - sum int_0^omega |F|^2 d omega' / (pi sum int F^2 dt).                                                       (1)
+//! ```
+//!
+//! *Contact.* On a ball of radius `R` Hertz's circle of contact has `a^2 = R delta`, and the greatest pressure is
+//!
+//! ```text
+//! p = 3 F / (2 pi a^2).                                                                                           (2)
+//! ```
+//!
+//! Metals yield first, below the surface, at `p = 1.6 Y`, and flow over the whole contact at a mean pressure of `3 Y`, that
+//! is `p = 4.5 Y` (K. L. Johnson, *Contact Mechanics*, 1985, 4.2 and 6.3). Hertz takes bodies for half-spaces, which they
+//! are while `a` is small against radius and thickness.
+//!
+//! *Ball.* The lowest mode of a solid ball that a blow excites is the one that makes it oblong, `omega R / c_t = 2.64`
+//! (H. Lamb, 1882; 2.64 to 2.65 for Poisson's ratios of 0.25 to 0.33), with `c_t = sqrt(G/rho)`.
+//!
+//! *Gravity* is left out of an impact; between contacts a ball that falls along the blow gains `g t`.
+
+mod checks;
+mod course;
+mod section;
+mod text;
+
+use serde::Serialize;
+
+use crate::scene::{InvalidInput, Scene};
+use crate::simulate::Simulation;
+use course::Course;
+pub use text::trust_text;
+
+/// Whether a theory bears an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Within the range of the theory.
+    Within,
+    /// Near its limits, or somewhat beyond.
+    Doubtful,
+    /// Outside its range.
+    Outside,
+}
+
+impl Verdict {
+    /// The word in texts and files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Verdict::Within => "within",
+            Verdict::Doubtful => "doubtful",
+            Verdict::Outside => "outside",
+        }
+    }
+}
+
+/// One figure that tells whether a theory holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What is judged: a name of the table in [`trust`](self).
+    pub check: &'static str,
+    /// Within the theory's range, doubtful, or outside.
+    pub verdict: Verdict,
+    /// The figure, without a unit.
+    pub value: f64,
+    /// Up to here, or from here on if `outside` is smaller, the theory holds.
+    pub within: f64,
+    /// Beyond this it does not.
+    pub outside: f64,
+    /// What the figure says, in a sentence.
+    pub says: String,
+}
+
+impl Check {
+    /// `limits` are those of the theory's range and of where it ends; which way they lie tells which way is better.
+    fn new(check: &'static str, value: f64, limits: [f64; 2], says: String) -> Check {
+        let [within, outside] = limits;
+        let rises = outside > within;
+        let beyond = |limit: f64| if rises { value > limit } else { value < limit };
+        let verdict = match (beyond(within), beyond(outside)) {
+            (false, _) => Verdict::Within,
+            (true, false) => Verdict::Doubtful,
+            (true, true) => Verdict::Outside,
+        };
+        Check { check, verdict, value, within, outside, says }
+    }
+}
+
+impl Scene {
+    /// What the theories behind a simulation of this scene can bear, as far as the scene tells what that takes: the
+    /// thickness of the structure, the ball's radius and material, a yield strength.
+    ///
+    /// ```
+    /// use vibroimpact::Scene;
+    /// use vibroimpact::trust::Verdict;
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+    ///         "segments": [{ "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
+    ///                        "width_m": 0.011323, "thickness_m": 0.011323 }] },
+    ///     "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
+    ///     "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
+    ///     "location_m": 0.4, "yield_strength_pa": 1e9
+    /// }"#)?;
+    /// let checks = scene.trust(&scene.simulate()?)?;
+    /// let pressure = checks.iter().find(|check| check.check == "pressure").unwrap();
+    /// assert!(pressure.verdict == Verdict::Doubtful && pressure.value > 2.0);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Scene::simulate`], for a simulation of another scene.
+    pub fn trust(&self, simulation: &Simulation) -> Result<Vec<Check>, InvalidInput> {
+        let course = Course::of(self, simulation)?;
+        let waves = section::section(self)?;
+        Ok([checks::waves(&course, waves.as_ref()), checks::contact(self, &course, waves.as_ref())?].concat())
+    }
+}

@@ -1,0 +1,25 @@
+//! The checks as a person reads them.
+
+use std::fmt::Write;
+
+use super::Check;
+use crate::text::filled;
+
+/// Breaks a sentence into lines of at most this many characters.
+const WIDTH: usize = 96;
+const INDENT: usize = 24;
+
+/// The end of what `simulate` prints; empty where nothing can be told.
+pub fn trust_text(checks: &[Check]) -> String {
+    let mut text = String::new();
+    if checks.is_empty() {
+        return text;
+    }
+    text += "\n  how far to trust it\n";
+    for check in checks {
+        let told = format!("{}: {}", check.verdict.as_str(), check.says);
+        let lines = filled(&told, |line| line.chars().count() + INDENT <= WIDTH);
+        let _ = writeln!(text, "    {:<20}{}", check.check.replace('_', " "), lines.join(&format!("\n{:INDENT$}", "")));
+    }
+    text
+}
