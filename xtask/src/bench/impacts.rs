@@ -85,7 +85,7 @@ pub fn on_modes(root: &Path) -> Result<Vec<Problem>, Failure> {
         problems.push(modal(format!("pinned N=40 {}", law.name()), Impact { law, ..hertz.clone() }, 1e-9));
     }
     pinned.residual_compliance = Some(true);
-    problems.push(modal("pinned N=40 hertz, residual compliance".into(), pinned.impact()?, 1e-9));
+    problems.push(modal("pinned N=40 hertz, remainder modes".into(), pinned.impact()?, 1e-9));
 
     // undamped: amplifies whatever error there is, rounding included
     let mut undamped = scene("pinned-beam-undamped")?;
