@@ -99,7 +99,7 @@ def test_arrays_of_a_simulation(scene):
     assert abs(found["sub_impacts"]["impulse_n_s"].sum() / change - 1) < 1e-8
     # the energy of the modes at the last separation
     energies = found["modal_energies"]
-    assert energies["energy_j"].shape == (len(energies["time_s"]), found["modes"])
+    assert energies["energy_j"].shape == (len(energies["time_s"]), found["modes"] + found["remainder_modes"])
     at_end = [np.interp(found["end_s"], energies["time_s"], mode) for mode in energies["energy_j"].T]
     assert abs(sum(at_end) / found["energy"]["structure_j"] - 1) < 0.02
 
