@@ -1,16 +1,17 @@
-"""Exudyn: mass points, springs and the law of the contact as a user function in Python, implicit generalised alpha with steps
-that do not know of the contact. The setting is the number of steps over the time of the problem.
+"""Exudyn: all bodies as one system of second order with unit mass matrix, whose contacts are a user function in Python.
+
+Two of its integrators: the implicit generalised alpha with fixed steps, whose setting is their number, and the explicit
+Dormand-Prince pair of order 5 with steps of its own choice, whose setting is the tolerance. Neither knows of contacts.
 """
 
-import math
-
 import exudyn
-from exudyn.itemInterface import (CoordinateSpringDamper, LoadCoordinate, MarkerNodeCoordinate, Mass1D, Node1D,
-                                  NodePointGround)
+import numpy
+from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
 
 from template import bench
 
 COUNTS = [1e3, 3e3, 1e4]
+TOLERANCES = [1e-3, 1e-5, 1e-7, 1e-9]
 
 
 def force_of(law):
@@ -28,60 +29,100 @@ def force_of(law):
     return None
 
 
-def solve(problem, count):
-    """Every body with one mode: the coordinate is that of its point, and its mass is shape^-2."""
-    bodies, contacts = problem["bodies"], problem["contacts"]
-    if not bodies or any(len(body["shape"]) != 1 for body in bodies):
+def posed(problem):
+    """The matrices, the start, the constant forces and the contacts; none if a law is not to be had."""
+    bodies = problem["bodies"]
+    laws = [force_of(contact["law"]) for contact in problem["contacts"]]
+    if not bodies or any(law is None for law in laws):
         return None
-    laws = [force_of(contact["law"]) for contact in contacts]
-    if any(law is None for law in laws):
-        return None
-    system = exudyn.SystemContainer()
-    world = system.AddSystem()
-    ground = world.AddMarker(MarkerNodeCoordinate(nodeNumber=world.AddNode(NodePointGround()), coordinate=0))
-    nodes, markers = {}, {}
+    places, count = {}, 0
     for body in bodies:
-        shape = body["shape"][0]
-        mass = shape**-2
-        node = world.AddNode(Node1D(referenceCoordinates=[0.0], initialCoordinates=[shape * body["amplitude"][0]],
-                                    initialVelocities=[shape * body["rate"][0]]))
-        world.AddObject(Mass1D(nodeNumber=node, mass=mass))
-        nodes[body["name"]] = node
-        markers[body["name"]] = world.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
-        omega, ratio = body["omega_rad_s"][0], body["damping_ratio"][0]
-        if omega > 0:
-            world.AddObject(CoordinateSpringDamper(markerNumbers=[ground, markers[body["name"]]],
-                                                   stiffness=omega**2 * mass, damping=2 * ratio * omega * mass))
-        elif problem["gravity_m_s2"] != 0:
-            world.AddLoad(LoadCoordinate(markerNumber=markers[body["name"]], load=-mass * problem["gravity_m_s2"]))
-    for contact, law in zip(contacts, laws):
-        gap = contact["gap_m"]
-        lower = markers[contact["lower"]] if "lower" in contact else ground
-
-        def spring(mbs, t, number, u, v, k, d, offset, law=law, gap=gap):
-            # u is the distance of the upper point above the lower one
-            return -law(-u - gap, -v)
-
-        world.AddObject(CoordinateSpringDamper(markerNumbers=[lower, markers[contact["upper"]]], stiffness=0.0,
-                                               springForceUserFunction=spring))
-    world.Assemble()
-    settings = exudyn.SimulationSettings()
-    settings.timeIntegration.numberOfSteps = int(count)
-    settings.timeIntegration.endTime = problem["end_s"]
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
-    settings.timeIntegration.newton.useModifiedNewton = False
-    world.SolveDynamic(settings)
-    variables = exudyn.OutputVariableType
-    values = []
-    for quantity in problem["quantities"]:
-        of = variables.CoordinatesTotal if quantity["what"] == "displacement_m" else variables.Coordinates_t
-        found = world.GetNodeOutput(nodes[quantity["body"]], of)
-        values.append(float(found if not hasattr(found, "__len__") else found[0]))
-    if any(math.isnan(value) for value in values):
-        raise ArithmeticError("not a number")
-    return values
+        places[body["name"]] = slice(count, count + len(body["shape"]))
+        count += len(body["shape"])
+    together = lambda field: numpy.array([value for body in bodies for value in body[field]])
+    omega, ratio = together("omega_rad_s"), together("damping_ratio")
+    constant = numpy.zeros(count)
+    shapes = {}
+    for body in bodies:
+        shapes[body["name"]] = numpy.zeros(count)
+        shapes[body["name"]][places[body["name"]]] = body["shape"]
+        if body["omega_rad_s"] == [0.0]:
+            constant[places[body["name"]]] = -problem["gravity_m_s2"] / body["shape"][0]
+    contacts = []
+    for contact, law in zip(problem["contacts"], laws):
+        psi = -shapes[contact["upper"]]
+        if "lower" in contact:
+            psi = psi + shapes[contact["lower"]]
+        contacts.append((psi, contact["gap_m"], law))
+    return omega, ratio, together("amplitude"), together("rate"), constant, shapes, contacts
 
 
-bench("exudyn", "Exudyn, generalised alpha", COUNTS, solve, f"exudyn {exudyn.__version__}")
+def solve(explicit):
+    def at(problem, setting):
+        case = posed(problem)
+        if case is None:
+            return None
+        omega, ratio, amplitude, rate, constant, shapes, contacts = case
+
+        def force(mbs, t, number, q, q_t):
+            q, q_t = numpy.atleast_1d(q), numpy.atleast_1d(q_t)
+            total = constant.copy()
+            for psi, gap, law in contacts:
+                pressed = law(psi @ q - gap, psi @ q_t)
+                if pressed:
+                    total -= psi * pressed
+            return total
+
+        system = exudyn.SystemContainer()
+        world = system.AddSystem()
+        count = len(omega)
+        node = world.AddNode(
+            NodeGenericODE2(
+                referenceCoordinates=[0.0] * count,
+                initialCoordinates=list(amplitude),
+                initialCoordinates_t=list(rate),
+                numberOfODE2Coordinates=count,
+            )
+        )
+        world.AddObject(
+            ObjectGenericODE2(
+                nodeNumbers=[node],
+                massMatrix=numpy.eye(count),
+                stiffnessMatrix=numpy.diag(omega**2),
+                dampingMatrix=numpy.diag(2 * ratio * omega),
+                forceUserFunction=force,
+            )
+        )
+        world.Assemble()
+        settings = exudyn.SimulationSettings()
+        integration = settings.timeIntegration
+        integration.endTime = problem["end_s"]
+        integration.verboseMode = 0
+        settings.solution.file.write = False
+        if explicit:
+            integration.numberOfSteps = 10
+            integration.automaticStepSize = True
+            integration.minimumStepSize = 1e-14
+            integration.relativeTolerance = setting
+            integration.absoluteTolerance = setting * max(abs(rate).max(), 1e-3) * min(1e-4, problem["end_s"])
+            world.SolveDynamic(settings, solverType=exudyn.DynamicSolverType.DOPRI5)
+        else:
+            integration.numberOfSteps = int(setting)
+            integration.generalizedAlpha.spectralRadius = 0.9
+            world.SolveDynamic(settings)
+        q = numpy.atleast_1d(world.GetNodeOutput(node, exudyn.OutputVariableType.Coordinates))
+        q_t = numpy.atleast_1d(world.GetNodeOutput(node, exudyn.OutputVariableType.Coordinates_t))
+        values = [
+            shapes[quantity["body"]] @ (q if quantity["what"] == "displacement_m" else q_t)
+            for quantity in problem["quantities"]
+        ]
+        if not numpy.all(numpy.isfinite(values)):
+            raise ArithmeticError("not a number")
+        return values
+
+    return at
+
+
+VERSIONS = f"exudyn {exudyn.__version__}"
+bench("exudyn", "Exudyn, generalised alpha", COUNTS, solve(explicit=False), VERSIONS)
+bench("exudyn", "Exudyn, DOPRI5", TOLERANCES, solve(explicit=True), VERSIONS)

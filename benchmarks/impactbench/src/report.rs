@@ -91,8 +91,9 @@ fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     for level in LEVELS {
         let _ = write!(text, " within {level:.0e} |");
     }
-    text += "\n| --- | --- |";
+    text += " fastest to 1e-6 |\n| --- | --- | --- |";
     text += &" --- |".repeat(LEVELS.len());
+    let fastest: Vec<&str> = judged.values().filter_map(|runs| fastest(runs, codes)).collect();
     for code in codes {
         let errors: Vec<Option<f64>> = judged
             .values()
@@ -103,8 +104,15 @@ fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
         for level in LEVELS {
             let _ = write!(text, " {} |", errors.iter().flatten().filter(|error| **error <= level).count());
         }
+        let _ = write!(text, " {} |", fastest.iter().filter(|name| *name == code).count());
     }
     text + "\n"
+}
+
+/// The code that comes within 1e-6 in the least time.
+fn fastest<'a>(runs: &[Judged], codes: &[&'a str]) -> Option<&'a str> {
+    let times = codes.iter().filter_map(|code| Some((*code, time_at(runs, code, 1e-6)?)));
+    times.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(code, _)| code)
 }
 
 /// How many runs of each code fail, by kind.

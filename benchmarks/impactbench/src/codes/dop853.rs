@@ -49,9 +49,11 @@ pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant)
         };
         let (rtol, atol) = (Tolerance::Scalar(0.0), Tolerance::Vector(tolerances.clone()));
         // time is counted from the start of the phase, so that short steps are not lost in it
-        solver
-            .solve(&phase, 0.0, &y, problem.end_s - time_s, rtol, atol, Some(&mut watch))
-            .map_err(|error| error.to_string())?;
+        let found = solver.solve(&phase, 0.0, &y, problem.end_s - time_s, rtol, atol, Some(&mut watch));
+        let status = found.map_err(|error| error.to_string())?.status;
+        if !status.is_success() {
+            return Err(format!("{status:?}"));
+        }
         let Watch { met, now, late, .. } = watch;
         if late {
             return Err(TOO_SLOW.into());

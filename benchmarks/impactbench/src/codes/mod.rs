@@ -1,5 +1,6 @@
 //! The codes in Rust, each with its settings, from the loosest to the tightest.
 
+mod diffsol;
 mod dop853;
 mod net;
 mod own;
@@ -19,13 +20,8 @@ pub type Answer = Result<Vec<f64>, String>;
 
 /// Every run of every code on a problem.
 pub fn run_all(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
-    [
-        own::runs(problem, effort),
-        net::runs(problem, effort),
-        dop853::runs(problem, effort),
-        penalty::runs(problem, effort),
-    ]
-    .concat()
+    let all = [own::runs, net::runs, dop853::runs, diffsol::runs, penalty::runs];
+    all.into_iter().flat_map(|runs| runs(problem, effort)).collect()
 }
 
 /// The laws of the contacts; none if a restitution is asked for in their place.

@@ -64,14 +64,14 @@ fn made_to_measure(problem: &Problem) -> Option<Vec<Law>> {
 }
 
 /// One striker that touches a structure at rest.
-struct Single {
-    structure: modal::Structure,
-    striker: modal::Striker,
-    law: Law,
+pub(super) struct Single {
+    pub structure: modal::Structure,
+    pub striker: modal::Striker,
+    pub law: Law,
 }
 
 impl Single {
-    fn of(problem: &Problem, laws: &[Law]) -> Option<Single> {
+    pub fn of(problem: &Problem, laws: &[Law]) -> Option<Single> {
         let ([law], [Contact { upper, lower, gap_m: 0.0, .. }]) = (laws, problem.contacts.as_slice()) else {
             return None;
         };
