@@ -127,7 +127,7 @@ fn tables<'a>(
         let mut solver = case.setup(beam, balls[0], location_m).solver()?;
         balls
             .iter()
-            .map(|ball| case.setup(beam, *ball, location_m).solve_with(&mut solver))
+            .map(|ball| case.setup(beam, *ball, location_m).solve_once_with(&mut solver))
             .collect::<Result<Vec<Row>, Failure>>()
     })?;
     let mut results = results.into_iter();
