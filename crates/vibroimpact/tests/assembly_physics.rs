@@ -8,8 +8,8 @@ use beam_modes::fem;
 use gallery::{assemblies, assembly};
 use serde_json::json;
 use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation};
-use vibroimpact::scene::Structure;
-use vibroimpact::vibroimpact_sim::assembly::Outcome;
+use vibroimpact::scene::{Attachment, BeamTheory, Structure};
+use vibroimpact::vibroimpact_sim::assembly::{Outcome, Point};
 
 fn until(scene: &AssemblyScene, end_s: f64) -> Simulation {
     AssemblyScene { end_s, ..scene.clone() }.simulate().unwrap()
@@ -71,6 +71,24 @@ fn remainder_modes_stand_for_the_modes_left_out() {
     assert_near(found.intervals[0][0].end_s.unwrap(), 0.09256, 1e-4);
     let tip = until(&scene, 0.1315).run.contacts[0].displacement_m[0];
     assert!((tip + 1.838e-6).abs() < 2e-9, "{tip}");
+}
+
+/// Remainder modes are those of the beam as it is, with shear and with what is fixed to it.
+#[test]
+fn remainder_modes_know_theory_and_attachments() {
+    let mut scene = assembly("sdnl104");
+    let Some(Body::Elastic(body)) = scene.bodies.get_mut("beam") else { panic!() };
+    (body.modes, body.residual_compliance) = (Some(10), true);
+    let Elastics::Structure(Structure::Beam(beam)) = &mut body.structure else { panic!() };
+    beam.theory = Some(BeamTheory::Timoshenko);
+    beam.segments[0].poissons_ratio = Some(0.3);
+    beam.attachments = vec![Attachment { location_m: 0.5, spring_n_m: 2e5, ..Attachment::default() }];
+    let whole = beam.to_system().unwrap().static_compliance(1.0).unwrap();
+    let posed = scene.pose().unwrap();
+    let Point::OfBody { shape, .. } = &posed.assembly.contacts[0].sides[0] else { panic!() };
+    let modes = posed.assembly.bodies[0].modes.iter().zip(shape);
+    let compliance: f64 = modes.map(|(mode, phi)| (phi / mode.omega_rad_s).powi(2)).sum();
+    assert_near(compliance, whole, 1e-9);
 }
 
 #[test]

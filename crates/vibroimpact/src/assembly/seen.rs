@@ -85,7 +85,8 @@ impl<'a> Seen<'a> {
         // a place off the beam is told of as that of its contact or load
         match self.places_m.iter().all(on_beam) && !self.places_m.is_empty() {
             true => {
-                let remainder = beam.to_beam().map_err(|fault| self.of_body(fault))?.remainder_at(&self.places_m, kept);
+                let remainder =
+                    beam.to_system().map_err(|fault| self.of_body(fault))?.remainder_at(&self.places_m, kept);
                 remainder.or_else(
                     |fault| if fault.field == "x_m" { Ok(Vec::new()) } else { Err(self.of_body(fault.into())) },
                 )
