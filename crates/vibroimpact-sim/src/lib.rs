@@ -25,6 +25,7 @@ pub mod dropped_rod;
 mod error;
 pub mod infinite;
 pub mod modal;
+mod panel;
 mod stop;
 
 pub use error::InvalidInput;

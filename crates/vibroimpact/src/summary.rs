@@ -132,7 +132,7 @@ impl Summary {
         let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
             Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
         };
-        let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps } =
+        let Counts { contact_steps, rejected_steps, newton_iterations, law_evaluations, flight_steps, .. } =
             solution.counts;
         Summary {
             outcome: solution.outcome.as_str(),

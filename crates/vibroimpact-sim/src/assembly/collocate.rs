@@ -5,8 +5,7 @@
 //! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body.
 
 use super::solution::Counts;
-use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, apply, dot};
-use crate::modal::step::{eliminate, slopes, substitute};
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, dot, slopes};
 use contact_models::{Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the panel is too long.
@@ -15,7 +14,7 @@ const ITERATIONS_MAX: u32 = 16;
 const SLOW: f64 = 0.1;
 
 /// A closed contact on a panel, before its force is known.
-pub(super) struct Unknown<'a, L> {
+pub(crate) struct Unknown<'a, L> {
     pub law: &'a L,
     pub branch: Branch,
     /// Compression at the start of the panel (m).
@@ -32,7 +31,7 @@ pub(super) struct Unknown<'a, L> {
 
 /// Force (N), compression (m) and its rate (m/s; zero unless asked for) at the nodes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Collocated {
+pub(crate) struct Collocated {
     pub force: Nodal,
     pub compression: Nodal,
     pub rate: Nodal,
@@ -40,7 +39,7 @@ pub(super) struct Collocated {
 
 /// Solves the laws at all nodes of a panel of `h`; `response` gives `R_cc'` (m/N). `None` if the iteration does not
 /// converge.
-pub(super) fn collocate<'r, L: ContactLaw>(
+pub(crate) fn collocate<'r, L: ContactLaw>(
     unknowns: &[Unknown<L>],
     response: impl Fn(usize, usize) -> Option<&'r Matrix>,
     h: f64,
@@ -198,6 +197,41 @@ fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matr
         }
     }
     block
+}
+
+/// Solves in place with a factored matrix: unit lower and upper triangle in one, by columns, the diagonal inverted.
+fn substitute(a: &Matrix, b: &mut Nodal) {
+    for j in 0..Q {
+        for i in j + 1..Q {
+            b[i] -= a[j][i] * b[j];
+        }
+    }
+    for j in (0..Q).rev() {
+        b[j] *= a[j][j];
+        for i in 0..j {
+            b[i] -= a[j][i] * b[j];
+        }
+    }
+}
+
+/// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
+/// units.
+fn eliminate<const FROM: usize>(a: &mut Matrix) {
+    for pivot in FROM..FROM + Q / 2 {
+        let inverse = 1.0 / a[pivot][pivot];
+        let mut below = [0.0; Q];
+        for i in pivot + 1..Q {
+            below[i] = a[pivot][i] * inverse;
+            a[pivot][i] = below[i];
+        }
+        for column in &mut a[pivot + 1..] {
+            let factor = column[pivot];
+            for i in FROM..Q {
+                column[i] -= factor * below[i];
+            }
+        }
+        a[pivot][pivot] = inverse;
+    }
 }
 
 #[cfg(test)]

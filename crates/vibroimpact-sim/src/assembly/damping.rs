@@ -6,13 +6,13 @@
 
 use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS};
 use super::system::{Link, System};
-use crate::modal::ladder::step_s;
-use crate::modal::legendre::{Matrix, Nodal, Q, apply, dot};
+use crate::panel::dyadic::step_s;
+use crate::panel::legendre::{Matrix, Nodal, Q, apply, dot};
 use std::array;
 use std::ops::Range;
 
 /// The forms of all modes on one level.
-pub(super) struct Damping {
+pub(crate) struct Damping {
     /// Loss by `a^2`, `a b` and `b^2`, mode by mode.
     free: Vec<[f64; 3]>,
     /// Loss by `a g_n` and `b g_n`.
@@ -104,7 +104,7 @@ impl Damping {
 }
 
 /// What damping takes from these bodies within a panel of any length on which no mode turns by more than a radian (J).
-pub(super) fn lost_within(
+pub(crate) fn lost_within(
     system: &System,
     damped: &[Range<usize>],
     h: f64,

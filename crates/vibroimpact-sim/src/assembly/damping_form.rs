@@ -12,13 +12,13 @@
 //!
 //! - a mode that turns by at most [`SLOW`] rad: Gauss quadrature, with the rates from their power series;
 //! - a faster one: `S' = Re(c e^{z x})`, and `v_n` is a polynomial and a multiple of the same exponential (integration by
-//!   parts, as in [`crate::modal::forcing`]), so each product has a closed integral;
+//!   parts, as in [`crate::panel::forcing`]), so each product has a closed integral;
 //! - a faster one that does not vibrate or hardly: quadrature on panels that grow away from the start.
 
-use crate::modal::forcing::rate;
-use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
-use crate::modal::oscillator::{NEARLY_CRITICAL, propagate, response};
-use crate::modal::problem::Mode;
+use crate::panel::forcing::rate;
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
+use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
+use crate::panel::oscillator::BodyMode;
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;
@@ -27,17 +27,17 @@ use std::sync::LazyLock;
 /// A mode that turns by at most this much (rad) needs the coarser rule only.
 const GENTLE: f64 = 1.0;
 /// Terms of the power series that serve for it.
-pub(super) const TERMS: usize = 20;
+pub(crate) const TERMS: usize = 20;
 
 /// Nodes of that rule.
-pub(super) const COARSE_NODES: usize = 12;
+pub(crate) const COARSE_NODES: usize = 12;
 
-pub(super) static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
+pub(crate) static COARSE: LazyLock<Series<COARSE_NODES>> = LazyLock::new(Series::new);
 static FINE: LazyLock<Series<20>> = LazyLock::new(Series::new);
 
 /// Loss of one mode within a panel: `bb b^2 + 2 b sum_n bq_n q_n + sum_nm qq_nm q_n q_m` (J).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Form {
+pub(crate) struct Form {
     pub bb: f64,
     pub bq: Nodal,
     pub qq: Matrix,
@@ -46,7 +46,7 @@ pub(super) struct Form {
 impl Form {
     const NONE: Form = Form { bb: 0.0, bq: [0.0; Q], qq: [[0.0; Q]; Q] };
 
-    pub fn of(mode: &Mode, h: f64) -> Form {
+    pub fn of(mode: &BodyMode, h: f64) -> Form {
         let turned = rate(mode) * h;
         if mode.damping_ratio * mode.omega_rad_s == 0.0 {
             return Form::NONE;
@@ -74,7 +74,7 @@ impl Form {
     }
 
     /// From a mean over the panel of products of rates, those to forces divided by `h`, to the loss.
-    fn scaled(mut self, mode: &Mode, h: f64) -> Form {
+    fn scaled(mut self, mode: &BodyMode, h: f64) -> Form {
         let scale = 2.0 * mode.damping_ratio * mode.omega_rad_s * h;
         self.bb *= scale;
         self.bq = self.bq.map(|value| value * scale * h);
@@ -84,7 +84,7 @@ impl Form {
 }
 
 /// Power series of the rates at the `M` nodes of a Gauss rule on (0, 1).
-pub(super) struct Series<const M: usize> {
+pub(crate) struct Series<const M: usize> {
     pub weights: [f64; M],
     /// `x^p/p!`.
     pub powers: Vec<[f64; M]>,
@@ -118,7 +118,7 @@ impl<const M: usize> Series<M> {
     }
 
     /// `S'^(p)(0) h^p`.
-    pub fn derivatives(mode: &Mode, h: f64) -> impl Iterator<Item = f64> {
+    pub fn derivatives(mode: &BodyMode, h: f64) -> impl Iterator<Item = f64> {
         let angle = mode.omega_rad_s * h;
         let (square, drag) = (angle * angle, 2.0 * mode.damping_ratio * angle);
         let terms = BASIS.terms::<SERIES>(rate(mode) * h, 2);
@@ -130,7 +130,7 @@ impl<const M: usize> Series<M> {
         })
     }
 
-    fn form(&self, mode: &Mode, h: f64) -> Form {
+    fn form(&self, mode: &BodyMode, h: f64) -> Form {
         let (mut by_rate, mut by_force) = ([0.0; M], [[0.0; M]; Q]);
         for (derivative, (powers, forced)) in Self::derivatives(mode, h).zip(self.powers.iter().zip(&self.forced)) {
             for q in 0..M {
@@ -151,7 +151,7 @@ impl<const M: usize> Series<M> {
 }
 
 /// Below critical damping, for a mode that turns by more than a few radians.
-fn by_parts(mode: &Mode, h: f64) -> Form {
+fn by_parts(mode: &BodyMode, h: f64) -> Form {
     let sigma = mode.damping_ratio * mode.omega_rad_s;
     let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
     let lambda = Complex64::new(-sigma, omega_d);
@@ -219,7 +219,7 @@ fn by_parts(mode: &Mode, h: f64) -> Form {
 const PARTS: usize = Q + 4;
 
 /// Any damping, on panels that grow away from the start.
-fn by_quadrature(mode: &Mode, h: f64) -> Form {
+fn by_quadrature(mode: &BodyMode, h: f64) -> Form {
     let mut form = Form::NONE;
     let mut from = 0.0;
     let mut to = (2.0 / (2.0 * mode.damping_ratio * mode.omega_rad_s * h)).clamp(1e-18, 1.0);
@@ -242,8 +242,8 @@ fn by_quadrature(mode: &Mode, h: f64) -> Form {
 mod tests {
     use super::*;
 
-    /// By composite Gauss quadrature of the rates as [`crate::modal::oscillator`] has them.
-    fn reference(mode: &Mode, h: f64) -> Form {
+    /// By composite Gauss quadrature of the rates as [`crate::panel::oscillator`] has them.
+    fn reference(mode: &BodyMode, h: f64) -> Form {
         let mut form = Form::NONE;
         let panels = (0.5 * rate(mode) * h).ceil().max(2.0) as usize;
         for i in 0..panels {
@@ -263,8 +263,8 @@ mod tests {
         let h = 1e-3;
         for zeta in [1e-3, 0.02, 0.6, 0.98, 0.995, 1.0, 1.3, 20.0] {
             for turned in [1e-3, 0.3, 1.0, 1.1, 6.0, 6.1, 12.0, 40.0] {
-                let unit = Mode { omega_rad_s: 1.0, damping_ratio: zeta, shape: 1.0 };
-                let mode = Mode { omega_rad_s: turned / h / rate(&unit), ..unit };
+                let unit = BodyMode { omega_rad_s: 1.0, damping_ratio: zeta };
+                let mode = BodyMode { omega_rad_s: turned / h / rate(&unit), ..unit };
                 let (found, known) = (Form::of(&mode, h), reference(&mode, h));
                 // nearly equal roots cancel, and by parts so does the response to high polynomials
                 let roots = if zeta < NEARLY_CRITICAL { ((1.0 - zeta) * (1.0 + zeta)).recip() } else { 1.0 };
@@ -290,7 +290,7 @@ mod tests {
         for omega_rad_s in [1e-15, 1e-3, 1e9, 1e15] {
             for damping_ratio in [1e-9, 0.5, 1.0, 1e6] {
                 for h in [1e-50, 1.0, 1e30] {
-                    let Form { bb, bq, qq } = Form::of(&Mode { omega_rad_s, damping_ratio, shape: 1.0 }, h);
+                    let Form { bb, bq, qq } = Form::of(&BodyMode { omega_rad_s, damping_ratio }, h);
                     let all = bq.iter().chain(qq.iter().flatten()).chain([&bb]).all(|value| value.is_finite());
                     assert!(all, "{omega_rad_s} {damping_ratio} {h}");
                 }

@@ -13,8 +13,7 @@
 use super::load::Loads;
 use super::system::{Link, System};
 use super::terminal::value;
-use crate::modal::flight::first_root_of_parabola;
-use crate::modal::legendre::{BASIS, Q, TAYLOR};
+use crate::panel::legendre::{BASIS, Q, TAYLOR};
 use std::sync::LazyLock;
 
 /// Derivatives of the interpolation error that are bounded.
@@ -67,7 +66,7 @@ fn interpolation(theta: f64) -> [f64; ORDERS] {
 }
 
 /// A contact force and its rate, and what it acts on.
-pub(super) struct Pull<'a> {
+pub(crate) struct Pull<'a> {
     pub link: &'a Link,
     pub force_n: f64,
     pub rate_n_s: f64,
@@ -75,7 +74,7 @@ pub(super) struct Pull<'a> {
 
 /// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
 /// through start and nodes. `pulls` are the contact forces at its start.
-pub(super) fn of_panel(
+pub(crate) fn of_panel(
     system: &System,
     loads: &Loads,
     contact: usize,
@@ -114,7 +113,7 @@ pub(super) fn of_panel(
 /// Amplitude bounds of the modes that move an open contact, summed up beyond some of them. They hold as long as the
 /// contact's bodies move freely, since no free vibration grows.
 #[derive(Debug, Clone)]
-pub(super) struct FlightBounds {
+pub(crate) struct FlightBounds {
     /// How many of the slowest modes a parabola follows, `H` of the others, `B` of these.
     cuts: Vec<(usize, f64, f64)>,
     /// How often they have served: damped vibrations leave room for better ones.
@@ -197,10 +196,16 @@ impl FlightBounds {
     }
 }
 
+/// First positive root of `u + u' t - b t^2/2` with `u >= 0`, `b >= 0`; infinite if there is none.
+fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
+    let root = (slope * slope + 2.0 * b * u).sqrt();
+    if slope >= 0.0 { if b == 0.0 { f64::INFINITY } else { (slope + root) / b } } else { 2.0 * u / (root - slope) }
+}
+
 /// The first time in `[0, window]` at which an overlap with this power series, approached from below, rises to zero, and
 /// `true`; or a time up to which it does not, and `false`. Its second derivative is at most `curvature`. Overlaps within
 /// `noise`, and within the rounding of the series, count as zero.
-pub(super) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64, noise: f64) -> (f64, bool) {
+pub(crate) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64, noise: f64) -> (f64, bool) {
     const ITERATIONS_MAX: usize = 10_000;
     // a grazing touch leaves the surfaces together for so short a time that the overlap stays rounding
     let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
@@ -227,7 +232,7 @@ pub(super) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64,
 }
 
 /// By how much the loads may bend the overlap of a contact within `lasting_s` (m/s^2).
-pub(super) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_s: f64) -> f64 {
+pub(crate) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_s: f64) -> f64 {
     let lasting_s = if lasting_s.is_finite() { lasting_s } else { 0.0 };
     let lines = loads.acceleration(contact, time_s).max(loads.acceleration(contact, time_s + lasting_s)).max(0.0);
     let harmonics = loads.harmonics.iter().map(|h| h.omega_rad_s.powi(2) * h.contacts[contact].norm());

@@ -6,9 +6,10 @@
 //! so that a panel without event is known as such, and subdivision leads to the first zero.
 //!
 //! A branch may begin on its boundary, where `m(0) = 0` to rounding. Then `(m(s) - m(0))/s`, a polynomial too, is asked
-//! in place of `m`.
+//! in place of `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. Where
+//! that is zero too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is asked.
 
-use crate::modal::legendre::{BASIS, Nodal, Q};
+use crate::panel::legendre::{BASIS, Nodal, Q};
 use std::sync::LazyLock;
 
 /// Points of a panel: its start and the nodes.
@@ -16,20 +17,25 @@ const POINTS: usize = Q + 1;
 
 /// An event function on a panel.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct EventFunction {
+pub(crate) struct EventFunction {
     /// Its value at the start of the panel.
     pub start: f64,
+    /// Its slope there (panel length 1), and the slope of that, where it is known. Asked for where the start is nearly zero.
+    pub start_slope: f64,
+    pub start_bend: Option<f64>,
     pub nodal: Nodal,
-    /// By how much the polynomial may miss it, and its slope along the panel (panel length 1).
-    pub rho: f64,
-    pub rho_slope: f64,
+    /// By how much the polynomial may miss it, its slope along the panel (panel length 1), and the slope of that.
+    pub rho: [f64; 3],
     /// Rounding of its values.
     pub noise: f64,
+    /// By how much its value where the branch began may have missed zero, and its slope.
+    pub residue: f64,
+    pub slope_residue: f64,
 }
 
 /// What an event function does on a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Verdict {
+pub(crate) enum Verdict {
     /// It stays positive.
     Clear,
     /// The panel is too long to tell.
@@ -40,21 +46,35 @@ pub(super) enum Verdict {
 
 impl EventFunction {
     pub fn verdict(&self) -> Verdict {
-        let slack = self.rho + self.noise;
-        if self.start < -slack {
+        // the polynomial passes through the start: there rounding alone counts
+        let known = self.noise + self.residue;
+        if self.start < -known {
             return Verdict::Meets(0.0);
         }
-        if self.start > slack {
-            let mut values = [self.start; POINTS];
-            values[1..].copy_from_slice(&self.nodal);
-            judge(&TABLES.whole, &values, slack, self.rho <= self.noise)
-        } else {
-            // rounding of a value is one of the slope from the start, largest at the first node
-            let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
-            let noise = 2.0 * self.noise / BASIS.nodes[0];
-            judge(&TABLES.deflated, &slopes, self.rho_slope + noise, self.rho_slope <= noise)
+        let [rho, rho_slope, rho_bend] = self.rho;
+        if self.start > known {
+            return judge(&TO_BERNSTEIN, &with(self.start, &self.nodal), rho + self.noise, rho <= self.noise);
+        }
+        // rounding of a value is one of the slope from the start, largest at the first node
+        let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
+        let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
+        let slope = self.start_slope;
+        match self.start_bend {
+            Some(bend) if slope.abs() <= noise => {
+                let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
+                let (rho, noise) = (0.5 * rho_bend, noise / BASIS.nodes[0]);
+                judge(&TO_BERNSTEIN, &with(0.5 * bend, &bends), rho + noise, rho <= noise)
+            }
+            _ => judge(&TO_BERNSTEIN, &with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
         }
     }
+}
+
+/// The values at all points of a panel.
+fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
+    let mut values = [start; POINTS];
+    values[1..].copy_from_slice(nodal);
+    values
 }
 
 /// `certain`: that what lies within the slack is rounding, and no shorter panel would tell more.
@@ -102,19 +122,9 @@ fn first_at_or_below<const N: usize>(bernstein: &[f64; N], level: f64) -> Option
     None
 }
 
-/// From values to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to coefficient `i`.
-struct Conversions {
-    /// Through the start and the nodes.
-    whole: [[f64; POINTS]; POINTS],
-    /// Through the nodes.
-    deflated: [[f64; Q]; Q],
-}
-
-static TABLES: LazyLock<Conversions> = LazyLock::new(|| {
-    let mut points = [0.0; POINTS];
-    points[1..].copy_from_slice(&BASIS.nodes);
-    Conversions { whole: conversion(&points), deflated: conversion(&BASIS.nodes) }
-});
+/// From values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to
+/// coefficient `i`.
+static TO_BERNSTEIN: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| conversion(&with(0.0, &BASIS.nodes)));
 
 /// Through these points: the Lagrange polynomials in Bernstein's form, each a product of linear factors, which are
 /// multiplied in that form.
@@ -144,7 +154,7 @@ mod tests {
     use super::*;
 
     fn function(f: impl Fn(f64) -> f64, rho: f64) -> EventFunction {
-        EventFunction { start: f(0.0), nodal: BASIS.nodes.map(f), rho, rho_slope: rho, noise: 1e-14 }
+        EventFunction { start: f(0.0), start_slope: 0.0, start_bend: None, nodal: BASIS.nodes.map(f), rho: [rho; 3], noise: 1e-14, residue: 0.0, slope_residue: 0.0 }
     }
 
     #[test]

@@ -43,14 +43,14 @@ use super::solution::Ledger;
 use super::system::System;
 use super::tables::Tables;
 use super::wave::{Wave, integral, turned_mean};
-use crate::modal::ladder::{level_within, step_s};
-use crate::modal::legendre::Nodal;
+use crate::panel::dyadic::{level_within, step_s};
+use crate::panel::legendre::Nodal;
 use num_complex::Complex64;
 use std::ops::Range;
 
 /// What is carried of the modes at a moment.
 #[derive(Clone, Copy)]
-pub(super) struct Moment<'a> {
+pub(crate) struct Moment<'a> {
     pub system: &'a System,
     pub loads: &'a Loads,
     pub time_s: f64,
@@ -59,7 +59,7 @@ pub(super) struct Moment<'a> {
 }
 
 /// The books while a run goes on.
-pub(super) struct Account {
+pub(crate) struct Account {
     bodies_j: Vec<f64>,
     stored_j: f64,
     /// Bodies with damped modes.

@@ -10,11 +10,11 @@
 
 use super::problem::{Assembly, Force};
 use super::system::{Link, Span, System};
-use crate::modal::legendre::TAYLOR;
+use crate::panel::legendre::TAYLOR;
 use num_complex::Complex64;
 
 /// Loads of one frequency.
-pub(super) struct Harmonic {
+pub(crate) struct Harmonic {
     pub omega_rad_s: f64,
     /// The steady motion `G` of each mode (m kg^1/2), and of the overlap of each contact (m).
     pub modes: Vec<Complex64>,
@@ -46,7 +46,7 @@ struct Source {
 }
 
 /// All loads.
-pub(super) struct Loads {
+pub(crate) struct Loads {
     pub harmonics: Vec<Harmonic>,
     lines: Vec<Source>,
     /// Times at which a straight line ends, ascending.

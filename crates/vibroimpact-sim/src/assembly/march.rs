@@ -6,7 +6,7 @@
 //! nothing to solve, and panels are as long as it is certain that none closes.
 
 use super::collocate::{Collocated, Unknown, collocate};
-use super::dense::Panel;
+use super::dense::{Panel, Seen, Stretch};
 use super::enclosure::{FlightBounds, Pull, bend_of_loads, first_closing, of_panel};
 use super::event::{EventFunction, Verdict};
 use super::ledger::{Account, Moment};
@@ -18,10 +18,9 @@ use super::state::{Phase, State, Touch};
 use super::system::System;
 use super::tables::Tables;
 use super::terminal::{self, Landed, REACH, Window, series_of, value};
-use crate::modal::contact::Peak;
-use crate::modal::ladder::{J_MAX, J_MIN, level_within, step_s};
-use crate::modal::legendre::{BASIS, Nodal, Q, evaluate};
-use crate::modal::step::{slopes, truncation};
+use crate::panel::peak::Peak;
+use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
+use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, slopes, truncation};
 use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 
 /// Part of the stated tolerance that one panel may use up.
@@ -69,7 +68,7 @@ struct Trial {
     end: Vec<(f64, f64)>,
 }
 
-pub(super) struct March<'a, L> {
+pub(crate) struct March<'a, L> {
     pub assembly: &'a Assembly<L>,
     pub system: &'a System,
     tables: &'a mut Tables,
@@ -84,6 +83,10 @@ pub(super) struct March<'a, L> {
     pub counts: Counts,
     /// The energy ledger, where it is wanted.
     pub account: Option<Account>,
+    /// All stretches of the motion, where they are wanted.
+    pub record: Option<Vec<Stretch>>,
+    /// Time, amplitudes and rates when the last contact opened, where the run may end there.
+    departure: (f64, Vec<f64>, Vec<f64>),
     level: i32,
     horizon: Option<Horizon>,
     /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
@@ -139,6 +142,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
             states,
             counts: Counts::default(),
             account: None,
+            record: None,
+            departure: (0.0, Vec::new(), Vec::new()),
             level: J_MIN,
             horizon: None,
             landing: f64::INFINITY,
@@ -168,8 +173,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 self.pass_break();
             }
             if !self.states.iter().any(State::is_closed) {
-                self.fly();
-            } else if self.settings.stop_at_rest && self.looks_for_rest() && rest::is_certain(self) {
+                if self.fly() {
+                    break Outcome::Parted;
+                }
+            } else if self.looks_for_rest() && self.rests() {
                 break Outcome::Rest;
             } else {
                 self.contact();
@@ -184,8 +191,14 @@ impl<'a, L: ContactLaw> March<'a, L> {
         outcome
     }
 
+    /// Whether nothing opens or closes any more, or nothing that does matters.
+    fn rests(&self) -> bool {
+        let over = self.settings.stop_when_over && rest::has_faded(self, 0.1 * self.settings.tolerance);
+        over || self.settings.stop_at_rest && rest::is_certain(self)
+    }
+
     fn looks_for_rest(&mut self) -> bool {
-        let now = self.counts.contact_steps >= self.ask_rest_at;
+        let now = self.counts.contact_steps >= self.ask_rest_at && self.time_s >= self.settings.rest_from_s;
         if now {
             self.ask_rest_at = self.counts.contact_steps + REST;
         }
@@ -241,6 +254,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Contacts that touch at the start close at once.
     fn begin(&mut self) {
+        self.depart();
         for c in 0..self.states.len() {
             let (overlap, rate) = self.overlap_of_modes(c);
             (self.states[c].overlap, self.states[c].rate) = (overlap, rate);
@@ -357,6 +371,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let touch = Touch {
             branch: law.touch(&memory, approach_speed_m_s.max(0.0)),
             needs_rate: false,
+            residue: 0.0,
+            rate_residue: 0.0,
             previous: None,
             interval,
             peak_force: Peak::NONE,
@@ -444,7 +460,17 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     // ---- free flight ----
 
-    fn fly(&mut self) {
+    /// The bodies have parted, perhaps for good: what follows is free motion.
+    fn depart(&mut self) {
+        if self.settings.stop_when_over {
+            self.departure.0 = self.time_s;
+            self.departure.1.clone_from(&self.amplitude);
+            self.departure.2.clone_from(&self.rate);
+        }
+    }
+
+    /// A step of free flight; `true` if there is none to make since the bodies have parted for good.
+    fn fly(&mut self) -> bool {
         self.counts.flight_steps += 1;
         let lasting = self.lasting();
         let mut go = f64::INFINITY;
@@ -453,6 +479,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 self.renew(c, lasting);
             }
             go = go.min(self.clear_until(c) - self.time_s);
+        }
+        if go == f64::INFINITY && self.settings.stop_when_over && self.loads.is_empty() {
+            (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
+            return true;
         }
         let near = level_within(self.reach);
         if go >= lasting {
@@ -490,6 +520,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 _ => self.coast(window, true),
             }
         }
+        false
     }
 
     fn clear_until(&self, c: usize) -> f64 {
@@ -559,7 +590,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// The end of the run and the breaks of loads are met to the last digit.
     fn arrive_exactly(&mut self) {
         let target = self.settings.end_s.min(self.loads.next_break_s());
-        if (self.time_s - target).abs() <= 1e-12 * target {
+        if target.is_finite() && (self.time_s - target).abs() <= 1e-12 * target {
             self.time_s = target;
         }
     }
@@ -592,17 +623,17 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let Some(trial) = self.attempt(level, &contacts, closed) else {
             return self.refine(level + 1);
         };
-        match self.judge(h, &contacts, closed, &trial.solved, &trial.overlap, true) {
-            Judgement::Clear => {}
-            Judgement::Doubtful => return self.refine(level + 1),
-            Judgement::Meets(target, place) => {
-                self.counts.rejected_steps += 1;
-                if place == 0.0 {
-                    return self.transition(target);
-                }
-                self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
-                return;
-            }
+        let judgement = self.judge(h, &contacts, closed, &trial.solved, &trial.overlap, true);
+        if let Judgement::Meets(target, place) = judgement
+            && place > 0.0
+        {
+            // where it lies is found out when it is near
+            self.counts.rejected_steps += 1;
+            self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
+            return;
+        }
+        if judgement == Judgement::Doubtful {
+            return self.refine(level + 1);
         }
         let mut error = 0.0f64;
         for (i, &c) in contacts[..closed].iter().enumerate() {
@@ -615,6 +646,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
             // the error falls at least like h^5, but for the first panels of a contact, which are begun short enough
             let finer = (error.log2() / 5.0) as i32;
             return self.refine(level + finer.clamp(1, 4));
+        }
+        if let Judgement::Meets(target, _) = judgement {
+            self.counts.rejected_steps += 1;
+            return self.transition(target);
         }
         self.commit(level, &contacts, closed, trial);
         if level == self.level && error * GROWTH < 1.0 {
@@ -753,15 +788,27 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 rho = of_panel(self.system, &self.loads, c, h, self.motion(), &pulls);
             }
             let noise = self.panel_noise(c, h);
+            let mut acceleration = None;
+            let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
             let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
                 let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
+                // interpolation of a rate magnifies rounding
+                let noise = noise * (per_overlap + 50.0 * per_rate);
+                let (mut start_slope, mut start_bend) = (0.0, None);
+                if start.abs() <= noise + 2.0 * residue {
+                    let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
+                    start_slope = (per.0 * state.rate + per.1 * acceleration) * h;
+                    start_bend = (per.1 == 0.0).then_some(per.0 * acceleration * h * h);
+                }
                 let function = EventFunction {
                     start,
+                    start_slope,
+                    start_bend,
                     nodal,
-                    rho: per_overlap * rho[0] + per_rate * rho[1],
-                    rho_slope: per_overlap * rho[1] + per_rate * rho[2],
-                    // interpolation of a rate magnifies rounding
-                    noise: noise * (per_overlap + 50.0 * per_rate),
+                    rho: [0, 1, 2].map(|r| per_overlap * rho[r] + per_rate * rho.get(r + 1).copied().unwrap_or(0.0)),
+                    noise,
+                    residue: 2.0 * residue,
+                    slope_residue: 2.0 * per_overlap * rate_residue * h,
                 };
                 match function.verdict() {
                     Verdict::Clear => {}
@@ -787,7 +834,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 }
                 None => {
                     let touch_m = state.touch_m();
-                    ask(0, touch_m - state.overlap, overlap[i].map(|overlap| touch_m - overlap), (1.0, 0.0));
+                    ask(0, touch_m - state.overlap, overlap[i].map(|overlap| touch_m - overlap), (-1.0, 0.0));
                 }
             }
         }
@@ -796,6 +843,22 @@ impl<'a, L: ContactLaw> March<'a, L> {
             None if doubtful => Judgement::Doubtful,
             None => Judgement::Clear,
         }
+    }
+
+    /// Acceleration of the overlap of a contact now (m/s^2), while these are closed.
+    fn acceleration(&self, c: usize, closed: &[usize]) -> f64 {
+        let (system, link) = (self.system, &self.system.links[c]);
+        let mut series = [0.0; TAYLOR];
+        self.loads.add_series(c, self.time_s, &mut series);
+        let of = |(k, psi): &(usize, f64)| psi * (system.drag[*k] * self.rate[*k] + system.square[*k] * self.amplitude[*k]);
+        let free = 2.0 * series[2] - link.elastic.iter().map(of).sum::<f64>();
+        let pull = |&other: &usize| {
+            let (state, links) = (&self.states[other], &self.system.links);
+            let weight: f64 = links[c].shared(&links[other]).map(|(_, weight)| weight).sum();
+            let force = |touch: &Touch| self.law(other).force(&touch.branch, state.overlap, state.rate).force_n;
+            weight * state.touch().map_or(0.0, force)
+        };
+        free - closed.iter().map(pull).sum::<f64>()
     }
 
     /// The forces of closed contacts at the start of a panel.
@@ -899,7 +962,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
         // the event may have come before, in a dip that this panel passed over, or another one first
         match self.judge(length, &contacts, closed, &landed.solved, &landed.overlap, false) {
             Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
-                return self.head_for(other, place, length);
+                self.head_for(other, place, length);
+                // from nearer by, lest the same end is found again
+                self.level += 1;
+                return;
             }
             _ => {}
         }
@@ -1020,9 +1086,15 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let Some(touch) = self.states[c].touch() else {
             return self.touch(c, 0.0);
         };
+        let boundary = law.boundaries(&touch.branch)[target.boundary];
+        let residue = boundary.margin(self.states[c].overlap, self.states[c].rate).abs();
         match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {
                 self.enter(c, branch);
+                if let Phase::Closed(touch) = &mut self.states[c].phase {
+                    touch.residue = residue;
+                    touch.rate_residue = if boundary.per_rate == 0.0 { 0.0 } else { residue / boundary.per_rate.abs() };
+                }
                 self.event();
             }
             After::Release(memory) => {
@@ -1037,6 +1109,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 state.reference += state.overlap - overlap;
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.forget_horizons();
+                self.depart();
                 self.event();
             }
         }
@@ -1049,21 +1122,46 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
             account.panel(&start, self.tables, h, contacts, force);
         }
-        if self.observer.wants_panels() && h > 0.0 {
-            let forces: Vec<(usize, Nodal)> = contacts.iter().copied().zip(force.iter().copied()).collect();
-            let panel = Panel {
-                system: self.system,
-                loads: &self.loads,
-                laws: self.assembly,
-                states: &self.states,
-                start_s: self.time_s,
-                length_s: h,
-                amplitude: &self.amplitude,
-                rate: &self.rate,
-                forces,
-            };
-            self.observer.panel(&panel);
+        let free = contacts.is_empty();
+        let streams = self.observer.wants_panels();
+        if h == 0.0 || !streams && self.record.is_none() {
+            return;
         }
+        let stretch = self.stretch(h, contacts, force);
+        if streams {
+            let (system, loads, assembly) = (self.system, &self.loads, self.assembly);
+            self.observer.panel(&Panel { system, loads, assembly, stretch: &stretch });
+        }
+        if let Some(record) = &mut self.record {
+            // a flight without loads is one stretch, however many panels it took to see that nothing closes
+            let flies_on = |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty();
+            match record.last_mut().filter(|last| flies_on(last)) {
+                Some(last) => last.length_s = self.time_s + h - last.start_s,
+                None => record.push(stretch),
+            }
+        }
+    }
+
+    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Nodal]) -> Stretch {
+        let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
+        Stretch {
+            start_s: self.time_s,
+            length_s,
+            amplitude: self.amplitude.clone(),
+            rate: self.rate.clone(),
+            contacts: self.states.iter().map(seen).collect(),
+            forces: contacts.iter().copied().zip(force.iter().copied()).collect(),
+        }
+    }
+
+    /// The record, with the endless flight that follows where bodies have parted for good.
+    pub fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
+        let mut record = self.record.take().unwrap_or_default();
+        if parted {
+            record.retain(|stretch| stretch.start_s < self.time_s);
+            record.push(self.stretch(f64::INFINITY, &[], &[]));
+        }
+        record
     }
 }
 

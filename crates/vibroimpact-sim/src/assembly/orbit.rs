@@ -54,7 +54,7 @@ impl Default for OrbitSettings {
 }
 
 impl OrbitSettings {
-    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         InvalidInput::unless(self.forcing_periods > 0, "forcing_periods", self.forcing_periods, "at least 1")?;
         InvalidInput::unless(self.max_iterations > 0, "max_iterations", self.max_iterations, "at least 1")?;
         let closure = (1e-13..=0.1).contains(&self.closure);
@@ -131,7 +131,7 @@ pub fn find_orbit<L: ContactLaw + Clone>(
 }
 
 /// Newton's method from a state near an orbit.
-pub(super) fn refine<L: ContactLaw + Clone>(
+pub(crate) fn refine<L: ContactLaw + Clone>(
     map: &PeriodMap<L>,
     mut state: DVector<f64>,
     settings: &OrbitSettings,
@@ -181,7 +181,7 @@ pub(super) fn refine<L: ContactLaw + Clone>(
 }
 
 /// The map of the state over a period of the loads.
-pub(super) struct PeriodMap<L> {
+pub(crate) struct PeriodMap<L> {
     assembly: Assembly<L>,
     settings: Settings,
     forcing_period_s: f64,

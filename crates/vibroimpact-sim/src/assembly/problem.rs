@@ -1,6 +1,7 @@
 //! The problem as the field poses it: bodies in their modes, contacts between their points, loads.
 
 use crate::InvalidInput;
+pub use crate::panel::oscillator::BodyMode;
 
 /// Bounds on sizes: wide enough for any system of units, narrow enough that no product overflows.
 const SCALE_MAX: f64 = 1e30;
@@ -8,15 +9,6 @@ const SCALE_MAX: f64 = 1e30;
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// A harmonic load nearer than this, relative to the frequency of an undamped mode that it drives, is resonance.
 const RESONANCE: f64 = 1e-9;
-
-/// One mode of a body. Shapes belong to points, see [`Point`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BodyMode {
-    /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
-    pub omega_rad_s: f64,
-    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`. A rigid-body mode has none.
-    pub damping_ratio: f64,
-}
 
 /// A linear body: its modes, and their motion when the clock starts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -127,7 +119,7 @@ pub struct Assembly<L> {
 /// How accurately, and how far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Time at which the run ends (s).
+    /// Time at which the run ends (s); infinity only with `stop_when_over`.
     pub end_s: f64,
     /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far: 1e-13 to 0.1.
     /// Default 1e-9.
@@ -138,17 +130,34 @@ pub struct Settings {
     pub max_intervals: u64,
     /// End the run, [`super::Outcome::Rest`], once it is certain that no contact opens or closes any more. Default true.
     pub stop_at_rest: bool,
+    /// Without loads: end the run, [`super::Outcome::Parted`], once all contacts are open and none can ever close again,
+    /// at the time at which the last one opened, or, as at rest, once what still moves has less energy than the tolerance
+    /// lets a contact get wrong. Default false.
+    pub stop_when_over: bool,
+    /// Rest is not looked for before this time (s). Default 0.
+    pub rest_from_s: f64,
 }
 
 impl Settings {
     /// The defaults, for a run that ends at `end_s`.
     pub fn until(end_s: f64) -> Settings {
-        Settings { end_s, tolerance: 1e-9, max_steps: 2_000_000_000, max_intervals: 100_000_000, stop_at_rest: true }
+        Settings {
+            end_s,
+            tolerance: 1e-9,
+            max_steps: 2_000_000_000,
+            max_intervals: 100_000_000,
+            stop_at_rest: true,
+            stop_when_over: false,
+            rest_from_s: 0.0,
+        }
     }
 
-    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
+        let endless = self.stop_when_over && self.end_s == f64::INFINITY;
         let within = (0.0..=1e12).contains(&self.end_s) && self.end_s > 0.0;
-        InvalidInput::unless(within, "end_s", self.end_s, "a positive number up to 1e12 s")?;
+        InvalidInput::unless(within || endless, "end_s", self.end_s, "a positive number up to 1e12 s")?;
+        let from = (0.0..=SCALE_MAX).contains(&self.rest_from_s);
+        InvalidInput::unless(from, "rest_from_s", self.rest_from_s, "0 or a positive number of seconds, at most 1e30")?;
         InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
         InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
         InvalidInput::unless(self.max_intervals > 0, "max_intervals", self.max_intervals, "at least 1")
@@ -242,7 +251,7 @@ impl Body {
 
 impl Force {
     /// The largest it ever is, in size (N).
-    pub(super) fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         match self {
             Force::Constant { force_n } | Force::Harmonic { force_n, .. } => force_n.abs(),
             Force::Sampled { forces_n, .. } => forces_n.iter().fold(0.0, |most, force| most.max(force.abs())),

@@ -6,7 +6,7 @@ use super::solution::{Interval, Observer};
 pub const COARSER: f64 = 32.0;
 
 /// Compares the intervals of a run, as they come, with those of another.
-pub(super) struct Comparison<'a> {
+pub(crate) struct Comparison<'a> {
     known: &'a [Vec<Interval>],
     seen: Vec<usize>,
     tolerance: f64,

@@ -12,14 +12,14 @@
 //! E' = sum (b_k^2 + omega_k^2 (a_k - a_k*)^2)/2 + sum_c (U_c(xi) - U_c(xi*) - F_c* (xi - xi*))
 //! ```
 //!
-//! with `U` the energy that a contact stores: every term is positive, and `E'` never grows. A contact has to pass
-//! `F* xi* - U(xi*)` of it to open. An open one has to be moved by its distance at equilibrium: an elastic mode moves by
+//! with `U` the energy that a contact stores: every term is positive, and `E'` never grows. A contact that opens at the
+//! compression `xi_r` has to pass `F* (xi* - xi_r) - U(xi*)` of it to open. An open one has to be moved by its distance at equilibrium: an elastic mode moves by
 //! at most `sqrt(2 E')/omega`, a closed contact by at most where its own term would be `E'`, and a rigid mode only as far
 //! as these let it.
 
 use super::march::March;
 use super::state::State;
-use contact_models::ContactLaw;
+use contact_models::{After, Branch, ContactLaw, Stage};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's method on the equilibrium.
@@ -33,8 +33,57 @@ struct Equilibrium {
     rigid: Vec<(usize, f64)>,
 }
 
+/// Whether the one contact of two bodies that no load drives has no more than this part of the speed of its first approach
+/// left: neither between their rigid motions, nor in its force, nor in their vibrations. Vibrations are measured from the
+/// deflection under the present force where something holds the bodies.
+pub(crate) fn has_faded<L: ContactLaw>(march: &March<L>, part: f64) -> bool {
+    let [state] = march.states.as_slice() else { return false };
+    let (system, link) = (march.system, &march.system.links[0]);
+    if !march.loads.is_empty() {
+        return false;
+    }
+    let held = link.rigid.is_empty();
+    let (force, _) = law_at(march, 0, state.overlap);
+    let mut energy = if held { 0.0 } else { (force * state.overlap).abs() };
+    if !held {
+        let rate: f64 = link.rigid.iter().map(|(k, psi)| psi * march.rate[*k]).sum();
+        energy += 0.5 * rate * rate / state.inverse_mass;
+    }
+    for &(k, psi) in &link.elastic {
+        let omega = system.modes[k].omega_rad_s;
+        let deflected = if held { psi * force / omega } else { 0.0 };
+        energy += 0.5 * ((omega * march.amplitude[k] + deflected).powi(2) + march.rate[k].powi(2));
+    }
+    energy < (part * state.speed_m_s()).powi(2) / state.inverse_mass
+}
+
+/// The compression at which a contact on this branch opens; `None` if another branch, which opens at another one, may
+/// come first.
+fn opens_at<L: ContactLaw>(law: &L, branch: &Branch, compression: f64, depth: usize) -> Option<f64> {
+    let boundaries = law.boundaries(branch);
+    let yields = boundaries.iter().any(|boundary| boundary.per_rate == 0.0 && boundary.per_compression < 0.0);
+    if branch.stage == Stage::Loading || yields {
+        return None;
+    }
+    for (which, boundary) in boundaries.iter().enumerate() {
+        let after = |compression| law.cross(branch, which, compression, 0.0);
+        if boundary.per_rate == 0.0 && boundary.per_compression > 0.0 {
+            if let After::Release(memory) = after(boundary.level / boundary.per_compression) {
+                return Some(memory.touch_m);
+            }
+        } else if boundary.per_rate != 0.0
+            && depth > 0
+            && let After::Continue(next) = after(compression)
+            && next.stage == Stage::Slack
+        {
+            return opens_at(law, &next, compression, depth - 1);
+        }
+    }
+    None
+}
+
 /// Whether nothing that can still happen opens or closes a contact.
-pub(super) fn is_certain<L: ContactLaw>(march: &March<L>) -> bool {
+pub(crate) fn is_certain<L: ContactLaw>(march: &March<L>) -> bool {
     if !march.loads.are_constant() {
         return false;
     }
@@ -142,8 +191,13 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
         energy += (stored(i, now) - stored(i, still) - at.force[i] * (now - still)).max(0.0);
         yielding.push(law_at(march, c, still).1);
     }
-    let opens = (0..at.closed.len()).any(|i| at.force[i] * at.compression[i] - stored(i, at.compression[i]) <= energy);
-    !opens
+    let stays_closed = |i: usize| {
+        let law = &march.assembly.contacts[at.closed[i]].law;
+        let touch = march.states[at.closed[i]].touch();
+        let opens_at = touch.and_then(|touch| opens_at(law, &touch.branch, at.compression[i], 1));
+        opens_at.is_some_and(|xi| at.force[i] * (at.compression[i] - xi) - stored(i, at.compression[i]) > energy)
+    };
+    (0..at.closed.len()).all(stays_closed)
         && march
             .states
             .iter()

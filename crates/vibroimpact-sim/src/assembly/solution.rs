@@ -9,6 +9,9 @@ pub enum Outcome {
     /// The energy above the static equilibrium under the loads is too small to open a contact that is closed or to close
     /// one that is open. What still vibrates goes on.
     Rest,
+    /// All contacts are open and none can ever close again; the run ends where the last one opened. Only where it was
+    /// asked for ([`Settings::stop_when_over`](super::Settings::stop_when_over)).
+    Parted,
     /// The run stopped before; everything up to there is kept.
     Stopped(Reason),
 }
@@ -37,6 +40,7 @@ impl Outcome {
         match self {
             Outcome::End => "end",
             Outcome::Rest => "rest",
+            Outcome::Parted => "parted",
             Outcome::Stopped(_) => "stopped",
         }
     }
@@ -143,6 +147,17 @@ pub struct Counts {
     pub flight_steps: u64,
     /// Transitions of contacts from one branch of their law to another, touches and releases included.
     pub events: u64,
+}
+
+impl std::ops::AddAssign for Counts {
+    fn add_assign(&mut self, other: Counts) {
+        self.contact_steps += other.contact_steps;
+        self.rejected_steps += other.rejected_steps;
+        self.newton_iterations += other.newton_iterations;
+        self.law_evaluations += other.law_evaluations;
+        self.flight_steps += other.flight_steps;
+        self.events += other.events;
+    }
 }
 
 /// The result of a run.

@@ -1,10 +1,10 @@
 //! From an assembly to a run.
 
-use super::dense::in_users_order;
+use super::dense::{Stretch, in_users_order};
 use super::march::March;
 use super::problem::{Assembly, Settings};
 use super::reliability::{COARSER, Comparison};
-use super::solution::{ContactEnd, Interval, Observer, Run};
+use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
 use super::tables::Tables;
 use crate::InvalidInput;
@@ -65,24 +65,7 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
     /// As [`run`].
     pub fn run(&mut self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         settings.check()?;
-        let mut march = March::new(self.assembly, &self.system, &mut self.tables, *settings, observer);
-        let outcome = march.follow();
-        let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
-        let work_j = contacts.iter().map(|contact| contact.statistics.work_j).sum();
-        let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), work_j));
-        let (mut amplitude, mut rate) = (march.amplitude, march.rate);
-        march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
-        let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
-        let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
-        Ok(Run {
-            outcome,
-            end_s: march.time_s,
-            amplitude: by_body(&amplitude),
-            rate: by_body(&rate),
-            contacts,
-            energy,
-            counts: march.counts,
-        })
+        Ok(follow(self.assembly, (&self.system, &mut self.tables), settings, observer, false).0)
     }
 
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
@@ -104,6 +87,29 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
         self.run(&second, &mut comparison)?;
         Ok(comparison.certain_until())
     }
+}
+
+/// One run, and all stretches of its motion if they are wanted; after bodies have parted for good the last one is endless.
+pub(crate) fn follow<L: ContactLaw>(
+    assembly: &Assembly<L>,
+    (system, tables): (&System, &mut Tables),
+    settings: &Settings,
+    observer: &mut dyn Observer,
+    record: bool,
+) -> (Run, Vec<Stretch>) {
+    let mut march = March::new(assembly, system, tables, *settings, observer);
+    march.record = record.then(Vec::new);
+    let outcome = march.follow();
+    let stretches = march.recorded(outcome == Outcome::Parted);
+    let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
+    let work_j = contacts.iter().map(|contact| contact.statistics.work_j).sum();
+    let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), work_j));
+    let (mut amplitude, mut rate) = (march.amplitude, march.rate);
+    march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
+    let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
+    let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
+    let (amplitude, rate) = (by_body(&amplitude), by_body(&rate));
+    (Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts }, stretches)
 }
 
 fn contact_end<L: ContactLaw>(march: &March<L>, c: usize) -> ContactEnd {

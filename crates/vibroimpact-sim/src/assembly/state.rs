@@ -2,13 +2,13 @@
 
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
-use crate::modal::contact::Peak;
-use crate::modal::legendre::{BASIS, Nodal, Q, apply, evaluate};
+use crate::panel::peak::Peak;
+use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate};
 use contact_models::{Branch, Memory};
 
 /// A contact at a moment.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(crate) struct State {
     pub phase: Phase,
     /// Overlap of the surfaces (m) and its rate (m/s). While closed it is summed up as it changes: as the difference of
     /// where the bodies are it would carry their rounding, which a stiff contact turns into force.
@@ -25,7 +25,7 @@ pub(super) struct State {
 
 /// Whether a contact is closed.
 #[derive(Debug, Clone)]
-pub(super) enum Phase {
+pub(crate) enum Phase {
     Open {
         memory: Memory,
         /// It is certain that the contact stays open until then (s), if its bodies meet no force.
@@ -38,9 +38,13 @@ pub(super) enum Phase {
 
 /// A contact that is closed.
 #[derive(Debug, Clone)]
-pub(super) struct Touch {
+pub(crate) struct Touch {
     pub branch: Branch,
     pub needs_rate: bool,
+    /// By how much the event function that led to the branch missed zero there.
+    pub residue: f64,
+    /// The same of the rate (m/s), where that function asked for it.
+    pub rate_residue: f64,
     /// Legendre coefficients of the last panel's force, and its length.
     pub previous: Option<(Nodal, f64)>,
     pub interval: Interval,

@@ -1,12 +1,12 @@
 //! The assembly as the march needs it: all modes in one list, each contact as a row of weights over them.
 
 use super::problem::{Assembly, Point};
-use crate::modal::problem::Mode;
+use crate::panel::oscillator::BodyMode;
 use std::ops::Range;
 
 /// Weights `psi_k` over the modes of one body: what the modes' unit amplitudes add to the overlap of a contact.
 #[derive(Debug, Clone)]
-pub(super) struct Span {
+pub(crate) struct Span {
     pub modes: Range<usize>,
     pub psi: Vec<f64>,
 }
@@ -20,7 +20,7 @@ impl Span {
 
 /// One contact, `xi = u_B - u_A - gap`, over the modes of the one or two bodies that it joins.
 #[derive(Debug, Clone)]
-pub(super) struct Link {
+pub(crate) struct Link {
     pub spans: Vec<Span>,
     /// Displacement of either side by itself; none for the ground.
     pub sides: [Option<Span>; 2],
@@ -52,6 +52,11 @@ impl Link {
         })
     }
 
+    /// Inverse mass of the rigid modes that this link and another both move (1/kg).
+    pub fn shared_rigid(&self, other: &Link) -> f64 {
+        self.rigid.iter().map(|(k, psi)| psi * other.weight(*k)).sum()
+    }
+
     /// Whether both join the same body.
     pub fn touches(&self, other: &Link) -> bool {
         self.spans.iter().any(|span| other.spans.iter().any(|other| other.modes == span.modes))
@@ -60,9 +65,9 @@ impl Link {
 
 /// All modes and contacts.
 #[derive(Debug, Clone)]
-pub(super) struct System {
+pub(crate) struct System {
     /// The modes, body by body, each by rising frequency.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<BodyMode>,
     /// `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and the fastest motion of the modes up to this one of the same body
     /// (rad/s).
     pub drag: Vec<f64>,
@@ -88,7 +93,7 @@ impl System {
             for (i, &k) in order.iter().enumerate() {
                 places[k] = first + i;
                 let mode = body.modes[k];
-                modes.push(Mode { omega_rad_s: mode.omega_rad_s, damping_ratio: mode.damping_ratio, shape: 1.0 });
+                modes.push(mode);
             }
             bodies.push(first..modes.len());
             place.push(places);

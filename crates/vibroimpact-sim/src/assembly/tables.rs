@@ -3,12 +3,12 @@
 
 use super::damping::Damping;
 use super::system::{Link, Span, System};
-use crate::modal::forcing::{Compliance, Terms, part};
-use crate::modal::ladder::{J_MAX, J_MIN, Rotation, step_s};
-use crate::modal::legendre::{Matrix, Nodal, Q, TAYLOR, dot};
+use crate::panel::forcing::{Compliance, Terms, part};
+use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 
 /// Response of one contact's overlap to the force of another.
-pub(super) struct Response {
+pub(crate) struct Response {
     /// At the nodes, to nodal forces (m/N).
     pub nodes: Matrix,
     /// At the end, to Legendre forces (m/N), and its rate (m/(N s)).
@@ -24,7 +24,13 @@ struct Forced {
     amplitude: [Vec<f64>; Q],
     rate: [Vec<f64>; Q],
     /// `[c][c']`, where asked for.
-    responses: Vec<Option<Box<Response>>>,
+    responses: Vec<Option<Box<Pair>>>,
+}
+
+/// The response of the elastic modes, and that of all.
+struct Pair {
+    elastic: Response,
+    whole: Response,
 }
 
 #[derive(Default)]
@@ -34,9 +40,9 @@ struct Level {
     damping: Option<Box<Damping>>,
 }
 
-pub(super) struct Tables {
+pub(crate) struct Tables {
     levels: Vec<Level>,
-    /// Derivatives at zero of the response of contact `c` to an impulse of contact `c'`, where asked for.
+    /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where asked for.
     kernels: Vec<Option<[f64; TAYLOR]>>,
     contacts: usize,
 }
@@ -63,6 +69,19 @@ impl Tables {
         damping
     }
 
+    /// For a system that differs in the weights of rigid modes alone: nothing else has to be made anew.
+    pub fn change_rigid_modes(&mut self, system: &System) {
+        for (j, level) in (J_MIN..).zip(&mut self.levels) {
+            let Some(forced) = &mut level.forced else { continue };
+            for (at, pair) in forced.responses.iter_mut().enumerate() {
+                if let Some(pair) = pair {
+                    let links = [at / self.contacts, at % self.contacts].map(|c| &system.links[c]);
+                    pair.whole = pair.elastic.with_rigid(links[0].shared_rigid(links[1]), step_s(j));
+                }
+            }
+        }
+    }
+
     /// Makes sure that everything about level `j` is there for these contacts and these forces.
     pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
         self.rotation(system, j);
@@ -75,8 +94,10 @@ impl Tables {
         for &c in contacts {
             for &other in forces {
                 if forced.responses[c * count + other].is_none() && system.neighbours[c].contains(&other) {
-                    let response = forced.response(system, j, half, &system.links[c], &system.links[other]);
-                    forced.responses[c * count + other] = Some(Box::new(response));
+                    let (one, other_link) = (&system.links[c], &system.links[other]);
+                    let elastic = forced.response(system, j, half, one, other_link);
+                    let whole = elastic.with_rigid(one.shared_rigid(other_link), step_s(j));
+                    forced.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
                 }
             }
         }
@@ -104,7 +125,7 @@ impl Tables {
 
     /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Tables::prepare`].
     pub fn response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
-        self.forced(j)?.responses[c * self.contacts + other].as_deref()
+        self.forced(j)?.responses[c * self.contacts + other].as_deref().map(|pair| &pair.whole)
     }
 
     /// How far free motion over a panel moves the overlap of a contact, and its rate then.
@@ -147,19 +168,20 @@ impl Tables {
 
     /// Derivatives at zero of the response of contact `c` to an impulse of `other`.
     pub fn kernel(&mut self, system: &System, c: usize, other: usize) -> [f64; TAYLOR] {
-        *self.kernels[c * self.contacts + other].get_or_insert_with(|| {
+        let (one, other_link) = (&system.links[c], &system.links[other]);
+        let mut kernel = *self.kernels[c * self.contacts + other].get_or_insert_with(|| {
             let mut kernel = [0.0; TAYLOR];
-            for (k, weight) in system.links[c].shared(&system.links[other]) {
-                let mode = &system.modes[k];
-                let (drag, square) = (2.0 * mode.damping_ratio * mode.omega_rad_s, mode.omega_rad_s.powi(2));
+            for (k, weight) in one.shared(other_link).filter(|(k, _)| !system.modes[*k].is_rigid()) {
                 let (mut here, mut next) = (0.0, weight);
                 for value in &mut kernel {
                     *value += here;
-                    (here, next) = (next, -drag * next - square * here);
+                    (here, next) = (next, -system.drag[k] * next - system.square[k] * here);
                 }
             }
             kernel
-        })
+        });
+        kernel[1] += one.shared_rigid(other_link);
+        kernel
     }
 }
 
@@ -203,6 +225,9 @@ impl Forced {
         let (mut terms, mut last) = (Terms::default(), 0.0);
         for (k, weight) in one.shared(other).filter(|(_, weight)| *weight != 0.0) {
             let mode = &system.modes[k];
+            if mode.is_rigid() {
+                continue;
+            }
             if mode.omega_rad_s < last {
                 // the next body begins
                 terms = Terms::default();
@@ -219,6 +244,20 @@ impl Forced {
 }
 
 impl Response {
+    /// With that of rigid modes of this inverse mass (1/kg), on a panel of `h`.
+    fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
+        let Response { mut nodes, mut end, mut end_rate } = *self;
+        let moved = inverse_mass * h * h;
+        for (row, twice) in nodes.iter_mut().zip(&BASIS.power[1]) {
+            row.iter_mut().zip(twice).for_each(|(value, integral)| *value -= moved * integral);
+        }
+        // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on
+        end[0] -= moved / 2.0;
+        end[1] += moved / 6.0;
+        end_rate[0] -= inverse_mass * h;
+        Response { nodes, end, end_rate }
+    }
+
     /// Overlap and its rate at the end of a panel, to a force with these Legendre coefficients.
     pub fn at_end(&self, force: &Nodal) -> (f64, f64) {
         (dot(&self.end, force), dot(&self.end_rate, force))

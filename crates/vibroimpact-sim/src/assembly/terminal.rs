@@ -8,17 +8,17 @@ use super::load::Loads;
 use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
-use crate::modal::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
 use contact_models::ContactLaw;
 use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
-pub(super) const REACH: f64 = 0.7;
+pub(crate) const REACH: f64 = 0.7;
 
 type Series = [f64; TAYLOR];
 
 /// The state of some contacts at the start of a terminal panel.
-pub(super) struct Window {
+pub(crate) struct Window {
     /// Closed contacts, then open ones that are watched.
     pub contacts: Vec<usize>,
     pub closed: usize,
@@ -30,7 +30,7 @@ pub(super) struct Window {
 
 /// A solved terminal panel.
 #[derive(Debug, Clone)]
-pub(super) struct Landed {
+pub(crate) struct Landed {
     pub length: f64,
     /// Of the closed contacts: values at the nodes, and Legendre coefficients of the force.
     pub solved: Vec<Collocated>,
@@ -124,7 +124,7 @@ impl Window {
 }
 
 /// Value, first and second derivative of a series at `t`.
-pub(super) fn value(series: &Series, t: f64) -> [f64; 3] {
+pub(crate) fn value(series: &Series, t: f64) -> [f64; 3] {
     let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
     for p in (0..TAYLOR).rev() {
         bend = bend * t + slope;
@@ -179,7 +179,7 @@ fn add_end(kernel: &Series, length: f64, nodal: &Nodal, force: &Nodal, end: &mut
 
 /// `g^(p)/p!` of the free motion of a contact's overlap under the loads, to be used up to `reach` (s); its value is that of
 /// the modes alone.
-pub(super) fn series_of(
+pub(crate) fn series_of(
     system: &System,
     loads: &Loads,
     contact: usize,
@@ -229,7 +229,7 @@ fn turning(system: &System, k: usize, end: usize) -> f64 {
 }
 
 /// Free motion of all modes over `length`.
-pub(super) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
+pub(crate) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
     let powers = powers(length);
     for body in &system.bodies {
         let mut terms = 2;
@@ -263,7 +263,7 @@ fn powers(length: f64) -> Series {
 }
 
 /// Adds what nodal contact forces do to the modes within a panel of `length`.
-pub(super) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+pub(crate) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
     // the response of a mode is the sum of the derivatives of its impulse response times the moments of the force
     let mut power = length;
     let moments: Series = array::from_fn(|p| {

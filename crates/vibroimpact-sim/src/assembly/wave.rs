@@ -1,11 +1,11 @@
 //! Integrals with `e^{i Omega t}`.
 
-use crate::modal::legendre::{Nodal, Q};
-use crate::modal::oscillator::exponential_moments;
+use crate::panel::legendre::{Nodal, Q};
+use crate::panel::oscillator::exponential_moments;
 use num_complex::Complex64;
 
 /// `e^{i Omega t}` over a stretch of time.
-pub(super) struct Wave {
+pub(crate) struct Wave {
     /// At its ends.
     pub ends: [Complex64; 2],
     /// `int e^{i Omega t} dt`.
@@ -25,14 +25,14 @@ impl Wave {
 }
 
 /// `int e^{i Omega t} dt`, for any `Omega`.
-pub(super) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
+pub(crate) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
     let (half, length) = (0.5 * omega * (to_s - from_s), to_s - from_s);
     let mean = if half.abs() < 1e-9 { 1.0 } else { half.sin() / half };
     Complex64::cis(omega * 0.5 * (from_s + to_s)) * (length * mean)
 }
 
 /// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
-pub(super) fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
+pub(crate) fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
     // seen from the other end, where odd polynomials change their sign
     let moments = exponential_moments(Complex64::new(0.0, angle));
     (0..Q).map(|n| if n % 2 == 0 { force[n] * moments[n] } else { -force[n] * moments[n] }).sum()

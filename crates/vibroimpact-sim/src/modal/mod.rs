@@ -34,21 +34,11 @@
 //! Where that is more than the tolerance the impact amplifies errors, undamped ones with many modes by 1e5 and more, and two
 //! solutions may agree by accident: a third is asked, and the largest difference counts five times.
 
-mod behind;
-pub(crate) mod contact;
-pub(crate) mod flight;
-pub(crate) mod forcing;
 mod history;
-pub(crate) mod ladder;
-pub(crate) mod landing;
-pub(crate) mod legendre;
-mod motion;
-pub(crate) mod oscillator;
+mod posed;
 pub(crate) mod problem;
-mod rest;
 mod solution;
 mod solve;
-pub(crate) mod step;
 mod time_unit;
 
 pub use history::{EnergyLedger, History, Sample};

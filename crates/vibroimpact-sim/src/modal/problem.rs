@@ -1,6 +1,7 @@
 //! The problem as the field poses it: a structure in modes, a striker, how both start.
 
 use crate::InvalidInput;
+use crate::assembly::BodyMode;
 
 /// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
@@ -22,6 +23,11 @@ pub struct Mode {
 }
 
 impl Mode {
+    /// The mode without its shape.
+    pub(crate) fn of_body(&self) -> BodyMode {
+        BodyMode { omega_rad_s: self.omega_rad_s, damping_ratio: self.damping_ratio }
+    }
+
     /// Whether the mode is a rigid-body motion.
     pub(crate) fn is_rigid(&self) -> bool {
         self.omega_rad_s == 0.0

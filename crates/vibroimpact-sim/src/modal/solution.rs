@@ -1,6 +1,7 @@
 //! What an impact came to.
 
 use crate::StopReason;
+pub use crate::assembly::Counts;
 
 /// How an impact ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,31 +51,6 @@ pub struct SubImpact {
     pub peak_force_n: f64,
     /// Largest compression (m).
     pub peak_compression_m: f64,
-}
-
-/// What the computation cost, in deterministic counts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Steps accepted in contact.
-    pub contact_steps: u64,
-    /// Steps tried in contact and taken back.
-    pub rejected_steps: u64,
-    /// Newton iterations over all steps.
-    pub newton_iterations: u64,
-    /// Evaluations of the contact law.
-    pub law_evaluations: u64,
-    /// Steps of the search for the next contact.
-    pub flight_steps: u64,
-}
-
-impl std::ops::AddAssign for Counts {
-    fn add_assign(&mut self, other: Counts) {
-        self.contact_steps += other.contact_steps;
-        self.rejected_steps += other.rejected_steps;
-        self.newton_iterations += other.newton_iterations;
-        self.law_evaluations += other.law_evaluations;
-        self.flight_steps += other.flight_steps;
-    }
 }
 
 /// The result of one impact.

@@ -1,19 +1,19 @@
 //! From first touch to the certainty that the bodies never meet again.
 
-use super::contact::{Contact, ContactEnd, Setting};
-use super::flight::{FlightEnd, fly};
-use super::history::History;
-use super::ladder::{Ladder, Vibration};
-use super::motion::{Motion, Piece};
-use super::oscillator::propagate;
+use super::history::{History, Recorded};
+use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit;
+use crate::assembly::dense::Stretch;
+use crate::assembly::solve::follow;
+use crate::assembly::system::System;
+use crate::assembly::tables::Tables;
+use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
+use crate::panel::oscillator::propagate;
 use crate::{InvalidInput, StopReason};
-use contact_models::{ContactLaw, Memory};
+use contact_models::ContactLaw;
 
-/// Part of the stated tolerance that one step may use up, as a share of the striker's momentum.
-const STEP_SHARE: f64 = 0.1;
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.
 const LOOSEST: f64 = 1e-4;
@@ -26,9 +26,6 @@ const THIRD: f64 = 8.0;
 const ORDINARY: f64 = 2.5;
 const AMPLIFIED: f64 = 5.0;
 const LEAST: f64 = 3e-3;
-/// By so much is the tolerance tightened where steps get stuck behind a compliance, down to this one.
-const TIGHTER: f64 = 1e-2;
-const TIGHT: f64 = 1e-9;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less.
@@ -51,41 +48,66 @@ const TIGHT: f64 = 1e-9;
 /// ```
 pub struct Solver {
     modes: Vec<Mode>,
-    residual_compliance_m_n: f64,
-    ladder: Ladder,
-    /// Where each of the structure's modes went: its place on the ladder, if it is elastic and excited.
-    place: Vec<Option<usize>>,
+    /// Those that move the contact.
+    moved: Vec<usize>,
+    /// Tables of the structure, with the system that they were last made for.
+    kept: Option<(System, Tables)>,
     /// The same structure in another unit of time, once it was needed.
     otherwise: Option<Box<Solver>>,
+}
+
+/// An impact to be solved.
+#[derive(Clone, Copy)]
+struct Impact<'a, L> {
+    striker: &'a Striker,
+    law: &'a L,
+    start: &'a Start,
+    settings: &'a Settings,
 }
 
 /// One run at one tolerance.
 struct Run {
     outcome: Outcome,
-    motion: Motion,
+    end_s: f64,
     sub_impacts: Vec<SubImpact>,
+    striker_velocity_m_s: f64,
+    amplitude: Vec<f64>,
+    rate: Vec<f64>,
     counts: Counts,
+    contact_work_j: f64,
+    energy: Option<Ledger>,
+    stretches: Vec<Stretch>,
+}
+
+/// Collects the intervals of contact.
+struct Watch {
+    intervals: Vec<Interval>,
+    records: bool,
+}
+
+impl Observer for Watch {
+    fn interval(&mut self, _: usize, interval: &Interval) {
+        self.intervals.push(*interval);
+    }
+
+    fn wants_energy(&self) -> bool {
+        self.records
+    }
 }
 
 impl Solver {
     /// A solver for a structure; builds no table yet.
+    ///
+    /// # Errors
+    /// Names the field, its value and what would be allowed.
     pub fn new(structure: &Structure) -> Result<Solver, InvalidInput> {
         structure.check()?;
-        Ok(Solver::unchecked(structure))
+        Ok(Solver::unchecked(structure.modes.clone()))
     }
 
-    fn unchecked(structure: &Structure) -> Solver {
-        let modes = structure.modes.clone();
-        let mut order: Vec<usize> =
-            (0..modes.len()).filter(|&k| !modes[k].is_rigid() && modes[k].is_excited()).collect();
-        order.sort_by(|&a, &b| modes[a].omega_rad_s.total_cmp(&modes[b].omega_rad_s));
-        let mut place = vec![None; modes.len()];
-        for (i, &k) in order.iter().enumerate() {
-            place[k] = Some(i);
-        }
-        let ladder = Ladder::new(order.iter().map(|&k| modes[k]).collect());
-        let residual_compliance_m_n = structure.residual_compliance_m_n;
-        Solver { modes, residual_compliance_m_n, ladder, place, otherwise: None }
+    fn unchecked(modes: Vec<Mode>) -> Solver {
+        let moved = (0..modes.len()).filter(|&k| modes[k].is_excited()).collect();
+        Solver { modes, moved, kept: None, otherwise: None }
     }
 
     /// Solves one impact. `start` is the structure's motion when the clock starts; `None` means at rest and touching.
@@ -99,7 +121,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
-        self.solve_into(striker, law, start, settings, &mut None)
+        Ok(self.solve_into(striker, law, start, settings, false)?.0)
     }
 
     /// Solves one impact and keeps its whole history.
@@ -113,11 +135,19 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<(Solution, History<L>), InvalidInput> {
-        let mut record = Some(Vec::new());
-        let solution = self.solve_into(striker, law, start, settings, &mut record)?;
-        let at_rest = Start::at_rest(self.modes.len());
-        let start = start.unwrap_or(&at_rest);
-        let history = History::new(self, *striker, law.clone(), start.clone(), record.unwrap_or_default(), &solution);
+        let (solution, run) = self.solve_into(striker, law, start, settings, true)?;
+        let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
+        let recorded = Recorded {
+            modes: self.modes.clone(),
+            moved: self.moved.clone(),
+            striker: *striker,
+            contact_work_j: run.contact_work_j,
+            damping_j: run.energy.map_or(0.0, |ledger| ledger.modal_damping_j),
+            assembly: posed::assembly(&self.modes, &self.moved, striker, law.clone(), &start),
+            start,
+            stretches: run.stretches,
+        };
+        let history = History::new(recorded, &solution);
         Ok((solution, history))
     }
 
@@ -127,8 +157,8 @@ impl Solver {
         law: &L,
         start: Option<&Start>,
         settings: &Settings,
-        record: &mut Option<Vec<Piece>>,
-    ) -> Result<Solution, InvalidInput> {
+        record: bool,
+    ) -> Result<(Solution, Run), InvalidInput> {
         striker.check()?;
         settings.check()?;
         let at_rest;
@@ -141,240 +171,171 @@ impl Solver {
         };
         start.check(self.modes.len())?;
         InvalidInput::unless(
-            self.inverse_mass(striker) > 0.0 || !self.ladder.modes.is_empty(),
+            striker.mass_kg.is_finite() || !self.moved.is_empty(),
             "mass_kg",
             striker.mass_kg,
             "a finite mass, where no mode of the structure moves at the contact",
         )?;
 
-        let run = self.run(striker, law, start, settings, settings.tolerance.min(LOOSEST), record);
+        let impact = Impact { striker, law, start, settings };
+        let mut run = self.run(&impact, settings.tolerance.min(LOOSEST), record);
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
         let restitution_uncertainty = restitution
             .filter(|_| settings.estimate_uncertainty)
-            .map(|value| self.uncertainty(value, striker, law, start, settings, &mut counts));
-        let (amplitude, rate) = modal_state(&self.modes, &self.place, &run.motion, start);
-        Ok(Solution {
+            .map(|value| self.uncertainty(value, &impact, &mut counts));
+        let solution = Solution {
             outcome: run.outcome,
             restitution,
             restitution_uncertainty,
-            sub_impacts: run.sub_impacts,
+            sub_impacts: std::mem::take(&mut run.sub_impacts),
             counts,
-            end_s: run.motion.time,
-            striker_velocity_m_s: -striker.speed_m_s + run.motion.impulse / striker.mass_kg,
-            amplitude,
-            rate,
-        })
+            end_s: run.end_s,
+            striker_velocity_m_s: run.striker_velocity_m_s,
+            amplitude: std::mem::take(&mut run.amplitude),
+            rate: std::mem::take(&mut run.rate),
+        };
+        Ok((solution, run))
     }
 
     /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
     /// certain.
-    fn uncertainty<L: ContactLaw>(
-        &mut self,
-        value: f64,
-        striker: &Striker,
-        law: &L,
-        start: &Start,
-        settings: &Settings,
-        counts: &mut Counts,
-    ) -> f64 {
+    fn uncertainty<L: ContactLaw>(&mut self, value: f64, impact: &Impact<L>, counts: &mut Counts) -> f64 {
+        let settings = impact.settings;
         let coarser = |factor: f64| factor * settings.tolerance.min(LOOSEST);
-        let same = self.again(striker, law, start, settings, coarser(COARSER), counts);
+        let same = self.again(impact, coarser(COARSER), counts);
         let other = {
-            let (modes, compliance) = (&self.modes, self.residual_compliance_m_n);
-            let solver = self
-                .otherwise
-                .get_or_insert_with(|| Box::new(Solver::unchecked(&time_unit::structure(modes, compliance))));
-            let (striker, start) = (time_unit::striker(striker), time_unit::start(start));
-            solver.again(&striker, &time_unit::Law(law), &start, settings, coarser(OTHERWISE), counts)
+            let modes = &self.modes;
+            let solver =
+                self.otherwise.get_or_insert_with(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
+            let (striker, start) = (time_unit::striker(impact.striker), time_unit::start(impact.start));
+            let law = time_unit::Law(impact.law);
+            let impact = Impact { striker: &striker, law: &law, start: &start, settings };
+            solver.again(&impact, coarser(OTHERWISE), counts)
         };
         let (Some(same), Some(other)) = (same, other) else { return 1.0 };
         let mut spread = (same - value).abs().max((other - value).abs());
         let mut times = ORDINARY;
         if spread > settings.tolerance {
-            let Some(third) = self.again(striker, law, start, settings, coarser(THIRD), counts) else { return 1.0 };
+            let Some(third) = self.again(impact, coarser(THIRD), counts) else { return 1.0 };
             (spread, times) = (spread.max((third - value).abs()), AMPLIFIED);
         }
         (LEAST * settings.tolerance + times * spread).min(f64::MAX)
     }
 
     /// The restitution of the same impact at another tolerance.
-    fn again<L: ContactLaw>(
-        &mut self,
-        striker: &Striker,
-        law: &L,
-        start: &Start,
-        settings: &Settings,
-        tolerance: f64,
-        counts: &mut Counts,
-    ) -> Option<f64> {
-        let run = self.run(striker, law, start, settings, tolerance, &mut None);
+    fn again<L: ContactLaw>(&mut self, impact: &Impact<L>, tolerance: f64, counts: &mut Counts) -> Option<f64> {
+        let run = self.run(impact, tolerance, false);
         *counts += run.counts;
-        self.restitution(&run, striker, start)
+        self.restitution(&run, impact.striker, impact.start)
     }
 
-    /// One run. Behind a residual compliance, with few modes, the steps of a loose tolerance may get stuck on their way,
-    /// where those of a tighter one do not: then they take over.
-    fn run<L: ContactLaw>(
-        &mut self,
-        striker: &Striker,
-        law: &L,
-        start: &Start,
-        settings: &Settings,
-        mut tolerance: f64,
-        record: &mut Option<Vec<Piece>>,
-    ) -> Run {
-        let mut counts = Counts::default();
-        loop {
-            let mut run = self.march(striker, law, start, settings, tolerance, record);
-            counts += run.counts;
-            let stuck = matches!(run.outcome, Outcome::Stopped(StopReason::Steps | StopReason::FinestStep));
-            if !stuck || self.residual_compliance_m_n == 0.0 || tolerance <= TIGHT {
-                run.counts = counts;
-                return run;
-            }
-            tolerance = (tolerance * TIGHTER).max(TIGHT);
-            if let Some(pieces) = record.as_mut() {
-                pieces.clear();
-            }
-        }
-    }
-
-    fn march<L: ContactLaw>(
-        &mut self,
-        striker: &Striker,
-        law: &L,
-        start: &Start,
-        settings: &Settings,
-        tolerance: f64,
-        record: &mut Option<Vec<Piece>>,
-    ) -> Run {
-        let mut counts = Counts::default();
-        let mut motion = self.initial(striker, start);
-        let mu = self.inverse_mass(striker);
-        // momentum and energy of the approach, or of the structure's motion where there is no approach
-        let speed = motion.drift_rate.abs().max(motion.vibration.beta.iter().map(|b| b.abs()).sum());
-        let inverse = if mu > 0.0 { mu } else { self.ladder.weight.iter().sum() };
-        let momentum = speed / inverse;
-        let setting = Setting {
-            law,
-            mu,
-            residual_compliance: self.residual_compliance_m_n,
-            impulse_tolerance: STEP_SHARE * tolerance * momentum,
-            rest_energy: (0.1 * tolerance * speed).powi(2) / inverse,
+    fn run<L: ContactLaw>(&mut self, impact: &Impact<L>, tolerance: f64, record: bool) -> Run {
+        let Impact { striker, law, start, settings } = *impact;
+        let assembly = posed::assembly(&self.modes, &self.moved, striker, law, start);
+        let wanted = assembly::Settings {
+            end_s: f64::INFINITY,
+            tolerance: tolerance.min(0.1),
             max_steps: settings.max_steps,
-            until_s: if record.is_some() { settings.until_s } else { 0.0 },
+            max_intervals: settings.max_sub_impacts as u64,
+            stop_at_rest: true,
+            stop_when_over: true,
+            rest_from_s: if record { settings.until_s } else { 0.0 },
         };
-        let mut memory = Memory::default();
-        let mut sub_impacts = Vec::new();
-        let mut in_contact = start.gap_m == 0.0 && motion.gap_rate() > 0.0;
-        let outcome = loop {
-            if !in_contact {
-                if let Some(pieces) = record.as_mut() {
-                    pieces.push(Piece { start: motion.clone(), contact: None });
-                }
-                let departure = motion.clone();
-                match fly(&mut self.ladder, &mut motion, memory.touch_m, settings.max_steps, &mut counts) {
-                    FlightEnd::Contact => {}
-                    end => {
-                        // the search went on past the last event: report the state at that event
-                        motion = departure;
-                        break match end {
-                            FlightEnd::Limit => Outcome::Stopped(StopReason::Flight),
-                            _ if sub_impacts.is_empty() => Outcome::NoContact,
-                            _ => Outcome::Rebound,
-                        };
-                    }
-                }
-            }
-            let (found, end) = Contact::run(&setting, &mut self.ladder, &mut motion, &memory, &mut counts, record);
-            sub_impacts.push(found);
-            match end {
-                ContactEnd::Released(kept) => memory = kept,
-                ContactEnd::Lasts => break Outcome::Sustained,
-                ContactEnd::Stopped(reason) => break Outcome::Stopped(reason),
-            }
-            if sub_impacts.len() >= settings.max_sub_impacts {
-                break Outcome::Stopped(StopReason::SubImpacts);
-            }
-            in_contact = false;
+        let mut watch = Watch { intervals: Vec::new(), records: record };
+        let (system, tables) = self.tables(&assembly);
+        let (run, stretches) = follow(&assembly, (system, tables), &wanted, &mut watch, record);
+        let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
+        let outcome = match run.outcome {
+            assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
+            assembly::Outcome::Parted => Outcome::Rebound,
+            assembly::Outcome::Rest | assembly::Outcome::End => Outcome::Sustained,
+            assembly::Outcome::Stopped(reason) => Outcome::Stopped(stop_reason(reason, closed)),
         };
-        Run { outcome, motion, sub_impacts, counts }
-    }
-
-    fn initial(&self, striker: &Striker, start: &Start) -> Motion {
-        let n = self.ladder.modes.len();
-        let mut vibration = Vibration { alpha: vec![0.0; n], beta: vec![0.0; n] };
-        let mut drift_rate = striker.speed_m_s;
-        let mut elastic = 0.0;
-        for (k, mode) in self.modes.iter().enumerate() {
-            match self.place[k] {
-                Some(i) => {
-                    vibration.alpha[i] = mode.shape * start.amplitude[k];
-                    vibration.beta[i] = mode.shape * start.rate[k];
-                    elastic += vibration.alpha[i];
-                }
-                None if mode.is_rigid() => drift_rate += mode.shape * start.rate[k],
-                None => {}
-            }
+        let of = |interval: &Interval| SubImpact {
+            start_s: interval.start_s,
+            end_s: interval.end_s.unwrap_or(run.end_s),
+            impulse_n_s: interval.impulse_n_s,
+            peak_force_n: interval.peak_force_n,
+            peak_compression_m: interval.peak_compression_m,
+        };
+        let (amplitude, rate) = self.all_modes(start, run.end_s, (&run.amplitude[0], &run.rate[0]));
+        Run {
+            outcome,
+            end_s: run.end_s,
+            sub_impacts: watch.intervals.iter().map(of).collect(),
+            striker_velocity_m_s: run.contacts[0].velocity_m_s[0],
+            amplitude,
+            rate,
+            counts: run.counts,
+            contact_work_j: run.contacts[0].statistics.work_j,
+            energy: run.energy,
+            stretches,
         }
-        Motion { time: 0.0, vibration, drift: -start.gap_m - elastic, drift_rate, impulse: 0.0, impulse_integral: 0.0 }
     }
 
-    /// Inverse mass of the striker and the rigid-body modes against each other at the contact (1/kg).
-    pub(crate) fn inverse_mass(&self, striker: &Striker) -> f64 {
-        let rigid: f64 = self.modes.iter().filter(|mode| mode.is_rigid()).map(|mode| mode.shape.powi(2)).sum();
-        rigid + striker.mass_kg.recip()
+    /// The system of an assembly, and its tables, of which all that concerns the structure is kept.
+    fn tables<L>(&mut self, assembly: &Assembly<L>) -> (&System, &mut Tables) {
+        let system = System::new(assembly);
+        let same = self.kept.take().filter(|(last, _)| last.modes.len() == system.modes.len());
+        let tables = match same {
+            Some((last, mut tables)) => {
+                if last.links[0].rigid != system.links[0].rigid {
+                    tables.change_rigid_modes(&system);
+                }
+                tables
+            }
+            None => Tables::new(&system),
+        };
+        let (system, tables) = self.kept.insert((system, tables));
+        (system, tables)
+    }
+
+    /// All modes of the structure at a time, with those that the contact does not move.
+    fn all_modes(&self, start: &Start, time_s: f64, moved: (&[f64], &[f64])) -> (Vec<f64>, Vec<f64>) {
+        all_modes(&self.modes, &self.moved, start, time_s, moved)
     }
 
     fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
-        let before = self.initial(striker, start).drift_rate;
+        let rigid = |rate: &[f64]| {
+            let rigid = self.modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid());
+            rigid.map(|(mode, rate)| mode.shape * rate).sum::<f64>()
+        };
+        let before = striker.speed_m_s + rigid(&start.rate);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
-        let ratio = -run.motion.drift_rate / before;
+        let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_excited());
+        let ratio = (run.striker_velocity_m_s - rigid(&run.rate)) / before;
         // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
-        (ended && before > 0.0 && self.inverse_mass(striker) > 0.0 && ratio.is_finite()).then_some(ratio)
-    }
-
-    pub(crate) fn modes(&self) -> &[Mode] {
-        &self.modes
-    }
-
-    pub(crate) fn places(&self) -> &[Option<usize>] {
-        &self.place
-    }
-
-    pub(crate) fn elastic(&self) -> &[Mode] {
-        &self.ladder.modes
-    }
-
-    pub(crate) fn residual_compliance_m_n(&self) -> f64 {
-        self.residual_compliance_m_n
+        (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
     }
 }
 
-/// All modes of a structure, rigid and unexcited ones included, at a moment of the motion.
-pub(crate) fn modal_state(
-    modes: &[Mode],
-    place: &[Option<usize>],
-    motion: &Motion,
-    start: &Start,
-) -> (Vec<f64>, Vec<f64>) {
-    let (mut amplitude, mut rate) = (start.amplitude.clone(), start.rate.clone());
-    for (k, mode) in modes.iter().enumerate() {
-        match place[k] {
-            Some(i) => {
-                amplitude[k] = motion.vibration.alpha[i] / mode.shape;
-                rate[k] = motion.vibration.beta[i] / mode.shape;
-            }
-            None if mode.is_rigid() => {
-                amplitude[k] += rate[k] * motion.time - mode.shape * motion.impulse_integral;
-                rate[k] -= mode.shape * motion.impulse;
-            }
-            None => {
-                let p = propagate(mode, motion.time);
-                (amplitude[k], rate[k]) = p.apply(amplitude[k], rate[k]);
-            }
-        }
+fn stop_reason(reason: assembly::Reason, closed: bool) -> StopReason {
+    match reason {
+        assembly::Reason::Steps if closed => StopReason::Steps,
+        assembly::Reason::Steps | assembly::Reason::Interrupted => StopReason::Flight,
+        assembly::Reason::Intervals => StopReason::SubImpacts,
+        assembly::Reason::FinestStep => StopReason::FinestStep,
+        assembly::Reason::LawRange => StopReason::LawRange,
+        assembly::Reason::Chatter => StopReason::DigitsExhausted,
     }
-    (amplitude, rate)
+}
+
+/// All modes of a structure at a time, of which these have moved like this under the contact; the others move freely.
+pub(crate) fn all_modes(
+    modes: &[Mode],
+    moved: &[usize],
+    start: &Start,
+    time_s: f64,
+    (amplitude, rate): (&[f64], &[f64]),
+) -> (Vec<f64>, Vec<f64>) {
+    let free = |(k, mode): (usize, &Mode)| propagate(&mode.of_body(), time_s).apply(start.amplitude[k], start.rate[k]);
+    let mut all: Vec<(f64, f64)> = match moved.len() == modes.len() {
+        true => vec![(0.0, 0.0); modes.len()],
+        false => modes.iter().enumerate().map(free).collect(),
+    };
+    for (k, motion) in moved.iter().zip(amplitude.iter().copied().zip(rate.iter().copied())) {
+        all[*k] = motion;
+    }
+    all.into_iter().unzip()
 }

@@ -3,18 +3,16 @@
 //! Steps are powers of two of a second. Two solutions of different tolerances share many of them, and so what these steps
 //! get wrong. With times written in units of `sqrt(1/2)` s all steps lie between those of before.
 
-use super::problem::{Mode, Start, Striker, Structure};
+use super::problem::{Mode, Start, Striker};
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
 use std::f64::consts::SQRT_2;
 
 /// So many units make a second.
 const UNITS: f64 = SQRT_2;
 
-/// The structure with its frequencies per unit.
-pub(crate) fn structure(modes: &[Mode], residual_compliance_m_n: f64) -> Structure {
-    let per_unit = |mode: &Mode| Mode { omega_rad_s: mode.omega_rad_s / UNITS, ..*mode };
-    let modes = modes.iter().map(per_unit).collect();
-    Structure { modes, residual_compliance_m_n: residual_compliance_m_n * UNITS * UNITS }
+/// Modes with their frequencies per unit.
+pub(crate) fn modes(modes: &[Mode]) -> Vec<Mode> {
+    modes.iter().map(|mode| Mode { omega_rad_s: mode.omega_rad_s / UNITS, ..*mode }).collect()
 }
 
 /// The striker with its speed per unit.

@@ -1,8 +1,23 @@
 //! One mode on its own: exact free motion and exact response to a polynomial force, at any step.
 
 use super::legendre::{BASIS, Nodal, Q, legendre};
-use super::problem::Mode;
 use num_complex::Complex64;
+
+/// One mode of a body. Shapes belong to points, see [`Point`](crate::assembly::Point).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyMode {
+    /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
+    pub omega_rad_s: f64,
+    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`. A rigid-body mode has none.
+    pub damping_ratio: f64,
+}
+
+impl BodyMode {
+    /// Whether the mode is a rigid-body motion.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.omega_rad_s == 0.0
+    }
+}
 
 /// Free motion over a time: `(a, a')` at the end are `p11 a + p12 a'` and `p21 a + p22 a'`. Of `p11` what it is less
 /// than 1 is kept, which over a short time is small: a body in contact moves little, however far from its place.
@@ -18,7 +33,7 @@ pub(crate) struct Propagator {
 pub(crate) const NEARLY_CRITICAL: f64 = 0.99;
 
 /// Exact free motion of `a'' + 2 zeta omega a' + omega^2 a = 0` over `t` (s).
-pub(crate) fn propagate(mode: &Mode, t: f64) -> Propagator {
+pub(crate) fn propagate(mode: &BodyMode, t: f64) -> Propagator {
     let (omega, zeta) = (mode.omega_rad_s, mode.damping_ratio);
     let sigma = zeta * omega;
     // `cosine` and `sine / omega_d`, both times exp(-sigma t), and the first of them less 1
@@ -59,7 +74,7 @@ fn exp_and_less_1(x: f64) -> (f64, f64) {
 
 /// Response of a mode starting at rest to unit Legendre forces on a step of length `h`:
 /// displacement and velocity at its end, one of each a polynomial.
-pub(crate) fn response(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+pub(crate) fn response(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
     if mode.damping_ratio >= NEARLY_CRITICAL {
         return response_by_quadrature(mode, h);
     }
@@ -71,7 +86,7 @@ pub(crate) fn response(mode: &Mode, h: f64) -> (Nodal, Nodal) {
 }
 
 /// As [`response`], for any damping, on panels that grow away from the end of the step.
-fn response_by_quadrature(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+fn response_by_quadrature(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
     let (mut displacement, mut velocity) = ([0.0; Q], [0.0; Q]);
     let fastest = mode.omega_rad_s * 2.0 * mode.damping_ratio;
     let mut from = 0.0;
@@ -157,7 +172,7 @@ mod tests {
     }
 
     /// Fixed fine composite Gauss quadrature of the defining integral.
-    fn reference(mode: &Mode, h: f64) -> (Nodal, Nodal) {
+    fn reference(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
         let (mut a, mut v) = ([0.0; Q], [0.0; Q]);
         let panels = 400;
         for i in 0..panels {

@@ -12,48 +12,10 @@
 //!   numbers; the first is one product of two short vectors a mode;
 //! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series serve.
 
-use super::ladder::Rotation;
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
-use super::oscillator::{NEARLY_CRITICAL, Propagator, propagate, response};
-use super::problem::Mode;
+use super::oscillator::{BodyMode, NEARLY_CRITICAL, Propagator, propagate, response};
 use num_complex::Complex64;
 use std::array;
-
-/// Tables of one step length.
-pub(crate) struct Forcing {
-    /// How far free motion has moved at the nodes, per mode: from `alpha`, from `beta`.
-    pub at_nodes: Vec<(Nodal, Nodal)>,
-    /// Response at the nodes, summed over the modes, to nodal forces.
-    pub compliance: Matrix,
-    /// Response at the end of the step, summed over the modes, to Legendre forces.
-    pub at_end: Nodal,
-    /// Response of each mode at the end of the step, `[n][k]` for Legendre force `n`.
-    pub displacement: [Vec<f64>; Q],
-    pub velocity: [Vec<f64>; Q],
-}
-
-impl Forcing {
-    /// The tables for steps of `h`; `half` is the free motion over `h/2`.
-    pub fn new(modes: &[Mode], weight: &[f64], h: f64, half: &Rotation) -> Forcing {
-        let n = modes.len();
-        let mut at_nodes = Vec::with_capacity(n);
-        let [mut displacement, mut velocity] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
-        let end = [displacement.each_mut().map(|row| &mut row[..n]), velocity.each_mut().map(|row| &mut row[..n])];
-        let mut compliance = Compliance::new();
-        // modes come by rising frequency: none needs fewer terms than those before it
-        let mut terms = Terms::default();
-        for (k, (mode, &w)) in modes.iter().zip(weight).enumerate() {
-            let part = part(mode, w, h, &half.of(k), &mut terms, &mut compliance);
-            at_nodes.push(part.at_nodes);
-            for n in 0..Q {
-                end[0][n][k] = -w * part.end.0[n];
-                end[1][n][k] = -w * part.end.1[n];
-            }
-        }
-        let at_end = displacement.each_ref().map(|row| row.iter().sum());
-        Forcing { at_nodes, compliance: compliance.at_nodes(h), at_end, displacement, velocity }
-    }
-}
 
 /// Terms of the power series about the start of a step and about its middle. A mode needs no fewer than a slower one.
 pub(crate) struct Terms {
@@ -69,7 +31,7 @@ impl Default for Terms {
 
 /// One mode on a step of `h`; `half` is its free motion over `h/2`. Its compliance, times `w`, is added to that of others.
 pub(crate) fn part(
-    mode: &Mode,
+    mode: &BodyMode,
     w: f64,
     h: f64,
     half: &Propagator,
@@ -90,7 +52,7 @@ pub(crate) fn part(
 }
 
 /// `|lambda|`, of the faster root if there are two (rad/s).
-pub(crate) fn rate(mode: &Mode) -> f64 {
+pub(crate) fn rate(mode: &BodyMode) -> f64 {
     mode.omega_rad_s * if mode.damping_ratio < NEARLY_CRITICAL { 1.0 } else { 2.0 * mode.damping_ratio }
 }
 
@@ -150,7 +112,7 @@ impl Compliance {
 }
 
 /// By power series, from the free motion in the middle of the step.
-fn slow(mode: &Mode, w: f64, h: f64, middle: &Propagator, terms: &Terms, compliance: &mut Compliance) -> Part {
+fn slow(mode: &BodyMode, w: f64, h: f64, middle: &Propagator, terms: &Terms, compliance: &mut Compliance) -> Part {
     let angle = mode.omega_rad_s * h;
     let (square, damping) = (angle * angle, 2.0 * mode.damping_ratio * angle);
 
@@ -209,7 +171,7 @@ fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
 }
 
 /// By parts; below critical damping.
-fn fast(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+fn fast(mode: &BodyMode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
     let sigma = mode.damping_ratio * mode.omega_rad_s;
     let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
     let lambda = Complex64::new(-sigma, omega_d);
@@ -266,7 +228,7 @@ fn exponentials(decay: f64, turn: f64) -> ((Nodal, Nodal), Complex64) {
 }
 
 /// Any mode, one node after the other.
-fn by_quadrature(mode: &Mode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+fn by_quadrature(mode: &BodyMode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
     let basis = &*BASIS;
     let mut at_nodes = ([0.0; Q], [0.0; Q]);
     for i in 0..Q {
@@ -316,7 +278,7 @@ mod tests {
     }
 
     fn each_way(
-        mode: &Mode,
+        mode: &BodyMode,
         h: f64,
         way: impl Fn(&mut Compliance) -> Part,
     ) -> ((Part, Compliance), (Part, Compliance)) {

@@ -121,6 +121,20 @@ pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
     product
 }
 
+/// Rates at the nodes of a polynomial on a step of `h`, by its values at the start and at the nodes.
+pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
+    let basis = &*BASIS;
+    std::array::from_fn(|i| (basis.slope_from_start[i] * start + dot(&basis.slope_from_nodes[i], nodal)) / h)
+}
+
+/// What a polynomial may be missing: its next two coefficients, if they fall as the last two do against the two before.
+/// Pairs, because a single coefficient vanishes by accident.
+pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
+    let last = coefficients[Q - 1].abs().max(coefficients[Q - 2].abs());
+    let before = coefficients[Q - 3].abs().max(coefficients[Q - 4].abs());
+    if last < before { last * (last / before) } else { last }
+}
+
 /// A Gauss-Legendre rule on (0, 1).
 pub(crate) fn rule(n: NonZeroUsize) -> Vec<(f64, f64)> {
     let mut rule: Vec<(f64, f64)> = GaussLegendre::new(n).iter().map(|(x, w)| (0.5 * (1.0 + x), 0.5 * w)).collect();

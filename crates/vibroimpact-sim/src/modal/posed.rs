@@ -1,0 +1,38 @@
+//! An impact as an assembly: the structure is one body, the striker another, and they share one contact.
+
+use super::problem::{Mode, Start, Striker};
+use crate::assembly::{Assembly, Body, Contact, Point};
+
+/// A stop that moves is a body heavier than the structure by so much that no contact slows it.
+const IMMOVABLE: f64 = 1e30;
+
+/// Number of the structure among the bodies, and of the striker, which is not there if it is a stop at rest.
+pub(crate) const STRUCTURE: usize = 0;
+pub(crate) const STRIKER: usize = 1;
+
+/// Mass with which the striker enters the equations (kg); `None` for a stop at rest.
+pub(crate) fn mass_kg(striker: &Striker, modes: &[Mode]) -> Option<f64> {
+    if striker.mass_kg.is_finite() {
+        return Some(striker.mass_kg);
+    }
+    let inverse: f64 = modes.iter().map(|mode| mode.shape * mode.shape).sum();
+    (striker.speed_m_s != 0.0).then_some(IMMOVABLE / inverse)
+}
+
+/// The impact of a striker on these of the structure's modes.
+pub(crate) fn assembly<L>(modes: &[Mode], moved: &[usize], striker: &Striker, law: L, start: &Start) -> Assembly<L> {
+    let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
+    let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();
+    let deflection: f64 = moved.iter().map(|k| modes[*k].shape * start.amplitude[*k]).sum();
+    let structure =
+        Body { modes: moved.iter().map(|k| modes[*k].of_body()).collect(), amplitude: pick(&start.amplitude), rate: pick(&start.rate) };
+    let mut bodies = vec![structure];
+    let mut side = Point::Ground;
+    if let Some(mass_kg) = mass_kg(striker, modes) {
+        bodies.push(Body::mass(mass_kg, 0.0, -striker.speed_m_s));
+        side = Point::OfBody { body: STRIKER, shape: vec![mass_kg.sqrt().recip()] };
+    }
+    let sides = [side, Point::OfBody { body: STRUCTURE, shape }];
+    let contacts = vec![Contact { sides, gap_m: start.gap_m + deflection, law }];
+    Assembly { bodies, contacts, loads: Vec::new() }
+}

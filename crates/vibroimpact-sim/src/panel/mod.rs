@@ -1,0 +1,7 @@
+//! One panel of time: the force on it as a polynomial, and what a vibrating mode does meanwhile, exactly.
+
+pub(crate) mod dyadic;
+pub(crate) mod forcing;
+pub(crate) mod legendre;
+pub(crate) mod oscillator;
+pub(crate) mod peak;

@@ -1,0 +1,52 @@
+//! The largest value of a quantity over many panels.
+
+use super::legendre::{BASIS, Nodal, Q, evaluate};
+
+/// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
+/// polynomial searched once the contact is over.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Peak {
+    largest: f64,
+    nodal: Nodal,
+}
+
+impl Peak {
+    pub const NONE: Peak = Peak { largest: 0.0, nodal: [0.0; Q] };
+
+    pub fn note(&mut self, nodal: &Nodal) {
+        let largest = nodal.iter().fold(0.0, |a: f64, b| a.max(*b));
+        if largest > self.largest {
+            *self = Peak { largest, nodal: *nodal };
+        }
+    }
+
+    pub fn value(&self) -> f64 {
+        let coefficients = BASIS.coefficients(&self.nodal);
+        let value = |at: f64| evaluate(&coefficients, at);
+        // the best of a grid, then twice the vertex of the parabola through it and its neighbours
+        let grid = 2 * Q;
+        let (mut at, mut best) = (0.0, value(0.0));
+        for i in 1..=grid {
+            let place = i as f64 / grid as f64;
+            let here = value(place);
+            if here > best {
+                (at, best) = (place, here);
+            }
+        }
+        let mut spacing = 1.0 / grid as f64;
+        for _ in 0..2 {
+            let (before, after) = (value(at - spacing), value(at + spacing));
+            let bend = before - 2.0 * best + after;
+            let vertex = at + 0.5 * spacing * (before - after) / bend;
+            if !(bend < 0.0 && (0.0..=1.0).contains(&vertex)) {
+                break;
+            }
+            let here = value(vertex);
+            if here > best {
+                (at, best) = (vertex, here);
+            }
+            spacing *= 0.1;
+        }
+        self.largest.max(best)
+    }
+}
