@@ -13,11 +13,14 @@
 use super::load::Loads;
 use super::system::{Link, System};
 use super::terminal::value;
+use crate::panel::oscillator::BodyMode;
 use crate::panel::legendre::{BASIS, Q, TAYLOR};
 use std::sync::LazyLock;
 
 /// Derivatives of the interpolation error that are bounded.
 const ORDERS: usize = 3;
+/// Modes damped more than this are two decays, `a' + r_2 a` with the rate `r_1` and the other way round.
+const OVERDAMPED: f64 = 1.5;
 /// A mode that turns by less than this in a panel (rad) is interpolated to rounding.
 const FOLLOWED: f64 = 0.2;
 
@@ -72,10 +75,26 @@ pub(crate) struct Pull<'a> {
     pub rate_n_s: f64,
 }
 
+/// By how much interpolation on a panel of one length misses unit vibrations of all modes, and their first two derivatives:
+/// zero for those that are two decays, and for those that are interpolated to rounding.
+pub(crate) struct Missed([Vec<f64>; ORDERS]);
+
+impl Missed {
+    pub fn new(system: &System, h: f64) -> Missed {
+        let of = |mode: &BodyMode| {
+            let turning = mode.omega_rad_s * h * (1.0 + mode.damping_ratio);
+            if turning < FOLLOWED || mode.damping_ratio > OVERDAMPED { [0.0; ORDERS] } else { interpolation(turning) }
+        };
+        let all: Vec<[f64; ORDERS]> = system.modes.iter().map(of).collect();
+        Missed(std::array::from_fn(|r| all.iter().map(|missed| missed[r]).collect()))
+    }
+}
+
 /// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
 /// through start and nodes. `pulls` are the contact forces at its start.
 pub(crate) fn of_panel(
     system: &System,
+    missed: &Missed,
     loads: &Loads,
     contact: usize,
     h: f64,
@@ -83,31 +102,55 @@ pub(crate) fn of_panel(
     pulls: &[Pull],
 ) -> [f64; ORDERS] {
     let mut rho = [0.0; ORDERS];
-    let mut add = |amplitude: f64, theta: f64| {
-        let missed = interpolation(theta);
-        for r in 0..ORDERS {
-            rho[r] += amplitude * missed[r];
-        }
-    };
-    for &(k, psi) in system.links[contact].elastic.iter().rev() {
-        let omega = system.modes[k].omega_rad_s;
-        let turning = omega * h * (1.0 + system.modes[k].damping_ratio);
-        if omega * h < FOLLOWED && turning < FOLLOWED {
-            break;
-        }
-        let (mut held, mut held_rate) = (0.0, 0.0);
+    for span in &system.links[contact].spans {
+        // by rising frequency: the first of them are interpolated to rounding
+        let omega = &system.omega[span.modes.clone()];
+        let from = omega.partition_point(|omega| omega * h * (1.0 + system.most_damping) < FOLLOWED);
+        let modes = span.modes.start + from..span.modes.end;
+        let n = modes.len();
+        let (mut held, mut held_rate) = (vec![0.0; n], vec![0.0; n]);
+        let square = &system.square[modes.clone()][..n];
         for pull in pulls {
-            let psi = pull.link.weight(k) / (omega * omega);
-            held -= psi * pull.force_n;
-            held_rate -= psi * pull.rate_n_s;
+            let Some(partner) = pull.link.spans.iter().find(|other| other.modes == span.modes) else { continue };
+            let psi = &partner.psi[from..][..n];
+            for k in 0..n {
+                let yields = psi[k] / square[k];
+                held[k] -= yields * pull.force_n;
+                held_rate[k] -= yields * pull.rate_n_s;
+            }
         }
-        let size = (amplitude[k] - held).abs() + (rate[k] - held_rate).abs() / omega;
-        add(psi.abs() * size, turning);
+        let (psi, omega) = (&span.psi[from..][..n], &omega[from..][..n]);
+        let (a, b) = (&amplitude[modes.clone()][..n], &rate[modes.clone()][..n]);
+        let [missed, missed_slope, missed_bend] = missed.0.each_ref().map(|row| &row[modes.clone()][..n]);
+        for k in 0..n {
+            let size = psi[k].abs() * ((a[k] - held[k]).abs() + (b[k] - held_rate[k]).abs() / omega[k]);
+            rho[0] += size * missed[k];
+            rho[1] += size * missed_slope[k];
+            rho[2] += size * missed_bend[k];
+        }
+        for k in (0..n).filter(|&k| system.modes[modes.start + k].damping_ratio > OVERDAMPED) {
+            let (zeta, omega, square) = (system.modes[modes.start + k].damping_ratio, omega[k], square[k]);
+            let split = omega * ((zeta - 1.0) * (zeta + 1.0)).sqrt();
+            let fast = zeta * omega + split;
+            let slow = square / fast;
+            for (root, other) in [(fast, slow), (slow, fast)] {
+                let decaying = b[k] + other * a[k] - square * (held[k] - held_rate[k] / root) / root;
+                add(&mut rho, psi[k].abs() * decaying.abs() / (2.0 * split), root * h);
+            }
+        }
     }
     for harmonic in &loads.harmonics {
-        add(harmonic.contacts[contact].norm(), harmonic.omega_rad_s * h);
+        add(&mut rho, harmonic.contacts[contact].norm(), harmonic.omega_rad_s * h);
     }
     rho
+}
+
+/// Adds what a vibration of this amplitude that turns by `theta` may miss.
+fn add(rho: &mut [f64; ORDERS], amplitude: f64, theta: f64) {
+    let missed = interpolation(theta);
+    for r in 0..ORDERS {
+        rho[r] += amplitude * missed[r];
+    }
 }
 
 /// Amplitude bounds of the modes that move an open contact, summed up beyond some of them. They hold as long as the

@@ -98,9 +98,9 @@ fn judge<const N: usize>(to_bernstein: &[[f64; N]; N], values: &[f64; N], slack:
     }
 }
 
-/// The first place on [0, 1] at which the polynomial with these Bernstein coefficients is at most `level`, to about 1e-9.
+/// The first place on [0, 1] at which the polynomial with these Bernstein coefficients is at most `level`, to about 1e-5.
 fn first_at_or_below<const N: usize>(bernstein: &[f64; N], level: f64) -> Option<f64> {
-    const DEPTH: i32 = 30;
+    const DEPTH: i32 = 16;
     let mut stack = vec![(*bernstein, 0.0, 0)];
     while let Some((b, from, depth)) = stack.pop() {
         if b.iter().all(|b| *b > level) {

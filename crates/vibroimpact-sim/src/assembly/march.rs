@@ -15,7 +15,7 @@ use super::problem::{Assembly, Contact, Settings};
 use super::rest;
 use super::solution::{Counts, Interval, Observer, Outcome, Reason};
 use super::state::{Phase, State, Touch};
-use super::system::System;
+use super::system::{Span, System};
 use super::tables::Tables;
 use super::terminal::{self, Landed, REACH, Window, series_of, value};
 use crate::panel::peak::Peak;
@@ -95,6 +95,8 @@ pub(crate) struct March<'a, L> {
     reach: f64,
     /// Number of committed panels at which rest is looked for again.
     ask_rest_at: u64,
+    /// Length of the last panel of flight (s).
+    flown: f64,
     intervals: u64,
     last_event_s: f64,
     events_at_once: u64,
@@ -149,6 +151,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             landing: f64::INFINITY,
             reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
             ask_rest_at: REST,
+            flown: 0.0,
             intervals: 0,
             last_event_s: -1.0,
             events_at_once: 0,
@@ -297,19 +300,22 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Rounding of an overlap that is a difference of where bodies are (m).
     fn noise(&self, c: usize) -> f64 {
-        let link = &self.system.links[c];
-        let moved = link.rigid.iter().chain(&link.elastic).map(|(k, psi)| (psi * self.amplitude[*k]).abs());
-        4.0 * f64::EPSILON * (moved.sum::<f64>() + self.states[c].reference.abs())
+        let of = |span: &Span| {
+            let amplitude = &self.amplitude[span.modes.clone()];
+            span.psi.iter().zip(amplitude).map(|(psi, a)| (psi * a).abs()).sum::<f64>()
+        };
+        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
+        4.0 * f64::EPSILON * (moved + self.states[c].reference.abs())
     }
 
     /// Rounding of an overlap as it is summed up over a panel of `h` (m).
     fn panel_noise(&self, c: usize, h: f64) -> f64 {
-        let link = &self.system.links[c];
-        let of = |(k, psi): &(usize, f64)| {
-            let turned = (self.system.modes[*k].omega_rad_s * h).min(1.0);
-            psi.abs() * (turned * self.amplitude[*k].abs() + h * self.rate[*k].abs())
+        let of = |span: &Span| {
+            let (omega, n) = (&self.system.omega[span.modes.clone()], span.psi.len());
+            let (a, b) = (&self.amplitude[span.modes.clone()][..n], &self.rate[span.modes.clone()][..n]);
+            (0..n).map(|k| span.psi[k].abs() * ((omega[k] * h).min(1.0) * a[k].abs() + h * b[k].abs())).sum::<f64>()
         };
-        let moved: f64 = link.rigid.iter().chain(&link.elastic).map(of).sum();
+        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
         // of the motion that the contact's momentum stands for no less is known
         let moved = moved.max(self.states[c].speed_m_s() * h);
@@ -475,7 +481,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let lasting = self.lasting();
         let mut go = f64::INFINITY;
         for c in 0..self.states.len() {
-            if self.clear_until(c) <= self.time_s {
+            // what is left of a bound is less than a new one gives
+            if self.clear_until(c) - self.time_s <= self.flown {
                 self.renew(c, lasting);
             }
             go = go.min(self.clear_until(c) - self.time_s);
@@ -566,6 +573,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     }
 
     fn rotate(&mut self, level: i32) {
+        self.flown = step_s(level);
         self.show(step_s(level), &[], &[]);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         self.pass(step_s(level));
@@ -771,7 +779,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
     fn judge(
-        &self,
+        &mut self,
         h: f64,
         contacts: &[usize],
         closed: usize,
@@ -785,7 +793,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
             let state = &self.states[c];
             let mut rho = [0.0; 3];
             if enclosed {
-                rho = of_panel(self.system, &self.loads, c, h, self.motion(), &pulls);
+                let missed = self.tables.missed(self.system, level_within(h));
+                rho = of_panel(self.system, missed, &self.loads, c, h, (&self.amplitude, &self.rate), &pulls);
             }
             let noise = self.panel_noise(c, h);
             let mut acceleration = None;

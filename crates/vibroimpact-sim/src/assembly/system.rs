@@ -68,11 +68,14 @@ impl Link {
 pub(crate) struct System {
     /// The modes, body by body, each by rising frequency.
     pub modes: Vec<BodyMode>,
-    /// `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and the fastest motion of the modes up to this one of the same body
+    /// `omega_k` (rad/s), `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and the fastest motion of the modes up to this one of the same body
     /// (rad/s).
+    pub omega: Vec<f64>,
     pub drag: Vec<f64>,
     pub square: Vec<f64>,
     pub turning: Vec<f64>,
+    /// The largest damping ratio.
+    pub most_damping: f64,
     /// The modes of each body.
     pub bodies: Vec<Range<usize>>,
     /// Where each mode of each body, as the user counts them, has its place.
@@ -98,6 +101,8 @@ impl System {
             bodies.push(first..modes.len());
             place.push(places);
         }
+        let omega: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s).collect();
+        let most_damping = modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max);
         let drag: Vec<f64> = modes.iter().map(|mode| 2.0 * mode.damping_ratio * mode.omega_rad_s).collect();
         let square = modes.iter().map(|mode| mode.omega_rad_s * mode.omega_rad_s).collect();
         let mut turning = Vec::with_capacity(modes.len());
@@ -109,7 +114,7 @@ impl System {
             }
         }
         let (links, neighbours) = (Vec::new(), Vec::new());
-        let mut system = System { modes, drag, square, turning, bodies, place, links, neighbours };
+        let mut system = System { modes, omega, drag, square, turning, most_damping, bodies, place, links, neighbours };
         system.links = assembly.contacts.iter().map(|contact| system.link(&contact.sides)).collect();
         let links = &system.links;
         let sharing = |one: &Link| (0..links.len()).filter(|&c| one.touches(&links[c])).collect();

@@ -2,6 +2,7 @@
 //! the force of another. All of them are filled as they are first asked for.
 
 use super::damping::Damping;
+use super::enclosure::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::forcing::{Compliance, Terms, part};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
@@ -38,6 +39,7 @@ struct Level {
     rotation: Option<Box<Rotation>>,
     forced: Option<Box<Forced>>,
     damping: Option<Box<Damping>>,
+    missed: Option<Box<Missed>>,
 }
 
 pub(crate) struct Tables {
@@ -59,6 +61,12 @@ impl Tables {
     pub fn rotation(&mut self, system: &System, j: i32) -> &Rotation {
         let level = &mut self.levels[(j - J_MIN) as usize];
         level.rotation.get_or_insert_with(|| Box::new(Rotation::new(&system.modes, step_s(j))))
+    }
+
+    /// What interpolation misses on level `j`.
+    pub fn missed(&mut self, system: &System, j: i32) -> &Missed {
+        let level = &mut self.levels[(j - J_MIN) as usize];
+        level.missed.get_or_insert_with(|| Box::new(Missed::new(system, step_s(j))))
     }
 
     /// What modal damping takes on level `j` while these contacts are closed; only the energy ledger asks.
