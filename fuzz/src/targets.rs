@@ -96,7 +96,7 @@ fn posed(from: &mut Unstructured) -> Result<Posed> {
     for _ in 0..count {
         modes.push(Mode { omega_rad_s: number(from)?, damping_ratio: number(from)?, shape: number(from)? });
     }
-    let structure = Structure { modes, residual_compliance_m_n: number(from)? };
+    let structure = Structure { modes };
     let striker = Striker { mass_kg: number(from)?, speed_m_s: number(from)? };
     let law = law(from)?;
     let start = if bool::arbitrary(from)? {

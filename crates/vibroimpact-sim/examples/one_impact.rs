@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         damping_ratio: 0.02,
         shape: 2f64.sqrt() * (0.4 * std::f64::consts::PI * k).sin(),
     };
-    let structure = Structure { modes: [1.0, 2.0, 3.0].map(mode).to_vec(), residual_compliance_m_n: 0.0 };
+    let structure = Structure { modes: [1.0, 2.0, 3.0].map(mode).to_vec() };
     let ball = Striker { mass_kg: 0.11, speed_m_s: 1.0 };
     let solution = Solver::new(&structure)?.solve(&ball, &Hertz::new(1.8e10)?, None, &Settings::default())?;
     for contact in &solution.sub_impacts {

@@ -37,7 +37,9 @@
 
 use crate::InvalidInput;
 use crate::modal::{Mode, Start, Striker, Structure};
-use beam_modes::{Beam, End, Rod, RodEnd, RodSegment, Segment};
+use beam_modes::{
+    Beam, End, MOST_REMAINDER_MODES, PointMode, Rod, RodEnd, RodSegment, Segment, enough_for_remainder, remainder_modes,
+};
 use contact_models::{Body, Hertz};
 use std::f64::consts::PI;
 
@@ -56,7 +58,7 @@ pub struct DroppedRod {
     pub poissons_ratio: f64,
     /// Angle between the rod and the surface (rad), 0 (lying) to pi/2 (upright).
     pub inclination_rad: f64,
-    /// Bending modes kept. What those left out would yield is kept as static compliance.
+    /// Bending modes kept. Those left out are represented by remainder modes ([`beam_modes::remainder_modes`]).
     pub bending_modes: usize,
     /// Axial modes kept; likewise.
     pub axial_modes: usize,
@@ -67,8 +69,10 @@ pub struct DroppedRod {
 /// A drop, posed as an impact on a modal structure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drop {
-    /// The rod, seen from its contact point.
+    /// The rod, seen from its contact point: two rigid-body motions, bending modes, axial modes, remainder modes.
     pub structure: Structure,
+    /// How many of the modes are remainder modes.
+    pub remainder_modes: usize,
     /// The immovable surface.
     pub surface: Striker,
     /// The rod's fall.
@@ -119,18 +123,30 @@ impl DroppedRod {
         let mut modes = vec![rigid(1.0 / root), rigid(3f64.sqrt() * cos / root)];
 
         let (beam, rod) = (self.beam(), self.rod());
-        let bending = beam.modes(2 + self.bending_modes)?;
-        let axial = rod.modes(1 + self.axial_modes)?;
-        let mut residual = beam.static_compliance(0.0)? * cos * cos + rod.static_compliance(0.0)? * sin * sin;
-        let families = [(&bending, cos), (&axial, sin)];
-        for (family, direction) in families {
+        // both free ends: two rigid-body motions of bending come first, one of translation along the axis
+        let families = [(self.bending_modes, 2, cos), (self.axial_modes, 1, sin)];
+        let whole = [beam.static_compliance(0.0)?, rod.static_compliance(0.0)?];
+        let found = [
+            beam.modes(2 + enough_for_remainder(self.bending_modes))?,
+            rod.modes(1 + enough_for_remainder(self.axial_modes))?,
+        ];
+        let (mut tail, mut rest_m_n) = (Vec::new(), 0.0);
+        for (((kept, rigid, direction), whole), family) in families.into_iter().zip(whole).zip(&found) {
+            rest_m_n += whole * direction * direction;
             let shapes = family.shapes_at(0.0)?;
-            for (omega, shape) in family.omega_rad_s().iter().zip(shapes).filter(|(omega, _)| **omega > 0.0) {
-                let shape = shape * direction;
-                residual -= (shape / omega).powi(2);
-                modes.push(Mode { omega_rad_s: *omega, damping_ratio: self.damping_ratio, shape });
+            for (k, (omega, shape)) in family.omega_rad_s().iter().zip(shapes).skip(rigid).enumerate() {
+                let (omega_rad_s, shape) = (*omega, shape * direction);
+                rest_m_n -= (shape / omega_rad_s).powi(2);
+                if k < kept {
+                    modes.push(Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape });
+                } else {
+                    tail.push(PointMode { omega_rad_s, shape });
+                }
             }
         }
+        let remainder = remainder_modes(&tail, rest_m_n.max(0.0), MOST_REMAINDER_MODES)?;
+        let damping_ratio = self.damping_ratio;
+        modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
         let mut start = Start::at_rest(modes.len());
         start.rate[0] = speed_m_s * root;
         let end = Body {
@@ -140,7 +156,8 @@ impl DroppedRod {
         };
         let law = Hertz::from_bodies(&end, &Body::rigid(f64::INFINITY))?;
         Ok(Drop {
-            structure: Structure { modes, residual_compliance_m_n: residual.max(0.0) },
+            structure: Structure { modes },
+            remainder_modes: remainder.len(),
             surface: Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 },
             start,
             law,

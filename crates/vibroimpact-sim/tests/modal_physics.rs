@@ -36,7 +36,7 @@ fn other_units_give_the_same_restitution() {
         shape: mode.shape / mass.sqrt(),
         ..*mode
     });
-    let other = Structure { modes: modes.collect(), residual_compliance_m_n: 0.0 };
+    let other = Structure { modes: modes.collect() };
     let force = mass * length / (time * time);
     let law = Hertz::new(1.7945e10 * force / length.powf(1.5)).unwrap();
     let striker = Striker { mass_kg: 0.11027 * mass, speed_m_s: length / time };
@@ -104,7 +104,7 @@ fn a_two_centimetre_ball_has_one_contact() {
 fn a_free_body_rebounds_as_momentum_wants() {
     // two rigid bodies: a structure of one rigid-body mode of 2 kg
     let rigid = Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 0.5f64.sqrt() };
-    let structure = Structure { modes: vec![rigid], residual_compliance_m_n: 0.0 };
+    let structure = Structure { modes: vec![rigid] };
     let solution = Solver::new(&structure).unwrap().solve(&ball(), &hertz(), None, &settings(1e-11)).unwrap();
     assert!((solution.restitution.unwrap() - 1.0).abs() < 1e-10);
     let m = 0.11027;
@@ -145,7 +145,7 @@ fn heavy_damping_and_coinciding_modes_are_ordinary() {
     let whole = pinned(12, 0.02, GOLDEN);
     let half = |mode: &Mode| Mode { shape: mode.shape * 0.5f64.sqrt(), ..*mode };
     let modes = whole.modes.iter().flat_map(|mode| [half(mode), half(mode)]).collect();
-    let split = Structure { modes, residual_compliance_m_n: 0.0 };
+    let split = Structure { modes };
     let difference = solve(&whole, 1e-10).restitution.unwrap() - solve(&split, 1e-10).restitution.unwrap();
     assert!(difference.abs() < 1e-9, "{difference:e}");
 }
@@ -176,7 +176,7 @@ fn costs_are_the_same_on_every_run() {
 #[test]
 fn bad_input_names_field_value_and_what_is_allowed() {
     let good = Mode { omega_rad_s: 100.0, damping_ratio: 0.0, shape: 1.0 };
-    let structure = |mode| Structure { modes: vec![mode], residual_compliance_m_n: 0.0 };
+    let structure = |mode| Structure { modes: vec![mode] };
     for (bad, field) in [
         (Mode { omega_rad_s: f64::NAN, ..good }, "modes[0].omega_rad_s"),
         (Mode { omega_rad_s: -1.0, ..good }, "modes[0].omega_rad_s"),

@@ -167,7 +167,7 @@ fn every_damped_motion_before_a_stop_ends() {
 #[test]
 fn a_search_without_end_is_named() {
     let mode = |omega_rad_s: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape: 1.0 };
-    let structure = Structure { modes: vec![mode(100.0), mode(100.0 * 2f64.sqrt())], residual_compliance_m_n: 0.0 };
+    let structure = Structure { modes: vec![mode(100.0), mode(100.0 * 2f64.sqrt())] };
     let mut start = Start::at_rest(2);
     (start.amplitude, start.gap_m) = (vec![-1e-3, -1e-3], 4e-3 * (1.0 - 1e-9));
     let law = LinearSpring::new(1e5).unwrap().into();

@@ -110,7 +110,7 @@ impl Scene {
             [self.structure.modes_with(place, count, &mut kept.modes)?, Vec::new()]
         };
         let remainder = modes[1].len();
-        Ok((Structure { modes: modes.concat(), residual_compliance_m_n: 0.0 }, remainder))
+        Ok((Structure { modes: modes.concat() }, remainder))
     }
 
     /// The modes of the structure as seen from the point of impact: the first `count`, however many the scene keeps.

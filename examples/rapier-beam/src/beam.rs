@@ -65,7 +65,7 @@ impl Bar {
         for m in self.beam.remainder(x_m, MODES, 2)? {
             modes.push(Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape });
         }
-        Ok(Structure { modes, residual_compliance_m_n: 0.0 })
+        Ok(Structure { modes })
     }
 
     /// Lets the ball fall from a height and resolves every contact of its first bounces. The bar rings on between

@@ -85,6 +85,6 @@ impl Beam {
             let remainder = self.model.remainder(location_m, count, REMAINDER_MODES)?;
             modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
         }
-        Ok(Structure { modes, residual_compliance_m_n: 0.0 })
+        Ok(Structure { modes })
     }
 }

@@ -154,7 +154,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
             shape: mode.shape,
         }));
     }
-    Structure { modes, residual_compliance_m_n: 0.0 }
+    Structure { modes }
 }
 
 fn start(random: &mut Rng, structure: &Structure, speed_m_s: f64) -> Start {

@@ -91,7 +91,7 @@ fn beam(ends: [End; 2], thickness: &[f64], modes: usize, damping_ratio: f64, x_m
     let shapes = found.shapes_at(x_m).map_err(|e| e.to_string())?;
     let modes = found.omega_rad_s().iter().zip(shapes);
     let modes = modes.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Ok(Structure { modes, residual_compliance_m_n: 0.0 })
+    Ok(Structure { modes })
 }
 
 /// Every impact of the library (thesis sections 3.3 and 4.2; steps and balls of chapter 4 as in `datasets`).

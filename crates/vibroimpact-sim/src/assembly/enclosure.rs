@@ -254,13 +254,20 @@ pub(crate) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64,
     let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
     let mut t = 0.0;
     for _ in 0..ITERATIONS_MAX {
-        let [overlap, rate, _] = value(series, t);
+        let [overlap, rate, bend] = value(series, t);
         let size = series.iter().rev().fold(0.0, |sum, term| sum * t + term.abs());
-        if overlap >= -(noise + 4.0 * f64::EPSILON * size) && rate > 0.0 {
+        let noise = noise + 4.0 * f64::EPSILON * size;
+        let meets = overlap >= -noise && rate > 0.0;
+        let grazes = meets && rate * rate <= -2.0 * noise * bend;
+        if meets && !grazes {
             return (t, true);
         }
         let step = first_root_of_parabola((-overlap).max(0.0), -rate, curvature);
-        let step = if rate > 0.0 { step } else { step.max(least) };
+        let step = match (grazes, rate > 0.0) {
+            (true, _) => (-2.0 * rate / bend).max(least),
+            (false, true) => step,
+            (false, false) => step.max(least),
+        };
         let next = (t + step).max(t * (1.0 + f64::EPSILON));
         if next >= window {
             return (window, false);

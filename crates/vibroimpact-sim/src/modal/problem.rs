@@ -39,14 +39,12 @@ impl Mode {
     }
 }
 
-/// A linear structure: its modes, and what the modes left out would add to its static compliance.
+/// A linear structure, as seen from the contact. Modes left out are best represented by remainder modes
+/// (`beam_modes::remainder_modes`), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Structure {
     /// The modes kept, in any order. None at all is a rigid, immovable structure.
     pub modes: Vec<Mode>,
-    /// Static compliance at the contact of the modes left out (m/N), in series with the contact:
-    /// `G(b,b) - sum phi_k^2/omega_k^2`. Zero is plain truncation.
-    pub residual_compliance_m_n: f64,
 }
 
 impl Structure {
@@ -65,13 +63,7 @@ impl Structure {
                 return fault("shape", mode.shape, "a finite number, at most 1e30 in size");
             }
         }
-        let c = self.residual_compliance_m_n;
-        InvalidInput::unless(
-            (0.0..=SCALE_MAX).contains(&c),
-            "residual_compliance_m_n",
-            c,
-            "0 (plain truncation) or a positive finite number",
-        )
+        Ok(())
     }
 }
 

@@ -36,7 +36,7 @@ const LEAST: f64 = 3e-3;
 ///
 /// // one mode at 50 Hz of a 1 kg beam, hit at its middle by a ball of 0.1 kg
 /// let mode = Mode { omega_rad_s: 314.0, damping_ratio: 0.02, shape: 2f64.sqrt() };
-/// let structure = Structure { modes: vec![mode], residual_compliance_m_n: 0.0 };
+/// let structure = Structure { modes: vec![mode] };
 /// let mut solver = Solver::new(&structure)?;
 /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
 /// let law = Hertz::new(1.8e10).unwrap();

@@ -167,8 +167,8 @@ pub(crate) fn exponential_moments(z: Complex64) -> [Complex64; Q] {
 mod tests {
     use super::*;
 
-    fn mode(omega_rad_s: f64, damping_ratio: f64) -> Mode {
-        Mode { omega_rad_s, damping_ratio, shape: 1.0 }
+    fn mode(omega_rad_s: f64, damping_ratio: f64) -> BodyMode {
+        BodyMode { omega_rad_s, damping_ratio }
     }
 
     /// Fixed fine composite Gauss quadrature of the defining integral.

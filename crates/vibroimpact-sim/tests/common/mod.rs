@@ -3,7 +3,7 @@
 
 pub mod random;
 
-use beam_modes::Beam;
+use beam_modes::{Beam, End, PointMode, Segment};
 use contact_models::{ContactLaw, Hertz, Law, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
@@ -23,16 +23,18 @@ pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
             shape: (2.0 / mass).sqrt() * (q * b).sin(),
         }
     };
-    Structure { modes: (1..=n).map(mode).collect(), residual_compliance_m_n: 0.0 }
+    Structure { modes: (1..=n).map(mode).collect() }
 }
 
-/// The same with the static compliance of all higher modes.
-pub fn pinned_with_residual(n: usize, damping_ratio: f64, b: f64) -> Structure {
+/// The same with two remainder modes for all that are higher.
+pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure {
+    let beam = Beam {
+        segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)],
+        ends: [End::Pinned; 2],
+    };
+    let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape };
     let mut structure = pinned(n, damping_ratio, b);
-    let rigidity = 2e11 * 0.011323f64.powi(4) / 12.0;
-    let whole = (b * (1.0 - b)).powi(2) / (3.0 * rigidity);
-    structure.residual_compliance_m_n =
-        whole - structure.modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum::<f64>();
+    structure.modes.extend(beam.remainder(b, n, 2).unwrap().into_iter().map(damped));
     structure
 }
 
@@ -42,7 +44,7 @@ pub fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Str
     let shapes = modes.shapes_at(x_m).unwrap();
     let each = modes.omega_rad_s().iter().zip(&shapes);
     let modes = each.map(|(&omega_rad_s, &shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Structure { modes, residual_compliance_m_n: 0.0 }
+    Structure { modes }
 }
 
 /// Hertz contact of the thesis's 3 cm ball.

@@ -148,7 +148,7 @@ impl<'a> Pose<'a> {
             }
             listed => {
                 let modes = listed.modes(scene.place(), scene.modes.count())?;
-                Solver::new(&Structure { modes: modes.clone(), residual_compliance_m_n: 0.0 }).map_err(in_scene)?;
+                Solver::new(&Structure { modes: modes.clone() }).map_err(in_scene)?;
                 let whole_m_n = match listed {
                     scene::Structure::Modal(listed) if listed.gives_compliance(scene.location.as_deref()) => {
                         let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
@@ -187,7 +187,7 @@ impl<'a> Pose<'a> {
         };
         let mut modes: Vec<Mode> = known[..count].iter().filter(|mode| mode.shape.powi(2) > least).copied().collect();
         modes.extend(&remainder);
-        Ok((Structure { modes, residual_compliance_m_n: 0.0 }, remainder.len()))
+        Ok((Structure { modes }, remainder.len()))
     }
 
     /// Whether the modes listed are all that the structure has: they make up its static compliance.

@@ -5,13 +5,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
-use vibroimpact_sim::modal::{Mode, Settings, Structure};
+use vibroimpact_sim::modal::{Mode, Settings};
 
 use super::error::InvalidInput;
 use super::json::number;
-use super::{Contact, HertzStiffness, MOST_MODES, Scene, Striker, fields};
+use super::{Contact, HertzStiffness, Scene, Striker, fields};
 use crate::impact::Impact;
-use crate::scene;
 
 /// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
 /// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
@@ -53,10 +52,6 @@ fn axial_modes() -> usize {
     20
 }
 
-fn in_structure(fault: InvalidInput) -> InvalidInput {
-    fault.within("structure")
-}
-
 impl DroppedRod {
     /// The rod in the terms of the solver.
     ///
@@ -89,7 +84,9 @@ impl DroppedRod {
 
     /// Rigid-body motions and modes as the floor meets them, from the lowest frequency.
     pub(super) fn modes(&self) -> Result<Vec<Mode>, InvalidInput> {
-        let mut modes = self.at_unit_speed()?.structure.modes;
+        let drop = self.at_unit_speed()?;
+        let mut modes = drop.structure.modes;
+        modes.truncate(modes.len() - drop.remainder_modes);
         modes.sort_by(|a, b| a.omega_rad_s.total_cmp(&b.omega_rad_s));
         Ok(modes)
     }
@@ -104,25 +101,6 @@ impl DroppedRod {
         let area_m2 = 0.25 * PI * self.diameter_m.powi(2);
         let bending = self.length_m.powi(2) / (105.0 * (self.diameter_m / 4.0).powi(2));
         Ok((bending * cos * cos + sin * sin / 3.0) * self.length_m / (self.youngs_modulus_pa * area_m2))
-    }
-
-    /// The modes as the floor meets them in the order of [`dropped_rod`], remainder modes last, and how many these are.
-    fn with_remainder(&self, drop: &dropped_rod::Drop) -> Result<(Structure, usize), InvalidInput> {
-        let enough = |kept: usize| beam_modes::enough_for_remainder(kept).min(MOST_MODES.max(kept));
-        let richer =
-            DroppedRod { bending_modes: enough(self.bending_modes), axial_modes: enough(self.axial_modes), ..*self };
-        let all = richer.at_unit_speed().map_err(in_structure)?.structure.modes;
-        // two rigid-body motions, bending, axial
-        let (bending, all_bending) = (2 + self.bending_modes, 2 + richer.bending_modes);
-        let kept = bending + self.axial_modes;
-        let mut known = drop.structure.modes[..kept].to_vec();
-        known.extend(&all[bending..all_bending]);
-        known.extend(&all[all_bending + self.axial_modes..all_bending + richer.axial_modes]);
-        let structure = scene::Structure::DroppedRod(*self);
-        let remainder = structure.remainder(&known, kept, self.static_compliance_m_n().map_err(in_structure)?)?;
-        known.truncate(kept);
-        known.extend(&remainder);
-        Ok((Structure { modes: known, residual_compliance_m_n: 0.0 }, remainder.len()))
     }
 }
 
@@ -157,10 +135,7 @@ impl Scene {
                 ..Striker::default()
             })?,
         };
-        let (structure, remainder_modes) = rod.with_remainder(&drop)?;
-        let mut start = drop.start;
-        start.amplitude.resize(structure.modes.len(), 0.0);
-        start.rate.resize(structure.modes.len(), 0.0);
-        Ok(Impact { structure, remainder_modes, striker: drop.surface, law, start: Some(start), settings })
+        let dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
+        Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
     }
 }

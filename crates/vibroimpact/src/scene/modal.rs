@@ -159,7 +159,7 @@ impl Modal {
         };
         let modes: Vec<Mode> = (0..listed).map(mode).collect();
         // the solver knows the ranges; its fault is told of the list in which the number stands
-        let structure = Structure { modes, residual_compliance_m_n: 0.0 };
+        let structure = Structure { modes };
         match Solver::new(&structure) {
             Ok(_) => Ok(structure.modes),
             Err(fault) => Err(self.in_lists(seen, fault.into())),
