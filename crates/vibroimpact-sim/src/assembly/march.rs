@@ -537,10 +537,6 @@ impl<'a, L: ContactLaw> March<'a, L> {
         }
     }
 
-    fn motion(&self) -> (&[f64], &[f64]) {
-        (&self.amplitude, &self.rate)
-    }
-
     /// Bounds on the free motion of an open contact.
     fn bounds(&mut self, c: usize) -> Option<&FlightBounds> {
         let motion = (self.amplitude.as_slice(), self.rate.as_slice());

@@ -42,9 +42,6 @@ pub(crate) struct Basis {
     /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
-    /// Derivative at the end of that polynomial.
-    pub end_slope_from_start: f64,
-    pub end_slope_from_nodes: Nodal,
     /// The finer rule on (0, 1): node and weight.
     pub fine: Vec<(f64, f64)>,
 }
@@ -239,7 +236,6 @@ impl Basis {
         for i in 0..Q {
             (slope_from_start[i], slope_from_nodes[i]) = slopes(nodes[i]);
         }
-        let (end_slope_from_start, end_slope_from_nodes) = slopes(1.0);
         Basis {
             nodes,
             to_coefficients,
@@ -251,8 +247,6 @@ impl Basis {
             derivatives,
             slope_from_start,
             slope_from_nodes,
-            end_slope_from_start,
-            end_slope_from_nodes,
             fine,
         }
     }
@@ -265,12 +259,6 @@ impl Basis {
             terms += 1;
         }
         terms
-    }
-
-    /// Nodal values on [0, part] of the polynomial with these nodal values on [0, 1].
-    pub fn restrict(&self, nodal: &Nodal, part: f64) -> Nodal {
-        let coefficients = self.coefficients(nodal);
-        self.nodes.map(|c| evaluate(&coefficients, part * c))
     }
 
     /// Legendre coefficients of the polynomial with these nodal values.
@@ -329,6 +317,5 @@ mod tests {
             }
             assert!((sum - legendre(at * basis.nodes[i])[3]).abs() < 1e-13);
         }
-        assert!((dot(&basis.end_slope_from_nodes, &cube) - 3.0).abs() < 1e-10);
     }
 }
