@@ -236,7 +236,7 @@ fn hysteresis_with_tiny_loops() {
                     Mode { omega_rad_s: 500.0, damping_ratio: 0.0, shape: 1.0 },
                     Mode { omega_rad_s: 3e5, damping_ratio: 0.0, shape },
                 ],
-                    };
+            };
             let law = Law::from(Hysteretic::new(1e9, 1.6, 1.4, 0.4, epsilon_m).unwrap());
             let solution = run(&structure, &ball(), &law);
             assert_eq!(solution.outcome, Outcome::Rebound, "{epsilon_m:e} {shape}");

@@ -140,7 +140,7 @@ fn dropped_rod() -> Problem {
         Ok(Found { values, costs: named(&total) })
     };
     Problem::against_tighter(
-        "modal/dropped rod, three inclinations/1e-9",
+        "modal/dropped rod with remainder modes, three inclinations/1e-9",
         move || Ok(solve(tighter_than(1e-9))?.values),
         move || solve(1e-9),
     )

@@ -88,7 +88,7 @@ impl Single {
         let mode = |((&omega_rad_s, &damping_ratio), &shape)| modal::Mode { omega_rad_s, damping_ratio, shape };
         let modes = modes.omega_rad_s.iter().zip(&modes.damping_ratio).zip(&modes.shape).map(mode).collect();
         Some(Single {
-            structure: modal::Structure { modes, residual_compliance_m_n: 0.0 },
+            structure: modal::Structure { modes },
             striker: modal::Striker { mass_kg, speed_m_s: -striker.at_point(&striker.rate) },
             law: *law,
         })

@@ -17,8 +17,8 @@
 
 use crate::panel::forcing::rate;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
-use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
 use crate::panel::oscillator::BodyMode;
+use crate::panel::oscillator::{NEARLY_CRITICAL, propagate, response};
 use num_complex::Complex64;
 use std::array;
 use std::num::NonZeroUsize;

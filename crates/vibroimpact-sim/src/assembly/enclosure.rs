@@ -13,8 +13,8 @@
 use super::load::Loads;
 use super::system::{Link, System};
 use super::terminal::value;
-use crate::panel::oscillator::BodyMode;
 use crate::panel::legendre::{BASIS, Q, TAYLOR};
+use crate::panel::oscillator::BodyMode;
 use std::sync::LazyLock;
 
 /// Derivatives of the interpolation error that are bounded.

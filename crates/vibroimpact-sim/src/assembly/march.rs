@@ -18,9 +18,9 @@ use super::state::{Phase, State, Touch};
 use super::system::{Span, System};
 use super::tables::Tables;
 use super::terminal::{self, Landed, REACH, Window, series_of, value};
-use crate::panel::peak::Peak;
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, slopes, truncation};
+use crate::panel::peak::Peak;
 use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 
 /// Part of the stated tolerance that one panel may use up.
@@ -855,7 +855,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let (system, link) = (self.system, &self.system.links[c]);
         let mut series = [0.0; TAYLOR];
         self.loads.add_series(c, self.time_s, &mut series);
-        let of = |(k, psi): &(usize, f64)| psi * (system.drag[*k] * self.rate[*k] + system.square[*k] * self.amplitude[*k]);
+        let of =
+            |(k, psi): &(usize, f64)| psi * (system.drag[*k] * self.rate[*k] + system.square[*k] * self.amplitude[*k]);
         let free = 2.0 * series[2] - link.elastic.iter().map(of).sum::<f64>();
         let pull = |&other: &usize| {
             let (state, links) = (&self.states[other], &self.system.links);

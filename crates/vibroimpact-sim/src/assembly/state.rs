@@ -2,8 +2,8 @@
 
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
-use crate::panel::peak::Peak;
 use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate};
+use crate::panel::peak::Peak;
 use contact_models::{Branch, Memory};
 
 /// A contact at a moment.

@@ -4,8 +4,8 @@
 use super::damping::Damping;
 use super::enclosure::Missed;
 use super::system::{Link, Span, System};
-use crate::panel::forcing::{Compliance, Terms, part};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
+use crate::panel::forcing::{Compliance, Terms, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 
 /// Response of one contact's overlap to the force of another.

@@ -24,8 +24,11 @@ pub(crate) fn assembly<L>(modes: &[Mode], moved: &[usize], striker: &Striker, la
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
     let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();
     let deflection: f64 = moved.iter().map(|k| modes[*k].shape * start.amplitude[*k]).sum();
-    let structure =
-        Body { modes: moved.iter().map(|k| modes[*k].of_body()).collect(), amplitude: pick(&start.amplitude), rate: pick(&start.rate) };
+    let structure = Body {
+        modes: moved.iter().map(|k| modes[*k].of_body()).collect(),
+        amplitude: pick(&start.amplitude),
+        rate: pick(&start.rate),
+    };
     let mut bodies = vec![structure];
     let mut side = Point::Ground;
     if let Some(mass_kg) = mass_kg(striker, modes) {

@@ -206,8 +206,7 @@ impl Solver {
         let same = self.again(impact, coarser(COARSER), counts);
         let other = {
             let modes = &self.modes;
-            let solver =
-                self.otherwise.get_or_insert_with(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
+            let solver = self.otherwise.get_or_insert_with(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
             let (striker, start) = (time_unit::striker(impact.striker), time_unit::start(impact.start));
             let law = time_unit::Law(impact.law);
             let impact = Impact { striker: &striker, law: &law, start: &start, settings };

@@ -28,10 +28,8 @@ pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
 
 /// The same with two remainder modes for all that are higher.
 pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure {
-    let beam = Beam {
-        segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)],
-        ends: [End::Pinned; 2],
-    };
+    let beam =
+        Beam { segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)], ends: [End::Pinned; 2] };
     let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape };
     let mut structure = pinned(n, damping_ratio, b);
     structure.modes.extend(beam.remainder(b, n, 2).unwrap().into_iter().map(damped));

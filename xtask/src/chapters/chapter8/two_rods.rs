@@ -47,8 +47,7 @@ fn restitution(parameters: &Parameters, lengths_m: [f64; 2]) -> Result<f64, Fail
     let law = LinearSpring::new(HARD * modulus * area_m2 / lengths_m[0])?;
     let wall = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let settings = Settings { tolerance: 1e-7, estimate_uncertainty: false, ..Settings::default() };
-    let solution =
-        Solver::new(&Structure { modes })?.solve(&wall, &law, Some(&start), &settings)?;
+    let solution = Solver::new(&Structure { modes })?.solve(&wall, &law, Some(&start), &settings)?;
     let closing: f64 = rigid.iter().map(|(place, shape)| solution.rate[*place] * shape).sum();
     Ok(-closing / parameters.our_choice.speed_m_s)
 }
