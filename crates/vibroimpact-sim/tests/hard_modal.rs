@@ -182,13 +182,10 @@ fn damping_and_frequencies() {
     // so much damping holds the beam still
     cases.push(case("damping ratio 1e6", pinned(20, 1e6, GOLDEN), ball(), hertz(), Expect::Restitution(1.0, 1e-3)));
     for apart in [0.0, 1e-16, 1e-12, 1e-9] {
-        let one = Structure {
-            modes: vec![Mode { omega_rad_s: 900.0, damping_ratio: 0.01, shape: 1.5 }],
-            ..pinned(0, 0.0, 0.0)
-        };
+        let one = Structure { modes: vec![Mode { omega_rad_s: 900.0, damping_ratio: 0.01, shape: 1.5 }] };
         let each = |factor: f64| Mode { omega_rad_s: 900.0 * factor, damping_ratio: 0.01, shape: 0.75 };
         // four modes of one frequency, of phi^2 = 1.5^2 together
-        let four = Structure { modes: [1.0 - apart, 1.0, 1.0, 1.0 + apart].map(each).to_vec(), ..one.clone() };
+        let four = Structure { modes: [1.0 - apart, 1.0, 1.0, 1.0 + apart].map(each).to_vec() };
         cases.push(case(format!("frequencies {apart:e} apart"), four, ball(), hertz(), Expect::Same(one)));
     }
     hold(&cases);
