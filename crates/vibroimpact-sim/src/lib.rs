@@ -2,9 +2,9 @@
 //!
 //! | module | structure | method | thesis |
 //! |---|---|---|---|
-//! | [`modal`] | any that is described by its modes, at rest or moving | modes exact, the force by collocation | chapters 3, 4 |
+//! | [`modal`] | any that is described by its modes, at rest or moving | posed as the smallest assembly | chapters 3, 4 |
 //! | [`infinite`] | an infinite beam or plate, which carries the energy away as waves | one scalar Volterra equation | chapter 2 |
-//! | [`assembly`] | many bodies, contacts and loads, over long times | as `modal`, for a vector of contacts | beyond |
+//! | [`assembly`] | many bodies, contacts and loads, over long times | modes exact, the forces by collocation | beyond |
 //! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, posed as a modal impact | as `modal` | chapter 8 |
 //!
 //! Each states its mathematics, with a table of symbols, at its head. Throughout, `z` is the displacement of the
@@ -16,9 +16,7 @@
 //!
 //! Structures are linear, and the contact is one point. The striker moves along one line and does not rotate. Gravity
 //! and friction are left out during the impact. The infinite structures take Hertz contact alone. An impact on many
-//! undamped modes amplifies every error; the stated uncertainty tells by how much. The energy ledger resolves the
-//! fastest mode, so that its cost grows with the cube of the number of modes, and outweighs that of the impact from a
-//! few hundred on; [`modal::Solver::solve`] alone does without it.
+//! undamped modes amplifies every error; the stated uncertainty tells by how much.
 
 pub mod assembly;
 pub mod dropped_rod;

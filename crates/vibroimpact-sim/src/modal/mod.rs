@@ -15,19 +15,12 @@
 //! | `omega_k`, `zeta_k` | undamped circular frequency, damping ratio | rad/s, 1 |
 //! | `z`, `m` | displacement (positive away from the structure) and mass of the striker | m, kg |
 //! | `xi`, `F` | compression and force of the contact | m, N |
-//! | `c` | residual static compliance of the modes left out; 0 in the thesis | m/N |
-//! | `g` | overlap of the undeformed surfaces, `sum phi_k a_k - z` | m |
-//! | `mu` | inverse mass of striker and rigid-body modes at the contact, `1/m + sum_rigid phi_k^2` | 1/kg |
 //!
 //! # The method
-//! The modes are linear and all driven by one scalar `F(t)`. On a step of a contact, `F` is a polynomial through
-//! Gauss nodes. Its effect on every mode is exact: `int P_n(2s-1) e^{z(1-s)} ds = (-1)^n e^{z/2} i_n(z/2)`, with
-//! `i_n` the modified spherical Bessel function, so that no frequency is too high for the step. The only unknowns are
-//! the nodal forces, which the law fixes; Newton's method finds them. Steps come from a ladder `2^-j` s whose
-//! propagators and responses are tabulated, so a step costs `O(N)` multiplications and no transcendental function.
-//! A branch of the law ends (separation, reversal, yield) on its boundary, landed on by a step of unknown length.
-//! In free flight nothing is integrated: a bound on the gap's motion gives a time before which no contact can come
-//! (see `flight.rs`), and a bound that none will come at all ends the impact.
+//! An impact is the smallest assembly ([`crate::assembly`], where the method stands): two bodies, the striker one rigid mode,
+//! and one contact (`posed.rs`). The modes are propagated exactly; the force, a polynomial on each panel, is the only
+//! unknown; a bound on the motion says when a contact can come, and that none can come any more ends the impact. What the
+//! structure's modes need is tabulated once and kept for further strikers, speeds and laws.
 //!
 //! The uncertainty of the restitution rests on coarser solutions: one of 32 times the tolerance, and one of eight times,
 //! whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger difference to them.
