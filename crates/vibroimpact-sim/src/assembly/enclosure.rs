@@ -47,8 +47,10 @@ static BOUNDS: LazyLock<Bounds> = LazyLock::new(|| {
     };
     let factorial: f64 = (1..=n).map(|i| i as f64).product();
     let mut bounds = Bounds { resolved: [0.0; ORDERS], lebesgue: [0.0; ORDERS] };
-    for i in 0..=400 {
-        let place = f64::from(i) / 400.0;
+    // all of these are largest at an end of the panel, but for the values, which are smooth between the nodes
+    const PLACES: u32 = 64;
+    for i in 0..=PLACES {
+        let place = f64::from(i) / f64::from(PLACES);
         let whole = product(place, n);
         let lagrange: Vec<_> = (0..n).map(|j| product(place, j)).collect();
         for r in 0..ORDERS {

@@ -357,6 +357,11 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let law = self.law(c);
         let Phase::Open { memory, .. } = self.states[c].phase else { return };
         let (overlap, _) = self.overlap_of_modes(c);
+        let link = &self.system.links[c];
+        let mobility = link.mobility;
+        // how fast the bodies approach each other, but for their vibrations; these push with their own small masses
+        let vibrates: f64 =
+            if link.rigid.is_empty() { 0.0 } else { link.elastic.iter().map(|(k, psi)| psi * self.rate[*k]).sum() };
         let state = &mut self.states[c];
         let inverse = state.inverse_mass;
         state.overlap = memory.touch_m + beyond;
@@ -365,6 +370,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             state.rate = state.rate.max(0.0);
         }
         let approach_speed_m_s = state.rate;
+        let rigid = approach_speed_m_s - vibrates;
         let interval = Interval {
             start_s: self.time_s,
             end_s: None,
@@ -386,8 +392,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
         };
         // of surfaces that overlap at the start, what their compression will push
         let stored_j = if beyond > 0.0 { law.stored_energy_j(&touch.branch, state.overlap) } else { 0.0 };
-        let speed = approach_speed_m_s.abs().max((2.0 * stored_j * inverse).sqrt());
-        let momentum = if inverse > 0.0 { speed / inverse } else { 0.0 };
+        let speed = rigid.abs().max((2.0 * stored_j * inverse).sqrt());
+        let momentum =
+            if inverse > 0.0 { speed / inverse + (approach_speed_m_s - rigid).abs() / mobility } else { 0.0 };
         state.phase = Phase::Closed(Box::new(touch));
         state.momentum = state.momentum.max(momentum);
         let of_others = |states: &[State]| states.iter().map(|state| state.momentum).fold(0.0, f64::max);
@@ -454,9 +461,13 @@ impl<'a, L: ContactLaw> March<'a, L> {
         if self.reach.is_finite() { fine.max(level_within(4.0 * self.reach)) } else { fine }
     }
 
-    /// Impulse that a panel may get wrong (N s).
+    /// Impulse that a panel may get wrong (N s): a part of the momentum exchanged, but no more than what would give the
+    /// modes, light ones too, this part of the contact's energy.
     fn impulse_tolerance(&self, c: usize) -> f64 {
-        (STEP_SHARE * self.settings.tolerance * self.states[c].momentum).max(f64::MIN_POSITIVE)
+        let (state, tolerance) = (&self.states[c], self.settings.tolerance);
+        let share = STEP_SHARE * tolerance * state.momentum;
+        let energy = tolerance * state.momentum * state.speed_m_s();
+        share.min((energy / self.system.links[c].mobility).sqrt()).max(f64::MIN_POSITIVE)
     }
 
     /// Time until the loads change or the run ends (s).

@@ -28,6 +28,8 @@ pub(crate) struct Link {
     pub elastic: Vec<(usize, f64)>,
     /// Rigid modes that move it, likewise.
     pub rigid: Vec<(usize, f64)>,
+    /// `sum psi_k^2` over all modes (1/kg): what an impulse changes its rate by.
+    pub mobility: f64,
 }
 
 impl Link {
@@ -151,7 +153,8 @@ impl System {
         let moving = weights.filter(|(_, psi)| *psi != 0.0);
         let (rigid, mut elastic): (Vec<_>, Vec<_>) = moving.partition(|(k, _)| self.modes[*k].is_rigid());
         elastic.sort_by(|a, b| self.modes[a.0].omega_rad_s.total_cmp(&self.modes[b.0].omega_rad_s));
-        Link { spans, sides, elastic, rigid }
+        let mobility = rigid.iter().chain(&elastic).map(|(_, psi)| psi * psi).sum();
+        Link { spans, sides, elastic, rigid, mobility }
     }
 
     /// Inverse mass with which a contact feels the modes: the rigid ones, or all where there is none (1/kg).
