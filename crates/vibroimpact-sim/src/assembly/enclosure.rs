@@ -2,94 +2,23 @@
 //!
 //! - On a panel: by how much the polynomial through the start and the nodes may miss the overlap. With a force that is a
 //!   polynomial, a mode moves along a polynomial, about `-psi F/omega^2` for a fast one, and vibrates freely about that
-//!   with an amplitude that follows from its state. Interpolation at `n` points misses a vibration `A e^{i theta s}` and
-//!   its derivatives by at most `A theta^n |P^(r)|/n!`, `P` the product of `s` less the points (A. Shadrin, 1995), and,
-//!   however fast it is, by `A (theta^r + Lambda_r)` with the Lebesgue constants `Lambda_r` of the derivatives.
+//!   with an amplitude that follows from its state; what interpolation misses of that is in `interpolation.rs`.
 //! - In free flight: a time before which no contact can come. The modes above any `K` move the overlap by at most
 //!   `H = sum |psi_k| A_k`, `A_k^2 = a_k^2 + (b_k/omega_k)^2`, and of the rest `|g''| <= B = sum (1 + 2 zeta_k) omega_k^2
 //!   |psi_k| A_k`. So the separation is at least `u_K - H + u_K' t - B t^2/2`, and the best of these parabolas over `K`
 //!   holds.
 
+use super::interpolation::{FOLLOWED, Missed, ORDERS, OVERDAMPED, interpolation};
 use super::load::Loads;
 use super::system::{Link, System};
 use super::terminal::value;
-use crate::panel::legendre::{BASIS, Q, TAYLOR};
-use crate::panel::oscillator::BodyMode;
-use std::sync::LazyLock;
-
-/// Derivatives of the interpolation error that are bounded.
-const ORDERS: usize = 3;
-/// Modes damped more than this are two decays, `a' + r_2 a` with the rate `r_1` and the other way round.
-const OVERDAMPED: f64 = 1.5;
-/// A mode that turns by less than this in a panel (rad) is interpolated to rounding.
-const FOLLOWED: f64 = 0.2;
-
-struct Bounds {
-    /// `max |P^(r)|/n!` and `Lambda_r`.
-    resolved: [f64; ORDERS],
-    lebesgue: [f64; ORDERS],
-}
-
-static BOUNDS: LazyLock<Bounds> = LazyLock::new(|| {
-    let mut points = vec![0.0];
-    points.extend_from_slice(&BASIS.nodes);
-    let n = points.len();
-    // derivatives of a product of linear factors at a place, by the product rule
-    let product = |place: f64, without: usize| {
-        let mut derivatives = [1.0, 0.0, 0.0];
-        for (m, point) in points.iter().enumerate().filter(|(m, _)| *m != without) {
-            let (factor, [value, slope, bend]) = (place - point, derivatives);
-            let scale = if without < n { points[without] - points[m] } else { 1.0 };
-            derivatives =
-                [value * factor / scale, (slope * factor + value) / scale, (bend * factor + 2.0 * slope) / scale];
-        }
-        derivatives
-    };
-    let factorial: f64 = (1..=n).map(|i| i as f64).product();
-    let mut bounds = Bounds { resolved: [0.0; ORDERS], lebesgue: [0.0; ORDERS] };
-    // all of these are largest at an end of the panel, but for the values, which are smooth between the nodes
-    const PLACES: u32 = 64;
-    for i in 0..=PLACES {
-        let place = f64::from(i) / f64::from(PLACES);
-        let whole = product(place, n);
-        let lagrange: Vec<_> = (0..n).map(|j| product(place, j)).collect();
-        for r in 0..ORDERS {
-            bounds.resolved[r] = bounds.resolved[r].max(whole[r].abs() / factorial);
-            let sum = lagrange.iter().map(|derivatives| derivatives[r].abs()).sum();
-            bounds.lebesgue[r] = bounds.lebesgue[r].max(sum);
-        }
-    }
-    bounds
-});
-
-/// By how much interpolation on a panel misses a unit vibration that turns by `theta`, and its first two derivatives.
-fn interpolation(theta: f64) -> [f64; ORDERS] {
-    let bounds = &*BOUNDS;
-    let power = theta.powi(Q as i32 + 1);
-    let fast = [1.0, theta, theta * theta];
-    std::array::from_fn(|r| (power * bounds.resolved[r]).min(fast[r] + bounds.lebesgue[r]))
-}
+use crate::panel::legendre::TAYLOR;
 
 /// A contact force and its rate, and what it acts on.
 pub(crate) struct Pull<'a> {
     pub link: &'a Link,
     pub force_n: f64,
     pub rate_n_s: f64,
-}
-
-/// By how much interpolation on a panel of one length misses unit vibrations of all modes, and their first two derivatives:
-/// zero for those that are two decays, and for those that are interpolated to rounding.
-pub(crate) struct Missed([Vec<f64>; ORDERS]);
-
-impl Missed {
-    pub fn new(system: &System, h: f64) -> Missed {
-        let of = |mode: &BodyMode| {
-            let turning = mode.omega_rad_s * h * (1.0 + mode.damping_ratio);
-            if turning < FOLLOWED || mode.damping_ratio > OVERDAMPED { [0.0; ORDERS] } else { interpolation(turning) }
-        };
-        let all: Vec<[f64; ORDERS]> = system.modes.iter().map(of).collect();
-        Missed(std::array::from_fn(|r| all.iter().map(|missed| missed[r]).collect()))
-    }
 }
 
 /// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
@@ -289,34 +218,4 @@ pub(crate) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_
     let lines = loads.acceleration(contact, time_s).max(loads.acceleration(contact, time_s + lasting_s)).max(0.0);
     let harmonics = loads.harmonics.iter().map(|h| h.omega_rad_s.powi(2) * h.contacts[contact].norm());
     lines + harmonics.sum::<f64>()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn interpolation_of_a_vibration_is_bounded() {
-        let mut points = vec![0.0];
-        points.extend_from_slice(&BASIS.nodes);
-        for theta in [0.3, 1.0, 2.0, 4.0, 7.0, 20.0] {
-            let bound = interpolation(theta)[0];
-            let mut worst = 0.0f64;
-            for phase in [0.0, 0.4, 0.9, 1.3] {
-                let f = |s: f64| (theta * s + phase).sin();
-                for i in 0..=200 {
-                    let place = f64::from(i) / 200.0;
-                    let mut value = 0.0;
-                    for (j, point) in points.iter().enumerate() {
-                        let others = points.iter().enumerate().filter(|(m, _)| *m != j);
-                        value +=
-                            f(*point) * others.map(|(_, other)| (place - other) / (point - other)).product::<f64>();
-                    }
-                    worst = worst.max((value - f(place)).abs());
-                }
-            }
-            assert!(worst <= bound + 1e-14, "{theta}: {worst:e} {bound:e}");
-            assert!(bound < 1e3 * worst + 1e-12, "{theta}: {worst:e} {bound:e}");
-        }
-    }
 }

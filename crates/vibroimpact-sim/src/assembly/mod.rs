@@ -52,6 +52,7 @@ mod damping_form;
 pub(crate) mod dense;
 mod enclosure;
 mod event;
+mod interpolation;
 mod ledger;
 pub(crate) mod load;
 mod march;

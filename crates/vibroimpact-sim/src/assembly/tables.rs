@@ -2,7 +2,7 @@
 //! the force of another. All of them are filled as they are first asked for.
 
 use super::damping::Damping;
-use super::enclosure::Missed;
+use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
 use crate::panel::forcing::{Compliance, Terms, part};
