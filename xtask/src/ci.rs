@@ -35,6 +35,8 @@ const STEPS: [Step; 5] = [
             "--workspace",
             "--exclude",
             "xtask",
+            "--exclude",
+            "impactbench",
             "--no-verify",
             "--allow-dirty",
             "--locked",
