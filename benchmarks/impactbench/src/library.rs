@@ -178,16 +178,7 @@ fn structures() -> Result<Vec<Problem>, String> {
     let mut problems = Vec::new();
     for of in impact::library()? {
         let reference = impact::reference(of.name)?;
-        let modes = &of.structure.modes;
-        let zeros = vec![0.0; modes.len()];
-        let body = Body {
-            name: "structure".into(),
-            omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
-            damping_ratio: modes.iter().map(|mode| mode.damping_ratio).collect(),
-            shape: modes.iter().map(|mode| mode.shape).collect(),
-            amplitude: zeros.clone(),
-            rate: zeros,
-        };
+        let body = Body::at_rest("structure", &of.structure.modes);
         let statement =
             format!("{}, in its modes as listed. How fast does the ball leave, all contacts over?", of.about);
         let ball = (of.striker.mass_kg, of.striker.speed_m_s);
@@ -218,15 +209,7 @@ fn of_scene(file: &str, name: &str, count: usize, end_s: f64) -> Result<Problem,
     }
     let found = scene.impact().map_err(|error| error.to_string())?;
     let modes = &found.structure.modes;
-    let zeros = vec![0.0; modes.len()];
-    let body = Body {
-        name: "structure".into(),
-        omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
-        damping_ratio: modes.iter().map(|mode| mode.damping_ratio).collect(),
-        shape: modes.iter().map(|mode| mode.shape).collect(),
-        amplitude: zeros.clone(),
-        rate: zeros,
-    };
+    let body = Body::at_rest("structure", modes);
     let statement = format!(
         "The scene {file} of the gallery with {} modes, as listed. How fast does the ball move after {end_s} s?",
         modes.len()

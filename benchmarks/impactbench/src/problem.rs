@@ -6,6 +6,7 @@ use contact_models::{
 };
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use vibroimpact_sim::modal::Mode;
 
 /// A problem: what happens, what is asked for, and the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -181,6 +182,19 @@ impl Body {
             shape: vec![1.0 / root],
             amplitude: vec![root * displacement_m],
             rate: vec![root * velocity_m_s],
+        }
+    }
+
+    /// A structure at rest, in its modes as they are seen from the contact.
+    pub fn at_rest(name: &str, modes: &[Mode]) -> Body {
+        let zeros = vec![0.0; modes.len()];
+        Body {
+            name: name.into(),
+            omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
+            damping_ratio: modes.iter().map(|mode| mode.damping_ratio).collect(),
+            shape: modes.iter().map(|mode| mode.shape).collect(),
+            amplitude: zeros.clone(),
+            rate: zeros,
         }
     }
 

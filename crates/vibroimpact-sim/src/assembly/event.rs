@@ -20,9 +20,6 @@ const POINTS: usize = Q + 1;
 pub(crate) struct EventFunction {
     /// Its value at the start of the panel.
     pub start: f64,
-    /// Its slope there (panel length 1), and the slope of that, where it is known. Asked for where the start is nearly zero.
-    pub start_slope: f64,
-    pub start_bend: Option<f64>,
     pub nodal: Nodal,
     /// By how much the polynomial may miss it, its slope along the panel (panel length 1), and the slope of that.
     pub rho: [f64; 3],
@@ -45,7 +42,9 @@ pub(crate) enum Verdict {
 }
 
 impl EventFunction {
-    pub fn verdict(&self) -> Verdict {
+    /// `at_start` gives the slope at the start (panel length 1), and the slope of that where it is known; it is asked only where
+    /// the function begins at zero.
+    pub fn verdict(&self, at_start: impl FnOnce() -> (f64, Option<f64>)) -> Verdict {
         // the polynomial passes through the start: there rounding alone counts
         let known = self.noise + self.residue;
         if self.start < -known {
@@ -53,20 +52,20 @@ impl EventFunction {
         }
         let [rho, rho_slope, rho_bend] = self.rho;
         if self.start > known {
-            return judge(&TO_BERNSTEIN, &with(self.start, &self.nodal), rho + self.noise, rho <= self.noise);
+            return judge(&with(self.start, &self.nodal), rho + self.noise, rho <= self.noise);
         }
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
         let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
-        let slope = self.start_slope;
-        match self.start_bend {
+        let (slope, bend) = at_start();
+        match bend {
             // the slope at the start is better known than those that are quotients
             Some(bend) if slope.abs() <= self.noise + self.slope_residue => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
                 let (rho, noise) = (0.5 * rho_bend, noise / BASIS.nodes[0]);
-                judge(&TO_BERNSTEIN, &with(0.5 * bend, &bends), rho + noise, rho <= noise)
+                judge(&with(0.5 * bend, &bends), rho + noise, rho <= noise)
             }
-            _ => judge(&TO_BERNSTEIN, &with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
+            _ => judge(&with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
         }
     }
 }
@@ -79,10 +78,10 @@ fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
 }
 
 /// `certain`: that what lies within the slack is rounding, and no shorter panel would tell more.
-fn judge<const N: usize>(to_bernstein: &[[f64; N]; N], values: &[f64; N], slack: f64, certain: bool) -> Verdict {
-    let mut bernstein = [0.0; N];
-    for (column, value) in to_bernstein.iter().zip(values) {
-        for i in 0..N {
+fn judge(values: &[f64; POINTS], slack: f64, certain: bool) -> Verdict {
+    let mut bernstein = [0.0; POINTS];
+    for (column, value) in TO_BERNSTEIN.iter().zip(values) {
+        for i in 0..POINTS {
             bernstein[i] += column[i] * value;
         }
     }
@@ -100,7 +99,7 @@ fn judge<const N: usize>(to_bernstein: &[[f64; N]; N], values: &[f64; N], slack:
 }
 
 /// The first place on [0, 1] at which the polynomial with these Bernstein coefficients is at most `level`, to about 1e-5.
-fn first_at_or_below<const N: usize>(bernstein: &[f64; N], level: f64) -> Option<f64> {
+fn first_at_or_below(bernstein: &[f64; POINTS], level: f64) -> Option<f64> {
     const DEPTH: i32 = 16;
     let mut stack = vec![(*bernstein, 0.0, 0)];
     while let Some((b, from, depth)) = stack.pop() {
@@ -113,10 +112,10 @@ fn first_at_or_below<const N: usize>(bernstein: &[f64; N], level: f64) -> Option
         if depth == DEPTH {
             return Some(from + 0.5f64.powi(DEPTH + 1));
         }
-        let (mut left, mut right) = ([0.0; N], b);
-        for i in 0..N {
+        let (mut left, mut right) = ([0.0; POINTS], b);
+        for i in 0..POINTS {
             left[i] = right[0];
-            for k in 0..N - 1 - i {
+            for k in 0..POINTS - 1 - i {
                 right[k] = 0.5 * (right[k] + right[k + 1]);
             }
         }
@@ -132,10 +131,10 @@ static TO_BERNSTEIN: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| conver
 
 /// Through these points: the Lagrange polynomials in Bernstein's form, each a product of linear factors, which are
 /// multiplied in that form.
-fn conversion<const N: usize>(points: &[f64; N]) -> [[f64; N]; N] {
+fn conversion(points: &[f64; POINTS]) -> [[f64; POINTS]; POINTS] {
     std::array::from_fn(|j| {
         let mut product = vec![1.0];
-        for m in (0..N).filter(|&m| m != j) {
+        for m in (0..POINTS).filter(|&m| m != j) {
             let scale = 1.0 / (points[j] - points[m]);
             // the factor (s - points[m]) scale, at either end
             let (low, high) = (-points[m] * scale, (1.0 - points[m]) * scale);
@@ -160,8 +159,6 @@ mod tests {
     fn function(f: impl Fn(f64) -> f64, rho: f64) -> EventFunction {
         EventFunction {
             start: f(0.0),
-            start_slope: (f(1e-6) - f(-1e-6)) / 2e-6,
-            start_bend: None,
             nodal: BASIS.nodes.map(f),
             rho: [rho; 3],
             noise: 1e-14,
@@ -170,14 +167,19 @@ mod tests {
         }
     }
 
+    fn verdict(f: impl Fn(f64) -> f64, rho: f64) -> Verdict {
+        let slope = (f(1e-6) - f(-1e-6)) / 2e-6;
+        function(f, rho).verdict(|| (slope, None))
+    }
+
     #[test]
     fn zeros_are_found_first_and_dips_are_seen() {
-        let meets = |verdict, at: f64| match verdict {
+        let meets = |found, at: f64| match found {
             Verdict::Meets(place) => assert!((place - at).abs() < 1e-5, "{place} {at}"),
             other => panic!("{other:?}"),
         };
-        meets(function(|s| (0.3 - s) * (0.7 - s) * (2.0 - s), 0.0).verdict(), 0.3);
-        meets(function(|s| 0.999 - s, 0.0).verdict(), 0.999);
+        meets(verdict(|s| (0.3 - s) * (0.7 - s) * (2.0 - s), 0.0), 0.3);
+        meets(verdict(|s| 0.999 - s, 0.0), 0.999);
         // a dip between two nodes, and one that only touches
         for lowest in [0.05, 0.3, 0.5, 0.71, 0.97] {
             let dip = |depth: f64| move |s: f64| (s - lowest).powi(2) * (1.0 + s) - depth;
@@ -186,24 +188,24 @@ mod tests {
                 let middle = 0.5 * (above + below);
                 *(if dip(1e-6)(middle) > 0.0 { &mut above } else { &mut below }) = middle;
             }
-            meets(function(dip(1e-6), 0.0).verdict(), above);
-            assert_eq!(function(dip(-1e-6), 0.0).verdict(), Verdict::Clear);
-            assert_eq!(function(dip(-1e-6), 1e-5).verdict(), Verdict::Doubtful);
+            meets(verdict(dip(1e-6), 0.0), above);
+            assert_eq!(verdict(dip(-1e-6), 0.0), Verdict::Clear);
+            assert_eq!(verdict(dip(-1e-6), 1e-5), Verdict::Doubtful);
         }
-        assert_eq!(function(|s| 1.0 + s, 1e-3).verdict(), Verdict::Clear);
+        assert_eq!(verdict(|s| 1.0 + s, 1e-3), Verdict::Clear);
     }
 
     #[test]
     fn a_branch_may_begin_on_its_boundary() {
-        assert_eq!(function(|s| s + s * s, 0.0).verdict(), Verdict::Clear);
-        assert_eq!(function(|s| s, 2.0).verdict(), Verdict::Doubtful);
-        match function(|s| s * (0.4 - s), 0.0).verdict() {
+        assert_eq!(verdict(|s| s + s * s, 0.0), Verdict::Clear);
+        assert_eq!(verdict(|s| s, 2.0), Verdict::Doubtful);
+        match verdict(|s| s * (0.4 - s), 0.0) {
             Verdict::Meets(place) => assert!((place - 0.4).abs() < 1e-5),
             other => panic!("{other:?}"),
         }
-        assert_eq!(function(|s| -s, 0.0).verdict(), Verdict::Meets(0.0));
+        assert_eq!(verdict(|s| -s, 0.0), Verdict::Meets(0.0));
         // a short stay inside is no branch that ends where it begins
-        match function(|s| s * (1e-7 - s), 0.0).verdict() {
+        match verdict(|s| s * (1e-7 - s), 0.0) {
             Verdict::Meets(place) => assert!(place > 0.0 && place < 1e-4, "{place}"),
             other => panic!("{other:?}"),
         }
@@ -211,12 +213,8 @@ mod tests {
 
     #[test]
     fn a_branch_may_begin_at_a_turning_point() {
-        let turning = |bend: f64| EventFunction {
-            start_slope: 0.0,
-            start_bend: Some(2.0 * bend),
-            ..function(|s| bend * s * s * (1.0 + s), 1e-3)
-        };
-        assert_eq!(turning(1.0).verdict(), Verdict::Clear);
-        assert_eq!(turning(-1.0).verdict(), Verdict::Meets(0.0));
+        let turning = |bend: f64| function(|s| bend * s * s * (1.0 + s), 1e-3).verdict(|| (0.0, Some(2.0 * bend)));
+        assert_eq!(turning(1.0), Verdict::Clear);
+        assert_eq!(turning(-1.0), Verdict::Meets(0.0));
     }
 }

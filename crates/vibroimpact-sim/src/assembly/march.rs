@@ -810,23 +810,20 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
                 // interpolation of a rate magnifies rounding
                 let noise = noise * (per_overlap + 50.0 * per_rate);
-                let (mut start_slope, mut start_bend) = (0.0, None);
-                if start.abs() <= noise + 2.0 * residue {
-                    let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
-                    start_slope = (per.0 * state.rate + per.1 * acceleration) * h;
-                    start_bend = (per.1 == 0.0).then_some(per.0 * acceleration * h * h);
-                }
                 let function = EventFunction {
                     start,
-                    start_slope,
-                    start_bend,
                     nodal,
                     rho: [0, 1, 2].map(|r| per_overlap * rho[r] + per_rate * rho.get(r + 1).copied().unwrap_or(0.0)),
                     noise,
                     residue: 2.0 * residue,
                     slope_residue: 2.0 * per_overlap * rate_residue * h,
                 };
-                match function.verdict() {
+                let at_start = || {
+                    let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
+                    let slope = (per.0 * state.rate + per.1 * acceleration) * h;
+                    (slope, (per.1 == 0.0).then_some(per.0 * acceleration * h * h))
+                };
+                match function.verdict(at_start) {
                     Verdict::Clear => {}
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {

@@ -258,7 +258,8 @@ impl Solver {
             peak_force_n: interval.peak_force_n,
             peak_compression_m: interval.peak_compression_m,
         };
-        let (amplitude, rate) = self.all_modes(start, run.end_s, (&run.amplitude[0], &run.rate[0]));
+        let (amplitude, rate) =
+            all_modes(&self.modes, &self.moved, start, run.end_s, (&run.amplitude[0], &run.rate[0]));
         Run {
             outcome,
             end_s: run.end_s,
@@ -288,11 +289,6 @@ impl Solver {
         };
         let (system, tables) = self.kept.insert((system, tables));
         (system, tables)
-    }
-
-    /// All modes of the structure at a time, with those that the contact does not move.
-    fn all_modes(&self, start: &Start, time_s: f64, moved: (&[f64], &[f64])) -> (Vec<f64>, Vec<f64>) {
-        all_modes(&self.modes, &self.moved, start, time_s, moved)
     }
 
     fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
