@@ -55,8 +55,8 @@ enum Task {
     BenchRun,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
-        /// The chapter: 2 to 8; `ensemble` for what is our choice in chapter 4, varied; or `all` for the
-        /// whole thesis and one report
+        /// The chapter: 2 to 8; `ensemble` for what is our choice in chapter 4, varied; `theories` for chapters 3, 4 and 7
+        /// by Timoshenko's theory; or `all` for the whole thesis and one report
         chapter: Chapters,
         /// Fewer points through the same code
         #[arg(long)]

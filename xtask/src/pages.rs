@@ -1,5 +1,6 @@
 //! The pages of the chapters (`docs/chapters`): their tables are made from `statements.csv` beside them, which is that of
-//! a run of all chapters, and their figures are those of the run.
+//! a run of all chapters, and their figures are those of the run. Any of them, and the page of the theories of bending, may
+//! show further tables of the run.
 
 use crate::chapters::statement::Verdict;
 use crate::chapters::tally::{Row, Tally, tell};
@@ -11,8 +12,10 @@ use vibroimpact::report::{Report, write_whole};
 /// Between these two lines of a page stands its table.
 const BEGIN: &str = "<!-- from statements.csv; `cargo xtask book --write` writes it -->";
 const END: &str = "<!-- end -->";
-/// A page's figures are linked so, followed by the part's folder, a hyphen and the run's name of the figure.
-const FIGURE: &str = "(../figures/";
+/// Between such a line, which goes on with the table's file in the run, and [`END`] stands a table of the run.
+const TABLE: &str = "<!-- table ";
+/// A page's figures are linked in this folder by the part's folder, a hyphen and the run's name of the figure.
+const FIGURE: &str = "figures/";
 /// Two runs agree to this share of a number, or to this in total: differences between solvers near rounding are among
 /// the numbers, and machines round differently.
 const SHARE: f64 = 1e-4;
@@ -25,6 +28,15 @@ fn chapters() -> impl Iterator<Item = u32> {
 
 fn folder(root: &Path) -> PathBuf {
     root.join("docs/chapters")
+}
+
+fn chapter_page(root: &Path, chapter: u32) -> PathBuf {
+    folder(root).join(format!("chapter-{chapter}.md"))
+}
+
+/// Every page that may show figures and tables of the run.
+fn pages(root: &Path) -> impl Iterator<Item = PathBuf> {
+    chapters().map(move |chapter| chapter_page(root, chapter)).chain([root.join("docs/theories-of-bending.md")])
 }
 
 fn statements(path: &Path) -> Result<Vec<Row>, Failure> {
@@ -41,9 +53,12 @@ pub fn write(root: &Path) -> Result<(), Failure> {
     let summary = summary_page(root);
     write_whole(&summary, with(&fs::read_to_string(&summary)?, &differing(&all))?.as_bytes())?;
     for chapter in chapters() {
-        let path = folder(root).join(format!("chapter-{chapter}.md"));
+        let path = chapter_page(root, chapter);
+        write_whole(&path, with_table(&fs::read_to_string(&path)?, &of(&all, chapter))?.as_bytes())?;
+    }
+    for path in pages(root) {
         let page = fs::read_to_string(&path)?;
-        write_whole(&path, with_table(&page, &of(&all, chapter))?.as_bytes())?;
+        write_whole(&path, with_tables_of(&page, run.path())?.as_bytes())?;
         for part in Part::ALL {
             let part = part.folder();
             for name in figures(&page, &part) {
@@ -66,7 +81,13 @@ pub fn check(root: &Path) -> Result<(), Failure> {
     let run = tempfile::tempdir()?;
     run_all(run.path(), false, None)?;
     let found = statements(&run.path().join("statements.csv"))?;
-    let faults = differences(&statements(&folder(root).join("statements.csv"))?, &found);
+    let mut faults = differences(&statements(&folder(root).join("statements.csv"))?, &found);
+    for path in pages(root) {
+        let page = fs::read_to_string(&path)?;
+        if with_tables_of(&page, run.path())? != page {
+            faults.push(format!("a table of {} is not that of a run", path.display()));
+        }
+    }
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
 }
 
@@ -77,7 +98,7 @@ fn tables_are_current(root: &Path) -> Result<(), Failure> {
         return Err("docs/reproduction.md is not what `cargo xtask book --write` makes".into());
     }
     for chapter in chapters() {
-        let page = fs::read_to_string(folder(root).join(format!("chapter-{chapter}.md")))?;
+        let page = fs::read_to_string(chapter_page(root, chapter))?;
         if with_table(&page, &of(&all, chapter))? != page {
             return Err(
                 format!("docs/chapters/chapter-{chapter}.md is not what `cargo xtask book --write` makes").into()
@@ -118,6 +139,29 @@ fn with(page: &str, made: &str) -> Result<String, Failure> {
     let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
     let (before, after) = parts.ok_or_else(|| format!("the page has no lines `{BEGIN}` and `{END}`"))?;
     Ok(format!("{before}{BEGIN}\n\n{made}\n{END}{after}"))
+}
+
+/// The page with the tables that it takes from the folder of a run made anew.
+fn with_tables_of(page: &str, run: &Path) -> Result<String, Failure> {
+    let mut parts = page.split(TABLE);
+    let mut made = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let named = part.split_once(" -->").and_then(|(name, rest)| Some((name, rest.split_once(END)?.1)));
+        let (name, after) = named.ok_or_else(|| format!("the page has a line `{TABLE}` without ` -->` or `{END}`"))?;
+        made += &format!("{TABLE}{name} -->\n\n{}\n{END}{after}", table_of_file(&run.join(name))?);
+    }
+    Ok(made)
+}
+
+/// A table of cells as they are read.
+fn table_of_file(path: &Path) -> Result<String, Failure> {
+    let mut reader = csv::Reader::from_path(path)?;
+    let headers: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
+    let cells = reader.records().map(|record| Ok(record?.iter().map(str::to_owned).collect()));
+    let rows = cells.collect::<Result<Vec<Vec<String>>, Failure>>()?;
+    let mut table = Report::new("");
+    table.table(&headers.iter().map(String::as_str).collect::<Vec<_>>(), &rows);
+    Ok(table.markdown().trim_start_matches(['#', ' ', '\n']).to_owned())
 }
 
 fn table(statements: &[Row]) -> String {
@@ -172,6 +216,20 @@ mod tests {
     }
 
     #[test]
+    fn tables_of_a_run_are_replaced_where_they_stand() {
+        let run = tempfile::tempdir().unwrap();
+        fs::create_dir(run.path().join("theories")).unwrap();
+        fs::write(run.path().join("theories/law.csv"), "beam,rms\npinned,0.05\n").unwrap();
+        let page = format!("# A\n\n{TABLE}theories/law.csv -->\nold\n{END}\n\nend\n");
+        let new = with_tables_of(&page, run.path()).unwrap();
+        assert!(new.contains("| beam | rms |") && new.contains("| pinned | 0.05 |") && !new.contains("old"), "{new}");
+        assert!(new.starts_with("# A\n") && new.ends_with(&format!("{END}\n\nend\n")));
+        assert_eq!(with_tables_of(&new, run.path()).unwrap(), new);
+        assert!(with_tables_of(&format!("{TABLE}absent.csv -->{END}"), run.path()).is_err());
+        assert!(with_tables_of(&format!("{TABLE}theories/law.csv -->"), run.path()).is_err());
+    }
+
+    #[test]
     fn a_number_that_moved_is_found() {
         let recorded = [statement(1.5605)];
         assert!(differences(&recorded, &[statement(1.5605 + 1e-5)]).is_empty());
@@ -184,7 +242,7 @@ mod tests {
     #[test]
     fn figures_are_named_as_in_the_run() {
         assert_eq!(
-            figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](../figures/chapter-3-x.svg)", "chapter-2"),
+            figures("![a](../figures/chapter-2-fig-2-03.svg) ![b](figures/chapter-3-x.svg)", "chapter-2"),
             ["fig-2-03.svg"]
         );
     }

@@ -2,11 +2,12 @@
 
 use super::Failure;
 use super::impact::Material;
-use beam_modes::Modes;
+use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
 use vibroimpact_sim::modal::{Mode, Structure};
 
-/// Remainder modes for the modes left out, as the program takes them for Euler-Bernoulli beams.
+/// Remainder modes for the modes left out of an Euler-Bernoulli beam, as the program takes them; as many as there may be
+/// for a Timoshenko beam.
 const REMAINDER_MODES: usize = 2;
 
 /// How an end of a beam is held, as the parameter files write it.
@@ -36,7 +37,7 @@ pub(super) struct Beam {
     /// Name for headings.
     pub title: String,
     /// The beam itself.
-    pub model: beam_modes::Beam,
+    pub model: BeamSystem,
     modes: Modes,
 }
 
@@ -48,7 +49,7 @@ pub(super) fn segment(material: &Material, length_m: f64, side_m: f64, thickness
 }
 
 impl Beam {
-    /// A beam with its first `count` modes.
+    /// A beam with its first `count` modes by Euler-Bernoulli's theory, which is the thesis's.
     pub fn new(
         name: &str,
         title: &str,
@@ -56,9 +57,23 @@ impl Beam {
         segments: Vec<beam_modes::Segment>,
         count: usize,
     ) -> Result<Beam, Failure> {
-        let model = beam_modes::Beam { segments, ends: ends.map(Into::into) };
+        let model = BeamSystem::from(beam_modes::Beam { segments, ends: ends.map(Into::into) });
         let modes = model.modes(count)?;
         Ok(Beam { name: name.into(), title: title.into(), model, modes })
+    }
+
+    /// The same beam by Timoshenko's theory, with as many modes.
+    pub fn timoshenko(&self, material: &Material, shear_coefficient: f64) -> Result<Beam, Failure> {
+        let shear_modulus_pa = 0.5 * material.youngs_modulus_pa / (1.0 + material.poissons_ratio);
+        let section = |segment: &beam_modes::Segment| ShearSection {
+            shear_rigidity_n: shear_coefficient * shear_modulus_pa * segment.mass_per_length_kg_m
+                / material.density_kg_m3,
+            rotary_inertia_kg_m: material.density_kg_m3 * segment.flexural_rigidity_n_m2 / material.youngs_modulus_pa,
+        };
+        let shear = self.model.beam.segments.iter().map(section).collect();
+        let model = BeamSystem { shear: Some(shear), ..self.model.clone() };
+        let modes = model.modes(self.modes.len())?;
+        Ok(Beam { name: self.name.clone(), title: self.title.clone(), model, modes })
     }
 
     /// Natural frequencies (rad/s).
@@ -82,7 +97,8 @@ impl Beam {
             modes.push(Mode { omega_rad_s, damping_ratio, shape: self.modes.shape(k, location_m)? });
         }
         if residual {
-            let remainder = self.model.remainder(location_m, count, REMAINDER_MODES)?;
+            let remainder_modes = if self.model.shear.is_some() { MOST_REMAINDER_MODES } else { REMAINDER_MODES };
+            let remainder = self.model.remainder(location_m, count, remainder_modes)?;
             modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
         }
         Ok(Structure { modes })

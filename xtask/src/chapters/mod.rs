@@ -17,6 +17,7 @@ mod impact;
 pub mod statement;
 mod study;
 pub mod tally;
+mod theories;
 
 use std::error::Error;
 use std::fmt;
@@ -37,7 +38,7 @@ pub struct BadInput(String);
 impl BadInput {
     /// A chapter that there is not.
     pub fn chapter(found: &str) -> BadInput {
-        BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble or all"))
+        BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"))
     }
 }
 
@@ -56,11 +57,13 @@ pub enum Part {
     Chapter(u32),
     /// What is our choice in chapter 4, varied.
     Ensemble,
+    /// Chapters 3, 4 and 7 by both theories of bending.
+    Theories,
 }
 
 impl Part {
     /// All parts, in the order of the thesis.
-    pub const ALL: [Part; 8] = [
+    pub const ALL: [Part; 9] = [
         Part::Chapter(2),
         Part::Chapter(3),
         Part::Chapter(4),
@@ -69,13 +72,15 @@ impl Part {
         Part::Chapter(6),
         Part::Chapter(7),
         Part::Chapter(8),
+        Part::Theories,
     ];
 
-    /// The chapter on whose page its statements and figures stand.
+    /// The chapter on whose page its statements and figures stand; 0 is the page of the theories of bending.
     pub const fn chapter(self) -> u32 {
         match self {
             Part::Chapter(number) => number,
             Part::Ensemble => 4,
+            Part::Theories => 0,
         }
     }
 
@@ -84,6 +89,7 @@ impl Part {
         match self {
             Part::Chapter(number) => format!("chapter-{number}"),
             Part::Ensemble => "ensemble".to_owned(),
+            Part::Theories => "theories".to_owned(),
         }
     }
 
@@ -91,6 +97,7 @@ impl Part {
         match self {
             Part::Chapter(number) => format!("Chapter {number} of the thesis, computed anew"),
             Part::Ensemble => "What is our choice in chapter 4, varied".to_owned(),
+            Part::Theories => "Two theories of bending, and what the thesis could not see".to_owned(),
         }
     }
 }
@@ -102,6 +109,7 @@ impl FromStr for Part {
         let named = |part: &Part| match part {
             Part::Chapter(number) => text.parse() == Ok(*number),
             Part::Ensemble => text == "ensemble",
+            Part::Theories => text == "theories",
         };
         Part::ALL.into_iter().find(named).ok_or_else(|| BadInput::chapter(text))
     }
@@ -120,6 +128,7 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         Part::Chapter(3) => chapter3::run(&mut study)?,
         Part::Chapter(4) => chapter4::run(&mut study)?,
         Part::Ensemble => ensemble::run(&mut study)?,
+        Part::Theories => theories::run(&mut study)?,
         Part::Chapter(5) => chapter5::run(&mut study)?,
         Part::Chapter(6) => chapter6::run(&mut study)?,
         Part::Chapter(7) => chapter7::run(&mut study)?,

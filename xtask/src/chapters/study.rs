@@ -179,6 +179,18 @@ impl Study {
         self.body.table(headers, rows);
     }
 
+    /// Adds a table to the report and writes it as it is read, for pages of the book.
+    pub fn tabled(&mut self, name: &str, headers: &[&str], rows: &[Vec<String>]) -> Result<(), Failure> {
+        self.table(headers, rows);
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(headers)?;
+        for row in rows {
+            writer.write_record(row)?;
+        }
+        let bytes = writer.into_inner()?;
+        self.file(&format!("{name}.csv"), &bytes)
+    }
+
     /// Adds a statement of the thesis to the list at the head of the report.
     pub fn claim(&mut self, statement: Statement) {
         self.statements.push(statement);

@@ -133,6 +133,17 @@ fn the_ensemble_is_complete_and_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn the_theories_are_complete_and_find_what_others_found() {
+    let figures = ["phase-speeds", "modes-0-4", "modes-golden", "predictable", "by-mass", "maps"];
+    let tables = ["phase-speeds-told.csv", "limits.csv", "coefficients.csv", "predictable-by-contacts.csv"];
+    check_chapter(Part::Theories, &figures, &[&tables[..], &["tables.csv", "law.csv", "law-compared.csv"]].concat());
+    // the limits and the errors of the phase speeds are computed alike in the quick form
+    let folder = tempfile::tempdir().unwrap();
+    let statements = run(Part::Theories, folder.path(), true, None).unwrap().statements;
+    assert!(statements.len() >= 8 && statements.iter().all(|one| one.verdict() == Verdict::Agrees), "{statements:?}");
+}
+
+#[test]
 fn five_lists_of_twelve_balls_hold_the_masses_that_chapter_4_names() {
     let case = chapter4::Case::load().unwrap();
     let lists = case.parameters.our_choice.ensemble.ball_lists();
@@ -216,7 +227,7 @@ fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
 #[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble or all"));
+    assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"));
     assert!(run(Part::Chapter(9), folder.path(), true, None).is_err());
     assert!(
         Part::ALL.iter().all(|part| part.folder().trim_start_matches("chapter-").parse::<Part>().unwrap() == *part)

@@ -7,7 +7,7 @@ mod luck;
 mod motion;
 mod numbers;
 mod residual;
-mod scatter;
+pub(super) mod scatter;
 
 use super::Failure;
 use super::beam::{Beam, End, segment};
@@ -26,37 +26,37 @@ trusted. *Scatter* below is the standard deviation of the restitution over the n
 /// The parameter file; see its own remarks.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Parameters {
+pub(super) struct Parameters {
     #[serde(rename = "about")]
     _about: String,
-    beam: Pinned,
-    material: Material,
-    ball_diameter_m: f64,
+    pub(super) beam: Pinned,
+    pub(super) material: Material,
+    pub(super) ball_diameter_m: f64,
     speed_m_s: f64,
-    locations_m: [f64; 2],
-    damping_ratio: f64,
+    pub(super) locations_m: [f64; 2],
+    pub(super) damping_ratio: f64,
     viscous_damping_s_m: f64,
     hysteretic: Hysteresis,
     #[serde(rename = "loop")]
     prescribed_loop: Hysteresis,
     wall_speeds_m_s: Vec<f64>,
     other_speeds_m_s: Vec<f64>,
-    other_diameters_m: [f64; 2],
+    pub(super) other_diameters_m: [f64; 2],
     scan: Scan,
-    our_choice: Choice,
+    pub(super) our_choice: Choice,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Pinned {
-    length_m: f64,
-    side_m: f64,
+pub(super) struct Pinned {
+    pub(super) length_m: f64,
+    pub(super) side_m: f64,
     ends: [End; 2],
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Hysteresis {
+pub(super) struct Hysteresis {
     stiffness_n_m1_5: Option<f64>,
     theta_m: f64,
     beta: f64,
@@ -66,7 +66,7 @@ struct Hysteresis {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Scan {
+pub(super) struct Scan {
     from_m: f64,
     to_m: f64,
     diameter_m: f64,
@@ -75,35 +75,35 @@ struct Scan {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Choice {
+pub(super) struct Choice {
     #[serde(rename = "about")]
     _about: String,
-    most_modes: usize,
+    pub(super) most_modes: usize,
     scan_places: usize,
     energy_modes: Vec<usize>,
     heavy_diameter_m: f64,
     stiffness_scan: StiffnessScan,
-    residual_modes: Vec<usize>,
+    pub(super) residual_modes: Vec<usize>,
 }
 
 /// Contact stiffnesses as multiples of the printed one.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct StiffnessScan {
+pub(super) struct StiffnessScan {
     from: f64,
     to: f64,
     values: usize,
 }
 
 /// The chapter's beam and ball with everything that its sections vary.
-struct Case {
-    parameters: Parameters,
-    beam: Beam,
+pub(super) struct Case {
+    pub(super) parameters: Parameters,
+    pub(super) beam: Beam,
     ball: Ball,
 }
 
 impl Case {
-    fn load() -> Result<Case, Failure> {
+    pub(super) fn load() -> Result<Case, Failure> {
         let parameters: Parameters = serde_json::from_str(include_str!("../../../../datasets/chapter3.json"))?;
         let pinned = &parameters.beam;
         let segment = segment(&parameters.material, pinned.length_m, pinned.side_m, 1.0);
@@ -115,7 +115,7 @@ impl Case {
     }
 
     /// The reference of the chapter: Hertzian contact, no damping, plain truncation.
-    fn setup(&self, location_m: f64, modes: usize) -> Setup<'_> {
+    pub(super) fn setup(&self, location_m: f64, modes: usize) -> Setup<'_> {
         Setup {
             beam: &self.beam,
             location_m,
@@ -142,7 +142,7 @@ impl Case {
     }
 
     /// The location that is no simple fraction of the length.
-    fn golden_m(&self) -> f64 {
+    pub(super) fn golden_m(&self) -> f64 {
         self.parameters.locations_m[1]
     }
 }

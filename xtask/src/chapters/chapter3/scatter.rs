@@ -7,7 +7,7 @@ use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 
 /// From so many modes on the text speaks of convergence (3.3.5 and 3.5).
-pub(super) const MANY: usize = 25;
+pub(in crate::chapters) const MANY: usize = 25;
 /// A scatter of at most this share of another is a significant reduction.
 const REDUCED: f64 = 0.5;
 /// A scatter of at least this share is none.
@@ -32,7 +32,7 @@ pub(super) fn off_the_mean(rows: &[Row], off: f64) -> usize {
 }
 
 /// Standard deviation.
-fn deviation(values: &[f64]) -> f64 {
+pub(in crate::chapters) fn deviation(values: &[f64]) -> f64 {
     let centre = mean(values.iter().copied());
     mean(values.iter().map(|e| (e - centre).powi(2))).sqrt()
 }

@@ -30,8 +30,8 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         .map(|&d| case.ball(d))
         .collect::<Result<Vec<_>, Failure>>()?;
     let elements = case.parameters.finite_elements;
-    let discrete = Model::new(&beam.model, elements)?.modes()?;
-    let nodes: Vec<f64> = (1..=elements).map(|i| beam.model.length_m() * i as f64 / elements as f64).collect();
+    let discrete = Model::new(&beam.model.beam, elements)?.modes()?;
+    let nodes: Vec<f64> = (1..=elements).map(|i| beam.model.beam.length_m() * i as f64 / elements as f64).collect();
     let nodes = study.thin(&nodes, 5);
     let cases: Vec<_> = balls.iter().flat_map(|ball| nodes.iter().map(move |&node| (*ball, node))).collect();
     let all = study.sweep(&cases, 2, |&(ball, location_m)| {

@@ -190,7 +190,7 @@ impl Case {
     /// Equally spaced places, both ends included.
     pub(super) fn places(&self, beam: &Beam) -> Vec<f64> {
         let steps = self.parameters.places.max(2) - 1;
-        let length = beam.model.length_m();
+        let length = beam.model.beam.length_m();
         (0..=steps).map(|i| length * i as f64 / steps as f64).collect()
     }
 }

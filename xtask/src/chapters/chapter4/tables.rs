@@ -6,6 +6,7 @@ use crate::chapters::beam::Beam;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
+use vibroimpact_sim::modal::Solver;
 
 /// The table of one beam: rows of places, in each one result a ball.
 pub(in crate::chapters) struct Table<'a> {
@@ -31,7 +32,7 @@ impl Table<'_> {
         let numbers: Vec<f64> = (0..self.balls.len()).map(|j| j as f64).collect();
         let ticks = self.balls.iter().zip(&numbers).map(|(ball, j)| (*j, format!("{:.4}", ball.mass_kg)));
         let y = Axis::new("mass of the ball").unit("kg").ticks_at(ticks);
-        let x = Axis::new("location b").unit("m").limits(0.0, self.beam.model.length_m());
+        let x = Axis::new("location b").unit("m").limits(0.0, self.beam.model.beam.length_m());
         Panel::new(x, y).height(200.0).map(HeatMap::new(&self.places_m, &numbers, values, value))
     }
 
@@ -54,29 +55,39 @@ impl Table<'_> {
     }
 }
 
-/// The tables of all beams for one model: so many modes, with or without the residual
-/// compliance. Each place's structure is built once and serves all balls.
+/// The tables of all beams for one model: so many modes, with or without remainder modes.
 pub(in crate::chapters) fn compute<'a>(
     study: &mut Study,
     case: &'a Case,
     modes: usize,
     residual: bool,
 ) -> Result<Vec<Table<'a>>, Failure> {
+    of_beams(study, case, &case.beams, (modes, residual), |setup, solver| setup.solve_with(solver))
+}
+
+/// The same for other beams, each impact solved as told. Each place's structure is built once and serves all balls.
+pub(in crate::chapters) fn of_beams<'a>(
+    study: &mut Study,
+    case: &Case,
+    beams: &'a [Beam],
+    (modes, residual): (usize, bool),
+    solve: impl Fn(&Setup, &mut Solver) -> Result<Row, Failure> + Sync,
+) -> Result<Vec<Table<'a>>, Failure> {
     let balls = study.thin(&case.balls, 4);
-    let lists: Vec<Vec<f64>> = case.beams.iter().map(|beam| study.thin(&case.places(beam), 9)).collect();
+    let lists: Vec<Vec<f64>> = beams.iter().map(|beam| study.thin(&case.places(beam), 9)).collect();
     let places: Vec<(&Beam, f64)> =
-        case.beams.iter().zip(&lists).flat_map(|(beam, list)| list.iter().map(move |&b| (beam, b))).collect();
+        beams.iter().zip(&lists).flat_map(|(beam, list)| list.iter().map(move |&b| (beam, b))).collect();
     let results = study.sweep(&places, balls.len(), |&(beam, location_m)| {
         let at = |ball: &Ball| Setup { modes, residual, ..case.setup(beam, *ball, location_m) };
         let mut solver = at(&balls[0]).solver()?;
-        balls.iter().map(|ball| at(ball).solve_with(&mut solver)).collect::<Result<Vec<Row>, Failure>>()
+        balls.iter().map(|ball| solve(&at(ball), &mut solver)).collect::<Result<Vec<Row>, Failure>>()
     })?;
     let mut results = results.into_iter();
     let table = |(beam, places_m): (&'a Beam, Vec<f64>)| {
         let rows = results.by_ref().take(places_m.len()).collect();
         Table { beam, places_m, balls: balls.clone(), rows }
     };
-    Ok(case.beams.iter().zip(lists).map(table).collect())
+    Ok(beams.iter().zip(lists).map(table).collect())
 }
 
 pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>>, Failure> {

@@ -50,7 +50,7 @@ const ONE: Limits = ((1.0, 1.0), "as stated");
 /// All trends that the thesis names for a beam of this kind; always the same ones, in the same order.
 pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
     let (Some(lightest), Some(heaviest)) = (table.balls.first(), table.balls.last()) else { return Vec::new() };
-    let length = table.beam.model.length_m();
+    let length = table.beam.model.beam.length_m();
     let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
     let of_ball = |mass_kg: f64| move |r: &Row| inner(r) && r.mass_kg == mass_kg;
     let contacts = |r: &Row| r.sub_impacts as f64;
@@ -96,7 +96,7 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
         relative_variation(table, inner),
     ));
     ends(table, &mut trends);
-    if let [thick, _, ..] = table.beam.model.segments.as_slice() {
+    if let [thick, _, ..] = table.beam.model.beam.segments.as_slice() {
         step(table, thick.length_m, heaviest.mass_kg, &mut trends);
     }
     trends
@@ -129,7 +129,7 @@ pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) ->
         "mean e a sixteenth of a place from the right, held end less that one place from it",
     ];
     let nearest = |place_m: f64| {
-        let inside = table.places_m.iter().copied().filter(|b| *b > 0.0 && *b < table.beam.model.length_m());
+        let inside = table.places_m.iter().copied().filter(|b| *b > 0.0 && *b < table.beam.model.beam.length_m());
         inside.min_by(|a, b| (a - place_m).abs().total_cmp(&(b - place_m).abs())).unwrap_or(f64::NAN)
     };
     let rise = |place_m: f64| {
@@ -151,7 +151,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
         let quantity = "mean e one place from the left, held end less two places from it";
         trends.push(one_place(quantity, at(*near) - at(*further)));
     }
-    match (table.places_m.as_slice(), table.beam.model.ends[1]) {
+    match (table.places_m.as_slice(), table.beam.model.beam.ends[1]) {
         ([.., before, _, end], End::Free) => {
             trends.push(Trend::new(
                 FREE_END,
@@ -170,7 +170,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
 
 /// The slim part, and what happens at the step.
 fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
-    let length = table.beam.model.length_m();
+    let length = table.beam.model.beam.length_m();
     let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
     let slim = |least_kg: f64| {
         let on = |side: fn(f64, f64) -> bool| {

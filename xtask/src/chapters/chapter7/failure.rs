@@ -80,7 +80,7 @@ fn summary(data: &Dataset, found: &BeamFit) -> Vec<String> {
 }
 
 /// Rms of a value less the mean of its four neighbours, as the error of one value.
-fn irregularity(data: &Dataset) -> f64 {
+pub(in crate::chapters) fn irregularity(data: &Dataset) -> f64 {
     let rows = &data.table.rows;
     let e = |i: usize, j: usize| rows[i][j].e();
     let mut squares = Vec::new();

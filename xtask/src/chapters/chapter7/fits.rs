@@ -13,13 +13,13 @@ use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
 /// One beam's fit with the data that it was made to.
-pub(super) struct BeamFit {
+pub(in crate::chapters) struct BeamFit {
     pub observations: Observations,
     pub fit: Fit,
 }
 
 impl BeamFit {
-    fn new(data: &Dataset, modes: usize) -> Result<BeamFit, Failure> {
+    pub fn new(data: &Dataset, modes: usize) -> Result<BeamFit, Failure> {
         let observations = data.observations(modes)?;
         let fit = observations.fit()?;
         Ok(BeamFit { observations, fit })
@@ -217,8 +217,8 @@ fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<()
 /// Section 7.2: perfect rebound at held ends.
 fn held_ends(study: &mut Study, data: &Dataset, found: &BeamFit) {
     let name = &data.beam.name;
-    let length = data.beam.model.length_m();
-    let [held_left, held_right] = data.beam.model.ends.map(|end| end != beam_modes::End::Free);
+    let length = data.beam.model.beam.length_m();
+    let [held_left, held_right] = data.beam.model.beam.ends.map(|end| end != beam_modes::End::Free);
     let at_held = |place: f64| (held_left && place == 0.0) || (held_right && place == length);
     let predicted = data.rows.iter().zip(&found.fit.residuals).map(|(row, residual)| (row, residual + row.e()));
     let least = predicted.filter(|(row, _)| at_held(row.location_m)).map(|(_, e)| e);

@@ -1,7 +1,7 @@
 //! Chapter 7: the three parameters of the algebraic law, fitted to the tables of chapter 4.
 
-mod failure;
-mod fits;
+pub(super) mod failure;
+pub(super) mod fits;
 mod laws;
 mod pictures;
 

@@ -47,7 +47,7 @@ pub(super) fn trends(table: &Table) -> Result<Vec<Trend>, Failure> {
         };
         table.balls.iter().filter_map(|ball| of_ball(ball.mass_kg)).collect()
     };
-    if let (End::Free, [.., before, _, end]) = (table.beam.model.ends[1], table.places_m.as_slice()) {
+    if let (End::Free, [.., before, _, end]) = (table.beam.model.beam.ends[1], table.places_m.as_slice()) {
         let rises = changes(*before, *end);
         let mean = |k: usize| rises.iter().map(|rise| rise[k]).sum::<f64>() / rises.len() as f64;
         trends.push(new(
@@ -57,7 +57,7 @@ pub(super) fn trends(table: &Table) -> Result<Vec<Trend>, Failure> {
             mean(0).min(mean(1)),
         ));
     }
-    if let [thick, _, ..] = table.beam.model.segments.as_slice() {
+    if let [thick, _, ..] = table.beam.model.beam.segments.as_slice() {
         let step_m = thick.length_m;
         let before = table.places_m.iter().copied().filter(|b| *b < step_m - 1e-9).fold(0.0, f64::max);
         let beyond = table.places_m.iter().copied().filter(|b| *b > step_m + 1e-9).fold(f64::INFINITY, f64::min);

@@ -109,8 +109,8 @@ fn balls(study: &Study, case: &Case, lists: &[Vec<u32>]) -> Result<Vec<Ball>, Fa
 fn closer_places(case: &Case, beam: &Beam) -> Vec<f64> {
     let places = case.places(beam);
     let near = places.get(1).map_or(f64::NAN, |first| first / 16.0);
-    let held = beam.model.ends.map(|end| end != beam_modes::End::Free);
-    [near, beam.model.length_m() - near].into_iter().zip(held).filter_map(|(b, held)| held.then_some(b)).collect()
+    let held = beam.model.beam.ends.map(|end| end != beam_modes::End::Free);
+    [near, beam.model.beam.length_m() - near].into_iter().zip(held).filter_map(|(b, held)| held.then_some(b)).collect()
 }
 
 /// The tables of all variants at these places.
