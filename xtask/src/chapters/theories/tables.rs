@@ -91,10 +91,13 @@ fn summary(beam: &str, kind: &str, changes: &[f64]) -> Vec<String> {
     names.into_iter().chain(numbers.map(|v| significant(v, 2))).chain([share]).collect()
 }
 
+/// What truncation, theory and coefficient change, place by place.
+type Kinds = [(&'static str, Vec<f64>); 3];
+
 /// Root mean square over the places, ball by ball.
-fn by_mass(study: &mut Study, tables: &[Table], curves: &[[(&str, Vec<f64>); 3]]) -> Result<(), Failure> {
+fn by_mass(study: &mut Study, tables: &[Table], curves: &[Kinds]) -> Result<(), Failure> {
     let looks = [(Marker::Plus, Colour::Grey), (Marker::Cross, Colour::Vermilion), (Marker::Circle, Colour::Blue)];
-    let panel = |(k, (table, kinds)): (usize, (&Table, &[(&str, Vec<f64>); 3]))| {
+    let panel = |(k, (table, kinds)): (usize, (&Table, &Kinds))| {
         let masses: Vec<f64> = table.balls.iter().map(|ball| ball.mass_kg).collect();
         let x = Axis::new("mass of the ball").unit("kg").log();
         let y = Axis::new("rms change of e").log().limits(1e-4, 1.0);
