@@ -133,6 +133,18 @@ impl TautStringModes {
         let size = (2.0 / (self.string.mass_per_length_kg_m * self.string.length_m)).sqrt();
         Ok((1..=self.omega_rad_s.len()).map(|n| size * sine_of(n, share)).collect())
     }
+
+    /// Participation `int m phi dx` of every mode in a uniform acceleration, kg^(1/2), as that of a beam: `sqrt(8 m L)/(n
+    /// pi)` for odd `n`.
+    pub fn participation_kg0_5(&self) -> Vec<f64> {
+        let mass = self.string.mass_per_length_kg_m * self.string.length_m;
+        (1..=self.omega_rad_s.len()).map(|n| (0.5 * mass).sqrt() * sine_mean(n) * 2.0).collect()
+    }
+}
+
+/// The mean of `sin(n pi s)` over `0..1`.
+pub(crate) fn sine_mean(n: usize) -> f64 {
+    if n.is_multiple_of(2) { 0.0 } else { 2.0 / (n as f64 * PI) }
 }
 
 /// `sin(n pi s)`, exactly zero where `n s` is whole.

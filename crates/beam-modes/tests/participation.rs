@@ -1,6 +1,6 @@
 //! Participation of the modes in a uniform acceleration: against quadrature, against the mass, against statics.
 
-use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
+use beam_modes::{Attachment, Beam, BeamSystem, Edge, End, Modes, Plate, Rod, RodEnd, RodSegment, Segment, TautString};
 
 fn stepped(ends: [End; 2]) -> Beam {
     let segment = |length_m, flexural_rigidity_n_m2, mass_per_length_kg_m| Segment {
@@ -69,4 +69,51 @@ fn the_modes_sag_under_their_weight_as_statics_says() {
     let modes = Rod { segments: vec![segment], ends: [RodEnd::Fixed, RodEnd::Free] }.modes(2000).unwrap();
     let found = sag(modes.omega_rad_s(), &modes.shapes_at(3.0).unwrap(), &modes.participation_kg0_5());
     assert!((found / (4.0 * 9.81 * 9.0 / 2e6) - 1.0).abs() < 1e-6);
+}
+
+/// What the modes sag at a place under their weight, with `g = 9.81`.
+fn sag(omega: &[f64], shapes: &[f64], participation: &[f64]) -> f64 {
+    (0..omega.len())
+        .filter(|&k| omega[k] > 0.0)
+        .map(|k| 9.81 * shapes[k] * participation[k] / (omega[k] * omega[k]))
+        .sum()
+}
+
+#[test]
+fn what_is_fixed_to_a_beam_weighs_too() {
+    // pinned beam with a mass M at mid-span: (5 m L^4/384 + M L^3/48) g/EI
+    let segment = Segment { length_m: 2.0, flexural_rigidity_n_m2: 300.0, mass_per_length_kg_m: 1.5 };
+    let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
+    let mass = Attachment { location_m: 1.0, mass_kg: 7.0, rotary_inertia_kg_m2: 0.1, ..Attachment::default() };
+    let system = BeamSystem { attachments: vec![mass], ..BeamSystem::from(beam) };
+    let modes = system.modes(200).unwrap();
+    let found = sag(modes.omega_rad_s(), &modes.shapes_at(1.0).unwrap(), &modes.participation_kg0_5());
+    let expected = 9.81 / 300.0 * (5.0 * 1.5 * 16.0 / 384.0 + 7.0 * 8.0 / 48.0);
+    assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
+}
+
+#[test]
+fn strings_and_plates_sag_under_their_weight() {
+    // string: m g L^2/(8 T) at the middle
+    let string =
+        TautString { length_m: 0.6, tension_n: 700.0, mass_per_length_kg_m: 0.006, flexural_rigidity_n_m2: 0.0 };
+    let modes = string.modes(400).unwrap();
+    let found = sag(modes.omega_rad_s(), &modes.shapes_at(0.3).unwrap(), &modes.participation_kg0_5());
+    let expected = 0.006 * 9.81 * 0.36 / (8.0 * 700.0);
+    assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
+    // square plates under q = rho h g: the centre by Timoshenko and Woinowsky-Krieger, tables 8 and 35, in q a^4/D
+    let rigidity = 2e11 * 0.01f64.powi(3) / (12.0 * (1.0 - 0.09));
+    for (edges, expected) in [([Edge::Pinned; 4], 0.00406235), ([Edge::Clamped; 4], 0.00126532)] {
+        let plate = Plate::thin(1.0, 1.0, 0.01, 2e11, 0.3, 7800.0, edges);
+        let modes = plate.modes(150).unwrap();
+        let found = sag(modes.omega_rad_s(), &modes.shapes_at(0.5, 0.5).unwrap(), &modes.participation_kg0_5());
+        let coefficient = found * rigidity / (7800.0 * 0.01 * 9.81);
+        assert!((coefficient / expected - 1.0).abs() < 2e-4, "{edges:?}: {coefficient} {expected}");
+    }
+    // of a free plate the mass belongs to its translation alone
+    let free = Plate::thin(1.0, 0.7, 0.01, 2e11, 0.3, 7800.0, [Edge::Free; 4]);
+    let participation = free.modes(40).unwrap().participation_kg0_5();
+    let rigid: f64 = participation[..3].iter().map(|p| p * p).sum();
+    assert!((rigid / (7800.0 * 0.007) - 1.0).abs() < 1e-10, "{rigid}");
+    assert!(participation[3..].iter().all(|p| p.abs() < 1e-7), "{participation:?}");
 }

@@ -55,6 +55,11 @@ impl Line {
         self.functions.iter().map(sum).collect()
     }
 
+    /// Means of all functions over `-1..1`: of the Legendre polynomials only the first has one.
+    pub fn means(&self) -> Vec<f64> {
+        self.functions.iter().map(|function| function.value.first().copied().unwrap_or_default()).collect()
+    }
+
     pub fn products(&self) -> Products {
         let table = |left: fn(&Function) -> &[f64], right: fn(&Function) -> &[f64]| -> Vec<Vec<f64>> {
             let row = |f: &Function| self.functions.iter().map(|g| product(left(f), right(g))).collect();

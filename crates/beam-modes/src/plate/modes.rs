@@ -3,7 +3,7 @@
 use super::Plate;
 use super::line::Line;
 use crate::error::InvalidInput;
-use crate::string::sine_of;
+use crate::string::{sine_mean, sine_of};
 
 /// Natural modes of a plate, in ascending order of frequency; rigid-body ones first, with `omega = 0`.
 ///
@@ -42,6 +42,18 @@ pub(super) struct Product {
     pub classes: [usize; 2],
     /// Row by row; the second direction runs fastest.
     pub coefficients: Vec<f64>,
+}
+
+impl Product {
+    /// The sum with these values of the functions in either direction.
+    fn sum(&self, [along, across]: &[Line; 2], [values_along, values_across]: &[Vec<f64>; 2]) -> f64 {
+        let (rows, columns) = (&along.classes[self.classes[0]], &across.classes[self.classes[1]]);
+        let row = |(i, coefficients): (&usize, &[f64])| {
+            let sum: f64 = columns.iter().zip(coefficients).map(|(j, c)| c * values_across[*j]).sum();
+            values_along[*i] * sum
+        };
+        rows.iter().zip(self.coefficients.chunks(columns.len().max(1))).map(row).sum()
+    }
 }
 
 impl PlateModes {
@@ -87,19 +99,26 @@ impl PlateModes {
                 sines.iter().map(|sine| sine.size * sine_of(sine.m, x) * sine_of(sine.n, y)).collect()
             }
             Kind::Polynomials { degrees, shapes } => {
-                let [along, across] = lines(&self.plate, *degrees);
-                let (along_here, across_here) = (along.values(2.0 * x - 1.0), across.values(2.0 * y - 1.0));
-                let shape = |product: &Product| {
-                    let (rows, columns) = (&along.classes[product.classes[0]], &across.classes[product.classes[1]]);
-                    let row = |(i, coefficients): (&usize, &[f64])| {
-                        let sum: f64 = columns.iter().zip(coefficients).map(|(j, c)| c * across_here[*j]).sum();
-                        along_here[*i] * sum
-                    };
-                    rows.iter().zip(product.coefficients.chunks(columns.len().max(1))).map(row).sum()
-                };
-                shapes.iter().map(shape).collect()
+                let lines = lines(&self.plate, *degrees);
+                let here = [lines[0].values(2.0 * x - 1.0), lines[1].values(2.0 * y - 1.0)];
+                shapes.iter().map(|product| product.sum(&lines, &here)).collect()
             }
         })
+    }
+
+    /// Participation `int rho h phi dA` of every mode in a uniform acceleration across the plate, kg^(1/2).
+    pub fn participation_kg0_5(&self) -> Vec<f64> {
+        let Plate { length_m, width_m, thickness_m, density_kg_m3, .. } = self.plate;
+        let mass = density_kg_m3 * thickness_m * length_m * width_m;
+        let means: Vec<f64> = match &self.kind {
+            Kind::Sines(sines) => sines.iter().map(|sine| sine.size * sine_mean(sine.m) * sine_mean(sine.n)).collect(),
+            Kind::Polynomials { degrees, shapes } => {
+                let lines = lines(&self.plate, *degrees);
+                let means = [lines[0].means(), lines[1].means()];
+                shapes.iter().map(|product| product.sum(&lines, &means)).collect()
+            }
+        };
+        means.into_iter().map(|mean| mass * mean).collect()
     }
 }
 
