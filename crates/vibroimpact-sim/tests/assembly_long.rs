@@ -68,14 +68,20 @@ fn an_orderly_run_is_certain_to_its_end_and_a_chaotic_one_is_not() {
     let settings = Settings::until(0.1);
     let orderly = dropped(Law::from(Viscous::new(1e9, 0.5).unwrap()), 0.05, 3);
     let (found, intervals) = solve(&orderly, &settings);
-    let certain = Solver::new(&orderly).unwrap().reliable_until(&settings, &intervals, found.end_s).unwrap();
-    assert_eq!(certain, found.end_s);
+    let certain =
+        Solver::new(&orderly).unwrap().reliable_until(&settings, &intervals, found.end_s, &mut || false).unwrap();
+    assert_eq!(certain, Some(found.end_s));
     let chaotic = dropped(Law::from(Hertz::new(1e9).unwrap()), 0.0, 10);
     let mut settings = Settings::until(0.5);
     settings.tolerance = 1e-7;
     let (found, intervals) = solve(&chaotic, &settings);
-    let certain = Solver::new(&chaotic).unwrap().reliable_until(&settings, &intervals, found.end_s).unwrap();
+    let certain =
+        Solver::new(&chaotic).unwrap().reliable_until(&settings, &intervals, found.end_s, &mut || false).unwrap();
+    let certain = certain.unwrap();
     assert!(certain < found.end_s && certain > 0.02, "{certain}");
+    // a second run that is told to stop says nothing
+    let stopped = Solver::new(&chaotic).unwrap().reliable_until(&settings, &intervals, found.end_s, &mut || true);
+    assert_eq!(stopped.unwrap(), None);
     // up to there a far tighter run agrees
     settings.tolerance = 1e-12;
     let (_, tight) = solve(&chaotic, &settings);

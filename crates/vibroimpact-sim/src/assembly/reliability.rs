@@ -13,18 +13,29 @@ pub(crate) struct Comparison<'a> {
     end_s: f64,
     /// The first event that differs (s).
     differs_at: f64,
+    stop: &'a mut dyn FnMut() -> bool,
+    stopped: bool,
 }
 
 impl<'a> Comparison<'a> {
-    pub fn new(known: &'a [Vec<Interval>], tolerance: f64, end_s: f64) -> Comparison<'a> {
-        Comparison { known, seen: vec![0; known.len()], tolerance, end_s, differs_at: f64::INFINITY }
+    pub fn new(
+        known: &'a [Vec<Interval>],
+        tolerance: f64,
+        end_s: f64,
+        stop: &'a mut dyn FnMut() -> bool,
+    ) -> Comparison<'a> {
+        let (seen, differs_at) = (vec![0; known.len()], f64::INFINITY);
+        Comparison { known, seen, tolerance, end_s, differs_at, stop, stopped: false }
     }
 
-    /// Up to here every event was found again.
-    pub fn certain_until(&self) -> f64 {
+    /// Up to here every event was found again; `None` if the second run was stopped before it had told.
+    pub fn certain_until(&self) -> Option<f64> {
+        if self.stopped {
+            return None;
+        }
         // an interval that the second run did not find at all
         let missed = self.known.iter().zip(&self.seen).filter_map(|(known, seen)| known.get(*seen));
-        missed.map(|interval| interval.start_s).fold(self.differs_at, f64::min).min(self.end_s)
+        Some(missed.map(|interval| interval.start_s).fold(self.differs_at, f64::min).min(self.end_s))
     }
 
     fn differ(&self, one: Option<f64>, other: Option<f64>) -> bool {
@@ -54,6 +65,8 @@ impl Observer for Comparison<'_> {
 
     fn interrupts(&mut self) -> bool {
         // nothing that comes later than a difference counts
-        self.differs_at < f64::INFINITY
+        let differs = self.differs_at < f64::INFINITY;
+        self.stopped |= !differs && (self.stop)();
+        differs || self.stopped
     }
 }

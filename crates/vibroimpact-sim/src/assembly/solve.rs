@@ -71,7 +71,8 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
     /// [`COARSER`] times as large, finds each of them at a time that differs by less than its own tolerance of the time
     /// since the start. `intervals` are those of the run to be judged, contact by contact, in order; the run ended at
-    /// `end_s`. Beyond that time only statistics mean anything.
+    /// `end_s`. Beyond that time only statistics mean anything. `None` if `stop`, which is asked now and then, ended the
+    /// second run.
     ///
     /// # Errors
     /// As [`run`].
@@ -80,10 +81,11 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
         settings: &Settings,
         intervals: &[Vec<Interval>],
         end_s: f64,
-    ) -> Result<f64, InvalidInput> {
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<Option<f64>, InvalidInput> {
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let second = Settings { tolerance, end_s, ..*settings };
-        let mut comparison = Comparison::new(intervals, tolerance, end_s);
+        let mut comparison = Comparison::new(intervals, tolerance, end_s, stop);
         self.run(&second, &mut comparison)?;
         Ok(comparison.certain_until())
     }
