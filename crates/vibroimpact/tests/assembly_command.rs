@@ -8,6 +8,7 @@ use std::fs;
 use gallery::datasets;
 use program::{run, stdout};
 use serde_json::Value;
+use vibroimpact::assembly::AssemblyScene;
 
 fn scene(name: &str) -> String {
     datasets(&format!("assemblies/{name}.json")).display().to_string()
@@ -20,6 +21,12 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     let result: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!((result["outcome"].as_str(), result["end_s"].as_f64()), (Some("end"), Some(1.0)));
     assert_eq!(result["reliable_until_s"], result["end_s"]);
+    assert!(result["steady_motion"].is_null());
+    // the result stands with the scene that it belongs to
+    assert_eq!(result["vibroimpact"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(result["scene"]["version"], 1);
+    let again = AssemblyScene::from_value(&result["scene"]).unwrap();
+    assert_eq!(again, AssemblyScene::read(&datasets("assemblies/sdnl105.json")).unwrap());
     let contact = &result["contacts"]["1-2"];
     assert_eq!(contact["count"], contact["intervals"].as_array().unwrap().len());
     let last = contact["intervals"].as_array().unwrap().last().unwrap();

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use beam_modes::fem;
 use gallery::{assemblies, assembly};
 use serde_json::json;
-use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation};
+use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion};
 use vibroimpact::scene::{Attachment, BeamTheory, Structure};
 use vibroimpact::vibroimpact_sim::assembly::{Outcome, Point};
 
@@ -117,6 +117,12 @@ fn sdnl105_is_met_by_the_modes_of_its_mesh() {
         let width: f64 = high - low;
         assert!(found > low - width && found < high + width, "{displacement:?}");
     }
+    // velocities, as far as the three agree
+    let velocity = [first.velocity_m_s[1], first.velocity_m_s[0], second.velocity_m_s[0]];
+    for (found, [low, high]) in velocity.into_iter().zip([[0.02542, 0.02542], [0.0441, 0.0443], [0.10455, 0.10458]]) {
+        let width = f64::max(high - low, 1e-3 * high);
+        assert!(found > low - width && found < high + width, "{velocity:?}");
+    }
     // energy can only have come from the load, and each contact opens and closes in turn
     assert_eq!(found.run.outcome, Outcome::End);
 }
@@ -159,6 +165,12 @@ fn sdnd102_is_the_same_against_a_wall_and_against_its_mirror_image() {
         assert_near(a.start_s, b.start_s, 1e-7);
         assert_near(a.impulse_n_s, b.impulse_n_s, 1e-5);
     }
+}
+
+#[test]
+fn sdnd125_has_the_force_that_is_stated() {
+    let found = until(&assembly("sdnd125"), 0.68044);
+    assert_near(found.run.contacts[0].force_n, 1698.44669074479, 1e-6);
 }
 
 #[test]
@@ -219,6 +231,7 @@ fn a_ball_on_a_shaken_table_keeps_to_one_impact_a_period() {
         assert_near(pair[1].approach_speed_m_s, approach, 2e-3);
         assert_near(pair[1].separation_speed_m_s.unwrap(), e * approach, 2e-3);
     }
+    assert_eq!(found.steady, Some(SteadyMotion { periods: 1, intervals: 1 }));
     // beyond the closed-form threshold (1.5268 at this restitution) the period doubles
     let mut faster = assembly("shaken-table");
     let motion = faster.ground_motion.as_mut().unwrap();
@@ -229,6 +242,7 @@ fn a_ball_on_a_shaken_table_keeps_to_one_impact_a_period() {
         assert_near(*speed, speeds[i - 2], 1e-5);
     }
     assert!((speeds[0] / speeds[1] - 1.0).abs() > 0.02, "{speeds:?}");
+    assert_eq!(found.steady, Some(SteadyMotion { periods: 2, intervals: 2 }));
 }
 
 #[test]
@@ -284,6 +298,48 @@ fn rods_change_speeds_while_a_wave_runs_there_and_back() {
     assert_near(contact.impulse_n_s, root * root * second, 1e-9);
 }
 
+/// The exact wave solution: the end moves on at half the speed until the wave is back after 2 L/c, then back at it until
+/// 4 L/c, and leaves at the full speed.
+#[test]
+fn sdnl111_is_met_by_the_exact_wave_solution() {
+    let scene = assembly("sdnl111");
+    let round = 2.0 / (2e11f64 / 7800.0).sqrt();
+    let exact = |t: f64| match t / round {
+        part if part < 1.0 => -0.5 * t,
+        part if part < 2.0 => -0.5 * round + 0.5 * (t - round),
+        _ => t - 2.0 * round,
+    };
+    // as published for this test
+    for (t, published) in [(2e-4, -1e-4), (4e-4, -1.94968353e-4), (8e-4, 1.00632937e-5), (1e-3, 2.10063294e-4)] {
+        assert!((exact(t) - published).abs() < 1e-12);
+        let found = until(&scene, t).run.contacts[0].displacement_m[0];
+        // the spring gives by F/k = 1.6e-7 m
+        assert!((found - published).abs() < 2.5e-7, "{t}: {found} {published}");
+    }
+    let found = scene.simulate().unwrap();
+    assert_eq!(found.intervals[0].len(), 1);
+    assert_near(found.intervals[0][0].end_s.unwrap(), 2.0 * round, 2e-3);
+}
+
+/// Over a window the mean square of the force is the difference of two runs. What is stated is a statistic of a sensitive
+/// motion by a fixed step: within what other modes or shear coefficients change.
+#[test]
+fn sdnl301_has_about_the_force_that_is_stated() {
+    let scene = assembly("sdnl301");
+    let squares = |end_s: f64| {
+        let found = until(&scene, end_s);
+        let of = |name: &str| {
+            let contact = found.posed.contacts.iter().position(|other| other == name).unwrap();
+            found.run.contacts[contact].statistics.squared_force_n2_s
+        };
+        assert_eq!(found.reliable_until_s, Some(end_s));
+        of("support-4+") + of("support-4-")
+    };
+    let rms = ((squares(0.25) - squares(0.17)) / 0.08).sqrt();
+    assert_near(rms, 23.983, 0.04);
+    assert_near(rms, 24.5251, 1e-4);
+}
+
 #[test]
 fn impulses_balance_momentum_between_stops() {
     // whole periods of the ground leave no impulse of the inertial load
@@ -310,6 +366,44 @@ fn an_impact_damper_holds_its_oscillator_down() {
     // at its frequency of 10 Hz, almost the static response over twice the damping ratio
     let amplitude = posed.run.amplitude[1][0].hypot(posed.run.rate[1][0] / (TAU * 10.0));
     assert!(amplitude > 0.02 && damped < 0.25 * amplitude, "{damped} {amplitude}");
+}
+
+/// Weights of every kind of body: where a mass hangs at a beam, and for a string and a plate, the deflection is that of
+/// statics.
+#[test]
+fn bodies_hang_where_statics_says() {
+    let scene = AssemblyScene::from_value(&json!({
+        "bodies": {
+            "beam": { "kind": "beam", "ends": ["pinned", "pinned"], "modes": 60,
+                      "segments": [{ "length_m": 2, "flexural_rigidity_n_m2": 300, "mass_per_length_kg_m": 1.5 }],
+                      "attachments": [{ "location_m": 1, "mass_kg": 7 }] },
+            "string": { "kind": "string", "length_m": 0.6, "tension_n": 700, "mass_per_length_kg_m": 0.006, "modes": 400 },
+            "plate": { "kind": "plate", "length_m": 1, "width_m": 1, "thickness_m": 0.01, "youngs_modulus_pa": 2e11,
+                       "poissons_ratio": 0.3, "density_kg_m3": 7800, "edges": ["pinned", "pinned", "pinned", "pinned"],
+                       "modes": 400 }
+        },
+        "contacts": [
+            { "name": "a", "between": [{ "body": "beam", "location_m": 1 }, "ground"], "gap_m": 1,
+              "law": "linear-spring", "stiffness_n_m": 1 },
+            { "name": "b", "between": [{ "body": "string", "location_m": 0.3 }, "ground"], "gap_m": 1,
+              "law": "linear-spring", "stiffness_n_m": 1 },
+            { "name": "c", "between": [{ "body": "plate", "location_m": [0.5, 0.5] }, "ground"], "gap_m": 1,
+              "law": "linear-spring", "stiffness_n_m": 1 }
+        ],
+        "gravity_m_s2": 9.81, "static_start": true, "end_s": 0.01
+    }))
+    .unwrap();
+    let found = scene.simulate().unwrap();
+    let rigidity = 2e11 * 0.01f64.powi(3) / (12.0 * (1.0 - 0.09));
+    let expected = [
+        9.81 / 300.0 * (5.0 * 1.5 * 16.0 / 384.0 + 7.0 * 8.0 / 48.0),
+        0.006 * 9.81 * 0.36 / (8.0 * 700.0),
+        0.00406235 * 7800.0 * 0.01 * 9.81 / rigidity,
+    ];
+    for (end, expected) in found.run.contacts.iter().zip(expected) {
+        assert_near(-end.displacement_m[0], expected, 1e-5);
+        assert!(end.velocity_m_s[0].abs() < 1e-9);
+    }
 }
 
 #[test]

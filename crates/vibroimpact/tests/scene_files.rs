@@ -4,9 +4,10 @@ mod gallery;
 
 use std::fs;
 
-use gallery::{assert_checked_in, datasets, gallery, named, paths};
+use gallery::{assemblies, assembly, assert_checked_in, datasets, gallery, named, paths};
 use proptest::prelude::*;
 use serde_json::{Value, json};
+use vibroimpact::assembly::AssemblyScene;
 use vibroimpact::scene::{MovingMode, Start, Structure, schema};
 use vibroimpact::{Scene, SceneError};
 
@@ -201,6 +202,93 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
             false => scene.impact().and_then(|impact| impact.solve()).map(drop),
         });
         assert!(refused.is_err(), "{name}{place}");
+    }
+}
+
+/// Scenes of bodies, likewise. Slips are JSON pointers; `null` takes a field away.
+#[test]
+fn the_schema_tells_scenes_of_bodies_from_others() {
+    let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
+    for (name, scene) in assemblies() {
+        let text = fs::read_to_string(datasets(&format!("assemblies/{name}.json"))).unwrap();
+        for tree in [serde_json::from_str(&text).unwrap(), serde_json::from_str(&scene.to_json()).unwrap()] {
+            let faults: Vec<String> = validator.iter_errors(&tree).map(|fault| fault.to_string()).collect();
+            assert!(faults.is_empty(), "{name}: {faults:?}");
+        }
+    }
+    let point = |body: &str| json!({ "body": body });
+    for (name, place, slip) in [
+        ("sdnl104", "/version", json!(2)),
+        ("sdnl104", "/bodies", json!({})),
+        ("sdnl104", "/contacts", Value::Null),
+        ("sdnl104", "/end_s", Value::Null),
+        ("sdnl104", "/end_s", json!(0)),
+        ("sdnl104", "/end_s", json!(1e13)),
+        ("sdnl104", "/structure", json!({})),
+        ("sdnl104", "/gravity_m_s2", json!(-9.81)),
+        ("sdnl104", "/tolerance", json!(0.2)),
+        ("sdnl104", "/tolerance", json!(1e-14)),
+        ("sdnl104", "/static_start", json!("yes")),
+        ("sdnl104", "/bodies/beam", json!([])),
+        ("sdnl104", "/bodies/ground", json!({ "kind": "mass", "mass_kg": 1 })),
+        ("sdnl104", "/bodies/beam/kind", json!("bem")),
+        ("sdnl104", "/bodies/beam/kind", Value::Null),
+        ("sdnl104", "/bodies/beam/kind", json!("dropped-rod")),
+        ("sdnl104", "/bodies/beam/modes", Value::Null),
+        ("sdnl104", "/bodies/beam/modes", json!(2.5)),
+        ("sdnl104", "/bodies/beam/modes", json!(10_001)),
+        ("sdnl104", "/bodies/beam/mass_kg", json!(1)),
+        ("sdnl104", "/bodies/beam/segments/0/width_m", json!(0.1)),
+        ("sdnl104", "/bodies/beam/gravity_participation_kg0_5", json!([1])),
+        ("sdnl104", "/bodies/beam/start", json!({ "gap_m": 0 })),
+        ("sdnl104", "/bodies/ball", json!({ "kind": "mass", "mass_kg": 0 })),
+        ("sdnl104", "/bodies/ball", json!({ "kind": "mass" })),
+        ("sdnl104", "/bodies/ball", json!({ "kind": "mass", "mass_kg": 1, "density_kg_m3": 1 })),
+        ("sdnl104", "/bodies/ball", json!({ "kind": "mass", "mass_kg": 1, "modes": 1 })),
+        ("two-rods", "/bodies/first/residual_compliance", json!(true)),
+        ("two-rods", "/bodies/first/segments/0/area_m2", json!(1)),
+        ("two-rods", "/bodies/first/segments/0/density_kg_m3", Value::Null),
+        ("two-rods", "/bodies/first/ends/0", json!("clamped")),
+        ("two-rods", "/bodies/first/modes", Value::Null),
+        ("sdnl104", "/contacts/0", json!("stop")),
+        ("sdnl104", "/contacts/0/name", Value::Null),
+        ("sdnl104", "/contacts/0/name", json!("")),
+        ("sdnl104", "/contacts/0/between", json!([point("beam")])),
+        ("sdnl104", "/contacts/0/between", json!(["ground", "ground"])),
+        ("sdnl104", "/contacts/0/between/1", json!("wall")),
+        ("sdnl104", "/contacts/0/between/0/bodies", json!("beam")),
+        ("sdnl104", "/contacts/0/gap_m", json!("wide")),
+        ("sdnl104", "/contacts/0/two_sided", json!(1)),
+        ("sdnl104", "/contacts/0/law", Value::Null),
+        ("sdnl104", "/contacts/0/law", json!("herz")),
+        ("sdnl104", "/contacts/0/stiffness_n_m1_5", json!(1)),
+        ("sdnl104", "/contacts/0/stiffness_n_m", json!(-1)),
+        ("sdnl104", "/contacts/0/colour", json!("red")),
+        ("sdnl104", "/contacts/0/approach_speed_m_s", json!(0)),
+        ("sdnl104", "/loads/0/force_n", Value::Null),
+        ("sdnl104", "/loads/0/body", Value::Null),
+        ("sdnl104", "/loads/0/phase_deg", json!(30)),
+        ("sdnl104", "/loads/0/frequency_hz", json!(0)),
+        ("sdnl104", "/loads/0/times_s", json!([0, 1])),
+        ("sdnl104", "/loads/0", json!({ "body": "beam", "location_m": 1, "times_s": [0], "forces_n": [1] })),
+        ("sdnl104", "/loads/0", json!({ "body": "beam", "location_m": 1, "times_s": [0, 1] })),
+        ("shaken-table", "/ground_motion/acceleration_m_s2", json!(1)),
+        ("shaken-table", "/ground_motion/frequency_hz", Value::Null),
+        ("shaken-table", "/ground_motion/displacement_m", Value::Null),
+        ("shaken-table", "/ground_motion/times_s", json!([0, 1])),
+        ("shaken-table", "/ground_motion/colour", json!(1)),
+    ] {
+        let mut spoilt: Value = serde_json::from_str(&assembly(name).to_json()).unwrap();
+        let (holder, key) = place.rsplit_once('/').unwrap();
+        match spoilt.pointer_mut(holder).unwrap_or_else(|| panic!("{name}{place}")) {
+            Value::Array(items) => items[key.parse::<usize>().unwrap()] = slip,
+            Value::Object(entries) if slip.is_null() => drop(entries.remove(key)),
+            Value::Object(entries) => drop(entries.insert(key.to_owned(), slip)),
+            other => panic!("{other}"),
+        }
+        assert!(!validator.is_valid(&spoilt), "the schema passes {name}{place}: {spoilt}");
+        let refused = AssemblyScene::from_value(&spoilt).and_then(|scene| scene.pose().map(drop));
+        assert!(refused.is_err(), "the program passes {name}{place}");
     }
 }
 

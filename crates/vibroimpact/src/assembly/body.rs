@@ -1,5 +1,7 @@
 //! The bodies of an assembly.
 
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -7,10 +9,10 @@ use serde_json::{Map, Value};
 use super::fields::KINDS;
 use super::rod::Rod;
 use crate::scene::json::{also_known, quote, read};
-use crate::scene::{InvalidInput, MovingMode, Structure};
+use crate::scene::{InvalidInput, MovingMode, SceneError, Structure};
 
 /// A body; `"kind"` tells which.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 #[non_exhaustive]
 pub enum Body {
@@ -49,6 +51,7 @@ pub enum MassKind {
 pub struct Elastic {
     /// The structure: `rod`, or any kind that is struck in a scene of one impact and has modes.
     #[serde(flatten)]
+    #[schemars(skip)]
     pub structure: Elastics,
     /// Number of modes, from the lowest; required where they are computed. When left out: all that are listed.
     pub modes: Option<usize>,
@@ -67,7 +70,7 @@ pub struct Elastic {
 }
 
 /// The structures that a body may be.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Elastics {
     /// A rod in axial vibration.
@@ -79,6 +82,7 @@ pub enum Elastics {
 /// Motion of single modes when the clock starts; what is given adds up.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "BodyStart")]
 pub struct Start {
     /// Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -104,6 +108,10 @@ struct Beside {
     gravity_participation_kg0_5: Vec<f64>,
 }
 
+/// Structures of one impact that a body may be, and whether their modes are computed.
+pub(super) const STRUCTURES: [(&str, bool); 5] =
+    [("beam", true), ("string", true), ("plate", true), ("modal", false), ("modes-file", false)];
+
 const BESIDE: [&str; 5] = ["modes", "residual_compliance", "velocity_m_s", "start", "gravity_participation_kg0_5"];
 
 impl Body {
@@ -113,11 +121,30 @@ impl Body {
         };
         match entries.get("kind").and_then(Value::as_str) {
             Some("mass") => read(value).map(Body::Mass),
-            Some(kind) => Elastic::from_entries(kind, entries).map(|body| Body::Elastic(Box::new(body))),
-            None => {
+            Some(kind) if kind == "rod" || STRUCTURES.iter().any(|(name, _)| *name == kind) => {
+                Elastic::from_entries(kind, entries).map(|body| Body::Elastic(Box::new(body)))
+            }
+            _ => {
                 Err(InvalidInput { field: "kind".into(), value: entries.get("kind").map(quote), allowed: KINDS.into() })
             }
         }
+    }
+
+    /// Puts the numbers of a table of modes in the place of its name; `folder` is that of the scene.
+    pub(super) fn read_table(&mut self, folder: &Path) -> Result<(), SceneError> {
+        if let Body::Elastic(body) = self
+            && let Elastics::Structure(Structure::ModesFile(named)) = &body.structure
+        {
+            let modal = named.load(folder).map_err(|fault| match fault {
+                SceneError::Invalid(fault) => {
+                    let field = fault.field.trim_start_matches("structure.").to_owned();
+                    InvalidInput { field, ..fault }.into()
+                }
+                other => other,
+            })?;
+            body.structure = Elastics::Structure(Structure::Modal(modal));
+        }
+        Ok(())
     }
 
     /// The value of `"kind"`.
@@ -153,10 +180,7 @@ impl Elastic {
             read(&Value::Object(beside))?;
         let structure = match kind {
             "rod" => Elastics::Rod(Rod::from_value(&own)?),
-            _ => Elastics::Structure(Structure::from_value(&own).map_err(|fault| match fault.field.as_str() {
-                "kind" => InvalidInput { allowed: KINDS.into(), ..fault },
-                _ => also_known(fault, &BESIDE),
-            })?),
+            _ => Elastics::Structure(Structure::from_value(&own).map_err(|fault| also_known(fault, &BESIDE))?),
         };
         let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })

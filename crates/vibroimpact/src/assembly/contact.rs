@@ -17,10 +17,13 @@ use crate::scene::{self, InvalidInput, Location, Striker};
 /// displacements along `x`, the compression is `xi = u_B - u_A - gap_m`, and the force pushes A along `+x` and B along
 /// `-x`.
 #[derive(Debug, Clone, PartialEq, DeriveSerialize, JsonSchema)]
+#[schemars(rename = "BodyContact")]
 pub struct Contact {
     /// Its name in the results.
+    #[schemars(length(min = 1))]
     pub name: String,
-    /// The two sides.
+    /// The two sides, not both the ground.
+    #[schemars(extend("not" = { "items": { "const": "ground" } }))]
     pub between: [Side; 2],
     /// Distance of the surfaces when both bodies are undeformed and in place (m), negative for an interference; 0 when left
     /// out.
@@ -70,6 +73,7 @@ pub enum Ground {
 /// A point of a body.
 #[derive(Debug, Clone, Default, PartialEq, DeriveSerialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "BodyPoint")]
 pub struct Point {
     /// Name of the body.
     pub body: String,
@@ -136,6 +140,14 @@ impl Contact {
             _ => return Err(InvalidInput::new("between", quote(&between), BETWEEN)),
         };
         Ok(Contact { name, between, gap_m, two_sided, radius_m, approach_speed_m_s, reduced_mass_kg, law })
+    }
+
+    /// Its name in the results, or those of its two.
+    pub fn names(&self) -> Vec<String> {
+        match self.two_sided {
+            false => vec![self.name.clone()],
+            true => ["+", "-"].map(|side| format!("{}{side}", self.name)).to_vec(),
+        }
     }
 
     /// The law with its parameters.

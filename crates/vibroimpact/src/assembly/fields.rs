@@ -45,4 +45,4 @@ pub(crate) const BETWEEN: &str = "a list of two, each an object with body and it
                                   the side of greater x";
 
 /// The kinds of bodies.
-pub(crate) const KINDS: &str = "one of mass, rod, beam, modal, modes-file, or another structure with modes";
+pub(crate) const KINDS: &str = "one of mass, rod, beam, string, plate, modal, modes-file";

@@ -11,7 +11,7 @@ use super::report;
 use super::summary::Summary;
 use super::watch::Row;
 use super::{AssemblyScene, Course, Simulation, pictures};
-use crate::export::{Failure, Table, json};
+use crate::export::{Failure, Table};
 use crate::sweep::table::{Kind, Table as Parquet};
 
 /// Intervals of contact as a table, row by row.
@@ -122,7 +122,7 @@ pub fn files(
     let course = found.course.as_ref().unwrap_or(&none);
     let figure = pictures::picture(title, found);
     let mut files = vec![
-        ("result.json", json(summary)?.into_bytes()),
+        ("result.json", summary.json(scene)?.into_bytes()),
         ("history.csv", history(&found.posed.contacts, &course.rows).csv()?),
         ("run.svg", figure.svg()?.into_bytes()),
         ("report.html", report::report(title, scene, summary, &figure)?.html().into_bytes()),

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use vibroimpact_sim::assembly::Force;
 
 use super::contact::Point;
+use super::schema::courses;
 use crate::input::{Table, read_bytes};
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Location, SceneError, table_path};
@@ -17,6 +18,7 @@ use crate::scene::{InvalidInput, Location, SceneError, table_path};
 /// last.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = courses(&["force_n"], "forces_n", true)))]
 pub struct Load {
     /// Name of the body.
     pub body: String,
@@ -45,6 +47,7 @@ pub struct Load {
 /// what is reported, and every body feels the inertial load of the ground's acceleration.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = courses(&["displacement_m", "acceleration_m_s2"], "accelerations_m_s2", false)))]
 pub struct GroundMotion {
     /// Amplitude of a displacement `displacement_m sin(2 pi frequency_hz t + phase)` (m).
     pub displacement_m: Option<f64>,

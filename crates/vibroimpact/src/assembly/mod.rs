@@ -25,8 +25,10 @@ mod pictures;
 mod pose;
 mod report;
 mod rod;
+mod schema;
 mod seen;
 mod simulate;
+mod steady;
 mod summary;
 mod text;
 mod watch;
@@ -47,12 +49,13 @@ pub use pose::Posed;
 pub use report::report;
 pub use rod::{AxialEnd, AxialSegment, Rod, RodKind};
 pub use simulate::{MOST_INTERVALS, Simulation, Wanted};
+pub use steady::SteadyMotion;
 pub use summary::{BodyEnergy, Cost, Energy, Interval, Point as EndPoint, Statistics, Summary};
 pub use text::{headline, result};
 pub use watch::{Course, Row};
 
 use crate::scene::{
-    A_SCENE, FORMAT_VERSION, InvalidInput, Scene, SceneError, Structure, check_version, json, read_tree, toml,
+    A_SCENE, FORMAT_VERSION, InvalidInput, Scene, SceneError, check_version, json, plain_tree, read_tree, toml,
     versioned_tree,
 };
 
@@ -115,6 +118,7 @@ pub struct AssemblyScene {
     /// A text for the reader; may be left out.
     pub description: Option<String>,
     /// The bodies by their names.
+    #[schemars(extend("minProperties" = 1, "propertyNames" = { "not": { "enum": ["", "ground"] } }))]
     pub bodies: BTreeMap<String, Body>,
     /// Where they may touch each other or the ground.
     pub contacts: Vec<Contact>,
@@ -135,6 +139,7 @@ pub struct AssemblyScene {
     pub end_s: f64,
     /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far, 1e-13 to 0.1;
     /// 1e-9 when left out.
+    #[schemars(range(min = 1e-13, max = 0.1))]
     pub tolerance: Option<f64>,
 }
 
@@ -223,18 +228,7 @@ impl AssemblyScene {
     /// A table that cannot be read or used, with its line.
     pub fn read_tables(&mut self, folder: &Path) -> Result<(), SceneError> {
         for (name, body) in &mut self.bodies {
-            if let Body::Elastic(body) = body
-                && let Elastics::Structure(Structure::ModesFile(named)) = &body.structure
-            {
-                let modal = named.load(folder).map_err(|fault| match fault {
-                    SceneError::Invalid(fault) if fault.field.starts_with("structure.") => {
-                        let field = format!("bodies.{name}.{}", fault.field.trim_start_matches("structure."));
-                        InvalidInput { field, ..fault }.into()
-                    }
-                    other => other,
-                })?;
-                body.structure = Elastics::Structure(Structure::Modal(modal));
-            }
+            body.read_table(folder).map_err(|fault| of_table(fault, &format!("bodies.{name}")))?;
         }
         for (i, load) in self.loads.iter_mut().enumerate() {
             load.read_table(folder).map_err(|fault| of_table(fault, &format!("loads[{i}]")))?;
@@ -257,6 +251,41 @@ impl AssemblyScene {
     pub fn to_toml(&self) -> Result<String, InvalidInput> {
         toml::write(&versioned_tree(self))
     }
+}
+
+/// Puts the numbers of tables into the tree of a scene of bodies that stands in `folder`. The tree need not be a whole
+/// scene; objects that name no table stay as they are.
+pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), SceneError> {
+    fn replace<T: Serialize>(
+        value: &mut Value,
+        path: &str,
+        read: impl FnOnce(&Value) -> Result<T, SceneError>,
+    ) -> Result<(), SceneError> {
+        if value.get("file").is_some() {
+            *value = plain_tree(&read(value).map_err(|fault| of_table(fault, path))?);
+        }
+        Ok(())
+    }
+    for (name, body) in tree.get_mut("bodies").and_then(Value::as_object_mut).into_iter().flatten() {
+        replace(body, &format!("bodies.{name}"), |value| {
+            let mut body = Body::from_value(value)?;
+            body.read_table(folder)?;
+            Ok(body)
+        })?;
+    }
+    for (i, load) in tree.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
+        replace(load, &format!("loads[{i}]"), |value| {
+            let mut load: Load = json::read(value)?;
+            load.read_table(folder)?;
+            Ok(load)
+        })?;
+    }
+    let Some(motion) = tree.get_mut("ground_motion") else { return Ok(()) };
+    replace(motion, "ground_motion", |value| {
+        let mut motion: GroundMotion = json::read(value)?;
+        motion.read_table(folder)?;
+        Ok(motion)
+    })
 }
 
 /// A fault of a field under its object's path; one within the table names the table.

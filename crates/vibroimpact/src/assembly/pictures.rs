@@ -40,11 +40,18 @@ pub fn picture(title: &str, found: &Simulation) -> Figure {
         forces = forces.with(force);
     }
     gaps = gaps.with(Series::horizontal_rule(0.0));
-    let mut below = vec![impact_map(found, names)];
+    let mut below = Vec::new();
+    if found.intervals.iter().take(DRAWN).any(|intervals| intervals.len() > 1) {
+        below.push(impact_map(found, names));
+    }
     if course.period_s.is_some() {
         below.push(section(course, names));
     }
-    Figure::new(title).row([gaps]).row([forces]).row(below).row([spectrum(course, names)])
+    let mut figure = Figure::new(title).row([gaps]).row([forces]);
+    if !below.is_empty() {
+        figure = figure.row(below);
+    }
+    figure.row([spectrum(course, names)])
 }
 
 /// Each speed of approach against the one before it.

@@ -215,14 +215,10 @@ impl<'a> Bodies<'a> {
             ));
         }
         let (gap_m, law) = (contact.gap_m, contact.to_law()?);
-        if !contact.two_sided {
-            return Ok(vec![(contact.name.clone(), assembly::Contact { sides, gap_m, law })]);
-        }
         let [a, b] = sides.clone();
-        Ok(vec![
-            (format!("{}+", contact.name), assembly::Contact { sides, gap_m, law }),
-            (format!("{}-", contact.name), assembly::Contact { sides: [b, a], gap_m, law }),
-        ])
+        // the second of a two-sided contact is the first seen from the other side
+        let posed = [sides, [b, a]].map(|sides| assembly::Contact { sides, gap_m, law });
+        Ok(contact.names().into_iter().zip(posed).collect())
     }
 
     /// A uniform acceleration on every body.

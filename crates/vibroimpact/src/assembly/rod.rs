@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::scene::InvalidInput;
 use crate::scene::json::{objects, read};
+use crate::scene::schema::one_of_sets as of_sets;
 use crate::scene::sets::one_of_sets;
 
 /// A straight rod of uniform segments along `x`, whose points move along it.
@@ -49,6 +50,7 @@ pub enum AxialEnd {
 /// material and area; or material and diameter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = of_sets(&SECTIONS)))]
 pub struct AxialSegment {
     /// Length (m).
     pub length_m: f64,
@@ -65,6 +67,13 @@ pub struct AxialSegment {
     /// Diameter of a circular section (m).
     pub diameter_m: Option<f64>,
 }
+
+/// The ways to give a section.
+const SECTIONS: [&[&str]; 3] = [
+    &["axial_rigidity_n", "mass_per_length_kg_m"],
+    &["youngs_modulus_pa", "density_kg_m3", "area_m2"],
+    &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
+];
 
 impl Rod {
     pub(super) fn from_value(value: &Value) -> Result<Rod, InvalidInput> {
@@ -99,12 +108,7 @@ impl AxialSegment {
             ("area_m2", self.area_m2),
             ("diameter_m", self.diameter_m),
         ];
-        let sets: [&[&str]; 3] = [
-            &["axial_rigidity_n", "mass_per_length_kg_m"],
-            &["youngs_modulus_pa", "density_kg_m3", "area_m2"],
-            &["youngs_modulus_pa", "density_kg_m3", "diameter_m"],
-        ];
-        let set = one_of_sets(&given, &sets)?;
+        let set = one_of_sets(&given, &SECTIONS)?;
         for (field, value) in std::iter::once(("length_m", Some(self.length_m))).chain(given) {
             value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
         }

@@ -40,6 +40,14 @@ impl<'a> Seen<'a> {
                 vec![BodyMode { omega_rad_s: 0.0, damping_ratio: 0.0 }]
             }
             Body::Elastic(body) => {
+                let given = &body.gravity_participation_kg0_5;
+                let listed =
+                    matches!(body.structure, Elastics::Structure(Structure::Modal(_) | Structure::ModesFile(_)));
+                if !listed && !given.is_empty() {
+                    let allowed = "left out: it is computed for this kind";
+                    let value = format!("{} values", given.len());
+                    return Err(seen.of_body(InvalidInput::new("gravity_participation_kg0_5", value, allowed)));
+                }
                 if let (Elastics::Rod(rod), count) = (&body.structure, body.modes) {
                     seen.rod = Some(modes_of(rod, count).map_err(|fault| seen.of_body(fault))?);
                 }
@@ -142,20 +150,15 @@ impl<'a> Seen<'a> {
         };
         let given = &body.gravity_participation_kg0_5;
         let field = "gravity_participation_kg0_5";
+        let count = body.modes.unwrap_or_default();
         let computed = match &body.structure {
             Elastics::Rod(_) => self.rod.as_ref().map(Modes::participation_kg0_5),
-            Elastics::Structure(Structure::Beam(beam)) => {
-                let count = body.modes.unwrap_or_default();
-                let modes = self.known.first(beam, count).map(|modes| modes.participation_kg0_5());
-                Some(modes.map_err(|fault| self.of_body(fault))?)
+            Elastics::Structure(structure) => {
+                structure.participation_with(count, &mut self.known).transpose().map_err(|fault| self.of_body(fault))?
             }
-            Elastics::Structure(_) => None,
         };
         let values = || format!("{} values", given.len());
         match computed {
-            Some(_) if !given.is_empty() => {
-                Err(self.of_body(InvalidInput::new(field, values(), "left out: it is computed for this kind")))
-            }
             // what the modes left out would sag under their weight is far below what they answer at a point
             Some(mut computed) => {
                 computed.resize(self.modes.len(), 0.0);

@@ -1,11 +1,12 @@
 //! A scene of bodies solved.
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{Force, Interval, Outcome, Reason, Run, Solver};
 
 use super::files::IntervalFiles;
+use super::steady::SteadyMotion;
 use super::watch::{Course, Sink, Watch};
 use super::{AssemblyScene, Posed};
 use crate::export::Failure;
@@ -45,6 +46,10 @@ pub struct Simulation {
     pub intervals: Vec<Vec<Interval>>,
     /// How many more there were.
     pub left_out: Vec<u64>,
+    /// The period of the first harmonic load (s), if there is one.
+    pub period_s: Option<f64>,
+    /// The motion to which it has settled at the end, as periods of this load.
+    pub steady: Option<SteadyMotion>,
     /// Samples of the motion, if they were wanted.
     pub course: Option<Course>,
 }
@@ -85,18 +90,20 @@ impl AssemblyScene {
     pub fn simulate_with(&self, wanted: Wanted) -> Result<Simulation, Failure> {
         let posed = self.pose()?;
         let mut files = wanted.folder.map(|folder| IntervalFiles::create(folder, &posed.contacts)).transpose()?;
-        let course = wanted.course.then(|| Course::new(posed.settings.end_s, period_s(&posed)));
+        let period_s = period_s(&posed);
+        let course = wanted.course.then(|| Course::new(posed.settings.end_s, period_s));
         let mut take = |contact: usize, interval: &Interval| match &mut files {
             Some(files) => files.add(contact, interval),
             None => Ok(()),
         };
         let sink: Sink = &mut take;
-        let mut watch =
-            Watch::new(posed.contacts.len(), wanted.intervals, Some(sink), course, wanted.stop, wanted.tell);
+        let contacts = posed.contacts.len();
+        let mut watch = Watch::new(contacts, wanted.intervals, Some(sink), course, period_s, wanted.stop, wanted.tell);
         let in_scene = |fault| posed.in_scene(fault);
         let mut solver = Solver::new(&posed.assembly).map_err(in_scene)?;
         let run = solver.run(&posed.settings, &mut watch).map_err(in_scene)?;
-        let Watch { intervals, left_out, fault, course, .. } = watch;
+        let Watch { intervals, left_out, fault, course, moments, .. } = watch;
+        let steady = moments.and_then(|moments| moments.steady());
         if let Some(fault) = fault {
             return Err(fault);
         }
@@ -105,11 +112,14 @@ impl AssemblyScene {
         }
         let whole = left_out.iter().all(|count| *count == 0) && run.outcome != Outcome::Stopped(Reason::Interrupted);
         let reliable_until_s = match wanted.reliability && whole {
-            true => Some(solver.reliable_until(&posed.settings, &intervals, run.end_s).map_err(in_scene)?),
+            true => {
+                let mut stop = || wanted.stop.load(Ordering::Relaxed);
+                solver.reliable_until(&posed.settings, &intervals, run.end_s, &mut stop).map_err(in_scene)?
+            }
             false => None,
         };
         drop(solver);
-        Ok(Simulation { posed, run, reliable_until_s, intervals, left_out, course })
+        Ok(Simulation { posed, run, reliable_until_s, intervals, left_out, period_s, steady, course })
     }
 }
 

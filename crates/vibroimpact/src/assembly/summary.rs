@@ -3,11 +3,26 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use serde_json::Value;
 use vibroimpact_sim::assembly::{self, Outcome};
 
-use super::Simulation;
+use super::steady::SteadyMotion;
+use super::{AssemblyScene, Simulation};
+use crate::export::{self, Failure};
+use crate::scene::versioned_tree;
 
 /// What `simulate --json` prints for a scene of bodies: one object, every name with its unit.
+#[derive(Serialize)]
+struct ResultFile<'a> {
+    /// Version of the program.
+    vibroimpact: &'static str,
+    /// The scene that was solved: tables are written out, and `version` is that of the format.
+    scene: Value,
+    #[serde(flatten)]
+    summary: &'a Summary,
+}
+
+/// What a run came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// `end`, `rest` or `stopped`.
@@ -19,6 +34,8 @@ pub struct Summary {
     /// Until when touches and releases are certain (s), from a second run with a tolerance 32 times as large; from then on
     /// only statistics mean anything. Null if it was not found out.
     pub reliable_until_s: Option<f64>,
+    /// The periodic motion under a harmonic load to which it has settled at the end; null if there is none.
+    pub steady_motion: Option<SteadyMotion>,
     /// The contacts by their names.
     pub contacts: BTreeMap<String, Statistics>,
     /// Either side of each contact at the end.
@@ -141,6 +158,15 @@ impl Interval {
 }
 
 impl Summary {
+    /// What `simulate --json` prints, and `result.json` holds: the result with the scene that it belongs to.
+    ///
+    /// # Errors
+    /// None that a run could cause; those of the writer are passed on.
+    pub fn json(&self, scene: &AssemblyScene) -> Result<String, Failure> {
+        let vibroimpact = env!("CARGO_PKG_VERSION");
+        export::json(&ResultFile { vibroimpact, scene: versioned_tree(scene), summary: self })
+    }
+
     /// The same with at most so many intervals listed, those of all contacts together that begin first.
     pub fn listing(mut self, most: usize) -> Summary {
         let mut starts: Vec<f64> =
@@ -195,6 +221,7 @@ impl Summary {
             },
             end_s,
             reliable_until_s: found.reliable_until_s,
+            steady_motion: found.steady,
             contacts: names.iter().enumerate().map(contact).collect(),
             points: names.iter().enumerate().flat_map(point).collect(),
             energy: run.energy.as_ref().map(|ledger| Energy {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::steady::SteadyMotion;
 use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
 use crate::text::quantity;
@@ -127,6 +128,10 @@ pub fn result(summary: &Summary) -> String {
     line("outcome", outcome(summary));
     if let Some(reliable) = reliability(summary) {
         line("events certain until", reliable);
+    }
+    if let Some(SteadyMotion { periods, intervals }) = summary.steady_motion {
+        let periods = if periods == 1 { "each period".to_owned() } else { format!("{periods} periods") };
+        line("steady motion", format!("{intervals} intervals of contact in {periods} of the load"));
     }
     let counts = &summary.counts;
     line("cost", format!("{} steps in contact, {} in flight", counts.contact_steps, counts.flight_steps));

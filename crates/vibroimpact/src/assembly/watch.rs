@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{ContactSample, Interval, Motion, Observer};
 
+use super::steady::Moments;
 use crate::export::Failure;
 
 /// Equal intervals of a history.
@@ -95,6 +96,8 @@ pub(super) struct Watch<'a> {
     pub fault: Option<Failure>,
     /// Samples of the motion, if they are wanted.
     pub course: Option<Course>,
+    /// The end of the motion, where it has a period.
+    pub moments: Option<Moments>,
     stop: &'a AtomicBool,
     tell: &'a mut dyn FnMut(f64),
     time_s: f64,
@@ -106,11 +109,13 @@ impl<'a> Watch<'a> {
         room: usize,
         sink: Option<Sink<'a>>,
         course: Option<Course>,
+        period_s: Option<f64>,
         stop: &'a AtomicBool,
         tell: &'a mut dyn FnMut(f64),
     ) -> Watch<'a> {
         let (intervals, left_out) = (vec![Vec::new(); contacts], vec![0; contacts]);
-        Watch { intervals, left_out, room, sink, fault: None, course, stop, tell, time_s: 0.0 }
+        let moments = period_s.map(Moments::new);
+        Watch { intervals, left_out, room, sink, fault: None, course, moments, stop, tell, time_s: 0.0 }
     }
 }
 
@@ -121,6 +126,9 @@ impl Observer for Watch<'_> {
             && self.fault.is_none()
         {
             self.fault = sink(contact, interval).err();
+        }
+        if let Some(moments) = &mut self.moments {
+            moments.end_interval();
         }
         if self.room > 0 {
             self.room -= 1;
@@ -136,10 +144,13 @@ impl Observer for Watch<'_> {
         if let Some(course) = &mut self.course {
             course.add(panel, contacts);
         }
+        if let Some(moments) = &mut self.moments {
+            moments.add(panel, contacts);
+        }
     }
 
     fn wants_panels(&self) -> bool {
-        self.course.is_some()
+        self.course.is_some() || self.moments.is_some()
     }
 
     fn wants_energy(&self) -> bool {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use vibroimpact::assembly::{self, AssemblyScene, MOST_INTERVALS, Summary, Wanted};
-use vibroimpact::export::{self, Failure, Files};
+use vibroimpact::export::{Failure, Files};
 use vibroimpact::text::quantity;
 
 use super::products::Products;
@@ -29,7 +29,7 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     progress.finish();
     let summary = Summary::new(&found).listing(intervals);
     let printed = match products.json {
-        true => export::json(&summary)?,
+        true => summary.json(scene)?,
         false => format!("{headline}\n\n{}", assembly::result(&summary)),
     };
     let told = products.write(

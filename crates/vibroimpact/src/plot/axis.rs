@@ -78,6 +78,11 @@ impl Axis {
     }
 }
 
+/// The ticks that the axis names, or the automatic ones with their exponent.
+pub(super) fn named_or(axis: &Axis, automatic: (Vec<Tick>, i32)) -> (Vec<Tick>, i32) {
+    if axis.named_ticks.is_empty() { automatic } else { (axis.named_ticks.clone(), 0) }
+}
+
 /// Whether a value can be drawn on an axis; the largest doubles would overflow a difference.
 pub(super) fn drawable(value: f64, logarithmic: bool) -> bool {
     value.abs() < 1e300 && (!logarithmic || value > 1e-300)

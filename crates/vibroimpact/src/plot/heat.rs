@@ -1,6 +1,6 @@
 //! Maps: a value as colour over two quantities.
 
-use super::axis::{Axis, Scale, full_label};
+use super::axis::{Axis, Scale, full_label, named_or};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle};
 use super::colour::{blue_red, viridis};
 use super::text::width_px;
@@ -80,14 +80,15 @@ impl HeatMap {
     pub(super) fn draw_scale(&self, canvas: &Canvas, panel: &Rectangle, text: Lettering) -> io::Result<()> {
         let scale = self.scale();
         let bar = Rectangle { left: panel.right + 12.0, right: panel.right + 24.0, ..*panel };
-        let shades = 64;
+        // values with names are shades of their own
+        let shades = if self.value.named_ticks.is_empty() { 64 } else { self.value.named_ticks.len() };
         for k in 0..shades {
             let at = |k: usize| bar.bottom - bar.height() * k as f64 / shades as f64;
             let shade = Rectangle { top: (at(k + 1) - 0.5).max(bar.top), bottom: at(k), ..bar };
             canvas.fill(&shade, self.shade((k as f64 + 0.5) / shades as f64))?;
         }
         canvas.frame(&bar, Pen::new(text.colour, 0.7))?;
-        let (ticks, exponent) = scale.ticks_up(bar.height(), text.size_px);
+        let (ticks, exponent) = named_or(&self.value, scale.ticks_up(bar.height(), text.size_px));
         let widest = ticks.iter().map(|t| width_px(&t.1, text.size_px)).fold(0.0, f64::max);
         for (measure, label) in ticks {
             let y = bar.bottom - bar.height() * scale.fraction_of_measure(measure);

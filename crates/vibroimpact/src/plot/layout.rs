@@ -1,6 +1,6 @@
 //! Where everything stands: margins, panels, legends.
 
-use super::axis::{Axis, Scale, Tick, drawable, full_label};
+use super::axis::{Axis, Scale, Tick, drawable, full_label, named_or};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle, picture};
 use super::colour::Colour;
 use super::heat::{STRIP_PX, edges};
@@ -76,10 +76,6 @@ impl<'a> Plan<'a> {
             (true, false) => 1.9 * TICK_PX + 1.3 * LABEL_PX,
         }
     }
-}
-
-fn named_or(axis: &Axis, automatic: (Vec<Tick>, i32)) -> (Vec<Tick>, i32) {
-    if axis.named_ticks.is_empty() { automatic } else { (axis.named_ticks.clone(), 0) }
 }
 
 fn extent(axis: &Axis, values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {

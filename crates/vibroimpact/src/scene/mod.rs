@@ -292,11 +292,17 @@ impl Scene {
 
 /// A scene as a tree, with its version and without the fields that are left out.
 pub(crate) fn versioned_tree(scene: &impl Serialize) -> Value {
-    let mut tree = serde_json::to_value(scene).unwrap_or_default();
-    drop_nulls(&mut tree);
+    let mut tree = plain_tree(scene);
     if let Value::Object(entries) = &mut tree {
         entries.insert("version".to_owned(), FORMAT_VERSION.into());
     }
+    tree
+}
+
+/// A part of a scene as a tree without the fields that are left out.
+pub(crate) fn plain_tree(part: &impl Serialize) -> Value {
+    let mut tree = serde_json::to_value(part).unwrap_or_default();
+    drop_nulls(&mut tree);
     tree
 }
 
@@ -337,8 +343,7 @@ pub(crate) fn read_modes_into(tree: &mut Value, folder: &Path) -> Result<(), Sce
         && let Structure::ModesFile(named) =
             Structure::from_value(structure).map_err(|fault| fault.within("structure"))?
     {
-        *structure = serde_json::to_value(Structure::Modal(named.load(folder)?)).unwrap_or_default();
-        drop_nulls(structure);
+        *structure = plain_tree(&Structure::Modal(named.load(folder)?));
     }
     Ok(())
 }

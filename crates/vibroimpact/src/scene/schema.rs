@@ -10,22 +10,37 @@ use serde_json::{Map, Value, json};
 
 use super::segment::SECTIONS;
 use super::{FORMAT_VERSION, Scene, fields};
+use crate::assembly::AssemblyScene;
 
-/// The JSON Schema (draft 2020-12) of scene files. What it lets pass has the right shape, a place where the structure needs
-/// one, a mass given in one way, and sections given in one way. It cannot compare numbers of different fields: that a
-/// place lies on the beam, that lists are equally long, and that a name is one of the points is left to
-/// [`Scene::impact`].
+/// The JSON Schema (draft 2020-12) of scene files, those with `bodies` and those of one impact. What it lets pass has the
+/// right shape, a place where the structure needs one, and a mass, sections and loads each given in one way. It cannot
+/// compare different fields: that a place lies on the beam, that lists are equally long, and that a name is one of the
+/// points or bodies is left to [`Scene::impact`] and [`AssemblyScene::pose`].
 ///
 /// ```
 /// let schema = vibroimpact::scene::schema::of_scenes();
-/// assert_eq!(schema["properties"]["location_m"]["type"][0], "number");
+/// assert_eq!(schema["$defs"]["Scene"]["properties"]["location_m"]["type"][0], "number");
+/// assert_eq!(schema["$defs"]["AssemblyScene"]["properties"]["end_s"]["exclusiveMinimum"], 0.0);
 /// ```
 pub fn of_scenes() -> Value {
-    let mut schema = of::<Scene>(FORMAT_VERSION);
-    if let Some(root) = schema.as_object_mut() {
-        root.insert("allOf".to_owned(), dependent_fields());
+    let mut generator = settings().into_generator();
+    let [impact, bodies] = [generator.subschema_for::<Scene>(), generator.subschema_for::<AssemblyScene>()];
+    let mut definitions = Value::Object(generator.take_definitions(true));
+    for name in ["Scene", "AssemblyScene"] {
+        versioned(&mut definitions[name], FORMAT_VERSION);
     }
-    schema
+    definitions["Scene"]["allOf"] = dependent_fields();
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Scene",
+        "description": "One impact, or many bodies and contacts under loads",
+        "type": "object",
+        // said of a field that is absent, so that it holds where none is required
+        "if": { "properties": { "bodies": false } },
+        "then": impact,
+        "else": bodies,
+        "$defs": definitions,
+    })
 }
 
 /// What the kind of structure asks of the fields beside it.
@@ -77,7 +92,7 @@ fn dependent_fields() -> Value {
 }
 
 /// Exactly one of the sets of fields is given, and nothing of the others. A field that is null is not given.
-fn one_of_sets(sets: &[&[&str]]) -> Value {
+pub(crate) fn one_of_sets(sets: &[&[&str]]) -> Value {
     let all = sets.concat();
     let set = |set: &&[&str]| {
         let kind = |field: &str| if set.contains(&field) { "number" } else { "null" };
@@ -96,24 +111,34 @@ fn without(mut sets: Value, number: usize, field: &str) -> Value {
     sets
 }
 
-/// The schema of a type that is read from a whole file of this format version.
-pub(crate) fn of<T: JsonSchema>(version: u64) -> Value {
-    let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(refine));
-    let mut schema = settings.into_generator().into_root_schema_for::<T>();
-    if let Some(properties) = schema.get_mut("properties").and_then(Value::as_object_mut) {
-        let address = json!({ "type": "string", "description": "Where this schema stands, for editors" });
-        properties.insert("$schema".to_owned(), address);
-        let described = "Version of the format; 1 when left out";
-        properties.insert("version".to_owned(), json!({ "const": version, "description": described }));
-    }
-    schema.to_value()
+fn settings() -> SchemaSettings {
+    SchemaSettings::draft2020_12().with_transform(RecursiveTransform(refine))
 }
 
-/// What the derived schema does not know: ranges by the names of fields, and that a law of contact takes no fields
-/// beside its own. Links in the doc comments become plain text.
+/// The schema of a type that is read from a whole file of this format version.
+pub(crate) fn of<T: JsonSchema>(version: u64) -> Value {
+    let mut schema = settings().into_generator().into_root_schema_for::<T>().to_value();
+    versioned(&mut schema, version);
+    schema
+}
+
+/// Adds the fields that every file may have.
+fn versioned(schema: &mut Value, version: u64) {
+    let address = json!({ "type": "string", "description": "Where this schema stands, for editors" });
+    schema["properties"]["$schema"] = address;
+    let described = "Version of the format; 1 when left out";
+    schema["properties"]["version"] = json!({ "const": version, "description": described });
+}
+
+/// What the derived schema does not know: ranges by the names of fields, and that there are no fields beside those of a
+/// law of contact and of the object that it stands in. Links in the doc comments become plain text.
 fn refine(schema: &mut Schema) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = text.replace("[`", "`").replace("`]", "`").replace("(crate::Scene::read)", "");
+    }
+    let is_law = |form: &Value| form.pointer("/properties/law").is_some();
+    if schema.get("oneOf").and_then(Value::as_array).is_some_and(|forms| forms.iter().all(is_law)) {
+        schema.insert("unevaluatedProperties".to_owned(), false.into());
     }
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
     for (name, property) in properties.iter_mut() {
@@ -125,9 +150,6 @@ fn refine(schema: &mut Schema) {
     }
     let has_section = SECTIONS.concat().iter().all(|field| properties.contains_key(*field));
     // what is put in below is no object of the format, and is gone through again
-    if properties.contains_key("law") {
-        schema.insert("unevaluatedProperties".to_owned(), false.into());
-    }
     if has_section && schema.get("type").is_some() {
         schema.insert("oneOf".to_owned(), one_of_sets(&SECTIONS));
     }
@@ -146,14 +168,18 @@ fn bound(schema: &mut Map<String, Value>, name: &str) {
     let Some((least, most)) = fields::range(name).filter(|_| numeric) else { return };
     for (bound, inclusive, exclusive) in [(least, "minimum", "exclusiveMinimum"), (most, "maximum", "exclusiveMaximum")]
     {
+        // a type may state a narrower range itself
+        let stated = schema.get(inclusive).and_then(Value::as_f64);
+        let narrower =
+            |value: f64| stated.is_some_and(|own| if inclusive == "minimum" { own > value } else { own < value });
         match bound {
-            Bound::Included(value) => schema.insert(inclusive.to_owned(), json!(value)),
-            Bound::Excluded(value) => schema.insert(exclusive.to_owned(), json!(value)),
-            Bound::Unbounded => continue,
+            Bound::Included(value) if !narrower(value) => schema.insert(inclusive.to_owned(), json!(value)),
+            Bound::Excluded(value) if !narrower(value) => {
+                schema.remove(inclusive);
+                schema.insert(exclusive.to_owned(), json!(value))
+            }
+            _ => continue,
         };
-        if matches!(bound, Bound::Excluded(_)) {
-            schema.remove(inclusive);
-        }
     }
 }
 

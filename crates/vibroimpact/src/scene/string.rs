@@ -49,6 +49,11 @@ impl TautString {
         Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
     }
 
+    /// Participation of the first `count` modes in a uniform acceleration (kg^1/2).
+    pub(super) fn participation_kg0_5(&self, count: usize) -> Result<Vec<f64>, InvalidInput> {
+        Ok(self.to_taut_string().modes(count).map_err(in_structure)?.participation_kg0_5())
+    }
+
     /// Static compliance at a place (m/N).
     pub(super) fn static_compliance_m_n(&self, location_m: f64) -> Result<f64, InvalidInput> {
         self.to_taut_string().static_compliance(location_m).map_err(in_structure)

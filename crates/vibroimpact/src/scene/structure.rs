@@ -184,6 +184,23 @@ impl Structure {
         }
     }
 
+    /// Participation of the first `count` modes in a uniform acceleration (kg^1/2), where modes are computed.
+    pub(crate) fn participation_with(
+        &self,
+        count: usize,
+        known: &mut KnownModes,
+    ) -> Option<Result<Vec<f64>, InvalidInput>> {
+        match self {
+            Structure::Beam(beam) => Some(known.first(beam, count).map(|modes| modes.participation_kg0_5())),
+            Structure::TautString(string) => Some(string.participation_kg0_5(count)),
+            Structure::Plate(plate) => {
+                let modes = known.plates.first(plate, count, Plate::modes);
+                Some(modes.map(beam_modes::PlateModes::participation_kg0_5))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether modes and static compliance are computed from what the structure is, so that there is a limit of many
     /// modes.
     pub(crate) fn is_computed(&self) -> bool {

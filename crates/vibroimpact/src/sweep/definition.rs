@@ -9,9 +9,11 @@ use super::error::SweepError;
 use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
 use super::path::FieldPath;
+use super::results::Results;
 use super::values::{Axis, AxisValues, Random};
+use crate::assembly::AnyScene;
 use crate::scene::json::{self, quote};
-use crate::scene::{InvalidInput, Scene, toml};
+use crate::scene::{InvalidInput, toml};
 
 /// Changed whenever the same sweep gives other rows or other columns.
 const FORMAT: u32 = 2;
@@ -38,6 +40,7 @@ pub struct Sweep {
     scene: Value,
     canonical: Value,
     points: u64,
+    results: Results,
 }
 
 impl Sweep {
@@ -81,9 +84,10 @@ impl Sweep {
             let product = sizes.map(|size| size.to_string()).collect::<Vec<_>>().join(" x ");
             InvalidInput::new("number of points", product, "at most 1e12 in all")
         })?;
-        let sweep = Sweep { description, axes, random, scene, canonical, points };
+        let results = Results::OfImpact;
+        let mut sweep = Sweep { description, axes, random, scene, canonical, points, results };
         sweep.check_overlap()?;
-        sweep.check_values()?;
+        sweep.results = Results::of(&sweep.check_values()?);
         sweep.check_scene()?;
         Ok(sweep)
     }
@@ -119,6 +123,11 @@ impl Sweep {
         places
     }
 
+    /// What each point comes to.
+    pub(super) fn results(&self) -> &Results {
+        &self.results
+    }
+
     /// The values of the varied fields at a point, in the order of [`Sweep::fields`].
     pub fn values(&self, point: u64) -> Vec<Value> {
         let grid = self.axes.iter().zip(self.places(point)).map(|(axis, place)| axis.value(place));
@@ -127,20 +136,20 @@ impl Sweep {
     }
 
     /// The scene with these values of the varied fields.
-    pub(super) fn scene_with(&self, values: &[Value]) -> Result<Scene, InvalidInput> {
+    pub(super) fn scene_with(&self, values: &[Value]) -> Result<AnyScene, InvalidInput> {
         let mut tree = self.scene.clone();
         for (field, value) in self.fields().zip(values) {
             let set = field.set(&mut tree, value.clone());
             set.map_err(|reason| InvalidInput::new(field.to_string(), quote(value), reason))?;
         }
-        Scene::from_value(&tree)
+        AnyScene::from_value(&tree)
     }
 
     /// The scene of a point.
     ///
     /// # Errors
     /// Values that together make no scene.
-    pub fn scene(&self, point: u64) -> Result<Scene, InvalidInput> {
+    pub fn scene(&self, point: u64) -> Result<AnyScene, InvalidInput> {
         self.scene_with(&self.values(point))
     }
 
@@ -192,8 +201,8 @@ impl Sweep {
     }
 
     /// Every field must have its place in the scene, and every value, with the others at their first, must be of a kind
-    /// that the field can hold.
-    fn check_values(&self) -> Result<(), InvalidInput> {
+    /// that the field can hold. Gives the scene of the first point.
+    fn check_values(&self) -> Result<AnyScene, InvalidInput> {
         let first = self.values(0);
         let mut tree = self.scene.clone();
         for (i, (field, value)) in self.fields().zip(&first).enumerate() {
@@ -202,7 +211,7 @@ impl Sweep {
                 InvalidInput::new(format!("{}.field", self.entry(i)), format!("\"{field}\""), allowed)
             })?;
         }
-        Scene::from_value(&tree).map_err(|fault| self.blame(fault))?;
+        let scene = AnyScene::from_value(&tree).map_err(|fault| self.blame(fault))?;
         for (i, axis) in self.axes.iter().enumerate() {
             let numbers: Vec<u64> = match &axis.values {
                 AxisValues::Range(_, count) => vec![1, count - 1],
@@ -220,7 +229,7 @@ impl Sweep {
                 })?;
             }
         }
-        Ok(())
+        Ok(scene)
     }
 
     /// The number of the varied field in which a fault stands.

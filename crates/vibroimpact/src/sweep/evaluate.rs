@@ -1,29 +1,58 @@
-//! From a scene to its answer. This is the one place where sweeps and solvers meet.
+//! From a scene to its cells. This is the one place where sweeps and solvers meet.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::model::{Answer, Kept};
-use crate::scene::{InvalidInput, Scene};
+use vibroimpact_sim::assembly::{Outcome, Reason};
+
+use super::results::{Results, of_impact};
+use crate::assembly::{AnyScene, Wanted};
+use crate::model::Kept;
+use crate::scene::InvalidInput;
 
 /// Whether a scene can be solved, as far as can be told without solving it. A fault in the program itself is left to
 /// the rows.
-pub(super) fn check(scene: &Scene) -> Result<(), InvalidInput> {
-    catch_unwind(AssertUnwindSafe(|| scene.check())).unwrap_or(Ok(()))
+pub(super) fn check(scene: &AnyScene) -> Result<(), InvalidInput> {
+    let check = || match scene {
+        AnyScene::Impact(scene) => scene.check(),
+        AnyScene::Bodies(scene) => scene.pose().map(drop),
+    };
+    catch_unwind(AssertUnwindSafe(check)).unwrap_or(Ok(()))
 }
 
-/// Solves a scene; `Err` says why it could not be solved, whatever went wrong.
-pub(super) fn evaluate(scene: Result<Scene, InvalidInput>, kept: &mut Kept) -> Result<Answer, String> {
-    let answer = guarded(|| scene?.answer_with(kept));
-    if answer.is_err() {
+/// Solves a scene; `Err` says why it could not be solved, whatever went wrong. `None` if `stop` cut it short.
+pub(super) fn evaluate(
+    scene: Result<AnyScene, InvalidInput>,
+    results: &Results,
+    kept: &mut Kept,
+    stop: &dyn Fn() -> bool,
+) -> Option<Result<Vec<String>, String>> {
+    let cells = guarded(|| match (scene.map_err(|fault| fault.to_string())?, results) {
+        (AnyScene::Impact(scene), Results::OfImpact) => {
+            Ok(Some(of_impact(&scene.answer_with(kept).map_err(|fault| fault.to_string())?)))
+        }
+        (AnyScene::Bodies(scene), Results::OfRun(_)) => {
+            let ended = AtomicBool::new(false);
+            let mut look = |_| ended.store(stop(), Ordering::Relaxed);
+            let wanted =
+                Wanted { intervals: 0, reliability: false, course: false, folder: None, stop: &ended, tell: &mut look };
+            let found = scene.simulate_with(wanted).map_err(|fault| fault.to_string())?;
+            let whole = found.run.outcome != Outcome::Stopped(Reason::Interrupted);
+            Ok(whole.then(|| results.of_run(&found)))
+        }
+        (AnyScene::Impact(_), _) => Err("bodies is missing; the first point of the sweep has it".to_owned()),
+        (AnyScene::Bodies(_), _) => Err("bodies is too much; the first point of the sweep has none".to_owned()),
+    });
+    if cells.is_err() {
         // what a solver that failed has left may be anything
         *kept = Kept::default();
     }
-    answer
+    cells.transpose()
 }
 
-fn guarded(solve: impl FnOnce() -> Result<Answer, InvalidInput>) -> Result<Answer, String> {
+fn guarded<T>(solve: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     match catch_unwind(AssertUnwindSafe(solve)) {
-        Ok(answer) => answer.map_err(|fault| fault.to_string()),
+        Ok(solved) => solved,
         Err(panic) => {
             let said = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
             let said = said.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
@@ -38,8 +67,8 @@ mod tests {
 
     #[test]
     fn a_fault_in_a_solver_is_an_answer() {
-        assert_eq!(guarded(|| panic!("no root in {}", 3)), Err("the solver failed: no root in 3".to_owned()));
-        let fault = || Err(InvalidInput::new("a", "1", "2"));
-        assert_eq!(guarded(fault), Err("a = 1 is not allowed: 2".to_owned()));
+        let failed: Result<(), String> = guarded(|| panic!("no root in {}", 3));
+        assert_eq!(failed, Err("the solver failed: no root in 3".to_owned()));
+        assert_eq!(guarded(|| Err::<(), _>("no".to_owned())), Err("no".to_owned()));
     }
 }

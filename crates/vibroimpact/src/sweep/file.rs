@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 use super::error::SweepError;
 use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
+use crate::assembly;
 use crate::scene::fields::look_up;
 use crate::scene::json::{self, number, quote};
 use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};
@@ -168,11 +169,11 @@ pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
         }
         let file = folder.join(name);
         let mut scene = read_tree(&file, A_SCENE).map_err(|found| in_file(&file, found))?;
-        read_modes_into(&mut scene, file.parent().unwrap_or(Path::new(""))).map_err(within_scene)?;
+        read_tables_into(&mut scene, file.parent().unwrap_or(Path::new("")))?;
         map.remove("scene_file");
         map.insert("scene".to_owned(), scene);
     } else if let Some(scene) = tree.get_mut("scene") {
-        read_modes_into(scene, folder).map_err(within_scene)?;
+        read_tables_into(scene, folder)?;
     }
     Ok(from_tree(tree)?)
 }
@@ -187,11 +188,20 @@ fn in_file(path: &Path, found: SceneError) -> SceneError {
     }
 }
 
-fn within_scene(found: SceneError) -> SceneError {
-    match found {
-        SceneError::Invalid(fault) if fault.field.starts_with("structure") => fault.within("scene").into(),
+/// Puts the numbers of tables that the scene names in their places. A fault of the scene's own fields has their path.
+fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), SceneError> {
+    let read = match scene.get("bodies") {
+        Some(_) => assembly::read_tables_into(scene, folder),
+        None => read_modes_into(scene, folder),
+    };
+    read.map_err(|found| match found {
+        SceneError::Invalid(fault)
+            if ["structure", "bodies", "loads", "ground_motion"].iter().any(|name| fault.field.starts_with(name)) =>
+        {
+            fault.within("scene").into()
+        }
         other => other,
-    }
+    })
 }
 
 /// Reads a sweep whose scene is in it.

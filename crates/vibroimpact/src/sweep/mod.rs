@@ -39,12 +39,15 @@ mod evaluate;
 mod file;
 mod finish;
 mod folder;
+mod labels;
 mod merge;
 #[cfg(feature = "mpi")]
 pub mod mpi;
 mod path;
 mod pictures;
+mod quantities;
 mod report;
+mod results;
 mod row;
 mod schema;
 pub(crate) mod table;

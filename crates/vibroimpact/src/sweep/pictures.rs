@@ -5,8 +5,9 @@ use std::ops::RangeInclusive;
 use serde_json::Value;
 
 use super::definition::Sweep;
-use super::path::FieldPath;
-use super::row::{Row, cell};
+use super::labels::{axis, label_and_unit, short};
+use super::quantities::{Drawn, MOTION, QUANTITIES, Quantity, median, motion_number, of_results, quantile, ranked};
+use super::row::Row;
 use super::values::{Axis as Varied, AxisValues, Scale};
 use crate::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 
@@ -38,22 +39,16 @@ const MARKERS: [Marker; MOST_CURVES as usize] =
 /// A longer description does not fit over a picture.
 const LONGEST_TITLE: usize = 90;
 
-/// What is drawn of one point; not a number where there is none.
-#[derive(Debug, Clone, Copy)]
-struct Drawn {
-    restitution: f64,
-    uncertainty: f64,
-    sub_impacts: f64,
-}
-
-/// A quantity of a map, and the axis of its colours.
-type Quantity = (fn(&Drawn) -> f64, Axis);
-
 /// The results that pictures need.
 pub(super) struct Pictures<'a> {
     sweep: &'a Sweep,
+    quantities: Vec<Quantity>,
+    /// What is drawn, as it begins a title.
+    name: &'static str,
     /// `None` if the sweep is too large.
     points: Option<Vec<Drawn>>,
+    /// The motions to which runs have settled, numbered in the order in which they occur, and how many they are.
+    motions: Vec<(String, u64)>,
 }
 
 /// A value along an axis, and where it stands there.
@@ -64,22 +59,28 @@ struct Place {
 
 impl<'a> Pictures<'a> {
     pub(super) fn new(sweep: &'a Sweep) -> Pictures<'a> {
-        Pictures { sweep, points: (sweep.points() <= MOST_POINTS).then(Vec::new) }
+        let (name, quantities) = of_results(sweep.results());
+        let points = (sweep.points() <= MOST_POINTS).then(Vec::new);
+        Pictures { sweep, quantities, name, points, motions: Vec::new() }
     }
 
     pub(super) fn add(&mut self, _point: u64, row: &Row) {
-        if let Some(points) = &mut self.points {
-            let number = |name: &str| row.number(name).unwrap_or(f64::NAN);
-            points.push(Drawn {
-                restitution: number("restitution"),
-                uncertainty: number("restitution_uncertainty"),
-                sub_impacts: number("sub_impact_count"),
-            });
+        let Some(points) = &mut self.points else { return };
+        let mut drawn = Drawn { values: [f64::NAN; QUANTITIES], uncertainty: f64::NAN };
+        for (value, quantity) in drawn.values.iter_mut().zip(&self.quantities) {
+            *value = match quantity.column {
+                MOTION => motion_number(&mut self.motions, row.motion()),
+                column => row.number(column).unwrap_or(f64::NAN),
+            };
         }
+        let uncertainty = self.quantities.first().and_then(|first| first.uncertainty);
+        drawn.uncertainty = uncertainty.and_then(|column| row.number(column)).unwrap_or(f64::NAN);
+        points.push(drawn);
     }
 
     /// The pictures, each with a name and a caption.
-    pub(super) fn figures(self) -> Vec<(&'static str, Figure, String)> {
+    pub(super) fn figures(mut self) -> Vec<(&'static str, Figure, String)> {
+        self.sort_motions();
         let Some(points) = &self.points else { return Vec::new() };
         let axes = &self.sweep.axes;
         let mut numeric = (0..axes.len()).filter(|&i| axes[i].is_numeric());
@@ -91,38 +92,61 @@ impl<'a> Pictures<'a> {
         }
     }
 
+    /// Gives motions numbers in the order of their periods and intervals, and the axis their names. Where there are none,
+    /// or medians of several draws would have to be told, they are not drawn.
+    fn sort_motions(&mut self) {
+        if self.motions.is_empty() || self.sweep.draws() > 1 {
+            self.quantities.retain(|quantity| quantity.column != MOTION);
+            return;
+        }
+        let (numbers, names) = ranked(&self.motions);
+        let place = self.quantities.iter().position(|quantity| quantity.column == MOTION);
+        let (Some(place), Some(points)) = (place, &mut self.points) else { return };
+        for drawn in points {
+            let value = &mut drawn.values[place];
+            // not-a-number stands for no number, and becomes none
+            *value = numbers.get(*value as usize).filter(|_| !value.is_nan()).map_or(f64::NAN, |number| *number as f64);
+        }
+        let last = names.len() as f64;
+        let ticks = names.into_iter().enumerate().map(|(number, name)| (number as f64, name));
+        let axis = Axis::new("motion, intervals/periods").ticks_at(ticks).limits(-0.5, last - 0.5);
+        self.quantities[place].axis = axis;
+    }
+
     fn lines(&self, points: &[Drawn], along: usize) -> (&'static str, Figure, String) {
         let places = self.along(along, ALONG_LINE);
         let x: Vec<f64> = places.iter().map(|place| place.at).collect();
-        let mut restitution = Panel::new(self.axis(along), Axis::new("restitution"));
-        let mut sub_impacts = Panel::new(self.axis(along), Axis::new("sub-impacts").integers());
         let others = self.others(&[along]);
         let mut unresolved = false;
-        for (number, other) in others.iter().enumerate() {
-            let at = |place: &Place| self.at(points, other, &[(along, place.number)]);
-            let spread: Vec<[f64; 3]> = places.iter().map(|place| self.spread(at(place))).collect();
-            let column = |k: usize| spread.iter().map(|value| value[k]).collect::<Vec<f64>>();
-            let counts: Vec<f64> = places.iter().map(|place| median(at(place), |drawn| drawn.sub_impacts)).collect();
-            let colour = crate::plot::Colour::of_series(number);
-            let marker = MARKERS[number % MARKERS.len()];
-            let label = self.name(other, &[along]);
-            let band = Series::band(&x, &column(0), &column(2)).colour(colour);
-            let middle = column(1);
-            // points that jump to and fro do not tell what lies between them
-            let line = if is_resolved(&middle) {
-                Series::line(&x, &middle)
-            } else {
-                unresolved = true;
-                Series::points(&x, &middle, marker)
-            };
-            restitution = restitution.with(band).with(line.colour(colour).label(label.clone()));
-            sub_impacts = sub_impacts.with(Series::points(&x, &counts, marker).colour(colour).label(label));
+        let title = format!("{} against {}", self.name, label_and_unit(&self.sweep.axes[along].field).0);
+        let mut figure = Figure::new(self.title(&title));
+        for (quantity, Quantity { column, axis, .. }) in self.quantities.iter().enumerate() {
+            let counted = axis.integers || *column == MOTION;
+            let mut panel = Panel::new(self.axis(along), axis.clone());
+            for (number, other) in others.iter().enumerate() {
+                let at = |place: &Place| self.at(points, other, &[(along, place.number)]);
+                let spread: Vec<[f64; 3]> = places.iter().map(|place| self.spread(at(place), quantity)).collect();
+                let of = |k: usize| spread.iter().map(|value| value[k]).collect::<Vec<f64>>();
+                let colour = crate::plot::Colour::of_series(number);
+                let marker = MARKERS[number % MARKERS.len()];
+                let middle = of(1);
+                // points that jump to and fro do not tell what lies between them
+                let jumps = !counted && !is_resolved(&middle);
+                unresolved |= jumps;
+                let series = match counted || jumps {
+                    true => Series::points(&x, &middle, marker),
+                    false => Series::line(&x, &middle),
+                };
+                if !counted {
+                    panel = panel.with(Series::band(&x, &of(0), &of(2)).colour(colour));
+                }
+                panel = panel.with(series.colour(colour).label(self.name(other, &[along])));
+            }
+            figure = figure.row([if quantity == 0 { panel.height(240.0) } else { panel }]);
         }
-        let title = self.title(&format!("Restitution against {}", label_and_unit(&self.sweep.axes[along].field).0));
-        let figure = Figure::new(title).row([restitution.height(240.0)]).row([sub_impacts]);
         let shown = self.told(&[along], others.len(), x.len() as u64);
         let joined = if unresolved { UNRESOLVED } else { "" };
-        ("lines", figure, format!("{}{joined} {shown}", self.told_band()))
+        ("lines", figure, format!("{}{joined} {shown}", self.told_band()).trim().to_owned())
     }
 
     fn maps(&self, points: &[Drawn], x: usize, y: usize) -> (&'static str, Figure, String) {
@@ -130,40 +154,39 @@ impl<'a> Pictures<'a> {
         let centres = |places: &[Place]| places.iter().map(|place| place.at).collect::<Vec<f64>>();
         let (xs, ys) = (centres(&columns), centres(&lines));
         let [across, up] = [x, y].map(|axis| label_and_unit(&self.sweep.axes[axis].field).0);
-        let mut figure = Figure::new(self.title(&format!("Restitution and sub-impacts over {across} and {up}")));
+        let mut figure = Figure::new(self.title(&format!("{} over {across} and {up}", self.name)));
         let others = self.others(&[x, y]);
-        let quantities: [Quantity; 2] = [
-            (|drawn| drawn.restitution, Axis::new("restitution")),
-            (|drawn| drawn.sub_impacts, Axis::new("sub-impacts").integers()),
-        ];
         for other in &others {
             let name = self.name(other, &[x, y]);
-            figure = figure.row(quantities.clone().map(|(of, value)| {
+            figure = figure.row(self.quantities.iter().enumerate().map(|(quantity, Quantity { axis, .. })| {
                 let cell = |line: &Place, column: &Place| {
-                    median(self.at(points, other, &[(x, column.number), (y, line.number)]), of)
+                    median(self.at(points, other, &[(x, column.number), (y, line.number)]), quantity)
                 };
                 let rows = lines.iter().map(|line| columns.iter().map(|column| cell(line, column)).collect()).collect();
-                let map = HeatMap::new(&xs, &ys, rows, value);
+                let map = HeatMap::new(&xs, &ys, rows, axis.clone());
                 Panel::new(self.axis(x), self.axis(y)).title(name.clone()).height(300.0).map(map)
             }));
         }
         let shown = self.told(&[x, y], others.len(), xs.len().max(ys.len()) as u64);
         let draws = if self.sweep.draws() > 1 { " Medians over the draws." } else { "" };
-        ("maps", figure.width(1080.0), format!("Grey: no restitution.{draws} {shown}"))
+        let grey = self.quantities.first().map_or("", |first| first.axis.label.as_str());
+        let width = 540.0 * self.quantities.len() as f64;
+        ("maps", figure.width(width), format!("Grey: no {grey}.{draws} {shown}").trim().to_owned())
     }
 
     fn dots(&self, points: &[Drawn]) -> (&'static str, Figure, String) {
         let picked = evenly(self.sweep.points(), MOST_DOTS);
         let values: Vec<Vec<Value>> = picked.iter().map(|&point| self.sweep.values(point)).collect();
-        let y: Vec<f64> = picked.iter().map(|&point| points[point as usize].restitution).collect();
-        let mut figure = Figure::new(self.title("Restitution of random draws"));
+        let y: Vec<f64> = picked.iter().map(|&point| points[point as usize].values[0]).collect();
+        let value = self.quantities.first().map_or_else(|| Axis::new(""), |first| first.axis.clone());
+        let mut figure = Figure::new(self.title(&format!("{} of random draws", self.name)));
         let fields = self.sweep.random.iter().flat_map(|random| &random.fields);
         let panels: Vec<Panel> = fields
             .enumerate()
             .map(|(i, (field, interval))| {
                 let x: Vec<f64> = values.iter().map(|values| values[i].as_f64().unwrap_or(f64::NAN)).collect();
                 let axis = axis(field, interval.scale == Scale::Log, interval.whole_numbers);
-                Panel::new(axis, Axis::new("restitution")).with(Series::points(&x, &y, Marker::Dot))
+                Panel::new(axis, value.clone()).with(Series::points(&x, &y, Marker::Dot))
             })
             .collect();
         for pair in panels.chunks(2) {
@@ -215,13 +238,14 @@ impl<'a> Pictures<'a> {
     }
 
     /// Lower edge of the band, line, upper edge.
-    fn spread(&self, draws: &[Drawn]) -> [f64; 3] {
+    fn spread(&self, draws: &[Drawn], quantity: usize) -> [f64; 3] {
         match draws {
             [one] => {
-                let error = if one.uncertainty.is_finite() { one.uncertainty } else { 0.0 };
-                [one.restitution - error, one.restitution, one.restitution + error]
+                let known = quantity == 0 && one.uncertainty.is_finite();
+                let (value, error) = (one.values[quantity], if known { one.uncertainty } else { 0.0 });
+                [value - error, value, value + error]
             }
-            many => [*BAND.start(), 0.5, *BAND.end()].map(|share| quantile(many, share, |drawn| drawn.restitution)),
+            many => [*BAND.start(), 0.5, *BAND.end()].map(|share| quantile(many, share, quantity)),
         }
     }
 
@@ -259,6 +283,8 @@ impl<'a> Pictures<'a> {
     fn told_band(&self) -> &'static str {
         if self.sweep.draws() > 1 {
             "Medians over the draws; bands hold nine tenths of them."
+        } else if self.quantities.iter().all(|quantity| quantity.uncertainty.is_none()) {
+            ""
         } else {
             "Bands are the stated uncertainty of the restitution, mostly too narrow to be seen."
         }
@@ -302,71 +328,9 @@ fn is_resolved(values: &[f64]) -> bool {
     turns.count() as f64 <= TURNING * known.len() as f64
 }
 
-fn median(draws: &[Drawn], of: fn(&Drawn) -> f64) -> f64 {
-    quantile(draws, 0.5, of)
-}
-
-/// The value below which a share of those draws lie that have one.
-fn quantile(draws: &[Drawn], share: f64, of: fn(&Drawn) -> f64) -> f64 {
-    let mut values: Vec<f64> = draws.iter().map(of).filter(|value| !value.is_nan()).collect();
-    values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    values.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
-}
-
-fn axis(field: &FieldPath, log: bool, integers: bool) -> Axis {
-    let (label, unit) = label_and_unit(field);
-    Axis { logarithmic: log, integers, ..Axis::new(label).unit(unit) }
-}
-
-/// A value as a short text.
-fn short(value: &Value) -> String {
-    let name = ["law", "kind", "description"].iter().find_map(|key| value.get(key)?.as_str());
-    name.map_or_else(|| cell(value), str::to_owned).chars().take(24).collect()
-}
-
-/// Units by the end of a field's name, longer ends first.
-const UNITS: [(&str, &str); 14] = [
-    ("_n_m1_5", "N/m^1.5"),
-    ("_kg_m3", "kg/m³"),
-    ("_n_m2", "N m²"),
-    ("_n_s_m", "N s/m"),
-    ("_kg_m", "kg/m"),
-    ("_rad_s", "rad/s"),
-    ("_n_m", "N/m"),
-    ("_m_s", "m/s"),
-    ("_m_n", "m/N"),
-    ("_s_m", "s/m"),
-    ("_pa", "Pa"),
-    ("_kg", "kg"),
-    ("_m", "m"),
-    ("_s", "s"),
-];
-
-/// What an axis is called: `striker.mass_kg` is `striker mass` in `kg`.
-fn label_and_unit(field: &FieldPath) -> (String, &'static str) {
-    let path = field.to_string();
-    let path = path.strip_prefix("structure.").unwrap_or(&path);
-    // theta_m of the hysteretic law is a mean, not a length
-    let unit = UNITS.iter().find(|(end, _)| path.ends_with(end) && !path.ends_with("theta_m"));
-    let (name, unit) = unit.map_or((path, ""), |(end, unit)| (&path[..path.len() - end.len()], *unit));
-    (name.replace(['.', '_'], " "), unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fields_become_labels_with_units() {
-        let of = |text: &str| label_and_unit(&FieldPath::parse(text).unwrap());
-        assert_eq!(of("striker.mass_kg"), ("striker mass".into(), "kg"));
-        assert_eq!(of("location_m"), ("location".into(), "m"));
-        assert_eq!(of("structure.segments[0].density_kg_m3"), ("segments[0] density".into(), "kg/m³"));
-        assert_eq!(of("contact.stiffness_n_m1_5"), ("contact stiffness".into(), "N/m^1.5"));
-        assert_eq!(of("contact.theta_m"), ("contact theta m".into(), ""));
-        assert_eq!(of("modes"), ("modes".into(), ""));
-    }
 
     #[test]
     fn a_curve_that_jumps_to_and_fro_is_not_joined() {
@@ -383,13 +347,5 @@ mod tests {
         assert_eq!(evenly(5, 10), [0, 1, 2, 3, 4]);
         assert_eq!(evenly(101, 3), [0, 50, 100]);
         assert_eq!(evenly(1, 3), [0]);
-    }
-
-    #[test]
-    fn quantiles_leave_out_what_is_not_there() {
-        let draws =
-            [3.0, f64::NAN, 1.0, 2.0].map(|restitution| Drawn { restitution, uncertainty: 0.0, sub_impacts: 1.0 });
-        assert_eq!(median(&draws, |drawn| drawn.restitution), 2.0);
-        assert!(median(&[], |drawn| drawn.restitution).is_nan());
     }
 }

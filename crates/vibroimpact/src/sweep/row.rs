@@ -5,43 +5,18 @@ use serde_json::Value;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::evaluate::evaluate;
+use super::results::Results;
 use super::table::Kind;
-use crate::model::{Answer, Kept};
-use crate::scene::json::number;
+use crate::model::Kept;
 
-/// The columns after the varied fields.
-const RESULTS: [(&str, Kind); 23] = [
-    ("outcome", Kind::Text),
-    ("restitution", Kind::Number),
-    ("restitution_uncertainty", Kind::Number),
-    ("uncertainty_solver", Kind::Number),
-    ("uncertainty_modes_left_out", Kind::Number),
-    ("uncertainty_beam_theory", Kind::Number),
-    ("settled", Kind::Truth),
-    ("spread", Kind::Number),
-    ("sub_impact_count", Kind::Whole),
-    ("model", Kind::Text),
-    ("mode_count", Kind::Whole),
-    ("residual_compliance_m_n", Kind::Number),
-    ("solves", Kind::Whole),
-    ("modes_computed", Kind::Whole),
-    ("contact_steps", Kind::Whole),
-    ("rejected_steps", Kind::Whole),
-    ("newton_iterations", Kind::Whole),
-    ("law_evaluations", Kind::Whole),
-    ("flight_steps", Kind::Whole),
-    ("mode_steps", Kind::Whole),
-    ("panels", Kind::Whole),
-    ("stopped_by", Kind::Text),
-    ("error", Kind::Text),
-];
+/// What a run that has settled to no motion is called.
+pub(super) const NO_MOTION: &str = "none";
 
 /// Every column of a sweep's results: `index`, the varied fields under their paths, the results.
 pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Kind)> {
     let axes = sweep.axes.iter().map(|axis| if axis.is_numeric() { Kind::Number } else { Kind::Text });
     let fields = sweep.fields().map(ToString::to_string).zip(axes.chain(std::iter::repeat(Kind::Number)));
-    let results = RESULTS.map(|(name, kind)| (name.to_owned(), kind));
-    std::iter::once(("index".to_owned(), Kind::Whole)).chain(fields).chain(results).collect()
+    std::iter::once(("index".to_owned(), Kind::Whole)).chain(fields).chain(sweep.results().columns()).collect()
 }
 
 /// The line of column names.
@@ -57,52 +32,11 @@ pub(super) fn rows(sweep: &Sweep, chunk: u64, kept: &mut Kept, stop: impl Fn() -
             return None;
         }
         let values = sweep.values(point);
-        lines.extend(row(point, &values, &evaluate(sweep.scene_with(&values), kept)));
+        let solved = evaluate(sweep.scene_with(&values), sweep.results(), kept, &stop)?;
+        let results = solved.unwrap_or_else(|error| sweep.results().failed(error));
+        lines.extend(line(std::iter::once(point.to_string()).chain(values.iter().map(cell)).chain(results)));
     }
     Some(lines)
-}
-
-fn row(point: u64, values: &[Value], solved: &Result<Answer, String>) -> Vec<u8> {
-    let results = match solved {
-        Ok(answer) => cells(answer),
-        Err(error) => {
-            let mut empty: [String; RESULTS.len()] = Default::default();
-            empty[RESULTS.len() - 1].clone_from(error);
-            empty
-        }
-    };
-    line(std::iter::once(point.to_string()).chain(values.iter().map(cell)).chain(results))
-}
-
-/// An answer in the columns of [`RESULTS`].
-fn cells(answer: &Answer) -> [String; RESULTS.len()] {
-    let known = |value: Option<f64>| value.map_or_else(String::new, number);
-    let cost = answer.cost;
-    [
-        answer.outcome.to_owned(),
-        known(answer.restitution),
-        known(answer.restitution_uncertainty),
-        known(answer.uncertainty.solver),
-        known(answer.uncertainty.modes_left_out),
-        known(answer.uncertainty.beam_theory),
-        answer.settled.to_string(),
-        known(answer.spread),
-        answer.sub_impact_count.map_or_else(String::new, |count| count.to_string()),
-        answer.model.as_str().to_owned(),
-        answer.modes.to_string(),
-        number(answer.residual_compliance_m_n),
-        cost.solves.to_string(),
-        cost.modes_computed.to_string(),
-        cost.contact_steps.to_string(),
-        cost.rejected_steps.to_string(),
-        cost.newton_iterations.to_string(),
-        cost.law_evaluations.to_string(),
-        cost.flight_steps.to_string(),
-        cost.mode_steps.to_string(),
-        cost.panels.to_string(),
-        answer.stopped_by.map_or_else(String::new, |reason| reason.as_str().to_owned()),
-        String::new(),
-    ]
 }
 
 /// A value of a varied field: numbers and texts as they are, anything else as JSON.
@@ -129,20 +63,21 @@ fn line(cells: impl Iterator<Item = String>) -> Vec<u8> {
 pub(super) struct Row<'a> {
     cells: &'a csv::StringRecord,
     /// Where the results begin.
-    results: usize,
+    first: usize,
+    results: &'a Results,
 }
 
 impl<'a> Row<'a> {
     /// Takes a line of the table apart; it must be that of the point with this number.
-    pub(super) fn new(sweep: &Sweep, point: u64, cells: &'a csv::StringRecord) -> Result<Row<'a>, SweepError> {
-        let results = 1 + sweep.fields().count();
-        if cells.len() != results + RESULTS.len() || cells.get(0) != Some(&point.to_string()) {
+    pub(super) fn new(sweep: &'a Sweep, point: u64, cells: &'a csv::StringRecord) -> Result<Row<'a>, SweepError> {
+        let (first, results) = (1 + sweep.fields().count(), sweep.results());
+        if cells.len() != first + results.columns().len() || cells.get(0) != Some(&point.to_string()) {
             let found = cells.get(0).unwrap_or_default();
             return Err(SweepError::Refused(format!(
                 "the results are damaged: row {found:?} stands where {point} should"
             )));
         }
-        Ok(Row { cells, results })
+        Ok(Row { cells, first, results })
     }
 
     /// All cells, in the order of the columns.
@@ -152,8 +87,17 @@ impl<'a> Row<'a> {
 
     /// The cell of a result, by the name of its column.
     pub(super) fn text(&self, name: &str) -> &'a str {
-        let place = RESULTS.iter().position(|(column, _)| *column == name);
-        place.and_then(|place| self.cells.get(self.results + place)).unwrap_or_default()
+        let place = self.results.place(name);
+        place.and_then(|place| self.cells.get(self.first + place)).unwrap_or_default()
+    }
+
+    /// The motion to which a run has settled, `intervals/periods`; `none` if it has not, empty without a harmonic load.
+    pub(super) fn motion(&self) -> String {
+        match (self.text("motion_intervals"), self.text("motion_periods")) {
+            (_, "") => String::new(),
+            (_, "0") => NO_MOTION.to_owned(),
+            (intervals, periods) => format!("{intervals}/{periods}"),
+        }
     }
 
     /// The same as a number; `None` if there is none.

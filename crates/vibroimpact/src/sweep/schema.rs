@@ -10,16 +10,19 @@ use crate::scene::schema::{of, of_scenes};
 ///
 /// ```
 /// let schema = vibroimpact::sweep::schema();
-/// assert_eq!(schema["properties"]["scene"]["properties"]["striker"]["$ref"], "#/$defs/Striker");
+/// assert_eq!(schema["$defs"]["Scene"]["properties"]["striker"]["$ref"], "#/$defs/Striker");
 /// ```
 pub fn schema() -> Value {
     let mut sweep = of::<SweepFile>(FORMAT_VERSION);
     let mut scene = of_scenes();
     relax(&mut scene);
+    // what one field asks of another is not known where either may vary
+    if let Some(impact) = scene["$defs"]["Scene"].as_object_mut() {
+        impact.remove("allOf");
+    }
     let Some(scene) = scene.as_object_mut() else { return sweep };
     let definitions = scene.remove("$defs");
-    // what one field asks of another is not known where either may vary
-    for key in ["$schema", "title", "allOf"] {
+    for key in ["$schema", "title"] {
         scene.remove(key);
     }
     scene.insert("description".to_owned(), "The scene; it may leave out the varied fields.".into());

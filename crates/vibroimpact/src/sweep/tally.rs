@@ -32,6 +32,14 @@ pub struct Tally {
     pub restitution_uncertainty: Option<Extremes>,
     /// Least and greatest number of sub-impacts; null if there is none.
     pub sub_impact_count: Option<Extremes>,
+    /// Least and greatest number of intervals of contact in a run; null for single impacts.
+    pub intervals: Option<Extremes>,
+    /// Least and greatest of the largest forces of runs (N); null likewise.
+    pub largest_force_n: Option<Extremes>,
+    /// Least and greatest work of compression over time (W); null likewise.
+    pub contact_work_rate_w: Option<Extremes>,
+    /// Runs under a harmonic load by the motion to which they have settled, as `intervals/periods`, or `none`.
+    pub motions: BTreeMap<String, u64>,
     /// Steps in contact, over all points.
     pub contact_steps: u64,
     /// Evaluations of the contact law, over all points.
@@ -83,8 +91,12 @@ impl Tally {
         let error = row.text("error");
         if error.is_empty() {
             *self.outcomes.entry(row.text("outcome").to_owned()).or_default() += 1;
-            self.unsettled += u64::from(row.text("settled") != "true");
-            *self.models.entry(row.text("model").to_owned()).or_default() += 1;
+            self.unsettled += u64::from(row.text("settled") == "false");
+            for (counts, name) in [(&mut self.models, row.text("model")), (&mut self.motions, &row.motion())] {
+                if !name.is_empty() {
+                    *counts.entry(name.to_owned()).or_default() += 1;
+                }
+            }
         } else {
             self.failures += 1;
             if self.first_failures.len() < FAILURES_TOLD {
@@ -95,6 +107,9 @@ impl Tally {
             (&mut self.restitution, "restitution"),
             (&mut self.restitution_uncertainty, "restitution_uncertainty"),
             (&mut self.sub_impact_count, "sub_impact_count"),
+            (&mut self.intervals, "intervals"),
+            (&mut self.largest_force_n, "largest_force_n"),
+            (&mut self.contact_work_rate_w, "contact_work_rate_w"),
         ] {
             if let Some(value) = row.number(name) {
                 *found = Some(Extremes::with(*found, value, index));
@@ -118,7 +133,11 @@ impl Tally {
         };
         line("points", &self.points.to_string());
         line("outcomes", &counts(&self.outcomes));
-        line("models", &counts(&self.models));
+        for (name, groups) in [("models", &self.models), ("intervals/periods", &self.motions)] {
+            if !groups.is_empty() {
+                line(name, &counts(groups));
+            }
+        }
         if self.unsettled > 0 {
             line("not settled", &format!("{} (column settled)", self.unsettled));
         }
@@ -140,17 +159,19 @@ impl Tally {
             ("restitution", &self.restitution),
             ("uncertainty", &self.restitution_uncertainty),
             ("sub-impacts", &self.sub_impact_count),
+            ("intervals", &self.intervals),
+            ("largest force, N", &self.largest_force_n),
+            ("contact work rate, W", &self.contact_work_rate_w),
         ] {
-            line(name, &found.as_ref().map_or_else(|| "none".to_owned(), range));
+            if let Some(extremes) = found {
+                line(name, &range(extremes));
+            }
         }
         let Tally { contact_steps, law_evaluations, mode_steps, .. } = self;
-        line(
-            "cost",
-            &format!(
-                "{contact_steps} steps in contact, {law_evaluations} evaluations of the law, {mode_steps} steps \
-                 times modes"
-            ),
-        );
+        line("cost", &format!("{contact_steps} steps in contact, {law_evaluations} evaluations of the law"));
+        if *mode_steps > 0 {
+            line("", &format!("{mode_steps} steps times modes"));
+        }
         lines
     }
 }

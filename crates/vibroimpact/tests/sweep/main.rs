@@ -1,5 +1,6 @@
 //! Sweeps as a user meets them: a file in, a folder out, whatever happens in between.
 
+mod bodies;
 mod bytes;
 mod definition;
 mod files;

@@ -1,0 +1,226 @@
+//! What a point of a sweep comes to: the columns after the varied fields, for scenes of one impact and for scenes of bodies.
+
+use super::table::Kind;
+use crate::assembly::{AnyScene, Simulation, Summary};
+use crate::model::Answer;
+use crate::scene::json::number;
+
+/// The columns of an impact.
+const OF_IMPACT: [(&str, Kind); 23] = [
+    ("outcome", Kind::Text),
+    ("restitution", Kind::Number),
+    ("restitution_uncertainty", Kind::Number),
+    ("uncertainty_solver", Kind::Number),
+    ("uncertainty_modes_left_out", Kind::Number),
+    ("uncertainty_beam_theory", Kind::Number),
+    ("settled", Kind::Truth),
+    ("spread", Kind::Number),
+    ("sub_impact_count", Kind::Whole),
+    ("model", Kind::Text),
+    ("mode_count", Kind::Whole),
+    ("residual_compliance_m_n", Kind::Number),
+    ("solves", Kind::Whole),
+    ("modes_computed", Kind::Whole),
+    ("contact_steps", Kind::Whole),
+    ("rejected_steps", Kind::Whole),
+    ("newton_iterations", Kind::Whole),
+    ("law_evaluations", Kind::Whole),
+    ("flight_steps", Kind::Whole),
+    ("mode_steps", Kind::Whole),
+    ("panels", Kind::Whole),
+    ("stopped_by", Kind::Text),
+    ("error", Kind::Text),
+];
+
+/// The columns of a run before those of its contacts,
+const OF_RUN: [(&str, Kind); 8] = [
+    ("outcome", Kind::Text),
+    ("end_s", Kind::Number),
+    ("motion_periods", Kind::Whole),
+    ("motion_intervals", Kind::Whole),
+    ("intervals", Kind::Whole),
+    ("largest_force_n", Kind::Number),
+    ("contact_work_rate_w", Kind::Number),
+    ("load_work_j", Kind::Number),
+];
+
+/// those of each contact, after its name and a point,
+const OF_CONTACT: [(&str, Kind); 10] = [
+    ("count", Kind::Whole),
+    ("time_share", Kind::Number),
+    ("impulse_n_s", Kind::Number),
+    ("largest_force_n", Kind::Number),
+    ("rms_force_n", Kind::Number),
+    ("contact_work_rate_w", Kind::Number),
+    ("displacement_0_m", Kind::Number),
+    ("velocity_0_m_s", Kind::Number),
+    ("displacement_1_m", Kind::Number),
+    ("velocity_1_m_s", Kind::Number),
+];
+
+/// and the last.
+const LAST: [(&str, Kind); 11] = [
+    ("modal_damping_j", Kind::Number),
+    ("contact_loss_j", Kind::Number),
+    ("residual_j", Kind::Number),
+    ("contact_steps", Kind::Whole),
+    ("rejected_steps", Kind::Whole),
+    ("newton_iterations", Kind::Whole),
+    ("law_evaluations", Kind::Whole),
+    ("flight_steps", Kind::Whole),
+    ("events", Kind::Whole),
+    ("stopped_by", Kind::Text),
+    ("error", Kind::Text),
+];
+
+/// Which results there are.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Results {
+    /// Those of one impact.
+    OfImpact,
+    /// Those of a run with these contacts, which are the contacts of the first point. Of another point with other contacts
+    /// the cells of those that it does not have stay empty.
+    OfRun(Vec<String>),
+}
+
+impl Results {
+    /// The results that scenes like this one have.
+    pub(super) fn of(scene: &AnyScene) -> Results {
+        match scene {
+            AnyScene::Impact(_) => Results::OfImpact,
+            AnyScene::Bodies(scene) => {
+                Results::OfRun(scene.contacts.iter().flat_map(|contact| contact.names()).collect())
+            }
+        }
+    }
+
+    /// The columns; the last is `error`.
+    pub(super) fn columns(&self) -> Vec<(String, Kind)> {
+        let owned = |(name, kind): &(&str, Kind)| ((*name).to_owned(), *kind);
+        match self {
+            Results::OfImpact => OF_IMPACT.iter().map(owned).collect(),
+            Results::OfRun(contacts) => {
+                let of_contact = |contact: &String| OF_CONTACT.map(|(name, kind)| (format!("{contact}.{name}"), kind));
+                let contacts = contacts.iter().flat_map(of_contact);
+                OF_RUN.iter().map(owned).chain(contacts).chain(LAST.iter().map(owned)).collect()
+            }
+        }
+    }
+
+    /// Where the column of this name stands, if it is none of a single contact.
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
+        let among = |columns: &[(&str, Kind)]| columns.iter().position(|(column, _)| *column == name);
+        match self {
+            Results::OfImpact => among(&OF_IMPACT),
+            Results::OfRun(contacts) => {
+                let last = || among(&LAST).map(|place| OF_RUN.len() + contacts.len() * OF_CONTACT.len() + place);
+                among(&OF_RUN).or_else(last)
+            }
+        }
+    }
+
+    /// The cells of a point that could not be solved.
+    pub(super) fn failed(&self, error: String) -> Vec<String> {
+        let mut cells = vec![String::new(); self.columns().len()];
+        if let Some(last) = cells.last_mut() {
+            *last = error;
+        }
+        cells
+    }
+
+    /// The cells of a run.
+    pub(super) fn of_run(&self, found: &Simulation) -> Vec<String> {
+        let summary = Summary::new(found);
+        let contacts = || summary.contacts.values();
+        let motion = summary.steady_motion;
+        let energy = summary.energy.as_ref();
+        let run = [
+            summary.outcome.to_owned(),
+            number(summary.end_s),
+            whole(found.period_s.map(|_| motion.map_or(0, |motion| motion.periods))),
+            whole(motion.map(|motion| motion.intervals)),
+            contacts().map(|contact| contact.count).sum::<u64>().to_string(),
+            number(contacts().map(|contact| contact.largest_force_n).fold(0.0, f64::max)),
+            number(contacts().map(|contact| contact.contact_work_rate_w).sum()),
+            known(energy.map(|energy| energy.load_work_j)),
+        ];
+        let names = match self {
+            Results::OfImpact => &[][..],
+            Results::OfRun(names) => names,
+        };
+        let of_contact = |name: &String| {
+            let empty: [String; OF_CONTACT.len()] = Default::default();
+            summary.contacts.get(name).map_or(empty, |contact| {
+                let mut sides = summary.points.iter().filter(|point| point.contact == *name);
+                let mut side = || sides.next().map(|side| [side.displacement_m, side.velocity_m_s]).unwrap_or_default();
+                let ([displacement_0, velocity_0], [displacement_1, velocity_1]) = (side(), side());
+                [
+                    contact.count.to_string(),
+                    number(contact.time_share),
+                    number(contact.impulse_n_s),
+                    number(contact.largest_force_n),
+                    number(contact.rms_force_n),
+                    number(contact.contact_work_rate_w),
+                    number(displacement_0),
+                    number(velocity_0),
+                    number(displacement_1),
+                    number(velocity_1),
+                ]
+            })
+        };
+        let counts = &summary.counts;
+        let last = [
+            known(energy.map(|energy| energy.modal_damping_j)),
+            known(energy.map(|energy| energy.contact_loss_j)),
+            known(energy.map(|energy| energy.residual_j)),
+            counts.contact_steps.to_string(),
+            counts.rejected_steps.to_string(),
+            counts.newton_iterations.to_string(),
+            counts.law_evaluations.to_string(),
+            counts.flight_steps.to_string(),
+            counts.events.to_string(),
+            summary.reason.unwrap_or_default().to_owned(),
+            String::new(),
+        ];
+        run.into_iter().chain(names.iter().flat_map(of_contact)).chain(last).collect()
+    }
+}
+
+/// The cells of an impact.
+pub(super) fn of_impact(answer: &Answer) -> Vec<String> {
+    let cost = answer.cost;
+    let cells: [String; OF_IMPACT.len()] = [
+        answer.outcome.to_owned(),
+        known(answer.restitution),
+        known(answer.restitution_uncertainty),
+        known(answer.uncertainty.solver),
+        known(answer.uncertainty.modes_left_out),
+        known(answer.uncertainty.beam_theory),
+        answer.settled.to_string(),
+        known(answer.spread),
+        answer.sub_impact_count.map_or_else(String::new, |count| count.to_string()),
+        answer.model.as_str().to_owned(),
+        answer.modes.to_string(),
+        number(answer.residual_compliance_m_n),
+        cost.solves.to_string(),
+        cost.modes_computed.to_string(),
+        cost.contact_steps.to_string(),
+        cost.rejected_steps.to_string(),
+        cost.newton_iterations.to_string(),
+        cost.law_evaluations.to_string(),
+        cost.flight_steps.to_string(),
+        cost.mode_steps.to_string(),
+        cost.panels.to_string(),
+        answer.stopped_by.map_or_else(String::new, |reason| reason.as_str().to_owned()),
+        String::new(),
+    ];
+    cells.to_vec()
+}
+
+fn known(value: Option<f64>) -> String {
+    value.map_or_else(String::new, number)
+}
+
+fn whole(value: Option<u64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
