@@ -8,7 +8,7 @@ use std::fmt::Write;
 use gallery::{assert_checked_in, gallery, named, restitution};
 use vibroimpact::beam_modes;
 use vibroimpact::model::Modes;
-use vibroimpact::scene::{Beam, End, Segment, Structure};
+use vibroimpact::scene::{Beam, BeamTheory, End, Segment, Structure};
 use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::Outcome;
 
@@ -46,6 +46,28 @@ fn the_table_of_the_gallery_is_current() {
         .unwrap();
     }
     assert_checked_in("scenes/README.md", &table);
+}
+
+/// With Cowper's coefficient an independent computation with 800,000 modes gives 0.25302.
+#[test]
+fn a_timoshenko_beam_settles_where_more_modes_do_and_follows_its_shear_coefficient() {
+    let mut scene = named("timoshenko-beam");
+    let answer = scene.answer().unwrap();
+    assert!(answer.settled && answer.theory == Some(BeamTheory::Timoshenko), "{answer:?}");
+    let with = |modes: usize, scene: &vibroimpact::Scene| {
+        restitution(&vibroimpact::Scene {
+            modes: Modes::Count(modes),
+            residual_compliance: Some(true),
+            ..scene.clone()
+        })
+    };
+    let many = with(400, &scene);
+    assert!((answer.restitution.unwrap() - many).abs() < 1e-3 && (many - 0.1935).abs() < 1e-4, "{many}");
+    assert!(answer.uncertainty.beam_theory.unwrap() > 0.05, "{answer:?}");
+    let Structure::Beam(beam) = &mut scene.structure else { panic!() };
+    beam.segments[0].shear_coefficient = Some(13.0 / 15.3);
+    let cowper = with(400, &scene);
+    assert!((cowper - 0.25302).abs() < 1e-4, "{cowper}");
 }
 
 #[test]

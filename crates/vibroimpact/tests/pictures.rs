@@ -94,6 +94,22 @@ fn modes_are_drawn_along_a_beam_and_as_stems() {
 }
 
 #[test]
+fn modes_are_drawn_along_a_string_and_over_a_plate() {
+    let folder = tempfile::tempdir().unwrap();
+    let draw = |name: &str, count: &str| {
+        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg", "--force"]));
+        fs::read_to_string(folder.path().join("m.svg")).unwrap()
+    };
+    let string = draw("piano-hammer", "5");
+    assert!(string.contains("place along the string (m)") && string.contains("\n5: "));
+    for name in ["cantilever-plate", "simply-supported-plate"] {
+        let plate = draw(name, "14");
+        assert!((1..=12).all(|number| plate.contains(&format!("\n{number}: "))) && !plate.contains("\n13: "), "{name}");
+        assert!(plate.contains("x (") && plate.contains("y (") && plate.contains("frequency ("), "{name}");
+    }
+}
+
+#[test]
 fn other_endings_are_refused_before_anything_is_solved() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, allowed) in [

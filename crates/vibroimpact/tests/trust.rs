@@ -170,3 +170,40 @@ fn a_yield_strength_out_of_range_is_named() {
         assert_eq!(Scene::from_value(&scene).unwrap().simulate().err().unwrap().field, "yield_strength_pa", "{model}");
     }
 }
+
+/// The first contact on an infinite beam by Timoshenko's theory, found from the mobility, is that on a finite beam, by its
+/// modes, which is so long that no wave comes back in time.
+#[test]
+fn the_early_response_of_an_infinite_beam_is_that_of_a_long_one() {
+    let section = json!({ "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.02, "thickness_m": 0.02,
+                          "poissons_ratio": 0.3 });
+    let mut changes = Vec::new();
+    for radius in [0.012, 0.016, 0.02, 0.024] {
+        let mut scene = json!({
+            "structure": section, "striker": { "density_kg_m3": 7800, "radius_m": radius, "speed_m_s": 1 },
+            "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 }
+        });
+        scene["structure"]["kind"] = json!("infinite-beam");
+        let (result, found) = checks(&scene);
+        let early = named(&found, "early_response");
+        let slender = result["infinite"]["first_rebound_ratio"].as_f64().unwrap();
+
+        // nothing is faster than 5,064 m/s; a contact lasts less than 0.35 ms
+        let mut piece = section.clone();
+        piece["length_m"] = json!(2.0);
+        scene["structure"] =
+            json!({ "kind": "beam", "theory": "timoshenko", "ends": ["pinned", "pinned"], "segments": [piece] });
+        scene["location_m"] = json!(1.0);
+        scene["modes"] = json!(800);
+        scene["residual_compliance"] = json!(true);
+        let (result, _) = checks(&scene);
+        let impulse = result["sub_impacts"][0]["impulse_n_s"].as_f64().unwrap();
+        let end = result["sub_impacts"][0]["end_s"].as_f64().unwrap();
+        assert!(end < 2.0 / 5064.0, "{radius}: {end}");
+        let momentum = 7800.0 * 4.0 / 3.0 * PI * f64::powi(radius, 3);
+        let change = (impulse / momentum - 1.0 - slender).abs();
+        assert!((early.value - change).abs() < 1e-4, "{radius}: {} {change}", early.value);
+        changes.push(change);
+    }
+    assert!(changes.iter().any(|change| *change > 0.01), "{changes:?}");
+}

@@ -20,7 +20,8 @@ pub struct HeatMap {
     pub y: Vec<f64>,
     /// Values, one row of cells per ordinate; missing or not finite ones stay grey.
     pub rows: Vec<Vec<f64>>,
-    /// What the colour stands for, with unit and limits; limits symmetric about zero give colours that part there.
+    /// What the colour stands for, with unit and limits; limits symmetric about zero give colours that part there. An axis
+    /// without labels leaves the scale of colours out.
     pub value: Axis,
 }
 

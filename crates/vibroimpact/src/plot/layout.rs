@@ -65,7 +65,7 @@ impl<'a> Plan<'a> {
             (true, true) => widest + 10.0,
             (true, false) => widest + 14.0 + 1.4 * LABEL_PX,
         };
-        let right_px = if panel.heat.is_some() { STRIP_PX } else { 14.0 };
+        let right_px = if panel.scale().is_some() { STRIP_PX } else { 14.0 };
         Plan { panel, x, y, y_ticks, y_label, height_px, left_px, right_px }
     }
 
@@ -230,7 +230,7 @@ fn draw_panel(canvas: &Canvas, plan: &Plan, r: &Rectangle) -> io::Result<()> {
         let place = (r.left - widest - 12.0, 0.5 * (r.top + r.bottom));
         canvas.text(&plan.y_label, place, Lettering { upright: true, vertical: VPos::Bottom, ..l })?;
     }
-    match &panel.heat {
+    match panel.scale() {
         Some(heat) => heat.draw_scale(canvas, r, SMALL),
         None => Ok(()),
     }

@@ -127,6 +127,11 @@ impl Panel {
         self.heat = Some(heat);
         self
     }
+
+    /// The map whose scale of colours stands beside the panel.
+    fn scale(&self) -> Option<&HeatMap> {
+        self.heat.as_ref().filter(|heat| heat.value.labelled)
+    }
 }
 
 #[cfg(test)]

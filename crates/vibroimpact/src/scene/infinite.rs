@@ -8,7 +8,8 @@ use super::error::InvalidInput;
 use super::json::number;
 use super::{Contact, Scene, Segment, Structure};
 
-/// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`].
+/// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`]. What Timoshenko's theory
+/// needs may stand beside it: the answer then tells how the first contact would end by that theory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InfiniteBeam {
@@ -26,6 +27,14 @@ pub struct InfiniteBeam {
     pub thickness_m: Option<f64>,
     /// Diameter of a circular section (m).
     pub diameter_m: Option<f64>,
+    /// Poisson's ratio: it gives the shear modulus and the shear coefficient of Timoshenko's theory.
+    pub poissons_ratio: Option<f64>,
+    /// Shear coefficient of Timoshenko's theory; that of the section when left out, as for a [`Segment`].
+    pub shear_coefficient: Option<f64>,
+    /// Shear rigidity `kappa G A` (N), beside the flexural rigidity.
+    pub shear_rigidity_n: Option<f64>,
+    /// Rotary inertia per length `rho I` (kg m), beside the flexural rigidity.
+    pub rotary_inertia_kg_m: Option<f64>,
 }
 
 /// A thin infinite plate.
@@ -91,6 +100,8 @@ impl Scene {
         match &self.structure {
             Structure::InfiniteBeam(beam) => {
                 let section = beam.section().map_err(|fault| fault.within("structure"))?;
+                // checked even though the impact itself does without
+                beam.shear().map_err(|fault| fault.within("structure"))?;
                 let (rigidity, mass_per_length) = (section.flexural_rigidity_n_m2, section.mass_per_length_kg_m);
                 infinite::Impact::on_beam(rigidity, mass_per_length, stiffness_n_m1_5, mass_kg, speed_m_s)
             }
@@ -119,8 +130,8 @@ impl Scene {
 }
 
 impl InfiniteBeam {
-    /// Rigidity and mass of any piece of it.
-    pub(crate) fn section(&self) -> Result<beam_modes::Segment, InvalidInput> {
+    /// A piece of it.
+    fn piece(&self) -> Segment {
         let InfiniteBeam {
             flexural_rigidity_n_m2,
             mass_per_length_kg_m,
@@ -129,6 +140,10 @@ impl InfiniteBeam {
             width_m,
             thickness_m,
             diameter_m,
+            poissons_ratio,
+            shear_coefficient,
+            shear_rigidity_n,
+            rotary_inertia_kg_m,
         } = *self;
         Segment {
             length_m: 1.0,
@@ -139,9 +154,21 @@ impl InfiniteBeam {
             width_m,
             thickness_m,
             diameter_m,
-            ..Segment::default()
+            poissons_ratio,
+            shear_coefficient,
+            shear_rigidity_n,
+            rotary_inertia_kg_m,
         }
-        .to_segment()
+    }
+
+    /// Rigidity and mass of any piece of it.
+    pub(crate) fn section(&self) -> Result<beam_modes::Segment, InvalidInput> {
+        self.piece().to_segment()
+    }
+
+    /// Shear and rotary inertia, or `None` where nothing of them is given.
+    pub(crate) fn shear(&self) -> Result<Option<beam_modes::ShearSection>, InvalidInput> {
+        self.piece().to_shear()
     }
 }
 
