@@ -125,29 +125,34 @@ pub trait ContactLaw {
     fn depends_on_rate(&self) -> bool;
 }
 
-/// A law that is borrowed is a law.
-impl<L: ContactLaw + ?Sized> ContactLaw for &L {
-    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
-        (**self).touch(memory, approach_speed_m_s)
-    }
+/// What stands for a law is a law.
+macro_rules! stands_for_a_law {
+    ($($stand_in:ty),*) => {$(
+        impl<L: ContactLaw + ?Sized> ContactLaw for $stand_in {
+            fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
+                (**self).touch(memory, approach_speed_m_s)
+            }
 
-    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
-        (**self).force(branch, compression_m, rate_m_s)
-    }
+            fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+                (**self).force(branch, compression_m, rate_m_s)
+            }
 
-    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
-        (**self).stored_energy_j(branch, compression_m)
-    }
+            fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
+                (**self).stored_energy_j(branch, compression_m)
+            }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        (**self).boundaries(branch)
-    }
+            fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
+                (**self).boundaries(branch)
+            }
 
-    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
-        (**self).cross(branch, which, compression_m, rate_m_s)
-    }
+            fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
+                (**self).cross(branch, which, compression_m, rate_m_s)
+            }
 
-    fn depends_on_rate(&self) -> bool {
-        (**self).depends_on_rate()
-    }
+            fn depends_on_rate(&self) -> bool {
+                (**self).depends_on_rate()
+            }
+        }
+    )*};
 }
+stands_for_a_law!(&L, Box<L>, std::sync::Arc<L>);

@@ -5,7 +5,7 @@
 //! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body.
 
 use super::solution::Counts;
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, dot, slopes};
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
 use contact_models::{Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the panel is too long.
@@ -14,8 +14,8 @@ const ITERATIONS_MAX: u32 = 16;
 const SLOW: f64 = 0.1;
 
 /// A closed contact on a panel, before its force is known.
-pub(crate) struct Unknown<'a, L> {
-    pub law: &'a L,
+pub(crate) struct Unknown<'a> {
+    pub law: &'a dyn ContactLaw,
     pub branch: Branch,
     /// Compression at the start of the panel (m).
     pub start: f64,
@@ -37,20 +37,30 @@ pub(crate) struct Collocated {
     pub rate: Nodal,
 }
 
-/// Solves the laws at all nodes of a panel of `h`; `response` gives `R_cc'` (m/N). `None` if the iteration does not
+/// What Newton's method works on: forces and their derivatives as the laws give them, changes, and its matrix.
+#[derive(Default)]
+pub(crate) struct Newton {
+    values: Vec<[Force; Q]>,
+    change: Vec<Nodal>,
+    blocks: Blocks,
+}
+
+/// Solves the laws at all nodes of a panel of `h`; `response` gives `R_cc'` (m/N). `false` if the iteration does not
 /// converge.
-pub(crate) fn collocate<'r, L: ContactLaw>(
-    unknowns: &[Unknown<L>],
+pub(crate) fn collocate<'r>(
+    unknowns: &[Unknown],
     response: impl Fn(usize, usize) -> Option<&'r Matrix>,
     h: f64,
+    (Newton { values, change, blocks }, found): (&mut Newton, &mut Vec<Collocated>),
     counts: &mut Counts,
-) -> Option<Vec<Collocated>> {
+) -> bool {
     let n = unknowns.len();
-    let start = |unknown: &Unknown<L>| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
-    let mut found: Vec<Collocated> = unknowns.iter().map(start).collect();
-    let mut values = vec![[Force::ZERO; Q]; n];
-    let mut change = vec![[0.0; Q]; n];
-    let mut newton: Option<Blocks> = None;
+    let start = |unknown: &Unknown| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
+    found.clear();
+    found.extend(unknowns.iter().map(start));
+    values.resize(n, [Force::ZERO; Q]);
+    change.resize(n, [0.0; Q]);
+    let mut factored = false;
     let mut last: Option<f64> = None;
     for _ in 0..ITERATIONS_MAX {
         counts.newton_iterations += 1;
@@ -72,8 +82,11 @@ pub(crate) fn collocate<'r, L: ContactLaw>(
             counts.law_evaluations += Q as u64;
             change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
         }
-        let matrix = newton.get_or_insert_with(|| Blocks::factored(&values, &response, h));
-        matrix.solve(&mut change);
+        if !factored {
+            blocks.factor(values, &response, h);
+            factored = true;
+        }
+        blocks.solve(change);
         // the change that is largest against the accuracy asked for
         let (mut excess, mut converged) = (0.0f64, true);
         for (c, unknown) in unknowns.iter().enumerate() {
@@ -85,7 +98,7 @@ pub(crate) fn collocate<'r, L: ContactLaw>(
             }
             // a sum passes on what is not a number, the maxima do not
             if !found[c].force.iter().sum::<f64>().is_finite() {
-                return None;
+                return false;
             }
             converged &= largest <= 1e-15 * size;
             excess = excess.max(largest / unknown.accuracy);
@@ -93,23 +106,24 @@ pub(crate) fn collocate<'r, L: ContactLaw>(
         // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
         let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
         if converged || ratio * excess <= 1.0 {
-            for (unknown, found) in unknowns.iter().zip(&mut found) {
+            for (unknown, found) in unknowns.iter().zip(found.iter_mut()) {
                 if unknown.needs_rate && !unknown.law.depends_on_rate() {
                     found.rate = slopes(unknown.start, &found.compression, h);
                 }
             }
-            return Some(found);
+            return true;
         }
         if ratio > SLOW && last.is_some() {
-            newton = None;
+            factored = false;
         }
         last = Some(excess);
     }
-    None
+    false
 }
 
 /// Newton's matrix in blocks, factored. Off the diagonal of ones its size is `(h omega)^2` with `omega` the contacts' own
 /// frequency, so that elimination needs no pivoting.
+#[derive(Default)]
 struct Blocks {
     contacts: usize,
     /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`. `None` is zero.
@@ -117,9 +131,11 @@ struct Blocks {
 }
 
 impl Blocks {
-    fn factored<'r>(values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) -> Blocks {
+    fn factor<'r>(&mut self, values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) {
         let n = values.len();
-        let mut blocks: Vec<Option<Matrix>> = Vec::with_capacity(n * n);
+        self.contacts = n;
+        let blocks = &mut self.blocks;
+        blocks.clear();
         for p in 0..n {
             for q in 0..n {
                 blocks.push(response(p, q).map(|response| block(&values[p], response, h, p == q)));
@@ -149,7 +165,6 @@ impl Blocks {
                 }
             }
         }
-        Blocks { contacts: n, blocks }
     }
 
     /// Solves in place.
@@ -191,8 +206,9 @@ fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matr
     }
     if values.iter().any(|value| value.per_rate_n_s_m != 0.0) {
         for j in 0..Q {
+            let slopes = apply(&BASIS.slope_from_nodes, &response[j]);
             for i in 0..Q {
-                block[j][i] -= values[i].per_rate_n_s_m / h * dot(&BASIS.slope_from_nodes[i], &response[j]);
+                block[j][i] -= values[i].per_rate_n_s_m / h * slopes[i];
             }
         }
     }
@@ -263,7 +279,8 @@ mod tests {
             guess: [0.0; Q],
         };
         let unknowns: Vec<_> = (0..3).map(unknown).collect();
-        let found = collocate(&unknowns, response, 0.5, &mut Counts::default()).unwrap();
+        let (mut newton, mut found) = (Newton::default(), Vec::new());
+        assert!(collocate(&unknowns, response, 0.5, (&mut newton, &mut found), &mut Counts::default()));
         for c in 0..3 {
             let mut compression = unknowns[c].free;
             for other in 0..3 {

@@ -1,7 +1,6 @@
 //! Dense output: the motion anywhere on a panel.
 
 use super::load::Loads;
-use super::problem::Assembly;
 use super::solution::{ContactSample, Motion};
 use super::system::System;
 use crate::panel::legendre::{BASIS, Nodal, evaluate};
@@ -29,14 +28,14 @@ pub(crate) struct Stretch {
 }
 
 /// A stretch, with what it takes to evaluate it.
-pub(crate) struct Panel<'a, L> {
+pub(crate) struct Panel<'a> {
     pub system: &'a System,
     pub loads: &'a Loads,
-    pub assembly: &'a Assembly<L>,
+    pub laws: &'a [&'a dyn ContactLaw],
     pub stretch: &'a Stretch,
 }
 
-impl<L: ContactLaw> Panel<'_, L> {
+impl Panel<'_> {
     /// What is carried of the modes `h` seconds after its start: up to its length, or for ever where nothing is closed.
     fn carried(&self, h: f64) -> (Vec<f64>, Vec<f64>) {
         let stretch = self.stretch;
@@ -87,7 +86,7 @@ impl<L: ContactLaw> Panel<'_, L> {
         let (link, seen) = (&self.system.links[contact], self.stretch.contacts[contact]);
         let overlap_m = seen.reference + link.sum(&amplitude);
         let rate_m_s = link.sum(&rate);
-        let law = &self.assembly.contacts[contact].law;
+        let law = self.laws[contact];
         // between the nodes and at a touch the motion need not meet the law to the last digit
         let force_n = seen.branch.map_or(0.0, |branch| law.force(&branch, overlap_m, rate_m_s).force_n.max(0.0));
         let side =
@@ -107,7 +106,7 @@ impl<L: ContactLaw> Panel<'_, L> {
     }
 }
 
-impl<L: ContactLaw> Motion for Panel<'_, L> {
+impl Motion for Panel<'_> {
     fn start_s(&self) -> f64 {
         self.stretch.start_s
     }

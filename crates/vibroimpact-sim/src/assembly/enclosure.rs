@@ -13,12 +13,39 @@ use super::load::Loads;
 use super::system::{Link, System};
 use super::terminal::value;
 use crate::panel::legendre::TAYLOR;
+use crate::panel::vector::{sum_over, vectorized};
+use std::ops::Range;
 
 /// A contact force and its rate, and what it acts on.
 pub(crate) struct Pull<'a> {
     pub link: &'a Link,
     pub force_n: f64,
     pub rate_n_s: f64,
+}
+
+/// Where contact forces that grow steadily hold the modes of a body, and the rate of that; memory that is used again.
+#[derive(Default)]
+pub(crate) struct Held {
+    at: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl Held {
+    /// For the modes of a body from the `from`-th on, whose `1/omega` are given.
+    fn hold(&mut self, body: &Range<usize>, from: usize, inverse: &[f64], pulls: &[Pull]) {
+        for row in [&mut self.at, &mut self.rate] {
+            row.clear();
+            row.resize(inverse.len(), 0.0);
+        }
+        for pull in pulls {
+            let Some(partner) = pull.link.spans.iter().find(|other| other.modes == *body) else { continue };
+            for (k, (psi, inverse)) in partner.psi[from..].iter().zip(inverse).enumerate() {
+                let yields = psi * inverse * inverse;
+                self.at[k] -= yields * pull.force_n;
+                self.rate[k] -= yields * pull.rate_n_s;
+            }
+        }
+    }
 }
 
 /// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
@@ -30,7 +57,7 @@ pub(crate) fn of_panel(
     contact: usize,
     h: f64,
     (amplitude, rate): (&[f64], &[f64]),
-    pulls: &[Pull],
+    (pulls, held): (&[Pull], &mut Held),
 ) -> [f64; ORDERS] {
     let mut rho = [0.0; ORDERS];
     for span in &system.links[contact].spans {
@@ -38,35 +65,39 @@ pub(crate) fn of_panel(
         let omega = &system.omega[span.modes.clone()];
         let from = omega.partition_point(|omega| omega * h * (1.0 + system.most_damping) < FOLLOWED);
         let modes = span.modes.start + from..span.modes.end;
-        let n = modes.len();
-        let (mut held, mut held_rate) = (vec![0.0; n], vec![0.0; n]);
-        let square = &system.square[modes.clone()][..n];
-        for pull in pulls {
-            let Some(partner) = pull.link.spans.iter().find(|other| other.modes == span.modes) else { continue };
-            let psi = &partner.psi[from..][..n];
-            for k in 0..n {
-                let yields = psi[k] / square[k];
-                held[k] -= yields * pull.force_n;
-                held_rate[k] -= yields * pull.rate_n_s;
-            }
+        if modes.is_empty() {
+            continue;
         }
-        let (psi, omega) = (&span.psi[from..][..n], &omega[from..][..n]);
-        let (a, b) = (&amplitude[modes.clone()][..n], &rate[modes.clone()][..n]);
-        let [missed, missed_slope, missed_bend] = missed.0.each_ref().map(|row| &row[modes.clone()][..n]);
-        for k in 0..n {
-            let size = psi[k].abs() * ((a[k] - held[k]).abs() + (b[k] - held_rate[k]).abs() / omega[k]);
-            rho[0] += size * missed[k];
-            rho[1] += size * missed_slope[k];
-            rho[2] += size * missed_bend[k];
+        let [values, slopes, bends] = missed.0.each_ref().map(|row| &row[modes.clone()]);
+        let [inverse, a, b] = [&system.inverse, amplitude, rate].map(|row| &row[modes.clone()]);
+        let psi = &span.psi[from..];
+        held.hold(&span.modes, from, inverse, pulls);
+        let rows = [psi, a, b, &held.at, &held.rate, inverse, values, slopes, bends];
+        let by_span = vectorized(
+            #[inline(always)]
+            || {
+                sum_over(
+                    rows,
+                    #[inline(always)]
+                    |[psi, a, b, at, rate, inverse, value, slope, bend]| {
+                        let size = psi.abs() * ((a - at).abs() + (b - rate).abs() * inverse);
+                        [size * value, size * slope, size * bend]
+                    },
+                )
+            },
+        );
+        (0..ORDERS).for_each(|r| rho[r] += by_span[r]);
+        if system.most_damping <= OVERDAMPED {
+            continue;
         }
-        for k in (0..n).filter(|&k| system.modes[modes.start + k].damping_ratio > OVERDAMPED) {
-            let (zeta, omega, square) = (system.modes[modes.start + k].damping_ratio, omega[k], square[k]);
+        for (i, k) in modes.enumerate().filter(|(_, k)| system.modes[*k].damping_ratio > OVERDAMPED) {
+            let (zeta, omega, square) = (system.modes[k].damping_ratio, system.omega[k], system.square[k]);
             let split = omega * ((zeta - 1.0) * (zeta + 1.0)).sqrt();
             let fast = zeta * omega + split;
             let slow = square / fast;
             for (root, other) in [(fast, slow), (slow, fast)] {
-                let decaying = b[k] + other * a[k] - square * (held[k] - held_rate[k] / root) / root;
-                add(&mut rho, psi[k].abs() * decaying.abs() / (2.0 * split), root * h);
+                let decaying = b[i] + other * a[i] - square * (held.at[i] - held.rate[i] / root) / root;
+                add(&mut rho, psi[i].abs() * decaying.abs() / (2.0 * split), root * h);
             }
         }
     }

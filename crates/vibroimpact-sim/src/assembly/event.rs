@@ -45,28 +45,33 @@ impl EventFunction {
     /// `at_start` gives the slope at the start (panel length 1), and the slope of that where it is known; it is asked only where
     /// the function begins at zero.
     pub fn verdict(&self, at_start: impl FnOnce() -> (f64, Option<f64>)) -> Verdict {
+        self.question(at_start).map_or(Verdict::Meets(0.0), |question| question.verdict())
+    }
+
+    /// What has to stay positive; `None` where that is not so from the start.
+    fn question(&self, at_start: impl FnOnce() -> (f64, Option<f64>)) -> Option<Question> {
         // the polynomial passes through the start: there rounding alone counts
         let known = self.noise + self.residue;
         if self.start < -known {
-            return Verdict::Meets(0.0);
+            return None;
         }
         let [rho, rho_slope, rho_bend] = self.rho;
         if self.start > known {
-            return judge(&with(self.start, &self.nodal), rho + self.noise, rho <= self.noise);
+            return Some(Question::new(&with(self.start, &self.nodal), rho + self.noise, rho <= self.noise));
         }
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
         let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
         let (slope, bend) = at_start();
-        match bend {
+        Some(match bend {
             // the slope at the start is better known than those that are quotients
             Some(bend) if slope.abs() <= self.noise + self.slope_residue => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
                 let (rho, noise) = (0.5 * rho_bend, noise / BASIS.nodes[0]);
-                judge(&with(0.5 * bend, &bends), rho + noise, rho <= noise)
+                Question::new(&with(0.5 * bend, &bends), rho + noise, rho <= noise)
             }
-            _ => judge(&with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
-        }
+            _ => Question::new(&with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
+        })
     }
 }
 
@@ -77,52 +82,65 @@ fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
     values
 }
 
-/// `certain`: that what lies within the slack is rounding, and no shorter panel would tell more.
-fn judge(values: &[f64; POINTS], slack: f64, certain: bool) -> Verdict {
-    let mut bernstein = [0.0; POINTS];
-    for (column, value) in TO_BERNSTEIN.iter().zip(values) {
-        for i in 0..POINTS {
-            bernstein[i] += column[i] * value;
+/// A polynomial of which it is asked whether it stays above a slack.
+struct Question {
+    bernstein: [f64; POINTS],
+    slack: f64,
+    /// That what lies within the slack is rounding, and no shorter panel would tell more.
+    certain: bool,
+}
+
+impl Question {
+    fn new(values: &[f64; POINTS], slack: f64, certain: bool) -> Question {
+        let mut bernstein = [0.0; POINTS];
+        for (column, value) in TO_BERNSTEIN.iter().zip(values) {
+            for i in 0..POINTS {
+                bernstein[i] += column[i] * value;
+            }
+        }
+        Question { bernstein, slack, certain }
+    }
+
+    fn verdict(&self) -> Verdict {
+        if self.first_at_or_below(self.slack).is_none() {
+            return Verdict::Clear;
+        }
+        match self.first_at_or_below(if self.certain { -self.slack } else { 0.0 }) {
+            Some(place) => Verdict::Meets(place),
+            None if self.certain => Verdict::Clear,
+            None => Verdict::Doubtful,
         }
     }
-    if bernstein.iter().all(|b| *b > slack) {
-        return Verdict::Clear;
-    }
-    match first_at_or_below(&bernstein, slack) {
-        None => Verdict::Clear,
-        Some(_) => match first_at_or_below(&bernstein, if certain { -slack } else { 0.0 }) {
-            Some(place) => Verdict::Meets(place),
-            None if certain => Verdict::Clear,
-            None => Verdict::Doubtful,
-        },
+
+    /// The first place at which it is at most `level`, to [`FINEST`].
+    fn first_at_or_below(&self, level: f64) -> Option<f64> {
+        first_at_or_below(&self.bernstein, level, 0.0, 1.0)
     }
 }
 
-/// The first place on [0, 1] at which the polynomial with these Bernstein coefficients is at most `level`, to about 1e-5.
-fn first_at_or_below(bernstein: &[f64; POINTS], level: f64) -> Option<f64> {
-    const DEPTH: i32 = 16;
-    let mut stack = vec![(*bernstein, 0.0, 0)];
-    while let Some((b, from, depth)) = stack.pop() {
-        if b.iter().all(|b| *b > level) {
-            continue;
-        }
-        if b[0] <= level {
-            return Some(from);
-        }
-        if depth == DEPTH {
-            return Some(from + 0.5f64.powi(DEPTH + 1));
-        }
-        let (mut left, mut right) = ([0.0; POINTS], b);
-        for i in 0..POINTS {
-            left[i] = right[0];
-            for k in 0..POINTS - 1 - i {
-                right[k] = 0.5 * (right[k] + right[k + 1]);
-            }
-        }
-        stack.push((right, from + 0.5f64.powi(depth + 1), depth + 1));
-        stack.push((left, from, depth + 1));
+/// Parts of a panel are halved down to this length.
+const FINEST: f64 = 1.0 / 65536.0;
+
+/// The first place at which the polynomial with these Bernstein coefficients on `[from, from + length]` is at most `level`.
+fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> Option<f64> {
+    if b.iter().all(|b| *b > level) {
+        return None;
     }
-    None
+    if b[0] <= level {
+        return Some(from);
+    }
+    let half = 0.5 * length;
+    if length <= FINEST {
+        return Some(from + half);
+    }
+    let (mut left, mut right) = ([0.0; POINTS], *b);
+    for i in 0..POINTS {
+        left[i] = right[0];
+        for k in 0..POINTS - 1 - i {
+            right[k] = 0.5 * (right[k] + right[k + 1]);
+        }
+    }
+    first_at_or_below(&left, level, from, half).or_else(|| first_at_or_below(&right, level, from + half, half))
 }
 
 /// From values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to

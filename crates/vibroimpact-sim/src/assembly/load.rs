@@ -8,7 +8,7 @@
 //!
 //! So what is carried of an elastic mode is free motion, and a contact sees of the loads a cubic and a few sinusoids.
 
-use super::problem::{Assembly, Force};
+use super::problem::{Force, Load};
 use super::system::{Link, Span, System};
 use crate::panel::legendre::TAYLOR;
 use num_complex::Complex64;
@@ -62,7 +62,7 @@ pub(crate) struct Loads {
 }
 
 impl Loads {
-    pub fn new<L>(assembly: &Assembly<L>, system: &System) -> Loads {
+    pub fn new(given: &[Load], system: &System) -> Loads {
         let mut loads = Loads {
             harmonics: Vec::new(),
             lines: Vec::new(),
@@ -74,7 +74,7 @@ impl Loads {
             rigid: Vec::new(),
             contacts: vec![Line::default(); system.links.len()],
         };
-        for load in &assembly.loads {
+        for load in given {
             let span = system.span(load.body, &load.shape);
             match &load.force {
                 Force::Harmonic { force_n, omega_rad_s, phase_rad } => {

@@ -5,13 +5,13 @@
 //! tried again shorter, or cut at the event, which is located and handed to the law. Without closed contact there is
 //! nothing to solve, and panels are as long as it is certain that none closes.
 
-use super::collocate::{Collocated, Unknown, collocate};
+use super::collocate::{Collocated, Newton, Unknown, collocate};
 use super::dense::{Panel, Seen, Stretch};
-use super::enclosure::{FlightBounds, Pull, bend_of_loads, first_closing, of_panel};
+use super::enclosure::{FlightBounds, Held, Pull, bend_of_loads, first_closing, of_panel};
 use super::event::{EventFunction, Verdict};
 use super::ledger::{Account, Moment};
 use super::load::Loads;
-use super::problem::{Assembly, Contact, Settings};
+use super::problem::{Posed, Settings};
 use super::rest;
 use super::solution::{Counts, Interval, Observer, Outcome, Reason};
 use super::state::{Phase, State, Touch};
@@ -19,8 +19,9 @@ use super::system::{Span, System};
 use super::tables::Tables;
 use super::terminal::{self, Landed, REACH, Window, series_of, value};
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
-use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, slopes, truncation};
+use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, evaluate_at, slopes, truncation};
 use crate::panel::peak::Peak;
+use crate::panel::vector::{sum_over, vectorized};
 use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
 
 /// Part of the stated tolerance that one panel may use up.
@@ -60,16 +61,25 @@ struct Horizon {
     at_s: f64,
 }
 
-/// A panel tried on a level: the closed contacts' forces, all contacts' overlaps, and what they are at its end.
-struct Trial {
+/// A panel that is tried; the memory serves one trial after the other.
+#[derive(Default)]
+struct Trial<'a> {
+    /// Closed contacts, then open ones that could close, and how many are closed.
+    contacts: Vec<usize>,
+    closed: usize,
+    unknowns: Vec<Unknown<'a>>,
+    newton: Newton,
+    /// The closed contacts' forces, by nodes and by coefficients.
     solved: Vec<Collocated>,
     force: Vec<Nodal>,
+    /// All contacts' overlaps at the nodes, and at the end with their rates.
     overlap: Vec<Nodal>,
     end: Vec<(f64, f64)>,
 }
 
-pub(crate) struct March<'a, L> {
-    pub assembly: &'a Assembly<L>,
+pub(crate) struct March<'a> {
+    pub laws: &'a [&'a dyn ContactLaw],
+    posed: &'a Posed<'a>,
     pub system: &'a System,
     tables: &'a mut Tables,
     pub loads: Loads,
@@ -87,6 +97,8 @@ pub(crate) struct March<'a, L> {
     pub record: Option<Vec<Stretch>>,
     /// Time, amplitudes and rates when the last contact opened, where the run may end there.
     departure: (f64, Vec<f64>, Vec<f64>),
+    trial: Trial<'a>,
+    held: Held,
     level: i32,
     horizon: Option<Horizon>,
     /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
@@ -103,17 +115,17 @@ pub(crate) struct March<'a, L> {
     stop: Option<Reason>,
 }
 
-impl<'a, L: ContactLaw> March<'a, L> {
+impl<'a> March<'a> {
     pub fn new(
-        assembly: &'a Assembly<L>,
+        posed: &'a Posed<'a>,
         system: &'a System,
         tables: &'a mut Tables,
         settings: Settings,
         observer: &'a mut dyn Observer,
-    ) -> March<'a, L> {
-        let loads = Loads::new(assembly, system);
+    ) -> March<'a> {
+        let loads = Loads::new(posed.loads, system);
         let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
-        for (body, places) in assembly.bodies.iter().zip(&system.place) {
+        for (body, places) in posed.bodies.iter().zip(&system.place) {
             for (k, place) in places.iter().enumerate() {
                 (amplitude[*place], rate[*place]) = (body.amplitude[k], body.rate[k]);
             }
@@ -130,9 +142,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
             inverse_mass: 0.0,
             statistics: Default::default(),
         };
-        let states = assembly.contacts.iter().map(|contact| state(contact.gap_m)).collect();
+        let states = posed.gaps_m.iter().map(|gap| state(*gap)).collect();
         March {
-            assembly,
+            laws: &posed.laws,
+            posed,
             system,
             tables,
             loads,
@@ -146,6 +159,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
             account: None,
             record: None,
             departure: (0.0, Vec::new(), Vec::new()),
+            trial: Trial::default(),
+            held: Held::default(),
             level: J_MIN,
             horizon: None,
             landing: f64::INFINITY,
@@ -163,7 +178,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     pub fn follow(&mut self) -> Outcome {
         self.begin();
         if self.observer.wants_energy() {
-            self.account = Some(Account::open(&self.assembly.bodies, &self.here(), self.stored_j()));
+            self.account = Some(Account::open(self.posed.bodies, &self.here(), self.stored_j()));
         }
         let outcome = loop {
             if let Some(reason) = self.stop {
@@ -230,10 +245,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Energy that the closed contacts store (J).
     pub fn stored_j(&self) -> f64 {
-        let of = |(state, contact): (&State, &Contact<L>)| {
-            state.touch().map_or(0.0, |touch| contact.law.stored_energy_j(&touch.branch, state.overlap))
+        let of = |(state, law): (&State, &&dyn ContactLaw)| {
+            state.touch().map_or(0.0, |touch| law.stored_energy_j(&touch.branch, state.overlap))
         };
-        self.states.iter().zip(&self.assembly.contacts).map(of).sum()
+        self.states.iter().zip(self.laws).map(of).sum()
     }
 
     fn limit(&mut self) -> Option<Reason> {
@@ -300,9 +315,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Rounding of an overlap that is a difference of where bodies are (m).
     fn noise(&self, c: usize) -> f64 {
-        let of = |span: &Span| {
-            let amplitude = &self.amplitude[span.modes.clone()];
-            span.psi.iter().zip(amplitude).map(|(psi, a)| (psi * a).abs()).sum::<f64>()
+        let of = |Span { modes, psi }: &Span| {
+            let [sum] = sum_over([psi, &self.amplitude[modes.clone()]], |[psi, a]| [(psi * a).abs()]);
+            sum
         };
         let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         4.0 * f64::EPSILON * (moved + self.states[c].reference.abs())
@@ -310,10 +325,22 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Rounding of an overlap as it is summed up over a panel of `h` (m).
     fn panel_noise(&self, c: usize, h: f64) -> f64 {
-        let of = |span: &Span| {
-            let (omega, n) = (&self.system.omega[span.modes.clone()], span.psi.len());
-            let (a, b) = (&self.amplitude[span.modes.clone()][..n], &self.rate[span.modes.clone()][..n]);
-            (0..n).map(|k| span.psi[k].abs() * ((omega[k] * h).min(1.0) * a[k].abs() + h * b[k].abs())).sum::<f64>()
+        let of = |Span { modes, psi }: &Span| {
+            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+            let [sum] = vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        [psi, omega, a, b],
+                        #[inline(always)]
+                        |[psi, omega, a, b]| {
+                            let turned = omega * h;
+                            [psi.abs() * ((if turned < 1.0 { turned } else { 1.0 }) * a.abs() + h * b.abs())]
+                        },
+                    )
+                },
+            );
+            sum
         };
         let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
@@ -322,8 +349,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
         tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
     }
 
-    fn law(&self, c: usize) -> &'a L {
-        &self.assembly.contacts[c].law
+    fn law(&self, c: usize) -> &'a dyn ContactLaw {
+        self.laws[c]
     }
 
     /// The momentum that the loads give a contact while it yields to them (N s), a scale for contacts that nothing else
@@ -331,7 +358,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
     fn momentum_of_loads(&self, c: usize) -> f64 {
         let inverse = self.states[c].inverse_mass;
         let mut acceleration = self.loads.acceleration(c, 0.0).abs();
-        for load in &self.assembly.loads {
+        for load in self.posed.loads {
             let span = self.system.span(load.body, &load.shape);
             let links = self.system.links[c].spans.iter().filter(|link| link.modes == span.modes);
             let drive: f64 = links.map(|link| link.psi.iter().zip(&span.psi).map(|(a, b)| a * b).sum::<f64>()).sum();
@@ -612,7 +639,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     // ---- contact ----
 
-    /// One trial of a panel with closed contacts, and what follows from it.
+    /// A step while contacts are closed: to an event that is near, to the end, or by a panel.
     fn contact(&mut self) {
         let lasting = self.lasting();
         // a terminal panel is no better than one of about its length
@@ -633,12 +660,20 @@ impl<'a, L: ContactLaw> March<'a, L> {
             }
             level = level_within(lasting);
         }
+        let mut trial = std::mem::take(&mut self.trial);
+        self.try_panel(level, &mut trial);
+        self.trial = trial;
+    }
+
+    /// A panel with closed contacts, and what follows from it.
+    fn try_panel(&mut self, level: i32, trial: &mut Trial<'a>) {
         let h = step_s(level);
-        let (contacts, closed) = self.involved(h);
-        let Some(trial) = self.attempt(level, &contacts, closed) else {
+        trial.closed = self.involved(h, &mut trial.contacts);
+        if !self.attempt(level, trial) {
             return self.refine(level + 1);
-        };
-        let judgement = self.judge(h, &contacts, closed, &trial.solved, &trial.overlap, true);
+        }
+        let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
+        let judgement = self.judge(h, contacts, closed, &trial.solved, &trial.overlap, true);
         if let Judgement::Meets(target, place) = judgement
             && place > 0.0
         {
@@ -666,7 +701,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
             self.counts.rejected_steps += 1;
             return self.transition(target);
         }
-        self.commit(level, &contacts, closed, trial);
+        self.commit(level, trial);
         if level == self.level && error * GROWTH < 1.0 {
             self.level = (level - 1).max(J_MIN);
         }
@@ -683,9 +718,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
         self.level = level;
     }
 
-    /// The contacts of a panel of `h`: the closed ones, then the open ones that could close; and how many are closed.
-    fn involved(&mut self, h: f64) -> (Vec<usize>, usize) {
-        let mut contacts: Vec<usize> = (0..self.states.len()).filter(|&c| self.states[c].is_closed()).collect();
+    /// The contacts of a panel of `h`: the closed ones, whose number it returns, then the open ones that could close.
+    fn involved(&mut self, h: f64, contacts: &mut Vec<usize>) -> usize {
+        contacts.clear();
+        contacts.extend((0..self.states.len()).filter(|&c| self.states[c].is_closed()));
         let closed = contacts.len();
         let lasting = self.lasting();
         for c in 0..self.states.len() {
@@ -701,16 +737,21 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 contacts.push(c);
             }
         }
-        (contacts, closed)
+        closed
     }
 
     /// The closed contacts' laws and first guesses on a panel of `h`.
-    fn unknowns(&self, contacts: &[usize], h: f64, free: impl Fn(usize) -> Nodal) -> Vec<Unknown<'a, L>> {
-        let unknown = |(i, &c): (usize, &usize)| {
+    fn unknowns<'s>(
+        &'s self,
+        contacts: &'s [usize],
+        h: f64,
+        free: impl Fn(usize) -> Nodal + 's,
+    ) -> impl Iterator<Item = Unknown<'a>> + 's {
+        let unknown = move |(i, &c): (usize, &usize)| {
             let state = &self.states[c];
             let touch = state.touch()?;
             let guess = touch.previous.map_or([0.0; Q], |(coefficients, length)| {
-                BASIS.nodes.map(|s| evaluate(&coefficients, 1.0 + s * h / length).max(0.0))
+                evaluate_at(&coefficients, &BASIS.nodes.map(|s| 1.0 + s * h / length)).map(|force| force.max(0.0))
             });
             Some(Unknown {
                 law: self.law(c),
@@ -722,21 +763,29 @@ impl<'a, L: ContactLaw> March<'a, L> {
                 guess,
             })
         };
-        contacts.iter().enumerate().filter_map(unknown).collect()
+        contacts.iter().enumerate().filter_map(unknown)
     }
 
-    fn attempt(&mut self, level: i32, contacts: &[usize], closed: usize) -> Option<Trial> {
+    /// Solves for the forces of a panel; `false` if it is too long for that.
+    fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
+        let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end } = trial;
+        let (contacts, closed) = (contacts.as_slice(), *closed);
         self.tables.prepare(self.system, level, contacts, &contacts[..closed]);
-        let free: Vec<Nodal> = contacts.iter().map(|&c| self.free_at_nodes(level, c)).collect();
-        let unknowns = self.unknowns(&contacts[..closed], h, |i| free[i]);
+        overlap.clear();
+        overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c)));
+        unknowns.clear();
+        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
         let tables = &*self.tables;
         let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
-        let solved = collocate(&unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, &mut self.counts)?;
-        let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
-        let (mut overlap, mut end) = (Vec::with_capacity(contacts.len()), Vec::with_capacity(contacts.len()));
+        if !collocate(unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, (newton, solved), &mut self.counts) {
+            return false;
+        }
+        force.clear();
+        force.extend(solved.iter().map(|solved| BASIS.coefficients(&solved.force)));
+        end.clear();
         for (i, &c) in contacts.iter().enumerate() {
-            let mut nodal = free[i];
+            let nodal = &mut overlap[i];
             let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
             let (by_loads, rate_of_loads) = self.moved_by_loads(c, h);
             let mut forced = 0.0;
@@ -754,10 +803,12 @@ impl<'a, L: ContactLaw> March<'a, L> {
                     }
                 }
             }
-            overlap.push(if i < closed { solved[i].compression } else { nodal });
+            if i < closed {
+                *nodal = solved[i].compression;
+            }
             end.push((self.states[c].overlap + (moved + by_loads + forced), rate + rate_of_loads));
         }
-        Some(Trial { solved, force, overlap, end })
+        true
     }
 
     /// Overlap of a contact at the nodes if there were no contact force.
@@ -795,13 +846,21 @@ impl<'a, L: ContactLaw> March<'a, L> {
         enclosed: bool,
     ) -> Judgement {
         let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
-        let pulls = self.pulls(&contacts[..closed]);
+        let pulls = if enclosed { self.pulls(&contacts[..closed]) } else { Vec::new() };
         for (i, &c) in contacts.iter().enumerate() {
             let state = &self.states[c];
             let mut rho = [0.0; 3];
             if enclosed {
                 let missed = self.tables.missed(self.system, level_within(h));
-                rho = of_panel(self.system, missed, &self.loads, c, h, (&self.amplitude, &self.rate), &pulls);
+                rho = of_panel(
+                    self.system,
+                    missed,
+                    &self.loads,
+                    c,
+                    h,
+                    (&self.amplitude, &self.rate),
+                    (&pulls, &mut self.held),
+                );
             }
             let noise = self.panel_noise(c, h);
             let mut acceleration = None;
@@ -886,8 +945,9 @@ impl<'a, L: ContactLaw> March<'a, L> {
         closed.iter().filter_map(pull).collect()
     }
 
-    fn commit(&mut self, level: i32, contacts: &[usize], closed: usize, trial: Trial) {
+    fn commit(&mut self, level: i32, trial: &Trial) {
         let h = step_s(level);
+        let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
         self.show(h, &contacts[..closed], &trial.force);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {
@@ -933,9 +993,10 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Goes on to the next break of the loads or the end, `length` away.
     fn land_at(&mut self, length: f64) {
-        let (contacts, closed) = self.involved(length);
+        let mut contacts = Vec::new();
+        let closed = self.involved(length, &mut contacts);
         let window = self.window(&contacts, closed, length);
-        let mut unknowns = self.unknowns(&contacts[..closed], length, |_| [0.0; Q]);
+        let mut unknowns: Vec<_> = self.unknowns(&contacts[..closed], length, |_| [0.0; Q]).collect();
         let Some(landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
@@ -963,7 +1024,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
 
     /// Goes to the event, expected after `expected` seconds and at most `longest` away.
     fn land(&mut self, target: Target, expected: f64, longest: f64) {
-        let (contacts, closed) = self.involved(longest);
+        let mut contacts = Vec::new();
+        let closed = self.involved(longest, &mut contacts);
         let Some(at) = contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
@@ -1011,7 +1073,7 @@ impl<'a, L: ContactLaw> March<'a, L> {
         let state = &self.states[target.contact];
         let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
-        let mut unknowns = self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]);
+        let mut unknowns: Vec<_> = self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect();
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high: Option<(f64, f64)> = None;
         let mut side = 0;
@@ -1063,19 +1125,18 @@ impl<'a, L: ContactLaw> March<'a, L> {
     /// enough for the laws to hold there as they do at the nodes.
     fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
         let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
-        let mut landed = from.clone();
+        let (mut length, mut end) = (from.length, from.end[at]);
         for _ in 0..8 {
-            let (margin, slope) = self.margin(target, landed.end[at]);
-            let next = landed.length - margin / slope;
+            let (margin, slope) = self.margin(target, end);
+            let next = length - margin / slope;
             if !range.contains(&next) {
                 return None;
             }
-            let moved = (next - landed.length).abs();
-            landed = window.carried(from, next);
             // the next of Newton's steps would be the square of this one
-            if moved <= 1e-7 * next {
-                return Some(landed);
+            if (next - length).abs() <= 1e-7 * next {
+                return Some(window.carried(from, next));
             }
+            (length, end) = (next, window.end(from, at, next));
         }
         None
     }
@@ -1143,8 +1204,8 @@ impl<'a, L: ContactLaw> March<'a, L> {
         }
         let stretch = self.stretch(h, contacts, force);
         if streams {
-            let (system, loads, assembly) = (self.system, &self.loads, self.assembly);
-            self.observer.panel(&Panel { system, loads, assembly, stretch: &stretch });
+            let (system, loads, laws) = (self.system, &self.loads, self.laws);
+            self.observer.panel(&Panel { system, loads, laws, stretch: &stretch });
         }
         if let Some(record) = &mut self.record {
             // a flight without loads is one stretch, however many panels it took to see that nothing closes

@@ -57,7 +57,7 @@ mod ledger;
 pub(crate) mod load;
 mod march;
 mod orbit;
-mod problem;
+pub(crate) mod problem;
 mod reliability;
 mod rest;
 mod solution;

@@ -2,6 +2,7 @@
 
 use crate::InvalidInput;
 pub use crate::panel::oscillator::BodyMode;
+use contact_models::ContactLaw;
 
 /// Bounds on sizes: wide enough for any system of units, narrow enough that no product overflows.
 const SCALE_MAX: f64 = 1e30;
@@ -180,7 +181,34 @@ fn require_all_finite(values: &[f64], count: usize, field: &str) -> Result<(), I
     wrong.map_or(Ok(()), |k| require(false, || format!("{field}[{k}]"), values[k], FINITE))
 }
 
+/// An assembly as the engine reads it, whatever the type of its laws: the engine is compiled once.
+pub(crate) struct Posed<'a> {
+    pub bodies: &'a [Body],
+    /// Of every contact.
+    pub sides: Vec<&'a [Point; 2]>,
+    pub gaps_m: Vec<f64>,
+    pub laws: Vec<&'a dyn ContactLaw>,
+    pub loads: &'a [Load],
+}
+
+impl<L: ContactLaw> Assembly<L> {
+    pub(crate) fn posed(&self) -> Posed<'_> {
+        self.with_laws(self.contacts.iter().map(|contact| &contact.law as &dyn ContactLaw).collect())
+    }
+}
+
 impl<L> Assembly<L> {
+    /// With other laws, one for each contact.
+    pub(crate) fn with_laws<'a>(&'a self, laws: Vec<&'a dyn ContactLaw>) -> Posed<'a> {
+        Posed {
+            bodies: &self.bodies,
+            sides: self.contacts.iter().map(|contact| &contact.sides).collect(),
+            gaps_m: self.contacts.iter().map(|contact| contact.gap_m).collect(),
+            laws,
+            loads: &self.loads,
+        }
+    }
+
     /// Checks every number.
     ///
     /// # Errors

@@ -36,7 +36,7 @@ struct Equilibrium {
 /// Whether the one contact of two bodies that no load drives has no more than this part of the speed of its first approach
 /// left: neither between their rigid motions, nor in its force, nor in their vibrations. Vibrations are measured from the
 /// deflection under the present force where something holds the bodies.
-pub(crate) fn has_faded<L: ContactLaw>(march: &March<L>, part: f64) -> bool {
+pub(crate) fn has_faded(march: &March, part: f64) -> bool {
     let [state] = march.states.as_slice() else { return false };
     let (system, link) = (march.system, &march.system.links[0]);
     if !march.loads.is_empty() {
@@ -59,7 +59,7 @@ pub(crate) fn has_faded<L: ContactLaw>(march: &March<L>, part: f64) -> bool {
 
 /// The compression at which a contact on this branch opens; `None` if another branch, which opens at another one, may
 /// come first.
-fn opens_at<L: ContactLaw>(law: &L, branch: &Branch, compression: f64, depth: usize) -> Option<f64> {
+fn opens_at(law: &dyn ContactLaw, branch: &Branch, compression: f64, depth: usize) -> Option<f64> {
     let boundaries = law.boundaries(branch);
     let yields = boundaries.iter().any(|boundary| boundary.per_rate == 0.0 && boundary.per_compression < 0.0);
     if branch.stage == Stage::Loading || yields {
@@ -83,7 +83,7 @@ fn opens_at<L: ContactLaw>(law: &L, branch: &Branch, compression: f64, depth: us
 }
 
 /// Whether nothing that can still happen opens or closes a contact.
-pub(crate) fn is_certain<L: ContactLaw>(march: &March<L>) -> bool {
+pub(crate) fn is_certain(march: &March) -> bool {
     if !march.loads.are_constant() {
         return false;
     }
@@ -92,7 +92,7 @@ pub(crate) fn is_certain<L: ContactLaw>(march: &March<L>) -> bool {
     equilibrium(march, closed).is_some_and(|equilibrium| holds(march, &equilibrium))
 }
 
-fn equilibrium<L: ContactLaw>(march: &March<L>, closed: Vec<usize>) -> Option<Equilibrium> {
+fn equilibrium(march: &March, closed: Vec<usize>) -> Option<Equilibrium> {
     let system = march.system;
     let rigid: Vec<usize> = (0..system.modes.len()).filter(|&k| system.modes[k].is_rigid()).collect();
     let (n, m) = (closed.len(), rigid.len());
@@ -164,13 +164,13 @@ fn equilibrium<L: ContactLaw>(march: &March<L>, closed: Vec<usize>) -> Option<Eq
 }
 
 /// Force of a closed contact at rest with this compression, and its slope.
-fn law_at<L: ContactLaw>(march: &March<L>, c: usize, compression: f64) -> (f64, f64) {
+fn law_at(march: &March, c: usize, compression: f64) -> (f64, f64) {
     let Some(touch) = march.states[c].touch() else { return (0.0, 0.0) };
-    let force = march.assembly.contacts[c].law.force(&touch.branch, compression, 0.0);
+    let force = march.laws[c].force(&touch.branch, compression, 0.0);
     (force.force_n, force.per_compression_n_m)
 }
 
-fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
+fn holds(march: &March, at: &Equilibrium) -> bool {
     let system = march.system;
     if at.force.iter().any(|force| *force <= 0.0) {
         return false;
@@ -178,7 +178,7 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
     let stored = |i: usize, compression: f64| {
         let c = at.closed[i];
         let touch = march.states[c].touch();
-        touch.map_or(0.0, |touch| march.assembly.contacts[c].law.stored_energy_j(&touch.branch, compression))
+        touch.map_or(0.0, |touch| march.laws[c].stored_energy_j(&touch.branch, compression))
     };
     let mut energy: f64 = march.rate.iter().map(|b| 0.5 * b * b).sum();
     for (k, mode) in system.modes.iter().enumerate().filter(|(_, mode)| !mode.is_rigid()) {
@@ -192,7 +192,7 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
         yielding.push(law_at(march, c, still).1);
     }
     let stays_closed = |i: usize| {
-        let law = &march.assembly.contacts[at.closed[i]].law;
+        let law = march.laws[at.closed[i]];
         let touch = march.states[at.closed[i]].touch();
         let opens_at = touch.and_then(|touch| opens_at(law, &touch.branch, at.compression[i], 1));
         opens_at.is_some_and(|xi| at.force[i] * (at.compression[i] - xi) - stored(i, at.compression[i]) > energy)
@@ -206,14 +206,7 @@ fn holds<L: ContactLaw>(march: &March<L>, at: &Equilibrium) -> bool {
             .all(|(c, state)| stays_open(march, at, c, state, energy, &yielding))
 }
 
-fn stays_open<L: ContactLaw>(
-    march: &March<L>,
-    at: &Equilibrium,
-    c: usize,
-    state: &State,
-    energy: f64,
-    yielding: &[f64],
-) -> bool {
+fn stays_open(march: &March, at: &Equilibrium, c: usize, state: &State, energy: f64, yielding: &[f64]) -> bool {
     let (system, link) = (march.system, &march.system.links[c]);
     let (shift, _) = march.loads.overlap(c, march.time_s);
     let (mut overlap, mut reach) = (state.reference + shift, 0.0);

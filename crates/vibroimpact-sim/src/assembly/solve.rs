@@ -2,7 +2,7 @@
 
 use super::dense::{Stretch, in_users_order};
 use super::march::March;
-use super::problem::{Assembly, Settings};
+use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{COARSER, Comparison};
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
@@ -41,22 +41,23 @@ pub fn run<L: ContactLaw>(
 }
 
 /// Solves an assembly, more than once if asked: its tables are built as they are needed and kept.
-pub struct Solver<'a, L> {
-    assembly: &'a Assembly<L>,
+pub struct Solver<'a> {
+    posed: Posed<'a>,
     system: System,
     tables: Tables,
 }
 
-impl<'a, L: ContactLaw> Solver<'a, L> {
+impl<'a> Solver<'a> {
     /// A solver for an assembly; builds no table yet.
     ///
     /// # Errors
     /// As [`run`].
-    pub fn new(assembly: &'a Assembly<L>) -> Result<Solver<'a, L>, InvalidInput> {
+    pub fn new<L: ContactLaw>(assembly: &'a Assembly<L>) -> Result<Solver<'a>, InvalidInput> {
         assembly.check()?;
-        let system = System::new(assembly);
+        let posed = assembly.posed();
+        let system = System::new(&posed);
         let tables = Tables::new(&system);
-        Ok(Solver { assembly, system, tables })
+        Ok(Solver { posed, system, tables })
     }
 
     /// As [`run`].
@@ -65,7 +66,7 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
     /// As [`run`].
     pub fn run(&mut self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         settings.check()?;
-        Ok(follow(self.assembly, (&self.system, &mut self.tables), settings, observer, false).0)
+        Ok(follow(&self.posed, (&self.system, &mut self.tables), settings, observer, false).0)
     }
 
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
@@ -92,14 +93,14 @@ impl<'a, L: ContactLaw> Solver<'a, L> {
 }
 
 /// One run, and all stretches of its motion if they are wanted; after bodies have parted for good the last one is endless.
-pub(crate) fn follow<L: ContactLaw>(
-    assembly: &Assembly<L>,
+pub(crate) fn follow(
+    posed: &Posed,
     (system, tables): (&System, &mut Tables),
     settings: &Settings,
     observer: &mut dyn Observer,
     record: bool,
 ) -> (Run, Vec<Stretch>) {
-    let mut march = March::new(assembly, system, tables, *settings, observer);
+    let mut march = March::new(posed, system, tables, *settings, observer);
     march.record = record.then(Vec::new);
     let outcome = march.follow();
     let stretches = march.recorded(outcome == Outcome::Parted);
@@ -114,9 +115,9 @@ pub(crate) fn follow<L: ContactLaw>(
     (Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts }, stretches)
 }
 
-fn contact_end<L: ContactLaw>(march: &March<L>, c: usize) -> ContactEnd {
+fn contact_end(march: &March, c: usize) -> ContactEnd {
     let state = &march.states[c];
-    let law = &march.assembly.contacts[c].law;
+    let law = march.laws[c];
     let mut end = ContactEnd {
         statistics: state.statistics,
         displacement_m: [0.0; 2],

@@ -88,8 +88,7 @@ impl State {
         let statistics = &mut self.statistics;
         statistics.contact_time_s += h;
         statistics.impulse_n_s += h * coefficients[0];
-        // the first coefficient is the mean: its row holds the weights of the nodes
-        let weights = &BASIS.to_coefficients[0];
+        let weights = &BASIS.weights;
         for i in 0..Q {
             let (weight, power) = (h * weights[i], nodal[i] * rate[i]);
             statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];

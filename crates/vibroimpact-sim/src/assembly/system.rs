@@ -1,7 +1,8 @@
 //! The assembly as the march needs it: all modes in one list, each contact as a row of weights over them.
 
-use super::problem::{Assembly, Point};
+use super::problem::{Point, Posed};
 use crate::panel::oscillator::BodyMode;
+use crate::panel::vector::sum_over;
 use std::ops::Range;
 
 /// Weights `psi_k` over the modes of one body: what the modes' unit amplitudes add to the overlap of a contact.
@@ -14,7 +15,8 @@ pub(crate) struct Span {
 impl Span {
     /// `sum psi_k values_k`.
     pub fn sum(&self, values: &[f64]) -> f64 {
-        self.psi.iter().zip(&values[self.modes.clone()]).map(|(psi, value)| psi * value).sum()
+        let [sum] = sum_over([&self.psi, &values[self.modes.clone()]], |[psi, value]| [psi * value]);
+        sum
     }
 }
 
@@ -75,6 +77,8 @@ pub(crate) struct System {
     pub omega: Vec<f64>,
     pub drag: Vec<f64>,
     pub square: Vec<f64>,
+    /// `1/omega_k` (s); of rigid modes infinite.
+    pub inverse: Vec<f64>,
     pub turning: Vec<f64>,
     /// The largest damping ratio.
     pub most_damping: f64,
@@ -88,9 +92,9 @@ pub(crate) struct System {
 }
 
 impl System {
-    pub fn new<L>(assembly: &Assembly<L>) -> System {
+    pub fn new(posed: &Posed) -> System {
         let (mut modes, mut bodies, mut place) = (Vec::new(), Vec::new(), Vec::new());
-        for body in &assembly.bodies {
+        for body in posed.bodies {
             let first = modes.len();
             let mut order: Vec<usize> = (0..body.modes.len()).collect();
             order.sort_by(|&i, &j| body.modes[i].omega_rad_s.total_cmp(&body.modes[j].omega_rad_s));
@@ -107,6 +111,7 @@ impl System {
         let most_damping = modes.iter().map(|mode| mode.damping_ratio).fold(0.0, f64::max);
         let drag: Vec<f64> = modes.iter().map(|mode| 2.0 * mode.damping_ratio * mode.omega_rad_s).collect();
         let square = modes.iter().map(|mode| mode.omega_rad_s * mode.omega_rad_s).collect();
+        let inverse = omega.iter().map(|omega| omega.recip()).collect();
         let mut turning = Vec::with_capacity(modes.len());
         for body in &bodies {
             let mut fastest = 0.0f64;
@@ -116,8 +121,9 @@ impl System {
             }
         }
         let (links, neighbours) = (Vec::new(), Vec::new());
-        let mut system = System { modes, omega, drag, square, turning, most_damping, bodies, place, links, neighbours };
-        system.links = assembly.contacts.iter().map(|contact| system.link(&contact.sides)).collect();
+        let mut system =
+            System { modes, omega, drag, square, inverse, turning, most_damping, bodies, place, links, neighbours };
+        system.links = posed.sides.iter().map(|sides| system.link(sides)).collect();
         let links = &system.links;
         let sharing = |one: &Link| (0..links.len()).filter(|&c| one.touches(&links[c])).collect();
         system.neighbours = links.iter().map(sharing).collect();

@@ -7,6 +7,7 @@ use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
 use crate::panel::forcing::{Compliance, Terms, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
+use crate::panel::vector::{sum_over, vectorized};
 
 /// Response of one contact's overlap to the force of another.
 pub(crate) struct Response {
@@ -117,18 +118,24 @@ impl Tables {
 
     /// How far free motion moves the overlap of a contact at the nodes. Needs [`Tables::prepare`].
     pub fn free_at_nodes(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> Nodal {
-        let mut moved = [0.0; Q];
-        let Some(forced) = self.forced(j) else { return moved };
-        for Span { modes, psi } in &link.spans {
-            let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
-            for (((from_a, from_b), psi), (a, b)) in forced.at_nodes[modes.clone()].iter().zip(psi).zip(motion) {
-                let (a, b) = (psi * a, psi * b);
-                for i in 0..Q {
-                    moved[i] += from_a[i] * a + from_b[i] * b;
+        let Some(forced) = self.forced(j) else { return [0.0; Q] };
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut moved = [0.0; Q];
+                for Span { modes, psi } in &link.spans {
+                    let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
+                    for (((from_a, from_b), psi), (a, b)) in forced.at_nodes[modes.clone()].iter().zip(psi).zip(motion)
+                    {
+                        let (a, b) = (psi * a, psi * b);
+                        for i in 0..Q {
+                            moved[i] += from_a[i] * a + from_b[i] * b;
+                        }
+                    }
                 }
-            }
-        }
-        moved
+                moved
+            },
+        )
     }
 
     /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Tables::prepare`].
@@ -140,14 +147,23 @@ impl Tables {
     pub fn free_at_end(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> (f64, f64) {
         let (mut moved, mut speed) = (0.0, 0.0);
         let Some(rotation) = self.levels[(j - J_MIN) as usize].rotation.as_deref() else { return (moved, speed) };
+        let Rotation { p11_less_1, p12, p21, p22 } = rotation;
         for Span { modes, psi } in &link.spans {
-            let (less, p12) = (&rotation.p11_less_1[modes.clone()], &rotation.p12[modes.clone()]);
-            let (p21, p22) = (&rotation.p21[modes.clone()], &rotation.p22[modes.clone()]);
-            let (a, b) = (&amplitude[modes.clone()], &rate[modes.clone()]);
-            for k in 0..psi.len() {
-                moved += psi[k] * (less[k] * a[k] + p12[k] * b[k]);
-                speed += psi[k] * (p21[k] * a[k] + p22[k] * b[k]);
-            }
+            let [less, p12, p21, p22, a, b] =
+                [p11_less_1, p12, p21, p22, amplitude, rate].map(|row| &row[modes.clone()]);
+            let rows = [psi, less, p12, p21, p22, a, b];
+            let [by_span, speed_by_span] = vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        rows,
+                        #[inline(always)]
+                        |[psi, less, p12, p21, p22, a, b]| [psi * (less * a + p12 * b), psi * (p21 * a + p22 * b)],
+                    )
+                },
+            );
+            moved += by_span;
+            speed += speed_by_span;
         }
         (moved, speed)
     }
@@ -158,20 +174,30 @@ impl Tables {
         let n = amplitude.len();
         let (less, p12) = (&rotation.p11_less_1[..n], &rotation.p12[..n]);
         let (p21, p22, rate) = (&rotation.p21[..n], &rotation.p22[..n], &mut rate[..n]);
-        for k in 0..n {
-            let (a, b) = (amplitude[k], rate[k]);
-            amplitude[k] = a + (less[k] * a + p12[k] * b);
-            rate[k] = p21[k] * a + p22[k] * b;
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for k in 0..n {
+                    let (a, b) = (amplitude[k], rate[k]);
+                    amplitude[k] = a + (less[k] * a + p12[k] * b);
+                    rate[k] = p21[k] * a + p22[k] * b;
+                }
+            },
+        );
     }
 
     /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
     pub fn push(&self, j: i32, link: &Link, force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
         let Some(forced) = self.forced(j) else { return };
-        for Span { modes, psi } in &link.spans {
-            accumulate(&mut amplitude[modes.clone()], psi, &forced.amplitude, modes.start, force);
-            accumulate(&mut rate[modes.clone()], psi, &forced.rate, modes.start, force);
-        }
+        vectorized(
+            #[inline(always)]
+            || {
+                for Span { modes, psi } in &link.spans {
+                    accumulate(&mut amplitude[modes.clone()], psi, &forced.amplitude, modes.start, force);
+                    accumulate(&mut rate[modes.clone()], psi, &forced.rate, modes.start, force);
+                }
+            },
+        );
     }
 
     /// Derivatives at zero of the response of contact `c` to an impulse of `other`.
@@ -194,6 +220,7 @@ impl Tables {
 }
 
 /// `state[k] -= psi[k] sum_n table[n][k] force[n]`, in one pass.
+#[inline(always)]
 fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usize, force: &Nodal) {
     let n = psi.len();
     let state = &mut state[..n];

@@ -3,13 +3,12 @@
 //! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series, whose
 //! terms at the contacts are the same few numbers whatever the length tried.
 
-use super::collocate::{Collocated, Unknown, collocate};
+use super::collocate::{Collocated, Newton, Unknown, collocate};
 use super::load::Loads;
 use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
-use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, dot, evaluate};
-use contact_models::ContactLaw;
+use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot, evaluate, evaluate_at};
 use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
@@ -67,60 +66,88 @@ impl Window {
     }
 
     /// Solves the panel of this length.
-    pub fn attempt<L: ContactLaw>(
-        &self,
-        length: f64,
-        unknowns: &mut [Unknown<L>],
-        counts: &mut Counts,
-    ) -> Option<Landed> {
-        let responses: Vec<Option<Matrix>> = self.kernels.iter().map(|kernel| response(kernel, length)).collect();
-        for (c, unknown) in unknowns.iter_mut().enumerate() {
-            unknown.free = BASIS.nodes.map(|s| value(&self.free[c], s * length)[0]);
+    pub fn attempt(&self, length: f64, unknowns: &mut [Unknown], counts: &mut Counts) -> Option<Landed> {
+        let (free, responses) = (self.free_at_nodes(length), self.responses(length));
+        for (unknown, free) in unknowns.iter_mut().zip(&free) {
+            unknown.free = *free;
         }
-        let solved = collocate(unknowns, |c, other| responses[c * self.closed + other].as_ref(), length, counts)?;
-        let force = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
-        Some(self.arrive(length, solved, force))
+        let mut solved = Vec::new();
+        let response = |c: usize, other: usize| responses[c * self.closed + other].as_ref();
+        if !collocate(unknowns, response, length, (&mut Newton::default(), &mut solved), counts) {
+            return None;
+        }
+        Some(self.arrive(length, solved, free, &responses))
+    }
+
+    fn free_at_nodes(&self, length: f64) -> Vec<Nodal> {
+        self.free.iter().map(|series| values(series, length)).collect()
+    }
+
+    fn responses(&self, length: f64) -> Vec<Option<Matrix>> {
+        self.kernels.iter().map(|kernel| response(kernel, length)).collect()
     }
 
     /// The panel under known forces: the overlaps at the nodes and at the end.
-    fn arrive(&self, length: f64, solved: Vec<Collocated>, force: Vec<Nodal>) -> Landed {
-        let (mut overlap, mut end) = (Vec::new(), Vec::new());
-        for (c, free) in self.free.iter().enumerate() {
-            let mut nodal = BASIS.nodes.map(|s| value(free, s * length)[0]);
-            let mut at_end = value(free, length);
+    fn arrive(
+        &self,
+        length: f64,
+        solved: Vec<Collocated>,
+        mut overlap: Vec<Nodal>,
+        responses: &[Option<Matrix>],
+    ) -> Landed {
+        let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
+        for (c, overlap) in overlap.iter_mut().enumerate() {
             for (other, solved) in solved.iter().enumerate() {
-                let kernel = &self.kernels[c * self.closed + other];
-                if let Some(response) = response(kernel, length) {
-                    for j in 0..Q {
-                        for i in 0..Q {
-                            nodal[i] += response[j][i] * solved.force[j];
-                        }
-                    }
-                    add_end(kernel, length, &solved.force, &force[other], &mut at_end);
+                if let Some(response) = &responses[c * self.closed + other] {
+                    let moved = apply(response, &solved.force);
+                    (0..Q).for_each(|i| overlap[i] += moved[i]);
                 }
             }
-            overlap.push(nodal);
-            end.push(at_end);
         }
-        Landed { length, solved, force, overlap, end }
+        let mut landed = Landed { length, solved, force, overlap, end: Vec::new() };
+        landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
+        landed
+    }
+
+    /// Overlap of a contact and its first two derivatives at the end, if these forces were cut short or carried on to
+    /// another length.
+    pub fn end(&self, from: &Landed, c: usize, length: f64) -> [f64; 3] {
+        let mut end = value(&self.free[c], length);
+        let part = length / from.length;
+        for (other, force) in from.force.iter().enumerate() {
+            let nodal = match part == 1.0 {
+                true => from.solved[other].force,
+                false => evaluate_at(force, &BASIS.nodes.map(|s| s * part)),
+            };
+            add_end(&self.kernels[c * self.closed + other], length, &nodal, evaluate(force, part), &mut end);
+        }
+        end
     }
 
     /// The same forces, cut short or carried on to another length.
     pub fn carried(&self, from: &Landed, length: f64) -> Landed {
-        let part = length / from.length;
-        let carry = |nodal: &Nodal| {
-            let coefficients = BASIS.coefficients(nodal);
-            BASIS.nodes.map(|s| evaluate(&coefficients, s * part))
-        };
+        let places = BASIS.nodes.map(|s| s * (length / from.length));
+        let carry = |nodal: &Nodal| evaluate_at(&BASIS.coefficients(nodal), &places);
         let carried = |solved: &Collocated| Collocated {
             force: carry(&solved.force),
             compression: carry(&solved.compression),
             rate: carry(&solved.rate),
         };
-        let solved: Vec<Collocated> = from.solved.iter().map(carried).collect();
-        let force = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
-        self.arrive(length, solved, force)
+        let solved = from.solved.iter().map(carried).collect();
+        self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))
     }
+}
+
+/// A series at the nodes of a panel of this length.
+fn values(series: &Series, length: f64) -> Nodal {
+    let t = BASIS.nodes.map(|s| s * length);
+    let mut values = [0.0; Q];
+    for term in series.iter().rev() {
+        for i in 0..Q {
+            values[i] = values[i] * t[i] + term;
+        }
+    }
+    values
 }
 
 /// Value, first and second derivative of a series at `t`.
@@ -163,11 +190,11 @@ fn response(kernel: &Series, length: f64) -> Option<Matrix> {
     })
 }
 
-/// Adds overlap, rate and acceleration at the end under these nodal forces with these coefficients.
-fn add_end(kernel: &Series, length: f64, nodal: &Nodal, force: &Nodal, end: &mut [f64; 3]) {
+/// Adds overlap, rate and acceleration at the end under these nodal forces, of which `last` is that at the end.
+fn add_end(kernel: &Series, length: f64, nodal: &Nodal, last: f64, end: &mut [f64; 3]) {
     let (scaled, terms) = scaled(kernel, length);
     let moments: [f64; TAYLOR] = array::from_fn(|p| if p < terms { dot(&BASIS.power_end[p], nodal) } else { 0.0 });
-    end[2] -= scaled[1] / length * evaluate(force, 1.0);
+    end[2] -= scaled[1] / length * last;
     for p in 1..terms {
         end[0] -= scaled[p] * length * moments[p];
         end[1] -= scaled[p] * moments[p - 1];

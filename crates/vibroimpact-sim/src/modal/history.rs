@@ -3,7 +3,6 @@
 use super::problem::{Mode, Start, Striker};
 use super::solution::{Outcome, Solution};
 use super::solve::all_modes;
-use crate::assembly::Assembly;
 use crate::assembly::dense::{Panel, Stretch};
 use crate::assembly::load::Loads;
 use crate::assembly::system::System;
@@ -49,7 +48,6 @@ pub struct EnergyLedger {
 /// The recorded motion of one impact; evaluates itself exactly at any time, given its contact force.
 pub struct History<L> {
     recorded: Recorded<L>,
-    system: System,
     loads: Loads,
     end_s: f64,
     /// Up to here the motion is known (s).
@@ -64,7 +62,8 @@ pub(crate) struct Recorded<L> {
     pub moved: Vec<usize>,
     pub striker: Striker,
     pub start: Start,
-    pub assembly: Assembly<L>,
+    pub law: L,
+    pub system: System,
     pub stretches: Vec<Stretch>,
     /// Work that the contact took up, and what the modes that move it lost to damping (J).
     pub contact_work_j: f64,
@@ -73,11 +72,9 @@ pub(crate) struct Recorded<L> {
 
 impl<L: ContactLaw> History<L> {
     pub(crate) fn new(recorded: Recorded<L>, solution: &Solution) -> History<L> {
-        let system = System::new(&recorded.assembly);
         History {
             ledger: recorded.ledger(solution),
-            loads: Loads::new(&recorded.assembly, &system),
-            system,
+            loads: Loads::new(&[], &recorded.system),
             recorded,
             end_s: solution.end_s,
             known_until_s: match solution.outcome {
@@ -117,7 +114,8 @@ impl<L: ContactLaw> History<L> {
     /// [`known_until_s`](History::known_until_s) as that. The force is that of the law at the compression and its rate, and
     /// so is never negative.
     pub fn at(&self, time_s: f64) -> Sample {
-        let (panel, h) = self.panel(time_s);
+        let laws: [&dyn ContactLaw; 1] = [&self.recorded.law];
+        let (panel, h) = self.panel(time_s, &laws);
         let contact = panel.contact_after(0, h);
         Sample {
             time_s: panel.stretch.start_s + h,
@@ -147,20 +145,20 @@ impl<L: ContactLaw> History<L> {
     }
 
     fn motion(&self, time_s: f64) -> (Vec<f64>, Vec<f64>) {
-        let (panel, h) = self.panel(time_s);
+        let (panel, h) = self.panel(time_s, &[]);
         let (amplitude, rate) = panel.modes_after(h);
         let Recorded { modes, moved, start, .. } = &self.recorded;
         all_modes(modes, moved, start, panel.stretch.start_s + h, (&amplitude, &rate))
     }
 
     /// The stretch at a time, and how far the time is into it (s).
-    fn panel(&self, time_s: f64) -> (Panel<'_, L>, f64) {
+    fn panel<'p>(&'p self, time_s: f64, laws: &'p [&'p dyn ContactLaw]) -> (Panel<'p>, f64) {
         let time_s = if time_s > 0.0 { time_s.min(self.known_until_s) } else { 0.0 };
         let stretches = &self.recorded.stretches;
         let after = stretches.partition_point(|stretch| stretch.start_s <= time_s);
         let stretch = &stretches[after.saturating_sub(1)];
-        let (system, loads, assembly) = (&self.system, &self.loads, &self.recorded.assembly);
-        (Panel { system, loads, assembly, stretch }, (time_s - stretch.start_s).min(stretch.length_s))
+        let (system, loads) = (&self.recorded.system, &self.loads);
+        (Panel { system, loads, laws, stretch }, (time_s - stretch.start_s).min(stretch.length_s))
     }
 }
 

@@ -19,8 +19,8 @@ pub(crate) fn mass_kg(striker: &Striker, modes: &[Mode]) -> Option<f64> {
     (striker.speed_m_s != 0.0).then_some(IMMOVABLE / inverse)
 }
 
-/// The impact of a striker on these of the structure's modes.
-pub(crate) fn assembly<L>(modes: &[Mode], moved: &[usize], striker: &Striker, law: L, start: &Start) -> Assembly<L> {
+/// The impact of a striker on these of the structure's modes, but for the law of their contact.
+pub(crate) fn assembly(modes: &[Mode], moved: &[usize], striker: &Striker, start: &Start) -> Assembly<()> {
     let pick = |values: &[f64]| moved.iter().map(|k| values[*k]).collect::<Vec<f64>>();
     let shape: Vec<f64> = moved.iter().map(|k| modes[*k].shape).collect();
     let deflection: f64 = moved.iter().map(|k| modes[*k].shape * start.amplitude[*k]).sum();
@@ -36,6 +36,6 @@ pub(crate) fn assembly<L>(modes: &[Mode], moved: &[usize], striker: &Striker, la
         side = Point::OfBody { body: STRIKER, shape: vec![mass_kg.sqrt().recip()] };
     }
     let sides = [side, Point::OfBody { body: STRUCTURE, shape }];
-    let contacts = vec![Contact { sides, gap_m: start.gap_m + deflection, law }];
+    let contacts = vec![Contact { sides, gap_m: start.gap_m + deflection, law: () }];
     Assembly { bodies, contacts, loads: Vec::new() }
 }

@@ -6,10 +6,11 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit;
 use crate::assembly::dense::Stretch;
+use crate::assembly::problem::Posed;
 use crate::assembly::solve::follow;
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
-use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
+use crate::assembly::{self, Interval, Ledger, Observer};
 use crate::panel::oscillator::propagate;
 use crate::{InvalidInput, StopReason};
 use contact_models::ContactLaw;
@@ -58,9 +59,9 @@ pub struct Solver {
 
 /// An impact to be solved.
 #[derive(Clone, Copy)]
-struct Impact<'a, L> {
+struct Impact<'a> {
     striker: &'a Striker,
-    law: &'a L,
+    law: &'a dyn ContactLaw,
     start: &'a Start,
     settings: &'a Settings,
 }
@@ -114,10 +115,10 @@ impl Solver {
     ///
     /// # Errors
     /// Names the field, its value and what would be allowed, for input that poses no impact problem.
-    pub fn solve<L: ContactLaw>(
+    pub fn solve(
         &mut self,
         striker: &Striker,
-        law: &L,
+        law: &dyn ContactLaw,
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
@@ -143,7 +144,8 @@ impl Solver {
             striker: *striker,
             contact_work_j: run.contact_work_j,
             damping_j: run.energy.map_or(0.0, |ledger| ledger.modal_damping_j),
-            assembly: posed::assembly(&self.modes, &self.moved, striker, law.clone(), &start),
+            law: law.clone(),
+            system: System::new(&posed::assembly(&self.modes, &self.moved, striker, &start).with_laws(Vec::new())),
             start,
             stretches: run.stretches,
         };
@@ -151,10 +153,10 @@ impl Solver {
         Ok((solution, history))
     }
 
-    fn solve_into<L: ContactLaw>(
+    fn solve_into(
         &mut self,
         striker: &Striker,
-        law: &L,
+        law: &dyn ContactLaw,
         start: Option<&Start>,
         settings: &Settings,
         record: bool,
@@ -200,7 +202,7 @@ impl Solver {
 
     /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
     /// certain.
-    fn uncertainty<L: ContactLaw>(&mut self, value: f64, impact: &Impact<L>, counts: &mut Counts) -> f64 {
+    fn uncertainty(&mut self, value: f64, impact: &Impact, counts: &mut Counts) -> f64 {
         let settings = impact.settings;
         let coarser = |factor: f64| factor * settings.tolerance.min(LOOSEST);
         let same = self.again(impact, coarser(COARSER), counts);
@@ -223,15 +225,16 @@ impl Solver {
     }
 
     /// The restitution of the same impact at another tolerance.
-    fn again<L: ContactLaw>(&mut self, impact: &Impact<L>, tolerance: f64, counts: &mut Counts) -> Option<f64> {
+    fn again(&mut self, impact: &Impact, tolerance: f64, counts: &mut Counts) -> Option<f64> {
         let run = self.run(impact, tolerance, false);
         *counts += run.counts;
         self.restitution(&run, impact.striker, impact.start)
     }
 
-    fn run<L: ContactLaw>(&mut self, impact: &Impact<L>, tolerance: f64, record: bool) -> Run {
+    fn run(&mut self, impact: &Impact, tolerance: f64, record: bool) -> Run {
         let Impact { striker, law, start, settings } = *impact;
-        let assembly = posed::assembly(&self.modes, &self.moved, striker, law, start);
+        let assembly = posed::assembly(&self.modes, &self.moved, striker, start);
+        let posed = assembly.with_laws(vec![law]);
         let wanted = assembly::Settings {
             end_s: f64::INFINITY,
             tolerance: tolerance.min(0.1),
@@ -242,8 +245,8 @@ impl Solver {
             rest_from_s: if record { settings.until_s } else { 0.0 },
         };
         let mut watch = Watch { intervals: Vec::new(), records: record };
-        let (system, tables) = self.tables(&assembly);
-        let (run, stretches) = follow(&assembly, (system, tables), &wanted, &mut watch, record);
+        let (system, tables) = self.tables(&posed);
+        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut watch, record);
         let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
             assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
@@ -275,8 +278,8 @@ impl Solver {
     }
 
     /// The system of an assembly, and its tables, of which all that concerns the structure is kept.
-    fn tables<L>(&mut self, assembly: &Assembly<L>) -> (&System, &mut Tables) {
-        let system = System::new(assembly);
+    fn tables(&mut self, posed: &Posed) -> (&System, &mut Tables) {
+        let system = System::new(posed);
         let same = self.kept.take().filter(|(last, _)| last.modes.len() == system.modes.len());
         let tables = match same {
             Some((last, mut tables)) => {

@@ -26,9 +26,9 @@ pub(crate) fn start(start: &Start) -> Start {
 }
 
 /// A law between compressions and their rates per unit.
-pub(crate) struct Law<'a, L>(pub &'a L);
+pub(crate) struct Law<'a>(pub &'a dyn ContactLaw);
 
-impl<L: ContactLaw> ContactLaw for Law<'_, L> {
+impl ContactLaw for Law<'_> {
     fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
         self.0.touch(memory, approach_speed_m_s * UNITS)
     }

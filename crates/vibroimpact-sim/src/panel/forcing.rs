@@ -103,7 +103,7 @@ impl Compliance {
         for n in 0..Q {
             for j in 0..Q {
                 for i in 0..Q {
-                    compliance[j][i] += self.legendre[n][i] * basis.to_coefficients[n][j];
+                    compliance[j][i] += self.legendre[n][i] * basis.to_coefficients[j][n];
                 }
             }
         }

@@ -24,8 +24,9 @@ pub(crate) type Matrix = [[f64; Q]; Q];
 pub(crate) struct Basis {
     /// Gauss nodes on (0, 1).
     pub nodes: Nodal,
-    /// `to_coefficients[n][j]`: nodal values to Legendre coefficients.
+    /// Nodal values to Legendre coefficients, by columns, and the weights of the nodes, which are its first row.
     pub to_coefficients: Matrix,
+    pub weights: Nodal,
     /// `restricted[i][n][m]`: `P_n` on [0, 1], seen on [0, c_i], in Legendre polynomials of that part.
     pub restricted: [Matrix; Q],
     /// `power[p][j][i]`: integral over [0, c_i] of `(c_i - s)^p / p!` times the nodal polynomial `j`.
@@ -39,7 +40,7 @@ pub(crate) struct Basis {
     within: [f64; SERIES],
     /// `derivatives[k][n][i]`: `d^k/ds^k P_n(2s-1)` at node `i`.
     pub derivatives: [Matrix; Q],
-    /// Derivative at node `i` of the polynomial through the start (first) and the nodes (rest).
+    /// Derivative at the nodes of the polynomial through the start (first) and the nodes (rest, by columns).
     pub slope_from_start: Nodal,
     pub slope_from_nodes: Matrix,
     /// The finer rule on (0, 1): node and weight.
@@ -49,21 +50,22 @@ pub(crate) struct Basis {
 /// The basis, built at first use.
 pub(crate) static BASIS: LazyLock<Basis> = LazyLock::new(Basis::new);
 
+/// Of the recurrence `(n+1) P_{n+1} = (2n+1) x P_n - n P_{n-1}`.
+const FACTORS: [(f64, f64); Q] = {
+    let mut factors = [(0.0, 0.0); Q];
+    let mut n = 1;
+    while n < Q {
+        factors[n] = ((2 * n + 1) as f64 / (n + 1) as f64, n as f64 / (n + 1) as f64);
+        n += 1;
+    }
+    factors
+};
+
 /// `P_0 .. P_{Q-1}` of `2 s - 1`.
 pub(crate) fn legendre(s: f64) -> Nodal {
     let x = 2.0 * s - 1.0;
     let mut p = [1.0; Q];
     p[1] = x;
-    // (n+1) P_{n+1} = (2n+1) x P_n - n P_{n-1}
-    const FACTORS: [(f64, f64); Q] = {
-        let mut factors = [(0.0, 0.0); Q];
-        let mut n = 1;
-        while n < Q {
-            factors[n] = ((2 * n + 1) as f64 / (n + 1) as f64, n as f64 / (n + 1) as f64);
-            n += 1;
-        }
-        factors
-    };
     for n in 1..Q - 1 {
         p[n + 1] = FACTORS[n].0 * x * p[n] - FACTORS[n].1 * p[n - 1];
     }
@@ -73,6 +75,25 @@ pub(crate) fn legendre(s: f64) -> Nodal {
 /// The polynomial with these Legendre coefficients at `s`.
 pub(crate) fn evaluate(coefficients: &Nodal, s: f64) -> f64 {
     dot(coefficients, &legendre(s))
+}
+
+/// The same at eight places.
+pub(crate) fn evaluate_at(coefficients: &Nodal, places: &Nodal) -> Nodal {
+    let x = places.map(|s| 2.0 * s - 1.0);
+    let (mut before, mut last) = ([1.0; Q], x);
+    let mut sum = [0.0; Q];
+    for i in 0..Q {
+        sum[i] = coefficients[0] + coefficients[1] * x[i];
+    }
+    for n in 1..Q - 1 {
+        let (with, without) = FACTORS[n];
+        for i in 0..Q {
+            let next = with * x[i] * last[i] - without * before[i];
+            sum[i] += coefficients[n + 1] * next;
+            (before[i], last[i]) = (last[i], next);
+        }
+    }
+    sum
 }
 
 /// Legendre coefficients of the derivative of the polynomial with these coefficients, both on [0, 1].
@@ -121,7 +142,8 @@ pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
 /// Rates at the nodes of a polynomial on a step of `h`, by its values at the start and at the nodes.
 pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     let basis = &*BASIS;
-    std::array::from_fn(|i| (basis.slope_from_start[i] * start + dot(&basis.slope_from_nodes[i], nodal)) / h)
+    let from_nodes = apply(&basis.slope_from_nodes, nodal);
+    std::array::from_fn(|i| (basis.slope_from_start[i] * start + from_nodes[i]) / h)
 }
 
 /// What a polynomial may be missing: its next two coefficients, if they fall as the last two do against the two before.
@@ -148,7 +170,7 @@ impl Basis {
         for (j, &(x, w)) in gauss.iter().enumerate() {
             nodes[j] = x;
             for (n, value) in legendre(x).into_iter().enumerate() {
-                to_coefficients[n][j] = (2 * n + 1) as f64 * w * value;
+                to_coefficients[j][n] = (2 * n + 1) as f64 * w * value;
             }
         }
 
@@ -164,13 +186,13 @@ impl Basis {
             }
         }
 
-        // nodal polynomial j at s is sum_n to_coefficients[n][j] P_n(s)
+        // nodal polynomial j at s is sum_n to_coefficients[j][n] P_n(s)
         let nodal = |s: f64| {
             let p = legendre(s);
             let mut values = [0.0; Q];
             for j in 0..Q {
                 for n in 0..Q {
-                    values[j] += to_coefficients[n][j] * p[n];
+                    values[j] += to_coefficients[j][n] * p[n];
                 }
             }
             values
@@ -234,10 +256,15 @@ impl Basis {
         let mut slope_from_start = [0.0; Q];
         let mut slope_from_nodes = [[0.0; Q]; Q];
         for i in 0..Q {
-            (slope_from_start[i], slope_from_nodes[i]) = slopes(nodes[i]);
+            let from_nodes;
+            (slope_from_start[i], from_nodes) = slopes(nodes[i]);
+            for j in 0..Q {
+                slope_from_nodes[j][i] = from_nodes[j];
+            }
         }
         Basis {
             nodes,
+            weights: std::array::from_fn(|j| to_coefficients[j][0]),
             to_coefficients,
             restricted,
             power,
@@ -263,11 +290,7 @@ impl Basis {
 
     /// Legendre coefficients of the polynomial with these nodal values.
     pub fn coefficients(&self, nodal: &Nodal) -> Nodal {
-        let mut coefficients = [0.0; Q];
-        for n in 0..Q {
-            coefficients[n] = dot(&self.to_coefficients[n], nodal);
-        }
-        coefficients
+        apply(&self.to_coefficients, nodal)
     }
 }
 
@@ -304,8 +327,11 @@ mod tests {
         // f(s) = s^3: coefficients reproduce it, slopes differentiate it, powers integrate it
         let cube: Nodal = basis.nodes.map(|c| c.powi(3));
         assert!((evaluate(&basis.coefficients(&cube), 0.37) - 0.37f64.powi(3)).abs() < 1e-14);
+        let (coefficients, places) = (basis.coefficients(&cube), basis.nodes.map(|c| 1.2 * c));
+        let beyond = evaluate_at(&coefficients, &places);
+        (0..Q).for_each(|i| assert!((beyond[i] - evaluate(&coefficients, places[i])).abs() < 1e-14));
         for i in 0..Q {
-            let slope = dot(&basis.slope_from_nodes[i], &cube);
+            let slope = apply(&basis.slope_from_nodes, &cube)[i];
             assert!((slope - 3.0 * basis.nodes[i].powi(2)).abs() < 1e-11);
             // int_0^c (c-s)^2/2 s^3 ds = c^6/120
             let integral = apply(&basis.power[2], &cube)[i];

@@ -5,3 +5,4 @@ pub(crate) mod forcing;
 pub(crate) mod legendre;
 pub(crate) mod oscillator;
 pub(crate) mod peak;
+pub(crate) mod vector;

@@ -1,0 +1,45 @@
+//! Loops over the modes, on the widest vector units that the machine has.
+//!
+//! A sum is taken in [`LANES`] partial sums whatever the machine, so that all give the same bits.
+
+use pulp::Arch;
+use std::sync::LazyLock;
+
+/// Partial sums of a sum over modes.
+const LANES: usize = 4;
+
+static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
+
+/// Compiles `work`, and what is inlined in it, for each kind of vector unit, and runs the one for this machine.
+#[inline]
+pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
+    ARCH.dispatch(work)
+}
+
+/// `sum term(values of mode k)`, of rows of equal length.
+#[inline(always)]
+pub(crate) fn sum_over<const ROWS: usize, const OUT: usize>(
+    rows: [&[f64]; ROWS],
+    term: impl Fn([f64; ROWS]) -> [f64; OUT],
+) -> [f64; OUT] {
+    let n = rows.iter().map(|row| row.len()).min().unwrap_or(0);
+    let chunks = rows.map(|row| row[..n].as_chunks::<LANES>());
+    let mut sums = [[0.0; LANES]; OUT];
+    for i in 0..n / LANES {
+        let block = chunks.map(|(whole, _)| whole[i]);
+        for lane in 0..LANES {
+            let terms = term(block.map(|row| row[lane]));
+            for out in 0..OUT {
+                sums[out][lane] += terms[out];
+            }
+        }
+    }
+    let mut total = sums.map(|lanes| (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+    for i in 0..n % LANES {
+        let terms = term(chunks.map(|(_, rest)| rest[i]));
+        for out in 0..OUT {
+            total[out] += terms[out];
+        }
+    }
+    total
+}
