@@ -213,3 +213,64 @@ fn input_out_of_range_is_named() {
     assert_eq!(unit(1.0, 0.3, [P; 4]).static_compliance(0.0, 0.3), Ok(0.0));
     assert!(unit(1.0, 0.3, [C; 4]).static_compliance(0.0, 0.3).unwrap() < 1e-15);
 }
+
+/// Static deflection under a unit load, times the rigidity, of a plate pinned at `x = 0` and `x = a` and free at `y = 0` and
+/// `y = b`, by Levy's single series (S. P. Timoshenko and S. Woinowsky-Krieger, *Theory of Plates and Shells*, 1959, ch. 6).
+fn levy([a, b]: [f64; 2], nu: f64, [x, y]: [f64; 2]) -> f64 {
+    // bending moment and shear force on an edge, with derivatives inwards: of the load's own term, at the distance `u`, and
+    // of the two terms that decay from this edge (`u = 0`) or from the other one, which turns the sign of the shear force
+    let moment = |u: f64| (u - 1.0 - nu * (1.0 + u)) * (-u).exp();
+    let shear = |u: f64| -(2.0 - u + (2.0 - nu) * u) * (-u).exp();
+    let decaying = |u: f64| {
+        let e = (-u).exp();
+        [[(1.0 - nu) * e, (u - 2.0 - nu * u) * e], [(1.0 - nu) * e, (3.0 - u - (2.0 - nu) * (1.0 - u)) * e]]
+    };
+    let terms = (1..=20_000).map(|m| {
+        let k = f64::from(m) * PI / a;
+        let (low, high, width) = (k * y, k * (b - y), k * b);
+        let ([m0, v0], [m1, v1]) = (decaying(0.0), decaying(width));
+        let rows = [
+            [m0[0], m0[1], m1[0], m1[1], -moment(low)],
+            [v0[0], v0[1], -v1[0], -v1[1], -shear(low)],
+            [m1[0], m1[1], m0[0], m0[1], -moment(high)],
+            [-v1[0], -v1[1], v0[0], v0[1], -shear(high)],
+        ];
+        let [p, q, r, s] = solved(rows);
+        let moved = 1.0 + (p + q * low) * (-low).exp() + (r + s * high) * (-high).exp();
+        (k * x).sin().powi(2) * moved / (2.0 * a * k.powi(3))
+    });
+    terms.sum()
+}
+
+/// Four linear equations by elimination.
+fn solved(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
+    for i in 0..4 {
+        let pivot = (i..4).max_by(|&p, &q| rows[p][i].abs().total_cmp(&rows[q][i].abs())).unwrap();
+        rows.swap(i, pivot);
+        let leading = rows[i];
+        for (_, row) in rows.iter_mut().enumerate().filter(|(j, _)| *j != i) {
+            let factor = row[i] / leading[i];
+            row.iter_mut().zip(leading).for_each(|(value, above)| *value -= factor * above);
+        }
+    }
+    [0, 1, 2, 3].map(|i| rows[i][4] / rows[i][i])
+}
+
+#[test]
+fn deflection_near_free_edges_is_levy_s() {
+    let (sides, nu) = ([1.0, 0.7], 0.3);
+    let plate = unit(sides[1], nu, [P, P, F, F]);
+    for (place, tolerance) in [
+        ([0.5, 0.35], 1e-8),
+        ([0.3, 0.2], 1e-8),
+        ([0.4, 0.6], 1e-7),
+        ([0.3, 0.65], 1e-6),
+        ([0.1, 0.69], 5e-5),
+        ([0.5, 0.7], 2e-4),
+        ([0.2, 0.0], 2e-4),
+    ] {
+        let exact = levy(sides, nu, place);
+        let found = plate.static_compliance(place[0], place[1]).unwrap();
+        assert!((found / exact - 1.0).abs() < tolerance, "{place:?}: {found:e} {exact:e}");
+    }
+}

@@ -78,8 +78,8 @@ impl<'a> Ritz<'a> {
         (rows <= MOST_ROWS).then_some(degrees)
     }
 
-    /// Two degrees for the static deflection of a square.
-    pub const STATIC_DEGREES: [usize; 2] = [16, 24];
+    /// Degrees for the static deflection of a square, in one ratio.
+    pub const STATIC_DEGREES: [usize; 3] = [16, 24, 36];
 
     /// Degrees for the static deflection: more along the longer side, as far as matrices stay small.
     pub fn static_degrees(plate: &Plate, of_square: usize) -> [usize; 2] {
