@@ -300,7 +300,7 @@ fn end_frame(end: End) -> Frame {
 }
 
 /// Solves four equations of known rank by complete pivoting; what the rank leaves open is set to zero.
-fn solve(mut a: [[f64; 4]; 4], mut b: [f64; 4], rank: usize) -> [f64; 4] {
+pub(crate) fn solve(mut a: [[f64; 4]; 4], mut b: [f64; 4], rank: usize) -> [f64; 4] {
     let mut order = [0, 1, 2, 3];
     for step in 0..rank {
         let (mut row, mut column) = (step, step);

@@ -1,5 +1,6 @@
 //! Rectangular plates.
 
+mod levy;
 mod line;
 mod modes;
 mod navier;
@@ -207,8 +208,9 @@ impl Plate {
     ///
     /// In closed form (a single series after summing Navier's double one) for a plate pinned all round. Otherwise
     /// Ritz's method with up to some 36 polynomials each way, which misses the sharp dent under the load; what it misses is
-    /// taken from the pinned plate, for which it is known, as it depends on the neighbourhood of the load only. What is
-    /// left is extrapolated in the degree: to 1e-8 inside, some 1e-4 on a free edge.
+    /// taken from a plate for which it is known, as it depends on the neighbourhood of the load only: pinned along two
+    /// opposite edges, with the free edge that is nearest (Levy's series), or pinned all round. What is left is extrapolated
+    /// in the degree, to some 1e-7.
     ///
     /// # Errors
     /// As [`Plate::checked`]; a place off the plate; Mindlin's theory, which gives no finite deflection.
@@ -219,23 +221,49 @@ impl Plate {
             let allowed = "\"kirchhoff\": under a point load the deflection of a plate with shear has no limit";
             return Err(InvalidInput::new("theory", "mindlin", allowed));
         }
-        let closed = navier::static_compliance(self, x, y);
         if self.pinned_all_round() {
-            return Ok(closed);
+            return Ok(navier::static_compliance(self, x, y));
         }
-        let pinned = Plate { edges: [Edge::Pinned; 4], ..*self };
+        let (known, closed) = self.known_nearby(x, y);
         let of_degree = |degree: usize| -> Result<f64, InvalidInput> {
             let degrees = Ritz::static_degrees(self, degree);
-            let missed = closed - Ritz::new(&pinned, degrees).static_compliance(x, y)?;
+            let missed = closed - Ritz::new(&known, degrees).static_compliance(x, y)?;
             Ok(Ritz::new(self, degrees).static_compliance(x, y)? + missed.max(0.0))
         };
         let [first, second, third] = Ritz::STATIC_DEGREES.map(of_degree);
         let (before, last) = (second.clone()? - first?, third.clone()? - second?);
-        // what is missing falls as a power of the degree, the second on a free edge and a higher one elsewhere, so that
-        // changes over equal ratios of the degree are a geometric series
+        // what is missing falls as a power of the degree, at least the second, so that changes over equal ratios of the
+        // degree are a geometric series
         let slowest = (Ritz::STATIC_DEGREES[1] as f64 / Ritz::STATIC_DEGREES[2] as f64).powi(2);
         let ratio = if before == 0.0 { 0.0 } else { (last / before).clamp(0.0, slowest) };
         Ok((third? + last * ratio / (1.0 - ratio)).max(0.0))
+    }
+
+    /// A plate of the same size that is alike near a place, given in shares of length and width, and its static compliance
+    /// there in closed form: pinned along two opposite edges, with this plate's two others where one of them is the
+    /// nearest free edge; or pinned all round.
+    fn known_nearby(&self, x: f64, y: f64) -> (Plate, f64) {
+        /// Across a strip that is much narrower than long, Levy's equations are nearly dependent.
+        const NARROWEST: f64 = 0.02;
+        let [left, right, low, high] = self.edges;
+        let (a, b) = (self.length_m, self.width_m);
+        let nearest = |edges: [Edge; 2], share: f64, length: f64| {
+            let distances = [(edges[0], share * length), (edges[1], (1.0 - share) * length)];
+            let free = distances.into_iter().filter(|(edge, _)| *edge == Edge::Free);
+            free.map(|(_, distance)| distance).fold(f64::INFINITY, f64::min)
+        };
+        let (along, across) = (nearest([left, right], x, a), nearest([low, high], y, b));
+        let (nu, rigidity, place) = (self.poissons_ratio, self.flexural_rigidity_n_m(), [x * a, y * b]);
+        let (pinned, [u, v]) = (Edge::Pinned, place);
+        let (edges, deflection) =
+            if across.min(along) == f64::INFINITY || !(NARROWEST..=1.0 / NARROWEST).contains(&(b / a)) {
+                ([pinned; 4], navier::static_compliance(&Plate { edges: [pinned; 4], ..*self }, x, y) * rigidity)
+            } else if across <= along {
+                ([pinned, pinned, low, high], levy::deflection([a, b], [low, high], nu, [u, v]))
+            } else {
+                ([left, right, pinned, pinned], levy::deflection([b, a], [left, right], nu, [v, u]))
+            };
+        (Plate { edges, ..*self }, deflection / rigidity)
     }
 
     /// A place as shares of length and width.

@@ -103,7 +103,7 @@ pub(super) fn static_compliance(plate: &Plate, x: f64, y: f64) -> f64 {
         }
     }
     // the rest of every term, sin^2(m pi x)/(4 m^3), in closed form
-    let rest = 0.125 * (ZETA_3 - cosines_over_cubes(2.0 * PI * x.min(1.0 - x)));
+    let rest = 0.25 * sines_over_cubes(x);
     2.0 * along * along / (PI.powi(3) * d) * (sum + rest)
 }
 
@@ -120,6 +120,11 @@ fn coth_less(r: f64) -> f64 {
 
 /// `zeta(3)`.
 const ZETA_3: f64 = 1.202_056_903_159_594_3;
+
+/// `sum sin^2(m pi x)/m^3` for `0 < x < 1`.
+pub(super) fn sines_over_cubes(x: f64) -> f64 {
+    0.5 * (ZETA_3 - cosines_over_cubes(2.0 * PI * x.min(1.0 - x)))
+}
 
 /// `sum cos(m phi)/m^3` for `0 < phi <= pi`, by its expansion about zero.
 fn cosines_over_cubes(phi: f64) -> f64 {
