@@ -93,6 +93,23 @@ fn simulate_without_json_is_for_readers() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
+/// A free body that moves away faster than the ball follows.
+#[test]
+fn bodies_that_never_meet_are_a_result_with_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = json!({
+        "structure": { "kind": "modal", "omega_rad_s": [0], "shape_at_location": [1] },
+        "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+        "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 },
+        "start": { "moving_modes": [{ "mode": 1, "velocity_m_s": -2 }] }
+    });
+    fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+    let printed = stdout(&run(folder.path(), &["simulate", "scene.json", "--json", "--out", "a"]));
+    let result: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!((result["outcome"].as_str(), result["sub_impact_count"].as_u64()), (Some("no contact"), Some(0)));
+    assert!(folder.path().join("a/history.csv").exists());
+}
+
 #[test]
 fn out_writes_histories_picture_and_result() {
     let folder = tempfile::tempdir().unwrap();

@@ -292,6 +292,8 @@ impl<'a> March<'a> {
     /// Whether surfaces that touch begin to part: the first derivative that is not zero says so.
     fn parts_from_here(&self, c: usize) -> bool {
         let reach = self.reach.min(self.settings.end_s);
+        // rigid bodies alone have no time of their own
+        let reach = if reach.is_finite() { reach } else { 1.0 };
         let series = series_of(self.system, &self.loads, c, self.moment(), reach);
         let mut power = 1.0;
         let terms = series.map(|term| {
@@ -1229,10 +1231,10 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The record, with the endless flight that follows where bodies have parted for good.
+    /// The record, with the endless flight that follows where bodies have parted for good, or have never been otherwise.
     pub fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
         let mut record = self.record.take().unwrap_or_default();
-        if parted {
+        if parted || record.is_empty() {
             record.retain(|stretch| stretch.start_s < self.time_s);
             record.push(self.stretch(f64::INFINITY, &[], &[]));
         }

@@ -13,9 +13,16 @@
 //! ```
 //!
 //! with `U` the energy that a contact stores: every term is positive, and `E'` never grows. A contact that opens at the
-//! compression `xi_r` has to pass `F* (xi* - xi_r) - U(xi*)` of it to open. An open one has to be moved by its distance at equilibrium: an elastic mode moves by
-//! at most `sqrt(2 E')/omega`, a closed contact by at most where its own term would be `E'`, and a rigid mode only as far
-//! as these let it.
+//! compression `xi_r` has to pass `F* (xi* - xi_r) - U(xi*)` of it to open. While none opens, no more can happen than this:
+//! an elastic mode moves by at most `sqrt(2 E')/omega`; a closed contact yields by at most the `d_c` at which its own term
+//! is `E'`; and the rigid modes follow them. With `P` the weights of the rigid modes in the closed contacts, and any `G`
+//! with `G P = 1`,
+//!
+//! ```text
+//! |sum_r psi_r da_r| <= sum_c |(psi^T G)_c| w_c,    w_c = d_c + sum_elastic |psi_kc| sqrt(2 E')/omega_k.
+//! ```
+//!
+//! An open contact stays open if that is less than its distance at equilibrium.
 
 use super::march::March;
 use super::state::State;
@@ -31,6 +38,8 @@ struct Equilibrium {
     force: Vec<f64>,
     compression: Vec<f64>,
     rigid: Vec<(usize, f64)>,
+    /// `P`: a row for each closed contact, a column for each rigid mode.
+    rigid_part: DMatrix<f64>,
 }
 
 /// Whether the one contact of two bodies that no load drives has no more than this part of the speed of its first approach
@@ -157,6 +166,7 @@ fn equilibrium(march: &March, closed: Vec<usize>) -> Option<Equilibrium> {
                 force: force.iter().copied().collect(),
                 compression: compression.iter().copied().collect(),
                 rigid: rigid.into_iter().zip(amplitude.iter().copied()).collect(),
+                rigid_part,
             });
         }
     }
@@ -185,32 +195,61 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
         let held: f64 = at.closed.iter().zip(&at.force).map(|(&c, force)| system.links[c].weight(k) * force).sum();
         energy += 0.5 * (mode.omega_rad_s * march.amplitude[k] + held / mode.omega_rad_s).powi(2);
     }
-    let mut yielding = Vec::with_capacity(at.closed.len());
     for (i, &c) in at.closed.iter().enumerate() {
         let (now, still) = (march.states[c].overlap, at.compression[i]);
         energy += (stored(i, now) - stored(i, still) - at.force[i] * (now - still)).max(0.0);
-        yielding.push(law_at(march, c, still).1);
     }
-    let stays_closed = |i: usize| {
-        let law = march.laws[at.closed[i]];
-        let touch = march.states[at.closed[i]].touch();
-        let opens_at = touch.and_then(|touch| opens_at(law, &touch.branch, at.compression[i], 1));
-        opens_at.is_some_and(|xi| at.force[i] * (at.compression[i] - xi) - stored(i, at.compression[i]) > energy)
-    };
-    (0..at.closed.len()).all(stays_closed)
-        && march
-            .states
-            .iter()
-            .enumerate()
-            .filter(|(_, state)| !state.is_closed())
-            .all(|(c, state)| stays_open(march, at, c, state, energy, &yielding))
+    let speed = (2.0 * energy).sqrt();
+    let mut gives = DVector::zeros(at.closed.len());
+    for (i, &c) in at.closed.iter().enumerate() {
+        let still = at.compression[i];
+        let term = |moved: f64| stored(i, still + moved) - stored(i, still) - at.force[i] * moved;
+        let touch = march.states[c].touch();
+        let opens_at = touch.and_then(|touch| opens_at(march.laws[c], &touch.branch, still, 1));
+        // it stays closed, and yields less than that in opening
+        let Some(opening) = opens_at.map(|xi| xi - still).filter(|&opening| term(opening) > energy) else {
+            return false;
+        };
+        let Some(closing) = yields(term, energy, -opening) else { return false };
+        let Some(opening) = yields(|moved| term(-moved), energy, -opening) else { return false };
+        let elastic: f64 =
+            system.links[c].elastic.iter().map(|(k, psi)| psi.abs() / system.modes[*k].omega_rad_s).sum();
+        gives[i] = closing.max(opening) + speed * elastic;
+    }
+    let gram = at.rigid_part.transpose() * &at.rigid_part;
+    let Some(inverse) = gram.lu().solve(&at.rigid_part.transpose()) else { return false };
+    let mut open = march.states.iter().enumerate().filter(|(_, state)| !state.is_closed());
+    open.all(|(c, state)| stays_open(march, at, c, state, speed, (&inverse, &gives)))
 }
 
-fn stays_open(march: &March, at: &Equilibrium, c: usize, state: &State, energy: f64, yielding: &[f64]) -> bool {
+/// How far a contact moves before its term of the energy, which is convex, is all of it: at most twice that. `first` is a
+/// guess of the distance.
+fn yields(term: impl Fn(f64) -> f64, energy: f64, first: f64) -> Option<f64> {
+    const DOUBLINGS: usize = 60;
+    const HALVINGS: usize = 40;
+    let beyond = (0..DOUBLINGS).map(|i| first * 2f64.powi(i as i32)).find(|&moved| term(moved) >= energy)?;
+    let mut most = beyond;
+    for _ in 0..HALVINGS {
+        if term(0.5 * most) < energy {
+            break;
+        }
+        most *= 0.5;
+    }
+    Some(most)
+}
+
+/// Whether an open contact stays open while no closed one opens; `inverse` is `G`, and `gives` are `w`.
+fn stays_open(
+    march: &March,
+    at: &Equilibrium,
+    c: usize,
+    state: &State,
+    speed: f64,
+    (inverse, gives): (&DMatrix<f64>, &DVector<f64>),
+) -> bool {
     let (system, link) = (march.system, &march.system.links[c]);
     let (shift, _) = march.loads.overlap(c, march.time_s);
     let (mut overlap, mut reach) = (state.reference + shift, 0.0);
-    let speed = (2.0 * energy).sqrt();
     for &(k, psi) in &link.elastic {
         let omega = system.modes[k].omega_rad_s;
         let held: f64 =
@@ -218,17 +257,12 @@ fn stays_open(march: &March, at: &Equilibrium, c: usize, state: &State, energy: 
         overlap -= psi * held / omega.powi(2);
         reach += psi.abs() * speed / omega;
     }
+    let mut follows = DVector::zeros(at.closed.len());
     for &(k, psi) in &link.rigid {
-        overlap += psi * at.rigid.iter().find(|(other, _)| *other == k).map_or(0.0, |(_, amplitude)| *amplitude);
-        // moved by no more than what the contacts that hold the mode yield, and the elastic modes behind them
-        let held_by = at.closed.iter().zip(yielding).filter_map(|(&other, stiffness)| {
-            let (_, own) = system.links[other].rigid.iter().find(|(mode, _)| *mode == k)?;
-            let elastic: f64 =
-                system.links[other].elastic.iter().map(|(j, w)| w.abs() / system.modes[*j].omega_rad_s).sum();
-            // a contact that stiffens yields less on the one side and, while it stays closed, twice as much on the other
-            Some((2.0 * speed / stiffness.sqrt() + speed * elastic) / own.abs())
-        });
-        reach += psi.abs() * held_by.fold(f64::INFINITY, f64::min);
+        let Some(r) = at.rigid.iter().position(|(other, _)| *other == k) else { return false };
+        overlap += psi * at.rigid[r].1;
+        follows += psi * inverse.row(r).transpose();
     }
+    reach += follows.iter().zip(gives.iter()).map(|(follows, gives): (&f64, &f64)| follows.abs() * gives).sum::<f64>();
     state.touch_m() - overlap > reach
 }

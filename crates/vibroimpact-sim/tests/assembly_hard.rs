@@ -1,0 +1,207 @@
+//! Hard cases of many bodies and contacts: what is posed in two ways comes to the same, and many modes account for all
+//! energy.
+
+use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
+use contact_models::{Hertz, Law, LinearSpring, Viscous};
+use vibroimpact_sim::assembly::{
+    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Observer, Outcome, Point, Run, Settings, run,
+};
+
+#[derive(Default)]
+struct Intervals(Vec<(usize, Interval)>);
+
+impl Observer for Intervals {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.0.push((contact, *interval));
+    }
+
+    fn wants_energy(&self) -> bool {
+        true
+    }
+}
+
+fn solve(assembly: &Assembly<Law>, end_s: f64) -> (Run, Vec<(usize, Interval)>) {
+    let mut seen = Intervals::default();
+    let run = run(assembly, &Settings::until(end_s), &mut seen).unwrap();
+    assert_eq!(run.outcome, Outcome::End);
+    (run, seen.0)
+}
+
+fn on(body: usize, shape: &[f64]) -> Point {
+    Point::OfBody { body, shape: shape.to_vec() }
+}
+
+fn spring(stiffness_n_m: f64) -> Law {
+    LinearSpring::new(stiffness_n_m).unwrap().into()
+}
+
+fn undamped(modes: &Modes, damping_ratio: f64) -> Body {
+    let mode = |&omega_rad_s: &f64| BodyMode { omega_rad_s, damping_ratio };
+    Body::at_rest(modes.omega_rad_s().iter().map(mode).collect())
+}
+
+/// The cantilever of Code_Aster's SDNL104, under the force at its tip.
+fn cantilever(n: usize) -> Modes {
+    let (inertia, area) = (std::f64::consts::PI * 0.2f64.powi(4) / 64.0, std::f64::consts::PI * 0.01);
+    let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 1e10 * inertia, mass_per_length_kg_m: 1e6 * area };
+    Beam { segments: vec![segment], ends: [End::Clamped, End::Free] }.modes(n).unwrap()
+}
+
+fn above_stops(n: usize, stops: &[(f64, f64)]) -> Assembly<Law> {
+    let modes = cantilever(n);
+    let at = |x_m: f64| modes.shapes_at(x_m).unwrap();
+    let stop = |&(x_m, stiffness): &(f64, f64)| Contact {
+        sides: [on(0, &at(x_m)), Point::Ground],
+        gap_m: 1e-4,
+        law: spring(stiffness),
+    };
+    Assembly {
+        bodies: vec![undamped(&modes, 0.0)],
+        contacts: stops.iter().map(stop).collect(),
+        loads: vec![Load { body: 0, shape: at(1.0), force: Force::Constant { force_n: -1000.0 } }],
+    }
+}
+
+#[test]
+fn contacts_a_micrometre_apart_on_one_body_are_as_one_of_both_stiffnesses() {
+    let place = 1.0 - 5e-7;
+    let (one, of_one) = solve(&above_stops(20, &[(place, 1e8)]), 0.16);
+    let (two, of_two) = solve(&above_stops(20, &[(1.0 - 1e-6, 5e7), (1.0, 5e7)]), 0.16);
+    assert_eq!((of_one.len(), of_two.len()), (1, 2));
+    for (_, half) in &of_two {
+        let (_, whole) = &of_one[0];
+        // the beam turns at its tip, so that they touch one after the other
+        assert!((half.start_s / whole.start_s - 1.0).abs() < 2e-6, "{half:?} {whole:?}");
+        assert!((half.end_s.unwrap() / whole.end_s.unwrap() - 1.0).abs() < 2e-6);
+        assert!((2.0 * half.impulse_n_s / whole.impulse_n_s - 1.0).abs() < 1e-4);
+    }
+    assert!(of_two[0].1.start_s != of_two[1].1.start_s);
+    for (one, two) in one.rate[0].iter().zip(&two.rate[0]) {
+        assert!((one - two).abs() < 1e-4, "{one} {two}");
+    }
+}
+
+/// Energy to 1e-11 of the work of the load, and a price that grows with the number of modes no faster than it.
+#[test]
+fn three_hundred_modes_account_for_all_energy() {
+    let (found, intervals) = solve(&above_stops(300, &[(1.0, 1e8)]), 0.1);
+    let energy = found.energy.unwrap();
+    assert!(!intervals.is_empty());
+    assert!(energy.unaccounted_j.abs() < 1e-11 * energy.load_work_j.abs(), "{energy:?}");
+    // the low modes are those of the converged answer of 100 modes
+    let (fewer, others) = solve(&above_stops(100, &[(1.0, 1e8)]), 0.1);
+    assert!((others[0].1.start_s / intervals[0].1.start_s - 1.0).abs() < 1e-5);
+    assert!((others[0].1.end_s.unwrap() / intervals[0].1.end_s.unwrap() - 1.0).abs() < 1e-4);
+    assert!((fewer.rate[0][0] - found.rate[0][0]).abs() < 1e-3 * found.rate[0][0].abs());
+}
+
+/// Two cantilevers side by side with a ball between them.
+fn ball_between(order: [usize; 3]) -> Assembly<Law> {
+    let modes = cantilever(8);
+    let shapes = |x_m: f64| modes.shapes_at(x_m).unwrap();
+    let ball = Body::mass(40.0, 0.0, -0.05);
+    let bodies = [undamped(&modes, 0.01), ball, undamped(&modes, 0.03)];
+    let place = |body: usize| order.iter().position(|other| *other == body).unwrap();
+    let ball = || on(place(1), &[40f64.sqrt().recip()]);
+    let hertz = |k: f64| Law::from(Hertz::new(k).unwrap());
+    let contacts = vec![
+        Contact { sides: [ball(), on(place(0), &shapes(0.7))], gap_m: 1e-5, law: hertz(1e10) },
+        Contact {
+            sides: [on(place(2), &shapes(1.0)), ball()],
+            gap_m: 2e-5,
+            law: Viscous::new(1e10, 0.4).unwrap().into(),
+        },
+    ];
+    let force = Force::Harmonic { force_n: 2e4, omega_rad_s: 90.0, phase_rad: 0.3 };
+    let loads = vec![Load { body: place(0), shape: shapes(1.0), force }];
+    Assembly { bodies: order.iter().map(|body| bodies[*body].clone()).collect(), contacts, loads }
+}
+
+#[test]
+fn bodies_and_contacts_in_another_order_come_to_the_same() {
+    let (one, intervals) = solve(&ball_between([0, 1, 2]), 0.2);
+    assert!(intervals.len() > 4, "{}", intervals.len());
+    let mut exchanged = ball_between([2, 0, 1]);
+    exchanged.contacts.reverse();
+    let (other, others) = solve(&exchanged, 0.2);
+    assert_eq!(intervals.len(), others.len());
+    for ((c, interval), (d, same)) in intervals.iter().zip(&others) {
+        assert_eq!(*c, 1 - *d);
+        assert!((interval.start_s - same.start_s).abs() < 1e-8, "{interval:?} {same:?}");
+        assert!((interval.impulse_n_s - same.impulse_n_s).abs() < 1e-6 * interval.impulse_n_s);
+    }
+    for (body, place) in [(0, 1), (1, 2), (2, 0)] {
+        for (one, other) in one.rate[body].iter().zip(&other.rate[place]) {
+            assert!((one - other).abs() < 1e-6, "{one} {other}");
+        }
+    }
+}
+
+fn rod(length_m: f64, ends: [RodEnd; 2], modes: usize) -> Modes {
+    let segment = RodSegment { length_m, axial_rigidity_n: 8e7, mass_per_length_kg_m: 3.12 };
+    Rod { segments: vec![segment], ends }.modes(modes).unwrap()
+}
+
+/// A rod that is pressed against its support, whole, and cut in two halves with a stiff contact between them. Free ends of
+/// halves hand on a force by many modes only, so that the halves come near by about one over their number.
+#[test]
+fn a_rod_cut_in_two_and_pressed_together_moves_as_the_whole() {
+    const END_S: f64 = 5e-3;
+    const JOINT_N_M: f64 = 1e11;
+    let press = |body: usize, shape: Vec<f64>| {
+        let static_n = Force::Sampled { times_s: vec![0.0, 2e-3, 1.0], forces_n: vec![0.0, -1e4, -1e4] };
+        let swinging = Force::Harmonic { force_n: -1e3, omega_rad_s: 4000.0, phase_rad: 0.0 };
+        [static_n, swinging].map(|force| Load { body, shape: shape.clone(), force }).to_vec()
+    };
+    let tip = |modes: &Modes, run: &Run, body: usize, x_m: f64| -> f64 {
+        modes.shapes_at(x_m).unwrap().iter().zip(&run.amplitude[body]).map(|(phi, a)| phi * a).sum()
+    };
+    let damped = |modes: &Modes| undamped(modes, 0.0);
+    let whole = rod(1.0, [RodEnd::Fixed, RodEnd::Free], 400);
+    let loads = press(0, whole.shapes_at(1.0).unwrap());
+    let (found, _) = solve(&Assembly { bodies: vec![damped(&whole)], contacts: vec![], loads }, END_S);
+    let expected = tip(&whole, &found, 0, 1.0);
+    let error = |modes: usize| {
+        let [left, right] =
+            [[RodEnd::Fixed, RodEnd::Free], [RodEnd::Free, RodEnd::Free]].map(|ends| rod(0.5, ends, modes));
+        let loads = press(1, right.shapes_at(0.5).unwrap());
+        let sides = [on(1, &right.shapes_at(0.0).unwrap()), on(0, &left.shapes_at(0.5).unwrap())];
+        // pressed together a little from the start, so that nothing is left to rounding
+        let contacts = vec![Contact { sides, gap_m: -1e-9, law: spring(JOINT_N_M) }];
+        let (found, intervals) =
+            solve(&Assembly { bodies: vec![damped(&left), damped(&right)], contacts, loads }, END_S);
+        // it opens no more once it is pressed
+        assert!(intervals.last().is_some_and(|(_, last)| last.end_s.is_none() && last.start_s < 1e-3));
+        tip(&right, &found, 1, 0.5) / expected - 1.0
+    };
+    let (few, many) = (error(40), error(160));
+    assert!(many.abs() < 5e-3 && many.abs() < 0.5 * few.abs(), "{few} {many}");
+}
+
+/// A ball on a ball on a soft floor sways below a stop. The contact between the balls hardly yields: what carries the upper
+/// one to the stop is the floor under the lower one.
+#[test]
+fn a_stack_that_sways_into_a_stop_is_not_at_rest() {
+    let (g, soft, hard): (f64, f64, f64) = (9.81, 100.0, 2000.0);
+    let low = -2.0 * g / soft;
+    let high = low - g / hard;
+    let (sway, above) = (0.02, 0.012);
+    let ball = |body: usize| on(body, &[1.0]);
+    let assembly = Assembly {
+        bodies: vec![Body::mass(1.0, low - sway, 0.0), Body::mass(1.0, high - sway, 0.0)],
+        contacts: vec![
+            Contact { sides: [ball(0), Point::Ground], gap_m: 0.0, law: spring(soft) },
+            Contact { sides: [ball(1), ball(0)], gap_m: 0.0, law: spring(hard) },
+            Contact { sides: [Point::Ground, ball(1)], gap_m: high + above, law: spring(1e4) },
+        ],
+        loads: (0..2).map(|body| Load { body, shape: vec![1.0], force: Force::Constant { force_n: -g } }).collect(),
+    };
+    let mut seen = Intervals::default();
+    let found = run(&assembly, &Settings::until(1.0), &mut seen).unwrap();
+    assert!(seen.0.iter().any(|(contact, _)| *contact == 2), "{:?} at {} s", found.outcome, found.end_s);
+    // farther away it never comes there, and that is certain
+    let mut farther = assembly;
+    farther.contacts[2].gap_m = high + 0.2;
+    let found = run(&farther, &Settings::until(1.0), &mut Intervals::default()).unwrap();
+    assert_eq!(found.outcome, Outcome::Rest);
+}
