@@ -54,7 +54,10 @@ impl From<SweepError> for Fault {
 
 impl From<Failure> for Fault {
     fn from(fault: Failure) -> Fault {
-        Fault(PyRuntimeError::new_err(fault.to_string()))
+        match fault.downcast::<InvalidInput>() {
+            Ok(fault) => (*fault).into(),
+            Err(other) => Fault(PyRuntimeError::new_err(other.to_string())),
+        }
     }
 }
 

@@ -3,33 +3,44 @@
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use vibroimpact::assembly::AnyScene;
 use vibroimpact::infinite::{self, Summary, TurningPoints};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
-use vibroimpact::{InvalidInput, export};
+use vibroimpact::{InvalidInput, Scene, export};
 
+use crate::bodies;
 use crate::errors::Fault;
 use crate::input::Source;
 use crate::output;
 
-/// Resolve one impact: every contact, the rebound, where the energy went.
+/// Solve a scene: one impact, with every contact, the rebound, and where the energy went; or bodies, contacts and loads
+/// over time.
 ///
-/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (and the `contacts` of an infinite structure) as a
-/// structured array and energies of modes as an array. With `history=True` two entries more: `history`, motion and
-/// force over time as a dictionary of arrays; and `modal_energies`, a dictionary of `time_s` and `energy_j`, the
-/// latter with a row for each time and a column for each mode. Either is `None` where the model has no such course.
+/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (the `contacts` of an infinite structure, the
+/// `intervals` of each contact between bodies, and `points`) as structured arrays and energies of modes as an array.
+///
+/// With `history=True` two entries more. Of one impact: `history`, motion and force over time as a dictionary of arrays;
+/// and `modal_energies`, a dictionary of `time_s` and `energy_j`, the latter with a row for each time and a column for
+/// each mode; either is `None` where the model has no such course. Of bodies: `history`, and `section`, the same once in
+/// each period of a harmonic load, `None` without one.
 ///
 /// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact,
-/// and a computation that stopped, are results: see `outcome`.
+/// and a computation that stopped, are results: see `outcome`. Ctrl-C ends a run of bodies.
 #[pyfunction]
 #[pyo3(signature = (scene, *, history = false))]
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {
+    match py.detach(|| scene.any_scene().map_err(Fault::from))? {
+        AnyScene::Impact(scene) => one_impact(py, &scene, history),
+        AnyScene::Bodies(scene) => bodies::simulate(py, &scene, history),
+    }
+}
+
+fn one_impact<'py>(py: Python<'py>, scene: &Scene, history: bool) -> PyResult<Bound<'py, PyDict>> {
     let (json, course, energies) = py.detach(|| {
-        let scene = scene.scene()?;
         let found = scene.simulate()?;
-        let (course, energies) =
-            if history { (found.history(None), found.modal_energies(None)) } else { (None, None) };
-        Ok::<_, Fault>((found.json(&scene)?, course, energies))
+        let (course, energies) = if history { (found.history(None), found.modal_energies(None)) } else { (None, None) };
+        Ok::<_, Fault>((found.json(scene)?, course, energies))
     })?;
     let result = output::result(py, &json)?;
     if history {

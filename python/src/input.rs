@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
-use vibroimpact::Scene;
+use vibroimpact::assembly::{AnyScene, AssemblyScene};
 use vibroimpact::sweep::Sweep;
+use vibroimpact::{Scene, SceneError};
 
 use crate::errors::Fault;
 
@@ -34,7 +35,31 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Source {
 }
 
 impl Source {
-    /// The scene.
+    /// The scene, of one impact or of bodies.
+    pub fn any_scene(&self) -> Result<AnyScene, SceneError> {
+        match self {
+            Source::Text(text) => {
+                let mut scene = AnyScene::from_json(text)?;
+                scene.read_tables(Path::new(""))?;
+                Ok(scene)
+            }
+            Source::File(path) => AnyScene::read(path),
+        }
+    }
+
+    /// The scene, which must be one of bodies.
+    pub fn bodies(&self) -> Result<AssemblyScene, SceneError> {
+        match self {
+            Source::Text(text) => {
+                let mut scene = AssemblyScene::from_json(text)?;
+                scene.read_tables(Path::new(""))?;
+                Ok(scene)
+            }
+            Source::File(path) => AssemblyScene::read(path),
+        }
+    }
+
+    /// The scene, which must be one of one impact.
     pub fn scene(&self) -> Result<Scene, Fault> {
         match self {
             Source::Text(text) => {

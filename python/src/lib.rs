@@ -3,6 +3,7 @@
 //! Input comes as JSON text or the name of a file, and is read by the library, so that its errors are those of the
 //! command line. Results leave as the JSON that the command line prints, and as columns of numbers.
 
+mod bodies;
 mod emoc;
 mod errors;
 mod impact;
@@ -15,6 +16,8 @@ use pyo3::prelude::*;
 /// The part of the package that is compiled.
 #[pymodule]
 mod _vibroimpact {
+    #[pymodule_export]
+    use super::bodies::orbit;
     #[pymodule_export]
     use super::emoc::{emoc, emoc_restitution, fit};
     #[pymodule_export]

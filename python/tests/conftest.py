@@ -9,6 +9,7 @@ import pytest
 
 REPOSITORY = Path(__file__).parents[2]
 SCENES = REPOSITORY / "datasets" / "scenes"
+ASSEMBLIES = REPOSITORY / "datasets" / "assemblies"
 
 
 @pytest.fixture(scope="session")

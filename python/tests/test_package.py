@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 import vibroimpact
-from conftest import SCENES
+from conftest import ASSEMBLIES, SCENES
 
 
 def test_kinds_of_scenes(scene):
@@ -58,6 +58,12 @@ def test_the_exception_tells_the_field():
         lambda: vibroimpact.sweep(SCENES / "pinned-beam.json"),
         lambda: vibroimpact.sweep({}, threads=0),
         lambda: vibroimpact.simulate({"location_m": float("nan")}),
+        lambda: vibroimpact.simulate({"bodies": {}, "contacts": [], "end_s": 1}),
+        lambda: vibroimpact.simulate({"bodies": {"a": {"kind": "mass", "mass_kg": 0}}, "contacts": [], "end_s": 1}),
+        lambda: vibroimpact.orbit(SCENES / "pinned-beam.json"),
+        lambda: vibroimpact.orbit(ASSEMBLIES / "sdnl105.json"),
+        lambda: vibroimpact.orbit(ASSEMBLIES / "shaken-table.json", over="end_s"),
+        lambda: vibroimpact.orbit(ASSEMBLIES / "shaken-table.json", over="contacts[0].name", to=1),
     ],
 )
 def test_what_cannot_be_used(call):

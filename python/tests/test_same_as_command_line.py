@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 import vibroimpact
-from conftest import REPOSITORY, SCENES
+from conftest import ASSEMBLIES, REPOSITORY, SCENES
 
 GALLERY = sorted(path for path in SCENES.iterdir() if path.suffix in (".json", ".toml"))
 
@@ -15,8 +15,12 @@ def plain(value):
     """A result with its arrays as JSON has them."""
     if isinstance(value, np.ndarray) and value.dtype.names:
         return [dict(zip(value.dtype.names, map(plain, row.tolist()))) for row in value]
+    if isinstance(value, np.ndarray) and value.dtype.kind == "c":
+        return [[number.real, number.imag] for number in value.tolist()]
     if isinstance(value, np.ndarray):
         return value.tolist()
+    if isinstance(value, list):
+        return [plain(entry) for entry in value]
     if isinstance(value, dict):
         return {name: plain(entry) for name, entry in value.items()}
     return None if isinstance(value, float) and np.isnan(value) else value
@@ -25,6 +29,45 @@ def plain(value):
 @pytest.mark.parametrize("path", GALLERY, ids=lambda path: path.name)
 def test_simulate(path, command_line):
     assert plain(vibroimpact.simulate(path)) == command_line("simulate", path)
+
+
+@pytest.mark.parametrize("path", sorted(ASSEMBLIES.glob("*.json")), ids=lambda path: path.name)
+def test_simulate_bodies(path, command_line):
+    assert plain(vibroimpact.simulate(path)) == command_line("simulate", path)
+
+
+@pytest.mark.parametrize("name", ["rattling-gear", "sdnl105"])
+def test_history_of_bodies(name, command_line, tmp_path):
+    path = ASSEMBLIES / f"{name}.json"
+    command_line("simulate", path, "--out", tmp_path)
+    found = vibroimpact.simulate(path, history=True)
+    for entry in ("history", "section"):
+        if found[entry] is None:
+            assert entry == "section" and name == "sdnl105"
+            continue
+        with open(tmp_path / f"{entry}.csv", newline="") as table:
+            names, *rows = csv.reader(table)
+        assert list(found[entry]) == names
+        np.testing.assert_array_equal(np.array(list(found[entry].values())).T, np.array(rows, dtype=float))
+
+
+def test_orbit(command_line, tmp_path):
+    path = ASSEMBLIES / "shaken-table.json"
+    found = vibroimpact.orbit(path)
+    assert found["stable"] and found["intervals_per_period"] == 1
+    assert plain(found) == command_line("orbit", path)
+    assert np.abs(found["floquet_multipliers"]).max() < 1
+    over = {"over": "ground_motion.displacement_m", "to": 0.001, "step": 0.05}
+    branch = vibroimpact.orbit(path, **over)
+    columns = branch.pop("columns")
+    words = ("orbit", path, "--over", over["over"], "--to", over["to"], "--step", over["step"])
+    assert plain(branch) == command_line(*words)
+    command_line(*words, "--csv", tmp_path / "branch.csv")
+    with open(tmp_path / "branch.csv", newline="") as table:
+        names, *rows = csv.reader(table)
+    assert list(columns) == names and columns["stable"].dtype == bool
+    np.testing.assert_array_equal(columns[names[0]], [float(row[0]) for row in rows])
+    np.testing.assert_array_equal(columns[names[0]], [orbit["value"] for orbit in branch["orbits"]])
 
 
 @pytest.mark.parametrize("name", ["pinned-beam", "infinite-beam"])

@@ -1,4 +1,4 @@
-"""What happens when a compact body strikes a slender vibrating one.
+"""What happens when a compact body strikes a slender vibrating one, and when many bodies strike each other.
 
 A scene is a mapping, or the path of a JSON or TOML file, as the command line takes it; every quantity is in SI units,
 and its name says which. Results are dictionaries with the keys that the command line prints with ``--json``; histories
@@ -14,6 +14,7 @@ from ._vibroimpact import (
     fit,
     infinite_beam,
     modes,
+    orbit,
     plan,
     simulate,
     sweep,
@@ -29,6 +30,7 @@ __all__ = [
     "fit",
     "infinite_beam",
     "modes",
+    "orbit",
     "plan",
     "simulate",
     "sweep",

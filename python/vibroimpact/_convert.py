@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-# lists of objects that become structured arrays: their fields, by the name of the list and whether it is in SI units
+# lists of objects that become structured arrays: their fields, by the name of the list
 _TABLES: dict[str, list[list[str]]] = {
     "sub_impacts": [["start_s", "end_s", "impulse_n_s", "peak_force_n", "peak_compression_m"]],
     "contacts": [
@@ -16,7 +17,31 @@ _TABLES: dict[str, list[list[str]]] = {
         ["start_s", "end_s", "peak_force_n"],
     ],
     "turning_points": [["n", "s", "uncertainty"]],
+    "points": [
+        ["contact", "side", "displacement_m", "velocity_m_s"],
+        [
+            "contact",
+            "side",
+            "intervals_per_period",
+            "displacement_first_harmonic_m",
+            "displacement_max_m",
+            "displacement_min_m",
+        ],
+    ],
 }
+# the intervals of a contact between bodies
+_INTERVALS = [
+    [
+        "start_s",
+        "end_s",
+        "impulse_n_s",
+        "peak_force_n",
+        "peak_compression_m",
+        "approach_speed_m_s",
+        "separation_speed_m_s",
+    ]
+]
+_WHOLE = ("n", "side", "intervals_per_period")
 _ARRAYS = ("modes_j", "intervals")
 
 
@@ -41,15 +66,40 @@ def from_json(text: str) -> dict[str, Any]:
     return result
 
 
+def columns(table: str) -> dict[str, Any]:
+    """The columns of a table of comma-separated numbers and truths."""
+    names, *rows = csv.reader(table.splitlines())
+    cells = list(zip(*rows)) or [()] * len(names)
+
+    def column(values: tuple[str, ...]) -> Any:
+        truths = bool(values) and set(values) <= {"true", "false"}
+        return np.array([value == "true" for value in values] if truths else [float(value) for value in values])
+
+    return {name: column(values) for name, values in zip(names, cells)}
+
+
 def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
+    tables = _TABLES | ({"intervals": _INTERVALS} if "intervals_left_out" in entry else {})
     for name in _ARRAYS:
-        if entry.get(name) is not None:
+        if name not in tables and isinstance(entry.get(name), list):
             entry[name] = np.array(entry[name], dtype=float)
-    for name, kinds in _TABLES.items():
-        if entry.get(name) is not None:
-            rows = entry[name]
-            fields = next((fields for fields in kinds if rows and fields == list(rows[0])), kinds[0])
-            kind = [(field, np.int64 if field == "n" else np.float64) for field in fields]
-            cells = [tuple(np.nan if row[field] is None else row[field] for field in fields) for row in rows]
-            entry[name] = np.array(cells, dtype=kind)
+    for name, kinds in tables.items():
+        rows = entry.get(name)
+        if isinstance(rows, list):
+            # a scene has lists of these names, too
+            fields = next((fields for fields in kinds if not rows or fields == list(rows[0])), None)
+            if fields is not None:
+                entry[name] = _table(rows, fields)
+    if entry.get("floquet_multipliers") is not None:
+        entry["floquet_multipliers"] = np.array([complex(*pair) for pair in entry["floquet_multipliers"]])
     return entry
+
+
+def _table(rows: list[dict[str, Any]], fields: list[str]) -> Any:
+    longest = max((len(row["contact"]) for row in rows if "contact" in row), default=1)
+
+    def kind(field: str) -> Any:
+        return f"U{longest}" if field == "contact" else np.int64 if field in _WHOLE else np.float64
+
+    cells = [tuple(np.nan if row[field] is None else row[field] for field in fields) for row in rows]
+    return np.array(cells, dtype=[(field, kind(field)) for field in fields])

@@ -13,6 +13,7 @@ __all__ = [
     "fit",
     "infinite_beam",
     "modes",
+    "orbit",
     "plan",
     "simulate",
     "sweep",
@@ -25,6 +26,16 @@ def simulate(scene: Mapping[str, Any] | str | PathLike[str], *, history: bool = 
 def plan(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
 def compare(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
 def modes(scene: Mapping[str, Any] | str | PathLike[str], count: int) -> dict[str, NDArray[np.float64]]: ...
+def orbit(
+    scene: Mapping[str, Any] | str | PathLike[str],
+    *,
+    periods: int = 1,
+    transient: int = 100,
+    over: str | None = None,
+    from_: float | None = None,
+    to: float | None = None,
+    step: float = 0.02,
+) -> dict[str, Any]: ...
 def infinite_beam(s: float, *, history: bool = False) -> dict[str, Any]: ...
 def turning_points(count: int) -> dict[str, Any]: ...
 def emoc(

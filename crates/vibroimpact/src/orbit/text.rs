@@ -60,7 +60,7 @@ impl BranchSummary {
         };
         let stable = self.orbits.iter().filter(|point| point.orbit.stable).count();
         let end = if self.complete { "" } else { "; it could not be followed further" };
-        let _ = writeln!(text, "  {:<22}from {:.6} to {:.6}{end}", self.field, first.value, last.value);
+        let _ = writeln!(text, "  {:<21} from {:.6} to {:.6}{end}", self.field, first.value, last.value);
         let _ = writeln!(text, "  {:<22}{}, {stable} of them stable", "orbits", self.orbits.len());
         if !self.special_points.is_empty() {
             text += "\n  found on the way       value            within\n";
