@@ -52,6 +52,31 @@ fn the_contact_by_hertz_from_the_force_alone() {
     }
 }
 
+/// Ends, steps and edges, by hand: whichever is nearest, in thicknesses.
+#[test]
+fn contacts_near_an_end_a_step_or_an_edge_are_not_on_a_half_space() {
+    let mut scene = chapter_3();
+    for (place, ratio, verdict) in [
+        (0.618, 0.382 / 0.011323, Verdict::Within),
+        (0.006, 0.006 / 0.011323, Verdict::Doubtful),
+        (0.999, 0.001 / 0.011323, Verdict::Outside),
+    ] {
+        scene["location_m"] = json!(place);
+        let check = named(&checks(&scene).1, "edge").clone();
+        assert!((check.value / ratio - 1.0).abs() < 1e-9 && check.verdict == verdict, "{check:?}");
+    }
+    let mut half = scene["structure"]["segments"][0].clone();
+    half["length_m"] = json!(0.5);
+    scene["structure"]["segments"] = json!([half, half]);
+    scene["location_m"] = json!(0.502);
+    assert_eq!(named(&checks(&scene).1, "edge").verdict, Verdict::Outside);
+    scene["structure"] = json!({ "kind": "plate", "length_m": 0.4, "width_m": 0.3, "thickness_m": 0.005, "edges":
+        ["pinned", "pinned", "pinned", "pinned"], "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "density_kg_m3": 7800 });
+    scene["location_m"] = json!([0.2, 0.297]);
+    let check = named(&checks(&scene).1, "edge").clone();
+    assert!((check.value - 0.6).abs() < 1e-9 && check.verdict == Verdict::Doubtful, "{check:?}");
+}
+
 /// A steel ball of 15 mm: `c_t` = 3,140 m/s, a lowest period of 11.4 us; and 17.75 ms of fall.
 #[test]
 fn ball_and_gravity_by_hand() {

@@ -15,6 +15,7 @@ const SPECTRUM: [f64; 2] = [0.01, 0.1];
 const PRESSURE: [f64; 2] = [1.6, 4.5];
 const CONTACT_RADIUS: [f64; 2] = [0.1, 0.3];
 const INDENTATION: [f64; 2] = [0.2, 0.5];
+const EDGE: [f64; 2] = [1.0, 0.25];
 const BALL: [f64; 2] = [5.0, 2.0];
 const GRAVITY: [f64; 2] = [0.01, 0.1];
 /// `omega R / c_t` of the lowest mode of a ball that a blow excites.
@@ -98,6 +99,16 @@ fn of_hertz(scene: &Scene, course: &Course, section: Option<&Section>, radius_m:
         let share = contact_m / section.thickness_m;
         let says = format!("the radius of contact is {} of the thickness of the structure", small(share));
         found.push(Check::new("indentation", share, INDENTATION, says));
+        if let Some(clearance_m) = section.clearance_m {
+            let ratio = clearance_m / section.thickness_m;
+            let says = format!(
+                "the place is {}, {} thicknesses, from the nearest end, edge, support or step; from one on the structure is \
+                 a half-space to the contact",
+                quantity(clearance_m, "m"),
+                small(ratio)
+            );
+            found.push(Check::new("edge", ratio, EDGE, says));
+        }
     }
 }
 

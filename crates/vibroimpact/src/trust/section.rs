@@ -2,11 +2,13 @@
 
 use std::f64::consts::PI;
 
-use crate::scene::{BeamTheory, InvalidInput, PlateTheory, Scene, Structure};
+use crate::scene::{BeamTheory, InvalidInput, Location, PlateTheory, Scene, Structure};
 
 /// The section of a beam or plate where it is struck.
 pub(super) struct Section {
     pub thickness_m: f64,
+    /// Distance to the nearest end, edge, support or step, where the structure has such.
+    pub clearance_m: Option<f64>,
     /// Flexural rigidity: `EI`, or of a plate that per width, with the mass per length or area.
     rigidity: f64,
     mass: f64,
@@ -59,12 +61,18 @@ impl Section {
 /// The section where a scene is struck; `None` where it has no thickness.
 pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
     let plate = |rigidity: f64, density: f64, thickness_m: f64, shear: Option<[f64; 2]>| {
-        Some(Section { thickness_m, rigidity, mass: density * thickness_m, shear })
+        Some(Section { thickness_m, clearance_m: None, rigidity, mass: density * thickness_m, shear })
     };
     Ok(match &scene.structure {
         Structure::Beam(beam) => {
             let place = scene.location_m.map_or(Ok(0.0), |place| place.along())?;
             let system = beam.to_system().map_err(|fault| fault.within("structure"))?;
+            let supports = beam.supports.iter().map(|support| support.location_m);
+            let ends = beam.segments.iter().scan(0.0, |end_m, segment| {
+                *end_m += segment.length_m;
+                Some(*end_m)
+            });
+            let clearance_m = nearest(place, supports.chain(ends).chain([0.0]));
             let mut end_m = 0.0;
             let here = system.beam.segments.iter().position(|segment| {
                 end_m += segment.length_m;
@@ -81,6 +89,7 @@ pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
             let thickness_m = segment.thickness().map(|(_, thickness_m)| thickness_m).or(by_inertia);
             thickness_m.filter(|thickness| *thickness > 0.0).map(|thickness_m| Section {
                 thickness_m,
+                clearance_m,
                 rigidity: bending.flexural_rigidity_n_m2,
                 mass: bending.mass_per_length_kg_m,
                 shear: shear.map(|s| [s.shear_rigidity_n, s.rotary_inertia_kg_m]),
@@ -96,19 +105,36 @@ pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
                 }
                 _ => None,
             };
+            let clearance_m = match scene.location_m {
+                Some(Location::On([x, y])) => {
+                    [nearest(x, [0.0, described.length_m]), nearest(y, [0.0, described.width_m])]
+                        .into_iter()
+                        .flatten()
+                        .reduce(f64::min)
+                }
+                _ => None,
+            };
             plate(solved.flexural_rigidity_n_m(), described.density_kg_m3, h, shear)
+                .map(|section| Section { clearance_m, ..section })
         }
         Structure::DroppedRod(rod) => {
             let d = rod.diameter_m;
             let area_m2 = 0.25 * PI * d * d;
             let rigidity = rod.youngs_modulus_pa * area_m2 * d * d / 16.0;
-            Some(Section { thickness_m: d, rigidity, mass: rod.density_kg_m3 * area_m2, shear: None })
+            Some(Section {
+                thickness_m: d,
+                clearance_m: None,
+                rigidity,
+                mass: rod.density_kg_m3 * area_m2,
+                shear: None,
+            })
         }
         Structure::InfiniteBeam(beam) => {
             let thickness_m = beam.thickness_m.or(beam.diameter_m);
             let bending = beam.section().map_err(|fault| fault.within("structure"))?;
             thickness_m.map(|thickness_m| Section {
                 thickness_m,
+                clearance_m: None,
                 rigidity: bending.flexural_rigidity_n_m2,
                 mass: bending.mass_per_length_kg_m,
                 shear: None,
@@ -121,6 +147,11 @@ pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
         }
         Structure::TautString(_) | Structure::Modal(_) | Structure::ModesFile(_) => None,
     })
+}
+
+/// The distance to the nearest of some places.
+fn nearest(here: f64, places: impl IntoIterator<Item = f64>) -> Option<f64> {
+    places.into_iter().map(|place| (place - here).abs()).reduce(f64::min)
 }
 
 #[cfg(test)]
@@ -139,7 +170,7 @@ mod tests {
         let thick = BeamSystem { shear: Some(vec![sections]), ..slender.clone() };
         for (beam, shear) in [(slender, None), (thick, Some(shear))] {
             let (rigidity, mass) = (segment.flexural_rigidity_n_m2, segment.mass_per_length_kg_m);
-            let section = Section { thickness_m: h, rigidity, mass, shear };
+            let section = Section { thickness_m: h, clearance_m: None, rigidity, mass, shear };
             // up to the cut-off, beyond which the second spectrum joins
             for (n, omega) in beam.modes(40).unwrap().omega_rad_s().iter().enumerate() {
                 let exact = length_m / (n + 1) as f64;
@@ -156,7 +187,8 @@ mod tests {
         let (h, modulus, density): (f64, f64, f64) = (0.011323, 2e11, 7800.0);
         let (rigidity, mass) = (modulus * h.powi(4) / 12.0, density * h * h);
         let shear = Some([0.85 * modulus / 2.6 * h * h, density * h.powi(4) / 12.0]);
-        let [slender, thick] = [None, shear].map(|shear| Section { thickness_m: h, rigidity, mass, shear });
+        let [slender, thick] =
+            [None, shear].map(|shear| Section { thickness_m: h, clearance_m: None, rigidity, mass, shear });
         let excess = |ratio: f64| slender.frequency_rad_s(ratio) / thick.frequency_rad_s(ratio) - 1.0;
         let [within, outside] = SLENDER.map(excess);
         assert!((within - 0.05).abs() < 0.01 && (outside - 0.27).abs() < 0.04, "{within} {outside}");
