@@ -11,6 +11,9 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use vibroimpact_sim::assembly::{Observer, Settings, Solver};
 
+/// What a solver says that was stopped.
+pub const TOO_SLOW: &str = "too slow";
+
 /// What a solver found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
@@ -98,7 +101,7 @@ pub fn dop853(system: &System, size: f64, tolerance: f64, deadline: Instant) -> 
         let mut closed: Vec<bool> = (0..system.contacts.len()).map(|c| system.overlap(c, &y) >= 0.0).collect();
         loop {
             if Instant::now() > deadline {
-                return Err("too slow".into());
+                return Err(TOO_SLOW.into());
             }
             let length = system.end_s - start_s;
             let phase = Phase { system, closed: &closed, start_s, evaluations: &evaluations };
