@@ -6,6 +6,7 @@
 
 use super::solution::Counts;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
+use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the panel is too long.
@@ -143,8 +144,13 @@ impl Blocks {
         }
         for p in 0..n {
             let Some(mut diagonal) = blocks[p * n + p] else { continue };
-            eliminate::<0>(&mut diagonal);
-            eliminate::<{ Q / 2 }>(&mut diagonal);
+            vectorized(
+                #[inline(always)]
+                || {
+                    eliminate::<0>(&mut diagonal);
+                    eliminate::<{ Q / 2 }>(&mut diagonal);
+                },
+            );
             blocks[p * n + p] = Some(diagonal);
             for q in p + 1..n {
                 if let Some(block) = &mut blocks[p * n + q] {
@@ -232,6 +238,7 @@ fn substitute(a: &Matrix, b: &mut Nodal) {
 
 /// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
 /// units.
+#[inline(always)]
 fn eliminate<const FROM: usize>(a: &mut Matrix) {
     for pivot in FROM..FROM + Q / 2 {
         let inverse = 1.0 / a[pivot][pivot];

@@ -38,7 +38,7 @@ impl Held {
             row.resize(inverse.len(), 0.0);
         }
         for pull in pulls {
-            let Some(partner) = pull.link.spans.iter().find(|other| other.modes == *body) else { continue };
+            let Some(partner) = pull.link.span(body) else { continue };
             for (k, (psi, inverse)) in partner.psi[from..].iter().zip(inverse).enumerate() {
                 let yields = psi * inverse * inverse;
                 self.at[k] -= yields * pull.force_n;
@@ -166,13 +166,14 @@ impl FlightBounds {
     }
 
     /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of
-    /// all but the elastic modes, less where the surfaces touch; the loads bend it by at most `bend` (m/s^2).
+    /// all but the elastic modes, less where the surfaces touch; the loads bend it by at most `bend` (m/s^2); `noise` is its
+    /// rounding (m).
     pub fn safe_time(
         &self,
         link: &Link,
         (mut overlap, mut rate): (f64, f64),
         bend: f64,
-        noise: f64,
+        noise: impl Fn() -> f64,
         (amplitude, mode_rate): (&[f64], &[f64]),
     ) -> f64 {
         let (mut next, mut best) = (0, 0.0f64);
@@ -185,7 +186,7 @@ impl FlightBounds {
             let curvature = curvature + bend;
             let mut separation = -overlap - above;
             // surfaces that have just parted overlap by rounding
-            if above == 0.0 && separation < 0.0 && separation >= -noise {
+            if above == 0.0 && separation < 0.0 && separation >= -noise() {
                 separation = 0.0;
             }
             // a parabola that is still above zero at the best time yet has its root beyond it

@@ -102,7 +102,8 @@ impl Question {
     }
 
     fn verdict(&self) -> Verdict {
-        if self.first_at_or_below(self.slack).is_none() {
+        let [first, .., last] = self.bernstein;
+        if first > self.slack && last > self.slack && self.first_at_or_below(self.slack).is_none() {
             return Verdict::Clear;
         }
         match self.first_at_or_below(if self.certain { -self.slack } else { 0.0 }) {

@@ -600,11 +600,12 @@ impl<'a> March<'a> {
         let overlap = self.states[c].reference + (rigid(&self.amplitude) + shift) - self.states[c].touch_m();
         let rate = rigid(&self.rate) + shift_rate;
         let bend = bend_of_loads(&self.loads, c, self.time_s, lasting);
-        let noise = self.noise(c);
         self.bounds(c);
         let motion = (self.amplitude.as_slice(), self.rate.as_slice());
-        if let Phase::Open { clear_until, bounds: Some(bounds), .. } = &mut self.states[c].phase {
-            *clear_until = self.time_s + bounds.safe_time(link, (overlap, rate), bend, noise, motion);
+        let Phase::Open { bounds: Some(bounds), .. } = &self.states[c].phase else { return };
+        let until = self.time_s + bounds.safe_time(link, (overlap, rate), bend, || self.noise(c), motion);
+        if let Phase::Open { clear_until, .. } = &mut self.states[c].phase {
+            *clear_until = until;
         }
     }
 
@@ -824,6 +825,9 @@ impl<'a> March<'a> {
     /// By how much the loads move the overlap of a contact within `h`, and what they add to its rate then, beyond what
     /// the modes carry now.
     fn moved_by_loads(&self, c: usize, h: f64) -> (f64, f64) {
+        if self.loads.is_empty() {
+            return (0.0, 0.0);
+        }
         let mut moved = self.loads.moved_by_lines(c, self.time_s, h);
         let mut rate = self.loads.rate_by_lines(c, self.time_s, h);
         for harmonic in &self.loads.harmonics {

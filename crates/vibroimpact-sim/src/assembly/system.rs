@@ -40,6 +40,11 @@ impl Link {
         self.spans.iter().map(|span| span.sum(values)).sum()
     }
 
+    /// Its weights over the modes of this body.
+    pub fn span(&self, body: &Range<usize>) -> Option<&Span> {
+        self.spans.iter().find(|span| span.modes == *body)
+    }
+
     /// `psi_k`.
     pub fn weight(&self, k: usize) -> f64 {
         let span = self.spans.iter().find(|span| span.modes.contains(&k));
@@ -49,8 +54,7 @@ impl Link {
     /// Modes that this link and another both move, with the product of their weights.
     pub fn shared<'a>(&'a self, other: &'a Link) -> impl Iterator<Item = (usize, f64)> + 'a {
         self.spans.iter().flat_map(move |span| {
-            let partner = other.spans.iter().find(|other| other.modes == span.modes);
-            partner.into_iter().flat_map(move |partner| {
+            other.span(&span.modes).into_iter().flat_map(move |partner| {
                 span.modes.clone().zip(span.psi.iter().zip(&partner.psi)).map(|(k, (one, two))| (k, one * two))
             })
         })
@@ -63,7 +67,7 @@ impl Link {
 
     /// Whether both join the same body.
     pub fn touches(&self, other: &Link) -> bool {
-        self.spans.iter().any(|span| other.spans.iter().any(|other| other.modes == span.modes))
+        self.spans.iter().any(|span| other.span(&span.modes).is_some())
     }
 }
 

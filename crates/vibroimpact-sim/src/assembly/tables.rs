@@ -98,17 +98,22 @@ impl Tables {
         let (level, finer) = self.levels.split_at_mut((j + 1 - J_MIN) as usize);
         let Some(half) = finer[0].rotation.as_deref() else { return };
         let count = self.contacts;
-        let forced =
-            level[(j - J_MIN) as usize].forced.get_or_insert_with(|| Box::new(Forced::new(system, j, half, count)));
-        for &c in contacts {
-            for &other in forces {
-                if forced.responses[c * count + other].is_none() && system.neighbours[c].contains(&other) {
-                    let (one, other_link) = (&system.links[c], &system.links[other]);
-                    let elastic = forced.response(system, j, half, one, other_link);
-                    let whole = elastic.with_rigid(one.shared_rigid(other_link), step_s(j));
-                    forced.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
-                }
-            }
+        let forced = &mut level[(j - J_MIN) as usize].forced;
+        let pairs: Vec<(usize, usize)> = contacts
+            .iter()
+            .flat_map(|&c| forces.iter().map(move |&other| (c, other)))
+            .filter(|(c, other)| system.neighbours[*c].contains(other))
+            .filter(|(c, other)| forced.as_ref().is_none_or(|forced| forced.responses[c * count + other].is_none()))
+            .collect();
+        if forced.is_some() && pairs.is_empty() {
+            return;
+        }
+        let (new, found) = Forced::new(system, j, half, &pairs);
+        let forced = forced.get_or_insert_with(|| Box::new(new));
+        forced.responses.resize_with(count * count, || None);
+        for ((c, other), elastic) in pairs.into_iter().zip(found) {
+            let whole = elastic.with_rigid(system.links[c].shared_rigid(&system.links[other]), step_s(j));
+            forced.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
         }
     }
 
@@ -234,47 +239,47 @@ fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usiz
 }
 
 impl Forced {
-    fn new(system: &System, j: i32, half: &Rotation, contacts: usize) -> Forced {
-        let n = system.modes.len();
+    /// Every mode on one level, with the elastic responses of these pairs of contacts, gathered in one pass.
+    fn new(system: &System, j: i32, half: &Rotation, pairs: &[(usize, usize)]) -> (Forced, Vec<Response>) {
+        let (n, h) = (system.modes.len(), step_s(j));
         let mut at_nodes = Vec::with_capacity(n);
         let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
+        let mut compliances: Vec<Compliance> = pairs.iter().map(|_| Compliance::new()).collect();
+        let mut ends = vec![([0.0; Q], [0.0; Q]); pairs.len()];
+        let mut weights = vec![0.0; pairs.len()];
         for body in &system.bodies {
-            let (mut terms, mut unused) = (Terms::default(), Compliance::new());
+            let shapes: Vec<Option<(&Span, &Span)>> = pairs
+                .iter()
+                .map(|(one, other)| Some((system.links[*one].span(body)?, system.links[*other].span(body)?)))
+                .collect();
+            let mut terms = Terms::default();
             for k in body.clone() {
-                let part = part(&system.modes[k], 0.0, step_s(j), &half.of(k), &mut terms, &mut unused);
+                let mode = &system.modes[k];
+                for (weight, shape) in weights.iter_mut().zip(&shapes) {
+                    let product = |(one, other): &(&Span, &Span)| one.psi[k - body.start] * other.psi[k - body.start];
+                    *weight = shape.as_ref().filter(|_| !mode.is_rigid()).map_or(0.0, product);
+                }
+                let part = part(mode, &weights, h, &half.of(k), &mut terms, &mut compliances);
                 at_nodes.push(part.at_nodes);
                 for n in 0..Q {
                     amplitude[n][k] = part.end.0[n];
                     rate[n][k] = part.end.1[n];
                 }
+                for (weight, (end, end_rate)) in weights.iter().zip(&mut ends) {
+                    for n in 0..Q {
+                        end[n] -= weight * part.end.0[n];
+                        end_rate[n] -= weight * part.end.1[n];
+                    }
+                }
             }
         }
-        let responses = std::iter::repeat_with(|| None).take(contacts * contacts).collect();
-        Forced { at_nodes, amplitude, rate, responses }
-    }
-
-    fn response(&self, system: &System, j: i32, half: &Rotation, one: &Link, other: &Link) -> Response {
-        let h = step_s(j);
-        let (mut end, mut end_rate) = ([0.0; Q], [0.0; Q]);
-        let mut compliance = Compliance::new();
-        let (mut terms, mut last) = (Terms::default(), 0.0);
-        for (k, weight) in one.shared(other).filter(|(_, weight)| *weight != 0.0) {
-            let mode = &system.modes[k];
-            if mode.is_rigid() {
-                continue;
-            }
-            if mode.omega_rad_s < last {
-                // the next body begins
-                terms = Terms::default();
-            }
-            last = mode.omega_rad_s;
-            part(mode, weight, h, &half.of(k), &mut terms, &mut compliance);
-            for n in 0..Q {
-                end[n] -= weight * self.amplitude[n][k];
-                end_rate[n] -= weight * self.rate[n][k];
-            }
-        }
-        Response { nodes: compliance.at_nodes(h), end, end_rate }
+        let response = |(compliance, (end, end_rate)): (Compliance, (Nodal, Nodal))| Response {
+            nodes: compliance.at_nodes(h),
+            end,
+            end_rate,
+        };
+        let responses = compliances.into_iter().zip(ends).map(response).collect();
+        (Forced { at_nodes, amplitude, rate, responses: Vec::new() }, responses)
     }
 }
 
@@ -296,5 +301,42 @@ impl Response {
     /// Overlap and its rate at the end of a panel, to a force with these Legendre coefficients.
     pub fn at_end(&self, force: &Nodal) -> (f64, f64) {
         (dot(&self.end, force), dot(&self.end_rate, force))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::{Assembly, Body, BodyMode, Contact, Point};
+
+    /// A contact between two bodies, of these frequencies and unit shapes.
+    fn between(bodies: [&[f64]; 2]) -> System {
+        let body = |omegas: &[f64]| Body {
+            modes: omegas.iter().map(|omega| BodyMode { omega_rad_s: *omega, damping_ratio: 0.01 }).collect(),
+            amplitude: vec![0.0; omegas.len()],
+            rate: vec![0.0; omegas.len()],
+        };
+        let side = |i: usize| Point::OfBody { body: i, shape: vec![1.0; bodies[i].len()] };
+        let contacts = vec![Contact { sides: [side(0), side(1)], gap_m: 0.0, law: () }];
+        let assembly = Assembly { bodies: bodies.map(body).to_vec(), contacts, loads: Vec::new() };
+        System::new(&assembly.with_laws(Vec::new()))
+    }
+
+    /// What the modes of one body need of their series does not depend on the other body.
+    #[test]
+    fn the_response_of_two_bodies_is_the_sum_of_theirs() {
+        let nodes = |system: &System| {
+            let mut tables = Tables::new(system);
+            tables.prepare(system, 0, &[0], &[0]);
+            tables.response(0, 0, 0).map(|response| response.nodes).unwrap()
+        };
+        let (fast, slow) = ([4.0, 5.5], [1e-3, 2e-3]);
+        let both = nodes(&between([&fast, &slow]));
+        let (one, other) = (nodes(&between([&fast, &[]])), nodes(&between([&[], &slow])));
+        for j in 0..Q {
+            for i in 0..Q {
+                assert!((both[j][i] - (one[j][i] + other[j][i])).abs() < 1e-15, "{j} {i}");
+            }
+        }
     }
 }

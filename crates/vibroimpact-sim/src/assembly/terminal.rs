@@ -9,6 +9,7 @@ use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot, evaluate, evaluate_at};
+use crate::panel::vector::vectorized;
 use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
@@ -177,16 +178,23 @@ fn scaled(kernel: &Series, length: f64) -> (Series, usize) {
 /// Overlap at the nodes to nodal forces; `None` where there is no response at all.
 fn response(kernel: &Series, length: f64) -> Option<Matrix> {
     let (scaled, terms) = scaled(kernel, length);
+    let powers = &BASIS.power;
     (terms > 0).then(|| {
-        let mut response = [[0.0; Q]; Q];
-        for (kernel, power) in scaled[..terms].iter().zip(&BASIS.power) {
-            for j in 0..Q {
-                for i in 0..Q {
-                    response[j][i] -= kernel * length * power[j][i];
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut response = [[0.0; Q]; Q];
+                for (kernel, power) in scaled[..terms].iter().zip(powers) {
+                    let factor = kernel * length;
+                    for j in 0..Q {
+                        for i in 0..Q {
+                            response[j][i] -= factor * power[j][i];
+                        }
+                    }
                 }
-            }
-        }
-        response
+                response
+            },
+        )
     })
 }
 
@@ -213,25 +221,36 @@ pub(crate) fn series_of(
     (time_s, amplitude, rate): (f64, &[f64], &[f64]),
     reach: f64,
 ) -> Series {
-    let mut sums = [[0.0; LANES]; TAYLOR];
-    for Span { modes, psi } in &system.links[contact].spans {
-        let mut terms = 2;
-        for k in (0..psi.len()).step_by(LANES) {
-            let at = modes.start + k;
-            terms = BASIS.terms::<TAYLOR>(turning(system, at, modes.end) * reach, terms);
-            let [drag, square, a, b] =
-                [&system.drag, &system.square, amplitude, rate].map(|of: &[f64]| lanes(&of[..modes.end], at));
-            let psi = lanes(psi, k);
-            let (mut here, mut next): ([f64; LANES], [f64; LANES]) =
-                (array::from_fn(|l| psi[l] * a[l]), array::from_fn(|l| psi[l] * b[l]));
-            for sum in &mut sums[..terms] {
-                for l in 0..LANES {
-                    sum[l] += here[l];
-                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+    let basis = &*BASIS;
+    let sums = vectorized(
+        #[inline(always)]
+        || {
+            let mut sums = [[0.0; LANES]; TAYLOR];
+            for Span { modes, psi } in &system.links[contact].spans {
+                let mut terms = 2;
+                for k in (0..psi.len()).step_by(LANES) {
+                    let at = modes.start + k;
+                    terms = basis.terms::<TAYLOR>(turning(system, at, modes.end) * reach, terms);
+                    let [drag, square, a, b] = [&system.drag, &system.square, amplitude, rate].map(
+                        #[inline(always)]
+                        |of: &[f64]| lanes(&of[..modes.end], at),
+                    );
+                    let psi = lanes(psi, k);
+                    let (mut here, mut next) = ([0.0; LANES], [0.0; LANES]);
+                    for l in 0..LANES {
+                        (here[l], next[l]) = (psi[l] * a[l], psi[l] * b[l]);
+                    }
+                    for sum in &mut sums[..terms] {
+                        for l in 0..LANES {
+                            sum[l] += here[l];
+                            (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                        }
+                    }
                 }
             }
-        }
-    }
+            sums
+        },
+    );
     let mut series = sums.map(|sum| sum.iter().sum());
     let mut divided = 1.0;
     for (p, value) in series.iter_mut().enumerate().skip(2) {
@@ -243,11 +262,19 @@ pub(crate) fn series_of(
 }
 
 /// Modes taken at a time, for the vector units.
-const LANES: usize = 2;
+const LANES: usize = 4;
 
 /// One value of each of the modes from `k` on; zeros beyond the last.
+#[inline(always)]
 fn lanes(values: &[f64], k: usize) -> [f64; LANES] {
-    array::from_fn(|l| values.get(k + l).copied().unwrap_or(0.0))
+    match values[k..].first_chunk() {
+        Some(chunk) => *chunk,
+        None => {
+            let mut padded = [0.0; LANES];
+            padded[..values.len() - k].copy_from_slice(&values[k..]);
+            padded
+        }
+    }
 }
 
 /// The fastest motion (rad/s) of the modes up to those taken from `k` on, of a body whose modes end at `end`.
@@ -257,26 +284,31 @@ fn turning(system: &System, k: usize, end: usize) -> f64 {
 
 /// Free motion of all modes over `length`.
 pub(crate) fn coast(system: &System, length: f64, amplitude: &mut [f64], rate: &mut [f64]) {
-    let powers = powers(length);
-    for body in &system.bodies {
-        let mut terms = 2;
-        for k in body.clone().step_by(LANES) {
-            terms = BASIS.terms::<TAYLOR>(turning(system, k, body.end) * length, terms);
-            let (drag, square) = (lanes(&system.drag[..body.end], k), lanes(&system.square[..body.end], k));
-            let (mut here, mut next) = (lanes(&amplitude[..body.end], k), lanes(&rate[..body.end], k));
-            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
-            for power in &powers[..terms] {
-                for l in 0..LANES {
-                    a[l] += power * here[l];
-                    b[l] += power * next[l];
-                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+    let (basis, powers) = (&*BASIS, powers(length));
+    vectorized(
+        #[inline(always)]
+        || {
+            for body in &system.bodies {
+                let mut terms = 2;
+                for k in body.clone().step_by(LANES) {
+                    terms = basis.terms::<TAYLOR>(turning(system, k, body.end) * length, terms);
+                    let (drag, square) = (lanes(&system.drag[..body.end], k), lanes(&system.square[..body.end], k));
+                    let (mut here, mut next) = (lanes(&amplitude[..body.end], k), lanes(&rate[..body.end], k));
+                    let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
+                    for power in &powers[..terms] {
+                        for l in 0..LANES {
+                            a[l] += power * here[l];
+                            b[l] += power * next[l];
+                            (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                        }
+                    }
+                    for l in 0..LANES.min(body.end - k) {
+                        (amplitude[k + l], rate[k + l]) = (a[l], b[l]);
+                    }
                 }
             }
-            for l in 0..LANES.min(body.end - k) {
-                (amplitude[k + l], rate[k + l]) = (a[l], b[l]);
-            }
-        }
-    }
+        },
+    )
 }
 
 /// `length^p/p!`.
@@ -298,25 +330,31 @@ pub(crate) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amp
         power *= length;
         moment
     });
-    for Span { modes, psi } in &link.spans {
-        let mut terms = 2;
-        for k in (0..psi.len()).step_by(LANES) {
-            let at = modes.start + k;
-            terms = BASIS.terms::<TAYLOR>(turning(system, at, modes.end) * length, terms);
-            let (drag, square) = (lanes(&system.drag[..modes.end], at), lanes(&system.square[..modes.end], at));
-            let (mut here, mut next) = ([0.0; LANES], [1.0; LANES]);
-            let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
-            for moment in &moments[..terms] {
-                for l in 0..LANES {
-                    a[l] += here[l] * moment;
-                    b[l] += next[l] * moment;
-                    (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+    let basis = &*BASIS;
+    vectorized(
+        #[inline(always)]
+        || {
+            for Span { modes, psi } in &link.spans {
+                let mut terms = 2;
+                for k in (0..psi.len()).step_by(LANES) {
+                    let at = modes.start + k;
+                    terms = basis.terms::<TAYLOR>(turning(system, at, modes.end) * length, terms);
+                    let (drag, square) = (lanes(&system.drag[..modes.end], at), lanes(&system.square[..modes.end], at));
+                    let (mut here, mut next) = ([0.0; LANES], [1.0; LANES]);
+                    let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
+                    for moment in &moments[..terms] {
+                        for l in 0..LANES {
+                            a[l] += here[l] * moment;
+                            b[l] += next[l] * moment;
+                            (here[l], next[l]) = (next[l], -drag[l] * next[l] - square[l] * here[l]);
+                        }
+                    }
+                    for l in 0..LANES.min(psi.len() - k) {
+                        amplitude[at + l] -= psi[k + l] * a[l];
+                        rate[at + l] -= psi[k + l] * b[l];
+                    }
                 }
             }
-            for l in 0..LANES.min(psi.len() - k) {
-                amplitude[at + l] -= psi[k + l] * a[l];
-                rate[at + l] -= psi[k + l] * b[l];
-            }
-        }
-    }
+        },
+    )
 }

@@ -29,25 +29,27 @@ impl Default for Terms {
     }
 }
 
-/// One mode on a step of `h`; `half` is its free motion over `h/2`. Its compliance, times `w`, is added to that of others.
+/// One mode on a step of `h`; `half` is its free motion over `h/2`. Its compliance, times each of the weights, is added to
+/// that of others.
 pub(crate) fn part(
     mode: &BodyMode,
-    w: f64,
+    weights: &[f64],
     h: f64,
     half: &Propagator,
     terms: &mut Terms,
-    compliance: &mut Compliance,
+    compliances: &mut [Compliance],
 ) -> Part {
+    let gathered = weights.iter().copied().zip(&mut *compliances).filter(|(weight, _)| *weight != 0.0);
     let turned = rate(mode) * h;
     if turned <= SLOW {
         terms.start = BASIS.terms::<SERIES>(turned, terms.start);
         // as many even as odd ones
         terms.middle = BASIS.terms::<HALF_SERIES>(0.5 * turned, terms.middle).next_multiple_of(2);
-        slow(mode, w, h, half, terms, compliance)
+        slow(mode, h, half, terms, gathered)
     } else if mode.damping_ratio < NEARLY_CRITICAL {
-        fast(mode, w, h, compliance)
+        fast(mode, h, gathered)
     } else {
-        by_quadrature(mode, w, h, compliance)
+        by_quadrature(mode, h, gathered)
     }
 }
 
@@ -112,16 +114,24 @@ impl Compliance {
 }
 
 /// By power series, from the free motion in the middle of the step.
-fn slow(mode: &BodyMode, w: f64, h: f64, middle: &Propagator, terms: &Terms, compliance: &mut Compliance) -> Part {
+fn slow<'c>(
+    mode: &BodyMode,
+    h: f64,
+    middle: &Propagator,
+    terms: &Terms,
+    gathered: impl Iterator<Item = (f64, &'c mut Compliance)>,
+) -> Part {
     let angle = mode.omega_rad_s * h;
     let (square, damping) = (angle * angle, 2.0 * mode.damping_ratio * angle);
 
     // the impulse response from the start: S^(p)(0) h^p
-    compliance.terms = terms.start;
-    let (mut here, mut next) = (0.0, h * w);
-    for value in &mut compliance.impulse[..terms.start] {
-        *value += here;
-        (here, next) = (next, -damping * next - square * here);
+    for (w, compliance) in gathered {
+        compliance.terms = compliance.terms.max(terms.start);
+        let (mut here, mut next) = (0.0, h * w);
+        for value in &mut compliance.impulse[..terms.start] {
+            *value += here;
+            (here, next) = (next, -damping * next - square * here);
+        }
     }
 
     // S^(p) h^p/p! in the middle, and the same of h S'
@@ -171,7 +181,7 @@ fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
 }
 
 /// By parts; below critical damping.
-fn fast(mode: &BodyMode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+fn fast<'c>(mode: &BodyMode, h: f64, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) -> Part {
     let sigma = mode.damping_ratio * mode.omega_rad_s;
     let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
     let lambda = Complex64::new(-sigma, omega_d);
@@ -189,15 +199,17 @@ fn fast(mode: &BodyMode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
         at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
     }
 
-    let mut power = inverse;
-    for value in &mut compliance.by_parts {
-        *value += w * scale * power.im;
-        power *= inverse;
-    }
-    for (column, start) in compliance.legendre.iter_mut().zip(&at_start) {
-        let (re, im) = (w * scale * start.re, w * scale * start.im);
-        for i in 0..Q {
-            column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
+    for (w, compliance) in gathered {
+        let mut power = inverse;
+        for value in &mut compliance.by_parts {
+            *value += w * scale * power.im;
+            power *= inverse;
+        }
+        for (column, start) in compliance.legendre.iter_mut().zip(&at_start) {
+            let (re, im) = (w * scale * start.re, w * scale * start.im);
+            for i in 0..Q {
+                column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
+            }
         }
     }
     let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
@@ -228,17 +240,21 @@ fn exponentials(decay: f64, turn: f64) -> ((Nodal, Nodal), Complex64) {
 }
 
 /// Any mode, one node after the other.
-fn by_quadrature(mode: &BodyMode, w: f64, h: f64, compliance: &mut Compliance) -> Part {
+fn by_quadrature<'c>(mode: &BodyMode, h: f64, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) -> Part {
     let basis = &*BASIS;
-    let mut at_nodes = ([0.0; Q], [0.0; Q]);
+    let (mut at_nodes, mut to_nodes) = (([0.0; Q], [0.0; Q]), [[0.0; Q]; Q]);
     for i in 0..Q {
         let part = basis.nodes[i] * h;
         let p = propagate(mode, part);
         (at_nodes.0[i], at_nodes.1[i]) = (p.p11_less_1, p.p12);
-        let (to_node, _) = response(mode, part);
-        for n in 0..Q {
-            for m in 0..=n {
-                compliance.legendre[n][i] -= w * basis.restricted[i][n][m] * to_node[m];
+        to_nodes[i] = response(mode, part).0;
+    }
+    for (w, compliance) in gathered {
+        for i in 0..Q {
+            for n in 0..Q {
+                for m in 0..=n {
+                    compliance.legendre[n][i] -= w * basis.restricted[i][n][m] * to_nodes[i][m];
+                }
             }
         }
     }
@@ -284,7 +300,7 @@ mod tests {
     ) -> ((Part, Compliance), (Part, Compliance)) {
         let (mut one, mut other) = (Compliance::new(), Compliance::new());
         let part = way(&mut one);
-        let reference = by_quadrature(mode, 1.0, h, &mut other);
+        let reference = by_quadrature(mode, h, [(1.0, &mut other)].into_iter());
         ((part, one), (reference, other))
     }
 
@@ -299,7 +315,7 @@ mod tests {
                         start: BASIS.terms::<SERIES>(turned, 2),
                         middle: BASIS.terms::<HALF_SERIES>(0.5 * turned, 2).next_multiple_of(2),
                     };
-                    let both = each_way(&mode, h, |c| slow(&mode, 1.0, h, &p, &terms, c));
+                    let both = each_way(&mode, h, |c| slow(&mode, h, &p, &terms, [(1.0, c)].into_iter()));
                     let angle = mode.omega_rad_s * h;
                     assert_close(both, h, angle * (angle + zeta), 2e-14, &format!("{turned} {zeta} {h}"));
                 }
@@ -313,7 +329,7 @@ mod tests {
             for zeta in [0.0, 0.02, 0.5, 0.9, 0.9899] {
                 for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
                     let mode = mode(turned / h, zeta);
-                    let both = each_way(&mode, h, |c| fast(&mode, 1.0, h, c));
+                    let both = each_way(&mode, h, |c| fast(&mode, h, [(1.0, c)].into_iter()));
                     // an angle is no more exact than its last digit, and nearly equal roots cancel
                     let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
                     assert_close(both, h, 1.0, floor, &format!("{turned} {zeta} {h}"));
@@ -329,7 +345,14 @@ mod tests {
         for h in [1e-50, 1.0, 1e30] {
             let (mut terms, mut compliance) = (Terms::default(), Compliance::new());
             for mode in modes.clone() {
-                let part = part(&mode, 1.0, h, &propagate(&mode, 0.5 * h), &mut terms, &mut compliance);
+                let part = part(
+                    &mode,
+                    &[1.0],
+                    h,
+                    &propagate(&mode, 0.5 * h),
+                    &mut terms,
+                    std::slice::from_mut(&mut compliance),
+                );
                 assert!(finite(&part.at_nodes.0) && finite(&part.at_nodes.1), "{h}");
                 assert!(finite(&part.end.0) && finite(&part.end.1), "{h}");
             }
