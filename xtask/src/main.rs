@@ -16,7 +16,7 @@ use std::process::{Command, ExitCode};
 use std::str::FromStr;
 use std::time::Duration;
 
-use chapters::{BadInput, Failure, Part};
+use chapters::{BadInput, Failure, Part, RandomScenes};
 use clap::{Parser, Subcommand};
 
 /// Keeps the house, and reproduces the chapters of the thesis.
@@ -114,17 +114,7 @@ enum Task {
         arguments: Vec<OsString>,
     },
     /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
-    StudyAuto {
-        /// Fewer scenes through the same code
-        #[arg(long)]
-        quick: bool,
-        /// The first scene of the row; another begins another sample
-        #[arg(long, value_name = "NUMBER", default_value_t = 0)]
-        first: u64,
-        /// The folder to write to
-        #[arg(long, value_name = "DIR", default_value = "out/study-auto")]
-        out: PathBuf,
-    },
+    StudyAuto(RandomScenes),
 }
 
 fn main() -> ExitCode {
@@ -170,7 +160,7 @@ fn run(task: Task) -> Result<(), Failure> {
         }
         Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
         Task::Impactbench { arguments } => impactbench(&arguments),
-        Task::StudyAuto { quick, first, out } => say(&chapters::study_auto(&out, quick, first)?),
+        Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
     }
 }
 

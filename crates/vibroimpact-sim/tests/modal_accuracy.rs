@@ -2,8 +2,11 @@
 
 mod common;
 
-use common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, runge_kutta, settings, solve};
-use contact_models::{Hysteretic, KelvinVoigt, Law, LinearSpring, Thornton, Viscous};
+use common::{GOLDEN, ball, hertz, pinned, pinned_with_remainder, runge_kutta, second_method, settings, solve};
+use contact_models::{
+    Felt, Flores, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
+    Viscous,
+};
 use vibroimpact_sim::modal::{Mode, Outcome, Solver, Start, Striker, Structure};
 
 #[test]
@@ -20,6 +23,45 @@ fn a_plain_runge_kutta_integration_finds_the_same_rebound() {
         let floor = 3.0 * (fine - coarse).abs() + 1e-10;
         assert!(error < floor, "N = {n}: {error:e} against {floor:e}");
         assert!(floor < 1e-7, "N = {n}: the reference has only {floor:e}");
+    }
+}
+
+/// Every law, with its branches and what it remembers of earlier contacts, on modes and remainder modes as the program
+/// chooses them: the rebound and every touch by a method that shares nothing with the solver but the law.
+#[test]
+fn a_second_method_agrees_for_every_law_with_remainder_modes() {
+    let laws: [Law; 11] = [
+        hertz(),
+        Viscous::new(1.7945e10, 0.08).unwrap().into(),
+        Hysteretic::new(1.7945e10 / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(),
+        LinearSpring::new(1e7).unwrap().into(),
+        KelvinVoigt::new(1e7, 200.0).unwrap().into(),
+        HuntCrossley::new(1.7945e10, 1.5, 0.3).unwrap().into(),
+        LankaraniNikravesh::new(1.7945e10, 0.8).unwrap().into(),
+        Flores::new(1.7945e10, 0.8).unwrap().into(),
+        Thornton::new(1.1e11, 0.015, 1.2e9).unwrap().into(),
+        Power::new(4e11, 2.2).unwrap().into(),
+        Felt::new(4e11, 2.2, 2e-5).unwrap().into(),
+    ];
+    for damping in [0.0, 0.02] {
+        let structure = pinned_with_remainder(5, damping, GOLDEN);
+        for law in laws {
+            let solution = Solver::new(&structure).unwrap().solve(&ball(), &law, None, &settings(1e-11)).unwrap();
+            assert_eq!(solution.outcome, Outcome::Rebound);
+            let [fine, coarse] = [1e-12, 1e-11]
+                .map(|tolerance| second_method(&structure, &ball(), &law, solution.end_s * 1.001, tolerance));
+            let error = (solution.striker_velocity_m_s - fine.velocity_m_s).abs();
+            // the integration itself has this many digits
+            let own = 3.0 * (fine.velocity_m_s - coarse.velocity_m_s).abs() + 1e-10;
+            let touches: Vec<f64> = solution.sub_impacts.iter().map(|contact| contact.start_s).collect();
+            println!("{}, {damping}: {} contacts, {error:e} of {own:e}", law.name(), touches.len());
+            assert!(error <= own, "{}, {damping}: {error:e} against {own:e}", law.name());
+            assert!(own < 1e-6, "{}, {damping}: the second method has only {own:e}", law.name());
+            assert_eq!(touches.len(), fine.touches_s.len(), "{}, {damping}", law.name());
+            for (ours, other) in touches.iter().zip(&fine.touches_s) {
+                assert!((ours - other).abs() < 1e-6 * solution.end_s, "{}: {ours} {other}", law.name());
+            }
+        }
     }
 }
 

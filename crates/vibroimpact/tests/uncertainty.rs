@@ -164,7 +164,7 @@ fn judging_costs_no_more_than_the_impact() {
     for (name, scene) in gallery::gallery().into_iter().filter(|(_, scene)| scene.modes.count().is_some()) {
         let solution = scene.impact().unwrap().solve().unwrap();
         let counts = solution.counts;
-        let steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
+        let steps = counts.steps();
         let own = steps * solution.amplitude.len() as u64;
         let all = answer(&scene).cost.mode_steps;
         assert!(all <= 2 * own, "{name}: {} beside {own}", all - own);

@@ -19,6 +19,7 @@ mod study;
 pub mod tally;
 mod theories;
 
+pub use choice::RandomScenes;
 use std::error::Error;
 use std::fmt;
 use std::path::Path;
@@ -138,11 +139,11 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
     study.finish(&part.title(), introduction)
 }
 
-/// Puts the automatic choice of the model to the test, from a scene of the row on, and writes the folder of that study.
-pub fn study_auto(out: &Path, quick: bool, first: u64) -> Result<String, Failure> {
-    let mut study = Study::new(0, out, quick)?;
+/// Puts the automatic choice of the model to the test, and writes the folder of that study.
+pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
+    let mut study = Study::new(0, &wanted.out, wanted.quick)?;
     study.claims("Targets, and what was found");
-    let introduction = choice::run(&mut study, first)?;
+    let introduction = choice::run(&mut study, wanted)?;
     Ok(study.finish("The automatic choice of the model", introduction)?.summary)
 }
 

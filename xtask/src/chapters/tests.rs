@@ -216,9 +216,10 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
 #[test]
 fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
     let folder = tempfile::tempdir().unwrap();
-    study_auto(folder.path(), true, 0).unwrap();
+    let out = folder.path().to_path_buf();
+    study_auto(&RandomScenes { quick: true, first: 0, scenes: None, resume: false, out }).unwrap();
     let report = fs::read_to_string(folder.path().join("report.md")).unwrap();
-    for target in ["damped scenes within their tolerance", "largest actual error over reported uncertainty"] {
+    for target in ["settled answers within their tolerance", "errors within the stated uncertainty"] {
         let line = report.lines().find(|line| line.contains(target)).unwrap();
         assert!(line.contains("✓ agrees"), "{line}");
     }

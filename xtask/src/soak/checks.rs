@@ -116,7 +116,7 @@ fn modal_impact(case: &Modal, verdict: &mut Verdict) -> Result<(), String> {
     verdict.outcome = solution.outcome.stopped_by().map_or(solution.outcome.as_str(), StopReason::as_str);
     verdict.contacts = solution.sub_impacts.len();
     let counts = solution.counts;
-    verdict.steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
+    verdict.steps = counts.steps();
     // each solution stops at the limits on its contacts and on its flights
     check(verdict.steps <= MOST_SOLUTIONS * (2 * settings.max_steps + 4), || format!("{} steps", verdict.steps))?;
     sound_numbers(&solution)?;

@@ -252,7 +252,7 @@ impl<'a> March<'a> {
     }
 
     fn limit(&mut self) -> Option<Reason> {
-        let steps = self.counts.contact_steps + self.counts.rejected_steps + self.counts.flight_steps;
+        let steps = self.counts.steps();
         if steps >= self.settings.max_steps {
             Some(Reason::Steps)
         } else if self.intervals >= self.settings.max_intervals {

@@ -149,6 +149,13 @@ pub struct Counts {
     pub events: u64,
 }
 
+impl Counts {
+    /// Panels of all kinds, those tried in vain among them.
+    pub fn steps(&self) -> u64 {
+        self.contact_steps + self.rejected_steps + self.flight_steps
+    }
+}
+
 impl std::ops::AddAssign for Counts {
     fn add_assign(&mut self, other: Counts) {
         self.contact_steps += other.contact_steps;

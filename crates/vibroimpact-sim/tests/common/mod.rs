@@ -4,7 +4,7 @@
 pub mod random;
 
 use beam_modes::{Beam, End, PointMode, Segment};
-use contact_models::{ContactLaw, Hertz, Law, Memory};
+use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
 
@@ -63,19 +63,31 @@ pub fn solve(structure: &Structure, tolerance: f64) -> Solution {
     Solver::new(structure).unwrap().solve(&ball(), &hertz(), None, &settings(tolerance)).unwrap()
 }
 
-/// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker
-/// and of every mode, for a law with a single branch and a structure at rest. Returns the striker's velocity at `end_s`,
-/// away from the structure.
+/// The striker's velocity at `end_s`, away from the structure, by [`second_method`].
 pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f64, tolerance: f64) -> f64 {
+    second_method(structure, striker, law, end_s, tolerance).velocity_m_s
+}
+
+/// What the second method found.
+pub struct Found {
+    pub velocity_m_s: f64,
+    /// Beginnings of contacts (s).
+    pub touches_s: Vec<f64>,
+}
+
+/// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker
+/// and of every mode, for a structure at rest that the striker touches. Flights are integrated as well; every end of a branch
+/// of the law, every release and every touch is located, and the integration begins anew behind it.
+pub fn second_method(structure: &Structure, striker: &Striker, law: &Law, end_s: f64, tolerance: f64) -> Found {
     let n = structure.modes.len();
-    let branch = law.touch(&Memory::default(), striker.speed_m_s);
-    let slope = |y: &[f64], dy: &mut [f64]| {
-        let (mut xi, mut rate) = (-y[0], -y[1]);
-        for (k, mode) in structure.modes.iter().enumerate() {
-            xi += mode.shape * y[2 + 2 * k];
-            rate += mode.shape * y[3 + 2 * k];
-        }
-        let force = if xi > 0.0 { law.force(&branch, xi, rate).force_n.max(0.0) } else { 0.0 };
+    // compression and its rate
+    let seen = |y: &[f64]| {
+        let modes = structure.modes.iter().zip(y[2..].chunks_exact(2));
+        modes.fold((-y[0], -y[1]), |(xi, rate), (mode, y)| (xi + mode.shape * y[0], rate + mode.shape * y[1]))
+    };
+    let slope = |branch: Option<&Branch>, y: &[f64], dy: &mut [f64]| {
+        let (xi, rate) = seen(y);
+        let force = branch.map_or(0.0, |branch| law.force(branch, xi, rate).force_n);
         (dy[0], dy[1]) = (y[1], force / striker.mass_kg);
         for (k, mode) in structure.modes.iter().enumerate() {
             let (a, v) = (y[2 + 2 * k], y[3 + 2 * k]);
@@ -84,14 +96,42 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
                 -2.0 * mode.damping_ratio * mode.omega_rad_s * v - mode.omega_rad_s.powi(2) * a - mode.shape * force;
         }
     };
-    let size = 2 * n + 2;
     // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
     let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
     let scale = |i: usize| striker.speed_m_s * if i.is_multiple_of(2) { 1.0 / fastest } else { 1.0 };
-    let mut y = vec![0.0; size];
+    let mut y = vec![0.0; 2 * n + 2];
     y[1] = -striker.speed_m_s;
-    dormand_prince(|_, y, dy| slope(y, dy), scale, &mut y, (0.0, end_s, 1e-3 / fastest), tolerance);
-    y[1]
+    let (mut time_s, mut memory, mut touches_s) = (0.0, Memory::default(), vec![0.0]);
+    let mut branch = Some(law.touch(&memory, striker.speed_m_s));
+    while time_s < end_s {
+        let margins = |y: &[f64]| {
+            let (xi, rate) = seen(y);
+            match &branch {
+                Some(branch) => law.boundaries(branch).map(|boundary| boundary.margin(xi, rate)),
+                None => [memory.touch_m - xi, 1.0],
+            }
+        };
+        let met = |y: &[f64]| margins(y).iter().any(|margin| *margin < 0.0);
+        let span = (time_s, end_s, 1e-3 / fastest);
+        time_s = dormand_prince_until(|_, y, dy| slope(branch.as_ref(), y, dy), scale, &mut y, span, tolerance, met);
+        let (xi, rate) = seen(&y);
+        let which = margins(&y).iter().position(|margin| *margin < 0.0);
+        branch = match (branch, which) {
+            (same, None) => same,
+            (None, Some(_)) => {
+                touches_s.push(time_s);
+                Some(law.touch(&memory, rate.max(0.0)))
+            }
+            (Some(branch), Some(which)) => match law.cross(&branch, which, xi, rate) {
+                After::Continue(next) => Some(next),
+                After::Release(left) => {
+                    memory = left;
+                    None
+                }
+            },
+        };
+    }
+    Found { velocity_m_s: y[1], touches_s }
 }
 
 /// Integrates `y' = f(t, y)` from and to these times, with a first step, by an adaptive Dormand-Prince 5(4) pair: the
@@ -100,9 +140,21 @@ pub fn dormand_prince(
     slope: impl Fn(f64, &[f64], &mut [f64]),
     scale: impl Fn(usize) -> f64,
     y: &mut Vec<f64>,
-    (start_s, end_s, first_s): (f64, f64, f64),
+    span_s: (f64, f64, f64),
     tolerance: f64,
 ) {
+    dormand_prince_until(slope, scale, y, span_s, tolerance, |_| false);
+}
+
+/// The same until `met` holds for the first time, which is located to the last digit but a few. Returns that time, or the end.
+pub fn dormand_prince_until(
+    slope: impl Fn(f64, &[f64], &mut [f64]),
+    scale: impl Fn(usize) -> f64,
+    y: &mut Vec<f64>,
+    (start_s, end_s, first_s): (f64, f64, f64),
+    tolerance: f64,
+    met: impl Fn(&[f64]) -> bool,
+) -> f64 {
     const A: [[f64; 6]; 6] = [
         [1.0 / 5.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
@@ -114,10 +166,12 @@ pub fn dormand_prince(
     const E: [f64; 7] =
         [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
     const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
+    // a step as short as this has found what is met
+    const LAST: f64 = 1e-15;
     let size = y.len();
     let mut k = vec![vec![0.0; size]; 7];
     slope(start_s, y, &mut k[0]);
-    let (mut t, mut h) = (start_s, first_s);
+    let (mut t, mut h, mut longest) = (start_s, first_s, f64::INFINITY);
     while t < end_s {
         h = h.min(end_s - t);
         let mut trial = y.clone();
@@ -132,10 +186,21 @@ pub fn dormand_prince(
         let error =
             (0..size).map(|i| (h * (0..7).map(|s| E[s] * k[s][i]).sum::<f64>()).abs() / scale(i)).fold(0.0, f64::max);
         if error <= tolerance {
+            if met(&trial) {
+                if h <= LAST * t.max(first_s) {
+                    *y = trial;
+                    return t + h;
+                }
+                // from now on in steps that halve, up to what is met and not beyond
+                longest = 0.5 * h;
+                h = longest;
+                continue;
+            }
             t += h;
             *y = trial;
             k.swap(0, 6);
         }
-        h *= (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0);
+        h = longest.min(h * (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0));
     }
+    t
 }

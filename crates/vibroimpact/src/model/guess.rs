@@ -12,17 +12,20 @@
 
 use super::Cost;
 use super::pose::{Pose, Source};
-use super::settle::{LEAST_RAISE, RAISE};
+use super::settle::RAISE;
 use super::theory::theory_of;
 use crate::impact::compliance;
 use crate::scene::{BeamTheory, InvalidInput};
 
 /// More modes than this are not tried.
 pub(super) const MOST_MODES: usize = 1500;
-/// `R` at the guess: `first / tolerance^order`, by Euler-Bernoulli's theory and all others, and by Timoshenko's, whose `c_N`
-/// falls as `1/omega_N` only while remainder modes do as well as for the others.
-const TARGET: [f64; 2] = [0.4, 0.47];
-const TARGET_WITH_SHEAR: [f64; 2] = [0.8, 0.3];
+/// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, whose `c_N` falls as
+/// `1/omega_N` only while remainder modes do as well as for the others; and of all else, where `R` grows no faster than the
+/// number of modes. It settles at about twice the number: from too few it takes one step more, from too many every step
+/// costs too much.
+const TARGET: [f64; 2] = [0.2, 0.47];
+const TARGET_WITH_SHEAR: [f64; 2] = [0.4, 0.3];
+const TARGET_OF_OTHERS: [f64; 2] = [0.1, 0.47];
 /// Fewest modes to begin with, besides rigid-body motions.
 const FEWEST: usize = 4;
 
@@ -70,13 +73,20 @@ fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
     Ok(enough.unwrap_or(MOST_MODES))
 }
 
-/// The number of modes with which to begin, and the one that is expected to do.
+/// The number of modes with which to begin, and the one with which the restitution may have settled.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
+    let found = resolving(pose, 1.0, cost)?;
+    Ok((fewer(found), found))
+}
+
+/// The number of modes at which `R` is so many times that of the guess.
+pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<usize, InvalidInput> {
     let [first, order] = match theory_of(pose.scene) {
         Some(BeamTheory::Timoshenko) => TARGET_WITH_SHEAR,
-        _ => TARGET,
+        Some(_) => TARGET,
+        None => TARGET_OF_OTHERS,
     };
-    let target = first * pose.tolerance.powf(-order);
+    let target = times * first * pose.tolerance.powf(-order);
     let most = pose.source.most();
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
     let mut computed = (expected(pose, target)? + 2).min(most);
@@ -97,9 +107,8 @@ pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), 
             None => computed = (computed + computed / 4 + 1).min(most),
         }
     };
-    // a last step that is too small would say little: then all of them
-    let found = if found as f64 * LEAST_RAISE > most as f64 { most } else { found };
-    Ok((fewer(found), found))
+    // room for two further steps: a single change would not tell whether the restitution has settled
+    Ok(found.min(most.div_ceil(2)))
 }
 
 /// A number of modes one step below.

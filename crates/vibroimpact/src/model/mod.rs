@@ -17,6 +17,7 @@ mod emoc;
 mod guess;
 mod infinite;
 mod kept;
+mod left_out;
 mod plan;
 mod pose;
 mod rigid;
@@ -248,7 +249,6 @@ impl Cost {
         self.newton_iterations += counts.newton_iterations;
         self.law_evaluations += counts.law_evaluations;
         self.flight_steps += counts.flight_steps;
-        let steps = counts.contact_steps + counts.rejected_steps + counts.flight_steps;
-        self.mode_steps += steps * modes.max(1) as u64;
+        self.mode_steps += counts.steps() * modes.max(1) as u64;
     }
 }

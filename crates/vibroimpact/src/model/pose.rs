@@ -215,7 +215,9 @@ impl<'a> Pose<'a> {
             }
             Source::Computed { structure, place, modes, .. } => {
                 if modes.len() < count {
-                    let size = count.next_multiple_of(SIZES).min(structure.most_modes().max(count));
+                    // twice as many as before: those of a plate are found together, at a cost that grows as the cube
+                    let size = count.max(2 * modes.len()).next_multiple_of(SIZES);
+                    let size = size.min(structure.most_modes().max(count));
                     *modes = structure.modes_with(*place, Some(size), &mut self.kept.modes)?;
                     cost.modes_computed += size as u64;
                 }

@@ -6,8 +6,9 @@
 //! number of modes is asked.
 //!
 //! Every contact amplifies what came before it, the solver's error too, and a solver too coarse for an impact may find the
-//! same wrong course with every number of modes. So from the third number on, the solver is asked for an accuracy that
-//! rises from one to the next: its errors are part of the differences, and restitutions agree when both have become small.
+//! same wrong course with every number of modes. So where there are several contacts the solver is asked, from the third
+//! number on, for an accuracy that rises from one to the next: its errors are part of the differences, and restitutions agree
+//! when both have become small.
 //!
 //! Only a difference between two *different* numbers of modes says anything of the modes left out. Where a list of modes
 //! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
@@ -16,6 +17,7 @@ use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
 use super::guess::{fewer, guess};
+use super::left_out::{Change, energy_of_remainder, with_one_remainder_mode};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::Known;
@@ -28,17 +30,11 @@ pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.
 pub(super) const LEAST_RAISE: f64 = 1.25;
-/// The uncertainty from modes left out: this many times the larger of two changes, weighted below.
-const CAUTION: f64 = 2.0;
-/// Weight of the largest difference between the speeds of flight of two impacts.
-const FLIGHTS: f64 = 0.5;
-/// Weight of the change before the last.
-const EARLIER: f64 = 0.5;
 /// Tolerance of the solver with the first two numbers of modes, as a share of the tolerance wanted; and its range. Below
 /// it, rounding is all that steps can show.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
-/// From the third on: as a share of the tolerance with the number before.
+/// From the third on, where there are several contacts: as a share of the tolerance with the number before.
 const TIGHTER: f64 = 1.0 / 30.0;
 /// The solver's own part: this share of its tolerance, and of the change that a tolerance thirty times as wide was part
 /// of.
@@ -66,66 +62,28 @@ struct Rung {
     remainder_modes: usize,
     settings: Settings,
     solution: Solution,
+    /// What the shape of the tail may change that is not seen by other numbers of modes.
+    tail: f64,
 }
 
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
-        let solver = pose.kept.solver(&structure)?;
-        let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
-        cost.add(&solution.counts, structure.modes.len());
-        Ok(Rung { count, structure, remainder_modes, settings, solution })
-    }
-}
-
-/// What differs between two solutions.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Change {
-    /// In the restitution; 1 where only one of them has any.
-    pub restitution: f64,
-    /// In the speed of a flight between two contacts, as a share of the speed of impact.
-    pub flights: f64,
-}
-
-impl Change {
-    pub fn between(a: &Solution, b: &Solution, momentum_n_s: f64) -> Change {
-        let pair = a.restitution.zip(b.restitution);
-        let flights = if momentum_n_s > 0.0 && momentum_n_s.is_finite() {
-            distance(&flights(a, momentum_n_s), &flights(b, momentum_n_s))
-        } else {
-            0.0
+        let mut solve = |structure: &Structure| {
+            let solver = pose.kept.solver(structure)?;
+            let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
+            cost.add(&solution.counts, structure.modes.len());
+            Ok::<_, InvalidInput>(solution)
         };
-        Change { restitution: pair.map_or(1.0, |(a, b)| (a - b).abs()), flights }
+        let solution = solve(&structure)?;
+        let mut tail = energy_of_remainder(&structure, remainder_modes, &solution, &pose.striker);
+        if matches!(pose.source, Source::Listed { .. }) && remainder_modes > 1 {
+            // of a list the shape of the tail is assumed: another one tells what that matters
+            let other = solve(&with_one_remainder_mode(&structure, remainder_modes))?;
+            tail = tail.max(Change::between(&other, &solution, pose.striker.mass_kg * pose.striker.speed_m_s).size());
+        }
+        Ok(Rung { count, structure, remainder_modes, settings, solution, tail })
     }
-
-    /// As an error of the restitution.
-    pub fn size(self) -> f64 {
-        self.restitution.max(FLIGHTS * self.flights)
-    }
-
-    /// What modes left out may change after this change from fewer modes.
-    pub fn left_out(self, before: Option<Change>) -> f64 {
-        CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
-    }
-}
-
-/// Impulse up to each separation, over the striker's momentum.
-fn flights(solution: &Solution, momentum_n_s: f64) -> Vec<f64> {
-    let mut sum = 0.0;
-    let separations = solution.sub_impacts.iter();
-    separations
-        .map(|contact| {
-            sum += contact.impulse_n_s;
-            sum / momentum_n_s
-        })
-        .collect()
-}
-
-/// How far the flights of one impact are from the nearest of another, at most.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    let nearest = |x: &f64, of: &[f64]| of.iter().map(|y| (x - y).abs()).fold(f64::INFINITY, f64::min);
-    let directed = |of: &[f64], to: &[f64]| of.iter().map(|x| nearest(x, to)).fold(0.0, f64::max);
-    if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
 /// The numbers of modes tried so far.
@@ -171,7 +129,7 @@ impl Rungs {
         match changes.next() {
             _ if self.is_complete() => 0.0,
             None => 1.0,
-            Some(latest) => latest.left_out(changes.next()),
+            Some(latest) => latest.left_out(changes.next()).max(self.last.tail),
         }
     }
 
@@ -235,8 +193,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             return Ok(finish(pose, rungs, false));
         } else if LEAST_RAISE * count as f64 <= most as f64 {
             let raised = (count as f64 * RAISE).round() as usize;
+            tightened += usize::from(next.solution.sub_impacts.len() > 1);
             count = if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised };
-            tightened += 1;
         } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(pose.tolerance)) {
             // the list is at its end, and the solver's error may be part of what changed
             tightened += 1;
@@ -327,19 +285,5 @@ impl Choice {
             ..Answer::new(Model::Modal, tolerance, known.of(solution.restitution), reason)
         };
         Choice { answer, impact: Some(impact) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::distance;
-
-    #[test]
-    fn impacts_are_as_far_apart_as_their_flights() {
-        assert_eq!(distance(&[], &[]), 0.0);
-        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.5]), 0.0);
-        // a third contact that changes nothing in the end
-        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
-        assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
     }
 }

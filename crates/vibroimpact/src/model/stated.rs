@@ -13,9 +13,10 @@
 use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choose::Choice;
-use super::guess::{fewer, guess};
+use super::guess::{fewer, resolving};
+use super::left_out::Change;
 use super::pose::{Pose, chooses_modes, modal_only};
-use super::settle::{Change, Conclusion, RAISE};
+use super::settle::{Conclusion, RAISE};
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::{Impact, in_scene};
@@ -27,6 +28,8 @@ const LOOSE: f64 = 3e-3;
 /// far more tightly.
 const SOLVER: f64 = 1e-6;
 const RICHER: usize = 2;
+/// Where a single number of modes has to do, they resolve so many times more than those from which they are raised.
+const SETTLED: f64 = 2.0;
 
 /// The modes as they are stated, or all that a list has.
 pub(super) fn stated(scene: &Scene, kept: &mut Kept, cost: &mut Cost) -> Result<Choice, InvalidInput> {
@@ -136,7 +139,7 @@ pub(super) fn needed(
         tolerance: Some(tolerance),
         ..scene.clone()
     };
-    Ok(Some(guess(&mut Pose::new(&chosen, kept)?, cost)?.1))
+    Ok(Some(resolving(&mut Pose::new(&chosen, kept)?, SETTLED, cost)?))
 }
 
 /// The scene with so many modes in place of `count`, and remainder modes for the others.

@@ -96,20 +96,25 @@ pub fn plan_text(plan: &Plan) -> String {
     if let Some(duration) = plan.contact_duration_s {
         let _ = writeln!(text, "  {:<22}{} on an immovable surface", "contact", quantity(duration, "s"));
     }
-    let _ = writeln!(text, "\n  {:<16}{:>10}{:>14}{:>12}", "tier", "error", "mode-steps", "time");
+    let _ = writeln!(text, "\n  {:<16}{:>10}{:>24}{:>24}", "tier", "error", "mode-steps", "time");
     for tier in &plan.tiers {
         let error = tier.expected_error.map_or_else(|| "-".to_owned(), small);
         let _ = writeln!(
             text,
-            "  {:<16}{error:>10}{:>14}{:>12}",
+            "  {:<16}{error:>10}{:>24}{:>24}",
             tier.model.as_str(),
-            tier.mode_steps,
-            format!("~{}", quantity(tier.time_s, "s"))
+            range(tier.mode_steps.map(|steps| steps.to_string())),
+            range(tier.time_s.map(|time| quantity(time, "s")))
         );
         let applies = if tier.applies { "" } else { "no: " };
         let _ = writeln!(text, "      {}", wrapped(&format!("{applies}{}", tier.reason), 6));
     }
     text
+}
+
+/// The two ends of a range, or the one value.
+fn range([least, most]: [String; 2]) -> String {
+    if least == most { format!("~{least}") } else { format!("{least} to {most}") }
 }
 
 /// A comparison.

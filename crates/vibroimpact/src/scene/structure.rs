@@ -15,7 +15,7 @@ use super::known::KnownModes;
 use super::location::Location;
 use super::modal::Modal;
 use super::modes_file::ModesFile;
-use super::plate::{Plate, PlateTheory};
+use super::plate::{Edge, Plate, PlateTheory};
 use super::string::TautString;
 
 /// What is struck; `"kind"` tells which.
@@ -213,11 +213,15 @@ impl Structure {
 
     /// Largest number of modes that the program tries of a structure whose modes it computes.
     pub(crate) fn most_modes(&self) -> usize {
-        // slow to settle, and cheap; of a plate many do not move the place
+        // slow to settle, and cheap; of a plate many do not move the place, and by Ritz's method more take many seconds
         const STRING: usize = 2000;
-        const PLATE: usize = 1600;
+        const NAVIER: usize = 1600;
+        const RITZ: usize = 500;
         match self {
-            Structure::Plate(plate) => plate.to_plate().map_or(0, |plate| plate.most_modes().min(PLATE)),
+            Structure::Plate(plate) => {
+                let most = if plate.edges == [Edge::Pinned; 4] { NAVIER } else { RITZ };
+                plate.to_plate().map_or(0, |plate| plate.most_modes().min(most))
+            }
             _ => STRING,
         }
     }

@@ -1,0 +1,127 @@
+//! What the modes left out may change in a restitution, judged by impacts with other modes in their place.
+//!
+//! Two numbers of modes may agree by accident, and the more impacts are asked the rarer that becomes. With `d_1` the last
+//! change and `d_2` the one before,
+//!
+//! ```text
+//! u = max( 2 d_1, d_2, 10 E_r / E, d_s ).
+//! ```
+//!
+//! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact: they answer slow forces as
+//! the tail does, and where they were set vibrating the force was too fast for that. It is known from one impact alone, and
+//! catches most accidents. `d_s`, for lists, is what changes with a single remainder mode in the place of several: the
+//! shape of their tail is an assumption.
+
+use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
+
+/// The uncertainty from modes left out in terms of the larger of two changes, weighted below, and of the energy of the
+/// remainder modes.
+const CAUTION: f64 = 2.0;
+const OF_ENERGY: f64 = 10.0;
+/// Weight of the largest difference between the speeds of flight of two impacts.
+const FLIGHTS: f64 = 0.5;
+/// Weight of the change before the last.
+const EARLIER: f64 = 0.5;
+
+/// What differs between two solutions.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Change {
+    /// In the restitution; 1 where only one of them has any.
+    pub restitution: f64,
+    /// In the speed of a flight between two contacts, as a share of the speed of impact.
+    pub flights: f64,
+}
+
+impl Change {
+    pub fn between(a: &Solution, b: &Solution, momentum_n_s: f64) -> Change {
+        let pair = a.restitution.zip(b.restitution);
+        let flights = if momentum_n_s > 0.0 && momentum_n_s.is_finite() {
+            distance(&flights(a, momentum_n_s), &flights(b, momentum_n_s))
+        } else {
+            0.0
+        };
+        Change { restitution: pair.map_or(1.0, |(a, b)| (a - b).abs()), flights }
+    }
+
+    /// As an error of the restitution.
+    pub fn size(self) -> f64 {
+        self.restitution.max(FLIGHTS * self.flights)
+    }
+
+    /// What modes left out may change after this change from fewer modes.
+    pub fn left_out(self, before: Option<Change>) -> f64 {
+        CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
+    }
+}
+
+/// Impulse up to each separation, over the striker's momentum.
+fn flights(solution: &Solution, momentum_n_s: f64) -> Vec<f64> {
+    let mut sum = 0.0;
+    let separations = solution.sub_impacts.iter();
+    separations
+        .map(|contact| {
+            sum += contact.impulse_n_s;
+            sum / momentum_n_s
+        })
+        .collect()
+}
+
+/// How far the flights of one impact are from the nearest of another, at most.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let nearest = |x: &f64, of: &[f64]| of.iter().map(|y| (x - y).abs()).fold(f64::INFINITY, f64::min);
+    let directed = |of: &[f64], to: &[f64]| of.iter().map(|x| nearest(x, to)).fold(0.0, f64::max);
+    if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
+}
+
+/// What the energy that the last modes of a structure, its remainder modes, hold after the impact tells of them.
+pub(super) fn energy_of_remainder(structure: &Structure, remainder: usize, after: &Solution, striker: &Striker) -> f64 {
+    let from = structure.modes.len() - remainder;
+    // in units of the striker's speed, so that no square leaves the range of numbers
+    let unit = striker.speed_m_s * striker.mass_kg.sqrt();
+    let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
+    let energy: f64 =
+        motion.map(|((mode, a), rate)| (mode.omega_rad_s * a / unit).powi(2) + (rate / unit).powi(2)).sum();
+    if energy.is_finite() { OF_ENERGY * energy } else { 0.0 }
+}
+
+/// The structure with a single mode in the place of its remainder modes, of the same first two moments
+/// `sum phi^2 / omega^(2j)`.
+pub(super) fn with_one_remainder_mode(structure: &Structure, remainder: usize) -> Structure {
+    let (kept, tail) = structure.modes.split_at(structure.modes.len() - remainder);
+    let moment = |j: i32| tail.iter().map(|mode| mode.shape.powi(2) / mode.omega_rad_s.powi(2 * j)).sum::<f64>();
+    let (first, second) = (moment(1), moment(2));
+    let omega_rad_s = (first / second).sqrt();
+    let mut modes = kept.to_vec();
+    if omega_rad_s.is_finite() && omega_rad_s > 0.0 {
+        let damping_ratio = tail.last().map_or(0.0, |mode| mode.damping_ratio);
+        modes.push(Mode { omega_rad_s, damping_ratio, shape: first.sqrt() * omega_rad_s });
+    }
+    Structure { modes }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impacts_are_as_far_apart_as_their_flights() {
+        assert_eq!(distance(&[], &[]), 0.0);
+        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.5]), 0.0);
+        // a third contact that changes nothing in the end
+        assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
+        assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    #[test]
+    fn one_mode_in_the_place_of_several_keeps_two_moments() {
+        let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.01, shape };
+        let several = [mode(100.0, 1.0), mode(300.0, -2.0), mode(900.0, 4.0)];
+        let structure = Structure { modes: [&[mode(50.0, 3.0)][..], &several].concat() };
+        let one = with_one_remainder_mode(&structure, 3);
+        assert_eq!((one.modes.len(), one.modes[0]), (2, structure.modes[0]));
+        for j in [2, 4] {
+            let moment = |modes: &[Mode]| modes.iter().map(|m| m.shape.powi(2) / m.omega_rad_s.powi(j)).sum::<f64>();
+            assert!((moment(&one.modes[1..]) / moment(&several) - 1.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! One scene at one tolerance: what was answered, at what cost, and what is true.
+
+use super::scenes;
+use crate::chapters::Failure;
+use serde::{Deserialize, Serialize};
+use vibroimpact::model::{Kept, Model, Modes};
+use vibroimpact::vibroimpact_sim::modal::{Settings, Solution};
+use vibroimpact::{Impact, Scene};
+
+/// Tolerances at which every scene is answered.
+pub(super) const TOLERANCES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+/// The reference has so many times the modes of the finest answer, as far as there are so many, and at least so many.
+const RICHER: usize = 2;
+const FEWEST_OF_REFERENCE: usize = 128;
+const REFERENCE_TOLERANCE: f64 = 1e-10;
+/// From one number of modes to the next, of the reference too.
+const RAISE: f64 = std::f64::consts::SQRT_2;
+/// The fewest modes that are tried for the cheapest model, and its tolerance as shares of the tolerance wanted: the first
+/// that is enough.
+const FEWEST: usize = 4;
+const SHARES: [f64; 3] = [0.1, 3e-3, 1e-4];
+/// Smaller errors are rounding.
+const ROUNDING: f64 = 1e-11;
+/// A reference counts where it is known this many times better than the tolerance.
+const TIGHTER: f64 = 3.0;
+
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Row {
+    pub scene: u64,
+    pub kind: String,
+    pub law: String,
+    pub damping_ratio: f64,
+    pub tolerance: f64,
+    pub model: Model,
+    /// Whether the program chose the modes, so that it may say that a result has settled.
+    pub chosen: bool,
+    pub modes: usize,
+    pub sub_impacts: Option<usize>,
+    pub outcome: String,
+    pub restitution: Option<f64>,
+    pub uncertainty: Option<f64>,
+    pub settled: bool,
+    pub reference_modes: usize,
+    pub reference: Option<f64>,
+    /// By what the reference differs from one with fewer modes.
+    pub reference_change: Option<f64>,
+    pub solves: u64,
+    pub mode_steps: u64,
+    /// What `plan` says of them beforehand, at least and at most, where it expects modes to be integrated.
+    pub planned_least: Option<u64>,
+    pub planned_most: Option<u64>,
+    /// The fewest modes from which on no further ones bring the error above the tolerance, and what one solve with
+    /// them costs.
+    pub cheapest_modes: Option<usize>,
+    pub cheapest_mode_steps: Option<u64>,
+}
+
+impl Row {
+    /// The rows of a scene, one a tolerance.
+    pub fn of_scene(number: u64) -> Result<Vec<Row>, Failure> {
+        let drawn = scenes::scene(number)?;
+        let mut answers = Vec::new();
+        for tolerance in TOLERANCES {
+            let scene = Scene { tolerance: Some(tolerance), ..drawn.scene.clone() };
+            answers.push(scene.answer_with(&mut Kept::default())?);
+        }
+        let most = answers.iter().map(|answer| answer.modes).max().unwrap_or_default();
+        let truth = Truth::new(&drawn, (RICHER * most).clamp(FEWEST_OF_REFERENCE, drawn.most_modes.max(most)))?;
+        let chosen = drawn.scene.modes == Modes::Auto;
+        let mut rows = Vec::new();
+        for answer in answers {
+            let plan = Scene { tolerance: Some(answer.tolerance), ..drawn.scene.clone() }.plan()?;
+            let planned = plan.tiers.iter().find(|tier| tier.model == Model::Modal && plan.model == Model::Modal);
+            let planned = planned.map(|tier| tier.mode_steps);
+            let cheapest = if chosen { truth.cheapest(answer.tolerance)? } else { None };
+            rows.push(Row {
+                scene: number,
+                kind: drawn.kind.to_owned(),
+                law: drawn.scene.contact.law_name().to_owned(),
+                damping_ratio: drawn.damping_ratio,
+                tolerance: answer.tolerance,
+                model: answer.model,
+                chosen,
+                modes: answer.modes,
+                sub_impacts: answer.sub_impact_count,
+                outcome: answer.outcome.to_owned(),
+                restitution: answer.restitution,
+                uncertainty: answer.restitution_uncertainty,
+                settled: answer.settled && chosen,
+                reference_modes: truth.modes,
+                reference: truth.restitution,
+                reference_change: truth.change,
+                solves: answer.cost.solves,
+                mode_steps: answer.cost.mode_steps,
+                planned_least: planned.map(|[least, _]| least),
+                planned_most: planned.map(|[_, most]| most),
+                cheapest_modes: cheapest.map(|(modes, _)| modes),
+                cheapest_mode_steps: cheapest.map(|(_, cost)| cost),
+            });
+        }
+        Ok(rows)
+    }
+
+    pub fn planned(&self) -> Option<[u64; 2]> {
+        Some([self.planned_least?, self.planned_most?])
+    }
+
+    /// Whether the reference is known well enough for this tolerance.
+    pub fn counts(&self) -> bool {
+        self.reference_change.is_some_and(|change| change * TIGHTER <= self.tolerance)
+    }
+
+    pub fn error(&self) -> Option<f64> {
+        self.restitution.zip(self.reference).map(|(e, reference)| (e - reference).abs())
+    }
+
+    pub fn meets(&self) -> bool {
+        self.error().is_some_and(|error| error <= self.tolerance)
+    }
+
+    /// Actual error over the uncertainty reported; what the reference does not know is no error.
+    pub fn overrun(&self) -> Option<f64> {
+        let error = self.error()? - self.reference_change?;
+        Some(if error > ROUNDING { error / self.uncertainty? } else { 0.0 })
+    }
+}
+
+/// What is true of a scene, as far as it is known.
+struct Truth<'a> {
+    scene: &'a Scene,
+    modes: usize,
+    restitution: Option<f64>,
+    change: Option<f64>,
+    /// Numbers of modes, rising, and how far each is off.
+    errors: Vec<(usize, f64)>,
+}
+
+impl<'a> Truth<'a> {
+    fn new(drawn: &'a scenes::Drawn, modes: usize) -> Result<Truth<'a>, Failure> {
+        let exact = |scene: &Scene, modes| Ok::<_, Failure>(solve(scene, modes, REFERENCE_TOLERANCE)?.restitution);
+        let counts = |most: usize| {
+            let counts = std::iter::successors(Some(FEWEST as f64), |count| Some(count * RAISE));
+            counts.map(|count| count.round() as usize).take_while(move |count| *count < most)
+        };
+        let restitution = exact(&drawn.whole, modes)?;
+        let fewer = exact(&drawn.whole, (modes as f64 / RAISE) as usize)?;
+        let off = |e: Option<f64>| e.zip(restitution).map(|(e, reference)| (e - reference).abs());
+        let listed = drawn.scene.structure != drawn.whole.structure;
+        let most = if listed { drawn.scene.mode_shapes(usize::MAX).map_or(0, |modes| modes.len()) } else { modes };
+        let mut errors = Vec::new();
+        for count in counts(most) {
+            errors.push((count, off(exact(&drawn.scene, count)?).unwrap_or(1.0)));
+        }
+        Ok(Truth { scene: &drawn.scene, modes, restitution, change: off(fewer), errors })
+    }
+
+    /// The fewest modes that reach a tolerance for certain, and the cost of one solve.
+    fn cheapest(&self, tolerance: f64) -> Result<Option<(usize, u64)>, Failure> {
+        let enough = self.errors.iter().rev().take_while(|(_, error)| *error <= tolerance).last();
+        let Some(((modes, _), reference)) = enough.zip(self.restitution) else { return Ok(None) };
+        for share in SHARES {
+            let solution = solve(self.scene, *modes, share * tolerance)?;
+            if solution.restitution.is_some_and(|e| (e - reference).abs() <= tolerance) {
+                return Ok(Some((*modes, solution.counts.steps() * solution.amplitude.len().max(1) as u64)));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The impact with so many modes and remainder modes for all others, once.
+fn solve(scene: &Scene, modes: usize, tolerance: f64) -> Result<Solution, Failure> {
+    let impact = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene.clone() }.impact()?;
+    let settings = Settings { tolerance, estimate_uncertainty: false, ..impact.settings };
+    Ok(Impact { settings, ..impact }.solve()?)
+}
