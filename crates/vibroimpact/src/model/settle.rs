@@ -192,7 +192,8 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         if count >= PATIENCE && !rungs.falls() {
             return Ok(finish(pose, rungs, false));
         } else if LEAST_RAISE * count as f64 <= most as f64 {
-            let raised = (count as f64 * RAISE).round() as usize;
+            // 1 times the factor is rounded to 1
+            let raised = ((count as f64 * RAISE).round() as usize).max(count + 1);
             tightened += usize::from(next.solution.sub_impacts.len() > 1);
             count = if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised };
         } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(pose.tolerance)) {
