@@ -217,7 +217,12 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
         gives[i] = closing.max(opening) + speed * elastic;
     }
     let gram = at.rigid_part.transpose() * &at.rigid_part;
-    let Some(inverse) = gram.lu().solve(&at.rigid_part.transpose()) else { return false };
+    // without rigid modes there is nothing to solve, which nalgebra does not take
+    let inverse = match gram.is_empty() {
+        true => Some(at.rigid_part.transpose()),
+        false => gram.lu().solve(&at.rigid_part.transpose()),
+    };
+    let Some(inverse) = inverse else { return false };
     let mut open = march.states.iter().enumerate().filter(|(_, state)| !state.is_closed());
     open.all(|(c, state)| stays_open(march, at, c, state, speed, (&inverse, &gives)))
 }
