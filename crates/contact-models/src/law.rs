@@ -125,7 +125,7 @@ pub trait ContactLaw {
     fn depends_on_rate(&self) -> bool;
 }
 
-/// What stands for a law is a law.
+/// References, boxes and shared pointers to a law are laws themselves.
 macro_rules! stands_for_a_law {
     ($($stand_in:ty),*) => {$(
         impl<L: ContactLaw + ?Sized> ContactLaw for $stand_in {

@@ -991,26 +991,32 @@ impl<'a> March<'a> {
 
     // ---- terminal panels ----
 
-    fn window(&mut self, contacts: &[usize], closed: usize, reach: f64) -> Window {
+    /// The contacts of a terminal panel of at most `longest`, with series that serve up to `reach`.
+    fn window(&mut self, longest: f64, reach: f64) -> Window {
+        let mut contacts = Vec::new();
+        let closed = self.involved(longest, &mut contacts);
         let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        Window::new(self.system, self.tables, &self.loads, (contacts.to_vec(), closed), (&overlaps, reach), moment)
+        Window::new(self.system, self.tables, &self.loads, (contacts, closed), (&overlaps, reach), moment)
     }
 
     /// Goes on to the next break of the loads or the end, `length` away.
     fn land_at(&mut self, length: f64) {
-        let mut contacts = Vec::new();
-        let closed = self.involved(length, &mut contacts);
-        let window = self.window(&contacts, closed, length);
-        let mut unknowns: Vec<_> = self.unknowns(&contacts[..closed], length, |_| [0.0; Q]).collect();
+        let window = self.window(length, length);
+        let mut unknowns = self.unknowns_of(&window, length);
         let Some(landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
-        match self.judge(length, &contacts, closed, &landed.solved, &landed.overlap, false) {
+        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
             Judgement::Meets(target, place) => self.head_for(target, place, length),
-            _ if self.excess(&contacts, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
-            _ => self.commit_landed(&contacts, closed, &landed),
+            _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
+            _ => self.commit_landed(&window, &landed),
         }
+    }
+
+    /// The laws of a terminal panel's closed contacts; what moves freely is found for each length that is tried.
+    fn unknowns_of(&self, window: &Window, length: f64) -> Vec<Unknown<'a>> {
+        self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect()
     }
 
     fn head_for(&mut self, target: Target, place: f64, length: f64) {
@@ -1023,26 +1029,24 @@ impl<'a> March<'a> {
     }
 
     /// By how much the forces of a terminal panel are less well known than those of a panel must be.
-    fn excess(&self, contacts: &[usize], landed: &Landed) -> f64 {
+    fn excess(&self, window: &Window, landed: &Landed) -> f64 {
         let of = |(c, force): (&usize, &Nodal)| truncation(force) * landed.length / self.impulse_tolerance(*c);
-        contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
+        window.contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
     }
 
     /// Goes to the event, expected after `expected` seconds and at most `longest` away.
     fn land(&mut self, target: Target, expected: f64, longest: f64) {
-        let mut contacts = Vec::new();
-        let closed = self.involved(longest, &mut contacts);
-        let Some(at) = contacts.iter().position(|c| *c == target.contact) else {
+        let window = self.window(longest, (1.0 + CARRIED) * longest);
+        let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
-        let window = self.window(&contacts, closed, (1.0 + CARRIED) * longest);
         let Some(landed) = self.locate(&window, target, at, expected, longest) else {
             // not so near after all: go on, until a panel meets the event again
             return self.refine((self.level + 1).max(level_within(longest)));
         };
         let length = landed.length;
         // the event may have come before, in a dip that this panel passed over, or another one first
-        match self.judge(length, &contacts, closed, &landed.solved, &landed.overlap, false) {
+        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
             Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
                 self.head_for(other, place, length);
                 // from nearer by, lest the same end is found again
@@ -1051,13 +1055,13 @@ impl<'a> March<'a> {
             }
             _ => {}
         }
-        let excess = self.excess(&contacts, &landed);
+        let excess = self.excess(&window, &landed);
         if excess > 1.0 {
             self.landing = 0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3);
             self.horizon = Some(Horizon { target, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }
-        self.commit_landed(&contacts, closed, &landed);
+        self.commit_landed(&window, &landed);
         self.transition(target);
     }
 
@@ -1079,7 +1083,7 @@ impl<'a> March<'a> {
         let state = &self.states[target.contact];
         let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
         let mut length = expected.clamp(1e-3 * longest, longest);
-        let mut unknowns: Vec<_> = self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect();
+        let mut unknowns = self.unknowns_of(window, length);
         let (mut low, mut low_margin) = (0.0, initial);
         let mut high: Option<(f64, f64)> = None;
         let mut side = 0;
@@ -1147,7 +1151,8 @@ impl<'a> March<'a> {
         None
     }
 
-    fn commit_landed(&mut self, contacts: &[usize], closed: usize, landed: &Landed) {
+    fn commit_landed(&mut self, window: &Window, landed: &Landed) {
+        let (contacts, closed) = (window.contacts.as_slice(), window.closed);
         self.show(landed.length, &contacts[..closed], &landed.force);
         terminal::coast(self.system, landed.length, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {

@@ -76,13 +76,12 @@ impl Link {
 pub(crate) struct System {
     /// The modes, body by body, each by rising frequency.
     pub modes: Vec<BodyMode>,
-    /// `omega_k` (rad/s), `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and the fastest motion of the modes up to this one of the same body
-    /// (rad/s).
+    /// `omega_k` (rad/s), `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and `1/omega_k` (s), which is infinite for rigid modes.
     pub omega: Vec<f64>,
     pub drag: Vec<f64>,
     pub square: Vec<f64>,
-    /// `1/omega_k` (s); of rigid modes infinite.
     pub inverse: Vec<f64>,
+    /// The fastest motion of the modes up to this one of the same body (rad/s).
     pub turning: Vec<f64>,
     /// The largest damping ratio.
     pub most_damping: f64,

@@ -29,7 +29,7 @@ pub(crate) struct Window {
 }
 
 /// A solved terminal panel.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Landed {
     pub length: f64,
     /// Of the closed contacts: values at the nodes, and Legendre coefficients of the force.
