@@ -1,7 +1,7 @@
 //! How many modes will do, before any impact is solved.
 //!
-//! With remainder modes for all others, the restitution converges in the number `N` of modes, fast once mode `N` is fast against the contact: with `k` the contact's stiffness and `c_N` the
-//! compliance left out, once
+//! With remainder modes for all others, the restitution converges in the number `N` of modes, fast once mode `N` is fast
+//! against the contact: with `k` the contact's stiffness and `c_N` the compliance left out, once
 //!
 //! ```text
 //! R(N) = omega_N^2 / ( k (1/m + 3 c_N omega_N^2) )
@@ -12,11 +12,12 @@
 
 use super::Cost;
 use super::pose::{Pose, Source};
-use super::settle::RAISE;
 use super::theory::theory_of;
 use crate::impact::compliance;
 use crate::scene::{BeamTheory, InvalidInput};
 
+/// From one number of modes to the next.
+pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
 /// More modes than this are not tried.
 pub(super) const MOST_MODES: usize = 1500;
 /// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, whose `c_N` falls as
@@ -111,7 +112,24 @@ pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<
     Ok(found.min(most.div_ceil(2)))
 }
 
+/// A number of modes one step above.
+pub(super) fn more(count: usize) -> usize {
+    ((count as f64 * RAISE).round() as usize).max(count + 1)
+}
+
 /// A number of modes one step below.
 pub(super) fn fewer(count: usize) -> usize {
     ((count as f64 / RAISE).round() as usize).min(count.saturating_sub(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1 times the factor is rounded to 1, and so is 1 over it.
+    #[test]
+    fn every_step_leads_to_another_number() {
+        assert_eq!((more(1), more(5), fewer(1), fewer(7)), (2, 7, 0, 5));
+        assert!((0..2000).all(|count| more(count) > count && (count == 0 || fewer(count) < count)));
+    }
 }

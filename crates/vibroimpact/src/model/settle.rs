@@ -16,7 +16,7 @@
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
-use super::guess::{fewer, guess};
+use super::guess::{fewer, guess, more};
 use super::left_out::{Change, energy_of_remainder, with_one_remainder_mode};
 use super::pose::{Pose, Source};
 use super::text::small;
@@ -25,8 +25,6 @@ use super::{Answer, Cost, Model};
 use crate::impact::{Impact, in_scene};
 use crate::scene::InvalidInput;
 
-/// From one number of modes to the next.
-pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.
 pub(super) const LEAST_RAISE: f64 = 1.25;
@@ -192,8 +190,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         if count >= PATIENCE && !rungs.falls() {
             return Ok(finish(pose, rungs, false));
         } else if LEAST_RAISE * count as f64 <= most as f64 {
-            // 1 times the factor is rounded to 1
-            let raised = ((count as f64 * RAISE).round() as usize).max(count + 1);
+            let raised = more(count);
             tightened += usize::from(next.solution.sub_impacts.len() > 1);
             count = if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised };
         } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(pose.tolerance)) {

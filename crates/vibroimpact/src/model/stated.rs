@@ -13,10 +13,10 @@
 use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choose::Choice;
-use super::guess::{fewer, resolving};
+use super::guess::{RAISE, fewer, resolving};
 use super::left_out::Change;
 use super::pose::{Pose, chooses_modes, modal_only};
-use super::settle::{Conclusion, RAISE};
+use super::settle::Conclusion;
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::{Impact, in_scene};
