@@ -3,13 +3,12 @@
 use crate::problem::Problem;
 use crate::system::{Harmonic, Row, System};
 use ivp::prelude::{Direction, EventConfig, FirstOrderSystem, Ivp, Method};
-use std::cell::Cell;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
-use vibroimpact_sim::assembly::{Observer, Settings, Solver};
+use vibroimpact_sim::assembly::{Settings, Solver};
 
 /// What a solver says that was stopped.
 pub const TOO_SLOW: &str = "too slow";
@@ -37,10 +36,6 @@ fn least(mut run: impl FnMut() -> Result<Vec<f64>, String>) -> Result<Found, Str
     Ok(found)
 }
 
-struct Silent;
-
-impl Observer for Silent {}
-
 /// The engine, its tables built anew in every run.
 ///
 /// # Errors
@@ -49,7 +44,7 @@ pub fn own(problem: &Problem, tolerance: f64) -> Result<Found, String> {
     let settings = Settings { tolerance, stop_at_rest: false, ..Settings::until(problem.end_s) };
     least(|| {
         let mut solver = Solver::new(&problem.assembly).map_err(|fault| fault.to_string())?;
-        let run = solver.run(&settings, &mut Silent).map_err(|fault| fault.to_string())?;
+        let run = solver.run(&settings, &mut ()).map_err(|fault| fault.to_string())?;
         if run.end_s < problem.end_s {
             return Err(format!("{:?} at {} s", run.outcome, run.end_s));
         }
@@ -62,12 +57,10 @@ struct Phase<'a> {
     system: &'a System,
     closed: &'a [bool],
     start_s: f64,
-    evaluations: &'a Cell<u64>,
 }
 
 impl FirstOrderSystem for Phase<'_> {
     fn derivative(&self, t: f64, y: &[f64], dy: &mut [f64]) {
-        self.evaluations.set(self.evaluations.get() + 1);
         self.system.rates(self.start_s + t, y, self.closed, dy);
     }
 
@@ -94,7 +87,6 @@ impl FirstOrderSystem for Phase<'_> {
 /// # Errors
 /// Why it could not go on.
 pub fn dop853(system: &System, size: f64, tolerance: f64, deadline: Instant) -> Result<Found, String> {
-    let evaluations = Cell::new(0);
     least(|| {
         let (mut y, mut start_s) = (system.start.clone(), 0.0);
         // touching at the start, with an approach
@@ -104,7 +96,7 @@ pub fn dop853(system: &System, size: f64, tolerance: f64, deadline: Instant) -> 
                 return Err(TOO_SLOW.into());
             }
             let length = system.end_s - start_s;
-            let phase = Phase { system, closed: &closed, start_s, evaluations: &evaluations };
+            let phase = Phase { system, closed: &closed, start_s };
             let solution = Ivp::first_order(&phase, 0.0, length, &y)
                 .method(Method::DOP853)
                 .rtol(1e-14)

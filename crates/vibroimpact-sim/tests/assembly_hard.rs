@@ -1,24 +1,14 @@
 //! Hard cases of many bodies and contacts: what is posed in two ways comes to the same, and many modes account for all
 //! energy.
 
+mod common;
+
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
+use common::Intervals;
 use contact_models::{Hertz, Law, LinearSpring, Viscous};
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Observer, Outcome, Point, Run, Settings, run,
+    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
-
-#[derive(Default)]
-struct Intervals(Vec<(usize, Interval)>);
-
-impl Observer for Intervals {
-    fn interval(&mut self, contact: usize, interval: &Interval) {
-        self.0.push((contact, *interval));
-    }
-
-    fn wants_energy(&self) -> bool {
-        true
-    }
-}
 
 fn solve(assembly: &Assembly<Law>, end_s: f64) -> (Run, Vec<(usize, Interval)>) {
     let mut seen = Intervals::default();

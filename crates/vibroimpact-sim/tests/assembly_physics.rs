@@ -3,21 +3,12 @@
 mod common;
 
 use beam_modes::{Beam, End, Segment};
-use common::dormand_prince;
+use common::{Intervals, dormand_prince};
 use contact_models::{ContactLaw, Hertz, Law, LinearSpring, Memory};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Observer, Outcome, Point, Run, Settings, run,
+    Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
-
-#[derive(Default)]
-struct Intervals(Vec<(usize, Interval)>);
-
-impl Observer for Intervals {
-    fn interval(&mut self, contact: usize, interval: &Interval) {
-        self.0.push((contact, *interval));
-    }
-}
 
 fn solve(assembly: &Assembly<Law>, end_s: f64, tolerance: f64) -> (Run, Vec<(usize, Interval)>) {
     let mut settings = Settings::until(end_s);

@@ -76,13 +76,16 @@ fn png_files_are_png() {
     }
 }
 
+/// The picture of the first modes of a scene of the gallery.
+fn drawn_modes(folder: &Path, name: &str, count: &str) -> String {
+    stdout(&run(folder, &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg", "--force"]));
+    fs::read_to_string(folder.join("m.svg")).unwrap()
+}
+
 #[test]
 fn modes_are_drawn_along_a_beam_and_as_stems() {
     let folder = tempfile::tempdir().unwrap();
-    let draw = |name: &str, count: &str| {
-        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg", "--force"]));
-        fs::read_to_string(folder.path().join("m.svg")).unwrap()
-    };
+    let draw = |name: &str, count: &str| drawn_modes(folder.path(), name, count);
     let beam = draw("stepped-cantilever", "12");
     assert!(beam.contains("place along the beam (m)") && beam.contains("frequency (kHz)"));
     assert!(!draw("measured-modes", "2").contains("along the beam"));
@@ -96,10 +99,7 @@ fn modes_are_drawn_along_a_beam_and_as_stems() {
 #[test]
 fn modes_are_drawn_along_a_string_and_over_a_plate() {
     let folder = tempfile::tempdir().unwrap();
-    let draw = |name: &str, count: &str| {
-        stdout(&run(folder.path(), &["modes", &scene(name), "--count", count, "--json", "--plot", "m.svg", "--force"]));
-        fs::read_to_string(folder.path().join("m.svg")).unwrap()
-    };
+    let draw = |name: &str, count: &str| drawn_modes(folder.path(), name, count);
     let string = draw("piano-hammer", "5");
     assert!(string.contains("place along the string (m)") && string.contains("\n5: "));
     for name in ["cantilever-plate", "simply-supported-plate"] {

@@ -5,14 +5,9 @@ use crate::outcome::Outcome;
 use crate::problem::{Body, Contact, Problem};
 use crate::system::{answers, assembly as assembly_of};
 use contact_models::{Law, LinearSpring, Wanted};
-use vibroimpact_sim::assembly::{Observer, Outcome as End, Settings, run};
+use vibroimpact_sim::assembly::{Outcome as End, Settings, run};
 use vibroimpact_sim::{infinite, modal};
 use work_precision::measure::Effort;
-
-/// Nobody looks on.
-struct Blind;
-
-impl Observer for Blind {}
 
 /// All runs.
 pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
@@ -43,7 +38,7 @@ pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
 pub fn assembly(problem: &Problem, laws: &[Law], tolerance: f64) -> Answer {
     let assembly = assembly_of(problem, laws)?;
     let settings = Settings { tolerance, stop_at_rest: false, ..Settings::until(problem.end_s) };
-    let found = run(&assembly, &settings, &mut Blind).map_err(|error| error.to_string())?;
+    let found = run(&assembly, &settings, &mut ()).map_err(|error| error.to_string())?;
     if let End::Stopped(reason) = found.outcome {
         return Err(reason.as_str().to_owned());
     }

@@ -6,7 +6,22 @@ pub mod random;
 use beam_modes::{Beam, End, PointMode, Segment};
 use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory};
 use std::f64::consts::PI;
+use vibroimpact_sim::assembly::{Interval, Observer};
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
+
+/// Collects the intervals of all contacts, each with the number of its contact, and asks for the energy ledger.
+#[derive(Default)]
+pub struct Intervals(pub Vec<(usize, Interval)>);
+
+impl Observer for Intervals {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.0.push((contact, *interval));
+    }
+
+    fn wants_energy(&self) -> bool {
+        true
+    }
+}
 
 /// (sqrt 5 - 1) / 2, the thesis's second location on the unit beam (m).
 pub const GOLDEN: f64 = 0.618_033_988_749_894_9;
