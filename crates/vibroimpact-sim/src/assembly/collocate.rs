@@ -125,14 +125,14 @@ pub(crate) fn collocate<'r>(
 /// Newton's matrix in blocks, factored. Off the diagonal of ones its size is `(h omega)^2` with `omega` the contacts' own
 /// frequency, so that elimination needs no pivoting.
 #[derive(Default)]
-struct Blocks {
+pub(crate) struct Blocks {
     contacts: usize,
     /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`. `None` is zero.
     blocks: Vec<Option<Matrix>>,
 }
 
 impl Blocks {
-    fn factor<'r>(&mut self, values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) {
+    pub fn factor<'r>(&mut self, values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) {
         let n = values.len();
         self.contacts = n;
         let blocks = &mut self.blocks;
@@ -174,7 +174,7 @@ impl Blocks {
     }
 
     /// Solves in place.
-    fn solve(&self, right: &mut [Nodal]) {
+    pub fn solve(&self, right: &mut [Nodal]) {
         let n = self.contacts;
         for p in 0..n {
             for q in 0..p {

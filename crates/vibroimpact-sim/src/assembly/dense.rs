@@ -14,9 +14,20 @@ pub(crate) struct Seen {
     pub branch: Option<Branch>,
 }
 
+/// What happens to a contact at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Event {
+    /// Its surfaces meet; where they overlap from the start they have met before.
+    Touch { overlaps: bool },
+    /// It crosses this boundary of its branch.
+    Cross(usize),
+}
+
 /// A stretch of motion without an event.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretch {
+    /// What happened at its start, contact by contact in this order.
+    pub events: Vec<(usize, Event)>,
     pub start_s: f64,
     pub length_s: f64,
     /// What is carried of the modes at its start.

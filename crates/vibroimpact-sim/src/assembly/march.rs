@@ -6,7 +6,7 @@
 //! nothing to solve, and panels are as long as it is certain that none closes.
 
 use super::collocate::{Collocated, Newton, Unknown, collocate};
-use super::dense::{Panel, Seen, Stretch};
+use super::dense::{Event, Panel, Seen, Stretch};
 use super::enclosure::{FlightBounds, Held, Pull, bend_of_loads, first_closing, of_panel};
 use super::event::{EventFunction, Verdict};
 use super::ledger::{Account, Moment};
@@ -93,8 +93,9 @@ pub(crate) struct March<'a> {
     pub counts: Counts,
     /// The energy ledger, where it is wanted.
     pub account: Option<Account>,
-    /// All stretches of the motion, where they are wanted.
+    /// All stretches of the motion, where they are wanted, and the events since the last of them.
     pub record: Option<Vec<Stretch>>,
+    pending: Vec<(usize, Event)>,
     /// Time, amplitudes and rates when the last contact opened, where the run may end there.
     departure: (f64, Vec<f64>, Vec<f64>),
     trial: Trial<'a>,
@@ -158,6 +159,7 @@ impl<'a> March<'a> {
             counts: Counts::default(),
             account: None,
             record: None,
+            pending: Vec::new(),
             departure: (0.0, Vec::new(), Vec::new()),
             trial: Trial::default(),
             held: Held::default(),
@@ -437,7 +439,7 @@ impl<'a> March<'a> {
         }
         let first = self.first_level(c);
         self.level = if alone { first } else { self.level.max(first) };
-        self.event();
+        self.event(c, Event::Touch { overlaps: beyond > 0.0 });
     }
 
     fn enter(&mut self, c: usize, branch: Branch) {
@@ -450,7 +452,10 @@ impl<'a> March<'a> {
         self.forget_horizons();
     }
 
-    fn event(&mut self) {
+    fn event(&mut self, c: usize, event: Event) {
+        if self.record.is_some() {
+            self.pending.push((c, event));
+        }
         self.counts.events += 1;
         self.events_at_once = if self.time_s > self.last_event_s { 0 } else { self.events_at_once + 1 };
         self.last_event_s = self.time_s;
@@ -1181,7 +1186,7 @@ impl<'a> March<'a> {
                     touch.residue = residue;
                     touch.rate_residue = if boundary.per_rate == 0.0 { 0.0 } else { residue / boundary.per_rate.abs() };
                 }
-                self.event();
+                self.event(c, Event::Cross(target.boundary));
             }
             After::Release(memory) => {
                 let (overlap, _) = self.overlap_of_modes(c);
@@ -1196,7 +1201,7 @@ impl<'a> March<'a> {
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.forget_horizons();
                 self.depart();
-                self.event();
+                self.event(c, Event::Cross(target.boundary));
             }
         }
     }
@@ -1213,14 +1218,16 @@ impl<'a> March<'a> {
         if h == 0.0 || !streams && self.record.is_none() {
             return;
         }
-        let stretch = self.stretch(h, contacts, force);
+        let mut stretch = self.stretch(h, contacts, force);
         if streams {
             let (system, loads, laws) = (self.system, &self.loads, self.laws);
             self.observer.panel(&Panel { system, loads, laws, stretch: &stretch });
         }
         if let Some(record) = &mut self.record {
+            stretch.events = std::mem::take(&mut self.pending);
             // a flight without loads is one stretch, however many panels it took to see that nothing closes
-            let flies_on = |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty();
+            let flies_on =
+                |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty() && stretch.events.is_empty();
             match record.last_mut().filter(|last| flies_on(last)) {
                 Some(last) => last.length_s = self.time_s + h - last.start_s,
                 None => record.push(stretch),
@@ -1231,6 +1238,7 @@ impl<'a> March<'a> {
     fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Nodal]) -> Stretch {
         let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
         Stretch {
+            events: Vec::new(),
             start_s: self.time_s,
             length_s,
             amplitude: self.amplitude.clone(),
@@ -1244,8 +1252,10 @@ impl<'a> March<'a> {
     pub fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
         let mut record = self.record.take().unwrap_or_default();
         if parted || record.is_empty() {
-            record.retain(|stretch| stretch.start_s < self.time_s);
-            record.push(self.stretch(f64::INFINITY, &[], &[]));
+            let known = record.partition_point(|stretch| stretch.start_s < self.time_s);
+            let flight = record.drain(known..).next();
+            let events = flight.map_or_else(|| std::mem::take(&mut self.pending), |flight| flight.events);
+            record.push(Stretch { events, ..self.stretch(f64::INFINITY, &[], &[]) });
         }
         record
     }

@@ -46,6 +46,7 @@
 //! to when event times agree.
 
 mod branch;
+pub(crate) mod change;
 mod collocate;
 mod damping;
 mod damping_form;
@@ -65,6 +66,7 @@ pub(crate) mod solve;
 mod state;
 pub(crate) mod system;
 pub(crate) mod tables;
+pub(crate) mod tangent;
 mod terminal;
 mod wave;
 

@@ -133,6 +133,13 @@ impl System {
         system
     }
 
+    /// Products of the weights of two contacts, mode by mode; zero where they do not share a body.
+    pub fn shared(&self, one: usize, other: usize) -> Vec<f64> {
+        let mut products = vec![0.0; self.modes.len()];
+        self.links[one].shared(&self.links[other]).for_each(|(k, product)| products[k] = product);
+        products
+    }
+
     /// Values given in the user's order, as a span over the modes of that body.
     pub fn span(&self, body: usize, values: &[f64]) -> Span {
         let modes = self.bodies[body].clone();
@@ -143,7 +150,7 @@ impl System {
         Span { modes, psi }
     }
 
-    fn link(&self, sides: &[Point; 2]) -> Link {
+    pub fn link(&self, sides: &[Point; 2]) -> Link {
         let sides = sides.each_ref().map(|point| match point {
             Point::Ground => None,
             Point::OfBody { body, shape } => Some(self.span(*body, shape)),

@@ -10,6 +10,7 @@ use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::vector::{sum_over, vectorized};
 
 /// Response of one contact's overlap to the force of another.
+#[derive(Clone, Copy)]
 pub(crate) struct Response {
     /// At the nodes, to nodal forces (m/N).
     pub nodes: Matrix,
@@ -18,13 +19,18 @@ pub(crate) struct Response {
     pub end_rate: Nodal,
 }
 
-/// Forced responses on one level.
-struct Forced {
+/// Free motion and forced responses of all modes on a panel.
+pub(crate) struct Forced {
     /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
     at_nodes: Vec<(Nodal, Nodal)>,
     /// Amplitude and rate at the end, `[n][k]`, to a unit Legendre force `n` on mode `k`.
     amplitude: [Vec<f64>; Q],
     rate: [Vec<f64>; Q],
+}
+
+/// The same on one level, with the responses of pairs of contacts.
+struct Expanded {
+    forced: Forced,
     /// `[c][c']`, where asked for.
     responses: Vec<Option<Box<Pair>>>,
 }
@@ -38,7 +44,7 @@ struct Pair {
 #[derive(Default)]
 struct Level {
     rotation: Option<Box<Rotation>>,
-    forced: Option<Box<Forced>>,
+    expanded: Option<Box<Expanded>>,
     damping: Option<Box<Damping>>,
     missed: Option<Box<Missed>>,
 }
@@ -81,8 +87,8 @@ impl Tables {
     /// For a system that differs in the weights of rigid modes alone: nothing else has to be made anew.
     pub fn change_rigid_modes(&mut self, system: &System) {
         for (j, level) in (J_MIN..).zip(&mut self.levels) {
-            let Some(forced) = &mut level.forced else { continue };
-            for (at, pair) in forced.responses.iter_mut().enumerate() {
+            let Some(expanded) = &mut level.expanded else { continue };
+            for (at, pair) in expanded.responses.iter_mut().enumerate() {
                 if let Some(pair) = pair {
                     let links = [at / self.contacts, at % self.contacts].map(|c| &system.links[c]);
                     pair.whole = pair.elastic.with_rigid(links[0].shared_rigid(links[1]), step_s(j));
@@ -98,54 +104,38 @@ impl Tables {
         let (level, finer) = self.levels.split_at_mut((j + 1 - J_MIN) as usize);
         let Some(half) = finer[0].rotation.as_deref() else { return };
         let count = self.contacts;
-        let forced = &mut level[(j - J_MIN) as usize].forced;
+        let expanded = &mut level[(j - J_MIN) as usize].expanded;
         let pairs: Vec<(usize, usize)> = contacts
             .iter()
             .flat_map(|&c| forces.iter().map(move |&other| (c, other)))
             .filter(|(c, other)| system.neighbours[*c].contains(other))
-            .filter(|(c, other)| forced.as_ref().is_none_or(|forced| forced.responses[c * count + other].is_none()))
+            .filter(|(c, other)| expanded.as_ref().is_none_or(|level| level.responses[c * count + other].is_none()))
             .collect();
-        if forced.is_some() && pairs.is_empty() {
+        if expanded.is_some() && pairs.is_empty() {
             return;
         }
-        let (new, found) = Forced::new(system, j, half, &pairs);
-        let forced = forced.get_or_insert_with(|| Box::new(new));
-        forced.responses.resize_with(count * count, || None);
+        let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
+        let (forced, found) = Forced::new(system, step_s(j), half, &weights);
+        let expanded = expanded.get_or_insert_with(|| Box::new(Expanded { forced, responses: Vec::new() }));
+        expanded.responses.resize_with(count * count, || None);
         for ((c, other), elastic) in pairs.into_iter().zip(found) {
             let whole = elastic.with_rigid(system.links[c].shared_rigid(&system.links[other]), step_s(j));
-            forced.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
+            expanded.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
         }
     }
 
-    fn forced(&self, j: i32) -> Option<&Forced> {
-        self.levels[(j - J_MIN) as usize].forced.as_deref()
+    fn expanded(&self, j: i32) -> Option<&Expanded> {
+        self.levels[(j - J_MIN) as usize].expanded.as_deref()
     }
 
     /// How far free motion moves the overlap of a contact at the nodes. Needs [`Tables::prepare`].
     pub fn free_at_nodes(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> Nodal {
-        let Some(forced) = self.forced(j) else { return [0.0; Q] };
-        vectorized(
-            #[inline(always)]
-            || {
-                let mut moved = [0.0; Q];
-                for Span { modes, psi } in &link.spans {
-                    let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
-                    for (((from_a, from_b), psi), (a, b)) in forced.at_nodes[modes.clone()].iter().zip(psi).zip(motion)
-                    {
-                        let (a, b) = (psi * a, psi * b);
-                        for i in 0..Q {
-                            moved[i] += from_a[i] * a + from_b[i] * b;
-                        }
-                    }
-                }
-                moved
-            },
-        )
+        self.expanded(j).map_or([0.0; Q], |level| level.forced.free_at_nodes(&link.spans, amplitude, rate))
     }
 
     /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Tables::prepare`].
     pub fn response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
-        self.forced(j)?.responses[c * self.contacts + other].as_deref().map(|pair| &pair.whole)
+        self.expanded(j)?.responses[c * self.contacts + other].as_deref().map(|pair| &pair.whole)
     }
 
     /// How far free motion over a panel moves the overlap of a contact, and its rate then.
@@ -193,16 +183,9 @@ impl Tables {
 
     /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
     pub fn push(&self, j: i32, link: &Link, force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
-        let Some(forced) = self.forced(j) else { return };
-        vectorized(
-            #[inline(always)]
-            || {
-                for Span { modes, psi } in &link.spans {
-                    accumulate(&mut amplitude[modes.clone()], psi, &forced.amplitude, modes.start, force);
-                    accumulate(&mut rate[modes.clone()], psi, &forced.rate, modes.start, force);
-                }
-            },
-        );
+        if let Some(level) = self.expanded(j) {
+            level.forced.push(&link.spans, force, amplitude, rate);
+        }
     }
 
     /// Derivatives at zero of the response of contact `c` to an impulse of `other`.
@@ -239,33 +222,29 @@ fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usiz
 }
 
 impl Forced {
-    /// Every mode on one level, with the elastic responses of these pairs of contacts, gathered in one pass.
-    fn new(system: &System, j: i32, half: &Rotation, pairs: &[(usize, usize)]) -> (Forced, Vec<Response>) {
-        let (n, h) = (system.modes.len(), step_s(j));
+    /// Every mode on a panel of `h`, with responses summed over the modes with these weights, gathered in one pass;
+    /// `half` is free motion over half of it. Rigid modes take no part in the responses.
+    pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<Response>) {
+        let n = system.modes.len();
         let mut at_nodes = Vec::with_capacity(n);
         let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
-        let mut compliances: Vec<Compliance> = pairs.iter().map(|_| Compliance::new()).collect();
-        let mut ends = vec![([0.0; Q], [0.0; Q]); pairs.len()];
-        let mut weights = vec![0.0; pairs.len()];
+        let mut compliances: Vec<Compliance> = weights.iter().map(|_| Compliance::new()).collect();
+        let mut ends = vec![([0.0; Q], [0.0; Q]); weights.len()];
+        let mut of_mode = vec![0.0; weights.len()];
         for body in &system.bodies {
-            let shapes: Vec<Option<(&Span, &Span)>> = pairs
-                .iter()
-                .map(|(one, other)| Some((system.links[*one].span(body)?, system.links[*other].span(body)?)))
-                .collect();
             let mut terms = Terms::default();
             for k in body.clone() {
                 let mode = &system.modes[k];
-                for (weight, shape) in weights.iter_mut().zip(&shapes) {
-                    let product = |(one, other): &(&Span, &Span)| one.psi[k - body.start] * other.psi[k - body.start];
-                    *weight = shape.as_ref().filter(|_| !mode.is_rigid()).map_or(0.0, product);
+                for (weight, weights) in of_mode.iter_mut().zip(weights) {
+                    *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
                 }
-                let part = part(mode, &weights, h, &half.of(k), &mut terms, &mut compliances);
+                let part = part(mode, &of_mode, h, &half.of(k), &mut terms, &mut compliances);
                 at_nodes.push(part.at_nodes);
                 for n in 0..Q {
                     amplitude[n][k] = part.end.0[n];
                     rate[n][k] = part.end.1[n];
                 }
-                for (weight, (end, end_rate)) in weights.iter().zip(&mut ends) {
+                for (weight, (end, end_rate)) in of_mode.iter().zip(&mut ends) {
                     for n in 0..Q {
                         end[n] -= weight * part.end.0[n];
                         end_rate[n] -= weight * part.end.1[n];
@@ -279,13 +258,46 @@ impl Forced {
             end_rate,
         };
         let responses = compliances.into_iter().zip(ends).map(response).collect();
-        (Forced { at_nodes, amplitude, rate, responses: Vec::new() }, responses)
+        (Forced { at_nodes, amplitude, rate }, responses)
+    }
+
+    /// How far free motion moves `sum_k psi_k a_k` at the nodes.
+    pub fn free_at_nodes(&self, spans: &[Span], amplitude: &[f64], rate: &[f64]) -> Nodal {
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut moved = [0.0; Q];
+                for Span { modes, psi } in spans {
+                    let motion = amplitude[modes.clone()].iter().zip(&rate[modes.clone()]);
+                    for (((from_a, from_b), psi), (a, b)) in self.at_nodes[modes.clone()].iter().zip(psi).zip(motion) {
+                        let (a, b) = (psi * a, psi * b);
+                        for i in 0..Q {
+                            moved[i] += from_a[i] * a + from_b[i] * b;
+                        }
+                    }
+                }
+                moved
+            },
+        )
+    }
+
+    /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
+    pub fn push(&self, spans: &[Span], force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
+        vectorized(
+            #[inline(always)]
+            || {
+                for Span { modes, psi } in spans {
+                    accumulate(&mut amplitude[modes.clone()], psi, &self.amplitude, modes.start, force);
+                    accumulate(&mut rate[modes.clone()], psi, &self.rate, modes.start, force);
+                }
+            },
+        );
     }
 }
 
 impl Response {
     /// With that of rigid modes of this inverse mass (1/kg), on a panel of `h`.
-    fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
+    pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
         let Response { mut nodes, mut end, mut end_rate } = *self;
         let moved = inverse_mass * h * h;
         for (row, twice) in nodes.iter_mut().zip(&BASIS.power[1]) {

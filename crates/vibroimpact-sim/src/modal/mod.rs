@@ -27,6 +27,7 @@
 //! Where that is more than the tolerance the impact amplifies errors, undamped ones with many modes by 1e5 and more, and two
 //! solutions may agree by accident: a third is asked, and the largest difference counts five times.
 
+mod differentiate;
 mod history;
 mod posed;
 pub(crate) mod problem;
@@ -34,6 +35,7 @@ mod solution;
 mod solve;
 mod time_unit;
 
+pub use differentiate::{Derivative, Derivatives, Differentiated, Parameter, Posing, SubImpactDerivatives};
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};
 pub use solution::{Counts, Outcome, Solution, SubImpact};

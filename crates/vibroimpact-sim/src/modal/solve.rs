@@ -59,11 +59,11 @@ pub struct Solver {
 
 /// An impact to be solved.
 #[derive(Clone, Copy)]
-struct Impact<'a> {
-    striker: &'a Striker,
-    law: &'a dyn ContactLaw,
-    start: &'a Start,
-    settings: &'a Settings,
+pub(crate) struct Impact<'a> {
+    pub striker: &'a Striker,
+    pub law: &'a dyn ContactLaw,
+    pub start: &'a Start,
+    pub settings: &'a Settings,
 }
 
 /// One run at one tolerance.
@@ -231,19 +231,29 @@ impl Solver {
         self.restitution(&run, impact.striker, impact.start)
     }
 
+    pub(crate) fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// The whole motion of an impact that ends with a rebound, of these modes, at this tolerance.
+    pub(crate) fn stretches(&mut self, impact: &Impact, tolerance: f64, moved: &[usize]) -> Option<Vec<Stretch>> {
+        if moved != self.moved {
+            let mut other = Solver { moved: moved.to_vec(), ..Solver::unchecked(self.modes.clone()) };
+            return other.stretches(impact, tolerance, moved);
+        }
+        let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
+        let posed = assembly.with_laws(vec![impact.law]);
+        let wanted = wanted(impact.settings, tolerance, false);
+        let (system, tables) = self.tables(&posed);
+        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut (), true);
+        (run.outcome == assembly::Outcome::Parted).then_some(stretches)
+    }
+
     fn run(&mut self, impact: &Impact, tolerance: f64, record: bool) -> Run {
         let Impact { striker, law, start, settings } = *impact;
         let assembly = posed::assembly(&self.modes, &self.moved, striker, start);
         let posed = assembly.with_laws(vec![law]);
-        let wanted = assembly::Settings {
-            end_s: f64::INFINITY,
-            tolerance: tolerance.min(0.1),
-            max_steps: settings.max_steps,
-            max_intervals: settings.max_sub_impacts as u64,
-            stop_at_rest: true,
-            stop_when_over: true,
-            rest_from_s: if record { settings.until_s } else { 0.0 },
-        };
+        let wanted = wanted(settings, tolerance, record);
         let mut watch = Watch { intervals: Vec::new(), records: record };
         let (system, tables) = self.tables(&posed);
         let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut watch, record);
@@ -305,6 +315,19 @@ impl Solver {
         let ratio = (run.striker_velocity_m_s - rigid(&run.rate)) / before;
         // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
+    }
+}
+
+/// The settings of a run of which nothing is left out that matters to the restitution.
+fn wanted(settings: &Settings, tolerance: f64, record: bool) -> assembly::Settings {
+    assembly::Settings {
+        end_s: f64::INFINITY,
+        tolerance: tolerance.min(0.1),
+        max_steps: settings.max_steps,
+        max_intervals: settings.max_sub_impacts as u64,
+        stop_at_rest: true,
+        stop_when_over: true,
+        rest_from_s: if record { settings.until_s } else { 0.0 },
     }
 }
 

@@ -1,0 +1,828 @@
+//! The tangent of a motion: how all of it changes with a parameter, to first order.
+//!
+//! The recorded panels are gone through once more. On each of them three things are differentiated.
+//!
+//! # A mode
+//! With `L a = a'' + 2 beta a' + omega^2 a = f`, `beta = zeta omega`, and `t` the time since the start of the panel,
+//!
+//! ```text
+//! L (t a)  = t f + 2 a' + 2 beta a
+//! L (t a') = t f' + 2 f - 2 beta a' - 2 omega^2 a
+//! ```
+//!
+//! so that what a change of frequency and damping does to a mode is its own motion times the time. The change `da` obeys
+//! `L da = df - d(omega^2) a - 2 d(beta) a'`, and with `c_1 = omega dzeta/(1 - zeta^2)`, `c_2 = domega/omega - zeta
+//! dzeta/(1 - zeta^2)`
+//!
+//! ```text
+//! da = y - c_1 t a + c_2 t a',      L y = df + c_1 t f - c_2 (t f' + 2 f)
+//! ```
+//!
+//! where `y` is the motion of the same mode under other forces, for which the propagators and responses of the panel
+//! serve. Nothing is integrated numerically. At critical damping, `zeta = 1`, a change of damping has no such form.
+//!
+//! # The forces
+//! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
+//! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces.
+//!
+//! # The events
+//! A panel that ends at an event changes its length by `dh = -dG/G'`, so that the event function `G` stays zero, and what
+//! follows begins at the shifted time: every change is that at the event, wherever it has moved. Touches so stay
+//! touches, and forces begin and end as `t^(3/2)` does after the change as before it. Where `G' = 0`, at a graze, there is
+//! no derivative.
+
+use super::change::{Change, NEIGHBOURS, slope};
+use super::collocate::Blocks;
+use super::dense::{Event, Stretch};
+use super::problem::Posed;
+use super::system::{Link, Span, System};
+use super::tables::{Forced, Response};
+use crate::panel::dyadic::{Rotation, level_within, step_s};
+use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
+use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
+use std::array;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Step, relative to the size of a variable, with which a law's own functions are differenced.
+const LAW_STEP: f64 = 1e-3;
+
+/// How an interval of contact changes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct IntervalChange {
+    pub start_s: f64,
+    pub end_s: f64,
+    pub impulse_n_s: f64,
+    pub peak_force_n: f64,
+    pub peak_compression_m: f64,
+}
+
+/// The change of a motion with one parameter.
+#[derive(Clone)]
+pub(crate) struct Tangent {
+    /// Of the modes when the record ends, in the order of [`System`], and of that time.
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub time_s: f64,
+    pub intervals: Vec<IntervalChange>,
+    contacts: Vec<Carried>,
+}
+
+/// What a contact carries from panel to panel: the change of ...
+#[derive(Debug, Clone, Copy, Default)]
+struct Carried {
+    /// ... its overlap beyond that of the modes (m),
+    reference: f64,
+    /// the numbers of its branch: where it began (m), and the law's internal variable,
+    branch: [f64; 2],
+    /// and of the memory of an open one.
+    memory: [f64; 2],
+}
+
+/// A contact along the record itself.
+#[derive(Debug, Clone, Copy)]
+struct Followed {
+    branch: Option<Branch>,
+    memory: Memory,
+    overlap: f64,
+    rate: f64,
+    /// Sizes of overlap and rate so far.
+    sizes: [f64; 2],
+    /// Which interval is under way, its largest force and compression.
+    interval: usize,
+    peaks: [f64; 2],
+}
+
+/// All tangents of a record, and how the events met.
+pub(crate) struct Tangents {
+    pub tangents: Vec<Tangent>,
+    /// The slowest touch, in parts of the fastest: the derivatives do not exist where it is zero.
+    pub nearest_graze: f64,
+}
+
+/// Free motion and responses of all modes on one length of panels, with what the changes weigh them by.
+struct Expansion {
+    rotation: Rotation,
+    forced: Forced,
+    /// `[p n + q]` over the closed contacts.
+    own: Vec<Response>,
+    /// The same for each change: the weights of `F`, and of `t F` and `t F'` where modes change.
+    changed: Vec<Vec<[Option<Response>; 3]>>,
+}
+
+/// The closed contacts of a panel, as the record has them.
+struct Solved {
+    contact: usize,
+    branch: Branch,
+    /// Force by coefficients, `t F` and `t F'` likewise, and `F'` at the nodes.
+    force: Nodal,
+    timed: Nodal,
+    timed_rate: Nodal,
+    force_rate: Nodal,
+    /// Compression and its rate at the nodes, with the law there.
+    start: f64,
+    compression: Nodal,
+    rate: Nodal,
+    law: [Force; Q],
+}
+
+/// What one change does on one panel.
+struct Moved {
+    amplitude: Vec<f64>,
+    rate: Vec<f64>,
+    /// By the panel's closed contacts: change of force and overlap at the nodes.
+    force: Vec<Nodal>,
+    overlap: Vec<Nodal>,
+}
+
+struct Walk<'a> {
+    posed: &'a Posed<'a>,
+    system: &'a System,
+    changes: &'a [Change<'a>],
+    /// `c_1 psi` and `c_2 psi` of each change and contact.
+    faded: Vec<Vec<Vec<Span>>>,
+    stretched: Vec<Vec<Vec<Span>>>,
+    kept: HashMap<(u64, Vec<usize>), Rc<Expansion>>,
+    blocks: Blocks,
+    contacts: Vec<Followed>,
+    tangents: Vec<Tangent>,
+    /// Intervals begun so far, the slowest touch and the fastest.
+    begun: usize,
+    touches: [f64; 2],
+}
+
+/// The tangents of a recorded motion without loads. `None` where one does not exist: at a graze, where a law's own course
+/// forks, and for the damping of a mode that is damped critically.
+pub(crate) fn tangents(
+    posed: &Posed,
+    system: &System,
+    stretches: &[Stretch],
+    changes: &[Change],
+) -> Option<Tangents> {
+    let mut walk = Walk::new(posed, system, changes);
+    for (i, stretch) in stretches.iter().enumerate() {
+        // events that begin the record are met on a panel of no length
+        if i == 0 && !stretch.events.is_empty() {
+            walk.begin(stretch)?;
+        }
+        if let Some(next) = stretches.get(i + 1) {
+            walk.advance(stretch, next)?;
+        }
+    }
+    let finite = |tangent: &Tangent| {
+        let motion = tangent.amplitude.iter().chain(&tangent.rate);
+        motion.sum::<f64>().is_finite() && tangent.time_s.is_finite()
+    };
+    let [slowest, fastest] = walk.touches;
+    let nearest_graze = if fastest > 0.0 { slowest / fastest } else { 1.0 };
+    walk.tangents.iter().all(finite).then_some(Tangents { tangents: walk.tangents, nearest_graze })
+}
+
+fn scaled(link: &Link, factors: &[f64]) -> Vec<Span> {
+    let of = |span: &Span| {
+        let psi = span.psi.iter().zip(&factors[span.modes.clone()]).map(|(psi, factor)| psi * factor).collect();
+        Span { modes: span.modes.clone(), psi }
+    };
+    link.spans.iter().map(of).collect()
+}
+
+fn sum(spans: &[Span], values: &[f64]) -> f64 {
+    spans.iter().map(|span| span.sum(values)).sum()
+}
+
+fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
+}
+
+fn times(one: &Nodal, other: &Nodal) -> Nodal {
+    array::from_fn(|i| one[i] * other[i])
+}
+
+impl<'a> Walk<'a> {
+    fn new(posed: &'a Posed<'a>, system: &'a System, changes: &'a [Change<'a>]) -> Walk<'a> {
+        let weighted = |factors: fn(&'a Change<'a>) -> &'a [f64]| {
+            let of = |change| system.links.iter().map(|link| scaled(link, factors(change))).collect();
+            changes.iter().map(of).collect()
+        };
+        let followed = |gap: &f64| Followed {
+            branch: None,
+            memory: Memory::default(),
+            overlap: -gap,
+            rate: 0.0,
+            sizes: [0.0; 2],
+            interval: 0,
+            peaks: [0.0; 2],
+        };
+        let tangent = |change: &Change| Tangent {
+            amplitude: change.amplitude.clone(),
+            rate: change.rate.clone(),
+            time_s: 0.0,
+            intervals: Vec::new(),
+            contacts: change.gap_m.iter().map(|gap| Carried { reference: -gap, ..Carried::default() }).collect(),
+        };
+        Walk {
+            posed,
+            system,
+            changes,
+            faded: weighted(|change| &change.fade),
+            stretched: weighted(|change| &change.stretch),
+            kept: HashMap::new(),
+            blocks: Blocks::default(),
+            contacts: posed.gaps_m.iter().map(followed).collect(),
+            tangents: changes.iter().map(tangent).collect(),
+            begun: 0,
+            touches: [f64::INFINITY, 0.0],
+        }
+    }
+
+    /// Change of an overlap and its rate, for a state and its change.
+    fn overlap(&self, d: usize, c: usize, state: (&[f64], &[f64]), change: (&[f64], &[f64])) -> [f64; 2] {
+        let (link, psi) = (&self.system.links[c], &self.changes[d].psi[c]);
+        let reference = self.tangents[d].contacts[c].reference;
+        [sum(psi, state.0) + link.sum(change.0) + reference, sum(psi, state.1) + link.sum(change.1)]
+    }
+
+    // ---- one panel ----
+
+    fn begin(&mut self, first: &Stretch) -> Option<()> {
+        let moved = self.tangents.iter().map(|tangent| Moved {
+            amplitude: tangent.amplitude.clone(),
+            rate: tangent.rate.clone(),
+            force: Vec::new(),
+            overlap: Vec::new(),
+        });
+        let moved = moved.collect();
+        let bend = self.acceleration(first, &[]);
+        let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
+        self.arrive(0.0, &[], moved, slide, first)
+    }
+
+    /// From the start of a stretch to that of the next one.
+    fn advance(&mut self, stretch: &Stretch, next: &Stretch) -> Option<()> {
+        let h = stretch.length_s;
+        let closed: Vec<usize> = stretch.forces.iter().map(|(c, _)| *c).collect();
+        let expansion = self.expansion(h, &closed);
+        let solved = self.solved(stretch, &expansion);
+        if !closed.is_empty() {
+            let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
+            let n = closed.len();
+            let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
+            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q].nodes);
+            self.blocks.factor(&values, &response, h);
+        }
+        let moved = (0..self.changes.len()).map(|d| self.moved(d, stretch, next, &expansion, &solved)).collect();
+        let slide = self.slide(h, next, &expansion, &solved);
+        for solved in &solved {
+            let followed = &mut self.contacts[solved.contact];
+            let moved = next.amplitude.iter().zip(&stretch.amplitude).map(|(after, before)| after - before);
+            followed.overlap += self.system.links[solved.contact].sum(&moved.collect::<Vec<f64>>());
+            followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
+        }
+        self.arrive(h, &solved, moved, slide, next)
+    }
+
+    fn expansion(&mut self, h: f64, closed: &[usize]) -> Rc<Expansion> {
+        let key = (h.to_bits(), closed.to_vec());
+        if let Some(kept) = self.kept.get(&key) {
+            return kept.clone();
+        }
+        let system = self.system;
+        let (rotation, half) = (Rotation::new(&system.modes, h), Rotation::new(&system.modes, 0.5 * h));
+        let n = closed.len();
+        // all weights in one list, so that each mode is expanded once
+        let mut weights: Vec<Vec<f64>> = Vec::new();
+        for &p in closed {
+            for &q in closed {
+                weights.push(system.shared(p, q));
+            }
+        }
+        let mut places = Vec::new();
+        for change in self.changes {
+            let modes_move = change.moves_modes();
+            for pair in 0..n * n {
+                let [with, by] = [closed[pair / n], closed[pair % n]];
+                let product = &weights[pair];
+                let mut of_force = vec![0.0; product.len()];
+                let [own, other] = [with, by].map(|c| &system.links[c]);
+                let mut gather = |one: &[Span], two: &[Span]| {
+                    for span in one {
+                        for partner in two.iter().filter(|partner| partner.modes == span.modes) {
+                            for (k, (a, b)) in span.modes.clone().zip(span.psi.iter().zip(&partner.psi)) {
+                                of_force[k] += a * b;
+                            }
+                        }
+                    }
+                };
+                gather(&change.psi[with], &other.spans);
+                gather(&own.spans, &change.psi[by]);
+                let by_mode = |factors: &[f64]| product.iter().zip(factors).map(|(w, factor)| w * factor).collect();
+                let mut place = [Some(weights.len()), None, None];
+                if modes_move {
+                    of_force.iter_mut().zip(product.iter().zip(&change.stretch)).for_each(|(w, (p, c))| *w -= 2.0 * p * c);
+                    let timed = [by_mode(&change.fade), by_mode(&change.stretch)];
+                    place = [Some(weights.len()), Some(weights.len() + 1), Some(weights.len() + 2)];
+                    weights.push(of_force);
+                    weights.extend(timed);
+                } else if of_force.iter().any(|weight| *weight != 0.0) {
+                    weights.push(of_force);
+                } else {
+                    place[0] = None;
+                }
+                places.push(place);
+            }
+        }
+        let (forced, elastic) = Forced::new(system, h, &half, &weights);
+        let whole: Vec<Response> = elastic
+            .iter()
+            .zip(&weights)
+            .map(|(elastic, weights)| {
+                let rigid = system.modes.iter().zip(weights).filter(|(mode, _)| mode.is_rigid());
+                elastic.with_rigid(rigid.map(|(_, weight)| weight).sum(), h)
+            })
+            .collect();
+        let pick = |place: &[Option<usize>; 3]| place.map(|place| place.map(|i| whole[i]));
+        let changed = places.chunks(n.max(1) * n.max(1)).map(|places| places.iter().map(pick).collect()).collect();
+        let own = whole[..n * n].to_vec();
+        let expansion = Rc::new(Expansion { rotation, forced, own, changed });
+        if step_s(level_within(h)) == h {
+            self.kept.insert(key, expansion.clone());
+        }
+        expansion
+    }
+
+    fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
+        let (h, n) = (stretch.length_s, stretch.forces.len());
+        let place = BASIS.nodes.map(|s| s * h);
+        let of = |(p, (c, force)): (usize, &(usize, Nodal))| {
+            let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
+            let branch = stretch.contacts[*c].branch?;
+            let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
+            compression.iter_mut().for_each(|value| *value += followed.overlap);
+            for (q, (_, other)) in stretch.forces.iter().enumerate() {
+                let nodal = BASIS.nodes.map(|s| evaluate(other, s));
+                add(&mut compression, 1.0, &apply(&expansion.own[p * n + q].nodes, &nodal));
+            }
+            let rate = slopes(followed.overlap, &compression, h);
+            let law = self.posed.laws[*c];
+            let nodal = BASIS.nodes.map(|s| evaluate(force, s));
+            let slope = derivative(force);
+            let force_rate = BASIS.nodes.map(|s| evaluate(&slope, s) / h);
+            Some(Solved {
+                contact: *c,
+                branch,
+                force: *force,
+                timed: times(&place, &nodal),
+                timed_rate: times(&place, &force_rate),
+                force_rate,
+                start: followed.overlap,
+                law: array::from_fn(|i| law.force(&branch, compression[i], rate[i])),
+                compression,
+                rate,
+            })
+        };
+        stretch.forces.iter().enumerate().filter_map(of).collect()
+    }
+
+    /// Acceleration of all modes at the end of a panel, where these forces act.
+    fn acceleration(&self, at: &Stretch, solved: &[Solved]) -> Vec<f64> {
+        let system = self.system;
+        let mut bend: Vec<f64> =
+            (0..system.modes.len()).map(|k| -system.drag[k] * at.rate[k] - system.square[k] * at.amplitude[k]).collect();
+        for solved in solved {
+            let force = evaluate(&solved.force, 1.0);
+            for span in &system.links[solved.contact].spans {
+                span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
+            }
+        }
+        bend
+    }
+
+    /// A panel of unchanged length.
+    fn moved(&self, d: usize, stretch: &Stretch, next: &Stretch, expansion: &Expansion, solved: &[Solved]) -> Moved {
+        let (system, change, tangent) = (self.system, &self.changes[d], &self.tangents[d]);
+        let (h, n) = (stretch.length_s, solved.len());
+        let (a, b) = (stretch.amplitude.as_slice(), stretch.rate.as_slice());
+        let modes_move = change.moves_modes();
+        let (fade, stretches) = (&change.fade, &change.stretch);
+        // y and y' at the start
+        let mut amplitude = tangent.amplitude.clone();
+        let mut rate = tangent.rate.clone();
+        // a'' of each mode at the start, where its motion times the time is wanted
+        let mut bend = Vec::new();
+        if modes_move {
+            for k in 0..a.len() {
+                rate[k] += fade[k] * a[k] - stretches[k] * b[k];
+            }
+            bend = (0..a.len()).map(|k| -system.drag[k] * b[k] - system.square[k] * a[k]).collect();
+            for solved in solved {
+                let force = evaluate(&solved.force, 0.0);
+                for span in &system.links[solved.contact].spans {
+                    span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
+                }
+            }
+        }
+        let (mut force, mut overlap) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for (p, own) in solved.iter().enumerate() {
+            let c = own.contact;
+            let link = &system.links[c];
+            let [start, _] = self.overlap(d, c, (a, b), (&tangent.amplitude, &tangent.rate));
+            let mut found = expansion.forced.free_at_nodes(&link.spans, &amplitude, &rate);
+            add(&mut found, 1.0, &expansion.forced.free_at_nodes(&change.psi[c], a, b));
+            found.iter_mut().for_each(|value| *value += start);
+            // what is multiplied by the time
+            let mut timed = [0.0; Q];
+            if modes_move {
+                let (faded, stretched) = (&self.faded[d][c], &self.stretched[d][c]);
+                add(&mut timed, -1.0, &expansion.forced.free_at_nodes(faded, a, b));
+                add(&mut timed, 1.0, &expansion.forced.free_at_nodes(stretched, b, &bend));
+                let at_start = sum(stretched, b) - sum(faded, a);
+                timed.iter_mut().for_each(|value| *value += at_start);
+            }
+            for (q, other) in solved.iter().enumerate() {
+                let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
+                let nodal = BASIS.nodes.map(|s| evaluate(&other.force, s));
+                if let Some(response) = of_force {
+                    add(&mut found, 1.0, &apply(&response.nodes, &nodal));
+                }
+                if let Some(response) = of_timed {
+                    add(&mut found, 1.0, &apply(&response.nodes, &other.timed));
+                    add(&mut timed, -1.0, &apply(&response.nodes, &nodal));
+                }
+                if let Some(response) = of_timed_rate {
+                    add(&mut found, -1.0, &apply(&response.nodes, &other.timed_rate));
+                    add(&mut timed, 1.0, &apply(&response.nodes, &other.force_rate));
+                }
+            }
+            for i in 0..Q {
+                found[i] += BASIS.nodes[i] * h * timed[i];
+            }
+            let slope = slopes(start, &found, h);
+            let by_law = self.force_change(d, own);
+            force.push(array::from_fn(|i| {
+                own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * slope[i] + by_law[i]
+            }));
+            overlap.push(found);
+        }
+        if n > 0 {
+            self.blocks.solve(&mut force);
+        }
+        for (p, found) in overlap.iter_mut().enumerate() {
+            for (q, force) in force.iter().enumerate() {
+                add(found, 1.0, &apply(&expansion.own[p * n + q].nodes, force));
+            }
+        }
+        // y at the end
+        rotate(&expansion.rotation, &mut amplitude, &mut rate);
+        for (own, force) in solved.iter().zip(&force) {
+            let c = own.contact;
+            let link = &system.links[c];
+            let mut push = |spans: &[Span], nodal: &Nodal, factor: f64| {
+                let force = BASIS.coefficients(nodal).map(|value| factor * value);
+                expansion.forced.push(spans, &force, &mut amplitude, &mut rate);
+            };
+            push(&link.spans, force, 1.0);
+            let nodal = BASIS.nodes.map(|s| evaluate(&own.force, s));
+            push(&change.psi[c], &nodal, 1.0);
+            if modes_move {
+                push(&self.faded[d][c], &own.timed, 1.0);
+                let driven: Nodal = array::from_fn(|i| own.timed_rate[i] + 2.0 * nodal[i]);
+                push(&self.stretched[d][c], &driven, -1.0);
+            }
+        }
+        if modes_move {
+            let (a, b) = (&next.amplitude, &next.rate);
+            let bend = self.acceleration(next, solved);
+            for k in 0..a.len() {
+                let moving = stretches[k] * b[k] - fade[k] * a[k];
+                amplitude[k] += h * moving;
+                rate[k] += moving + h * (stretches[k] * bend[k] - fade[k] * b[k]);
+            }
+        }
+        Moved { amplitude, rate, force, overlap }
+    }
+
+    /// What a panel longer by a second would change at its end. The nodes move along with the end: forces there are those
+    /// of the law, of which the polynomial's own slope may miss a little.
+    fn slide(&self, h: f64, next: &Stretch, expansion: &Expansion, solved: &[Solved]) -> Moved {
+        let (mut amplitude, mut rate) = (vec![0.0; next.amplitude.len()], vec![0.0; next.rate.len()]);
+        let n = solved.len();
+        let mut force: Vec<Nodal> = solved
+            .iter()
+            .map(|own| {
+                let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
+                array::from_fn(|i| {
+                    let law = &own.law[i];
+                    let by_law = law.per_compression_n_m * own.rate[i] + law.per_rate_n_s_m * bend[i];
+                    BASIS.nodes[i] * (by_law - own.force_rate[i])
+                })
+            })
+            .collect();
+        if n > 0 {
+            self.blocks.solve(&mut force);
+        }
+        let mut overlap = vec![[0.0; Q]; n];
+        for p in 0..n {
+            for (q, force) in force.iter().enumerate() {
+                add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q].nodes, force));
+            }
+            let spans = &self.system.links[solved[p].contact].spans;
+            expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
+        }
+        let bend = self.acceleration(next, solved);
+        for k in 0..amplitude.len() {
+            amplitude[k] += next.rate[k];
+            rate[k] += bend[k];
+        }
+        Moved { amplitude, rate, force, overlap }
+    }
+
+    /// Change of a contact's force at the nodes where the overlap does not change: by its law and its branch.
+    fn force_change(&self, d: usize, own: &Solved) -> Nodal {
+        let (change, c) = (&self.changes[d], own.contact);
+        let mut found = [0.0; Q];
+        let at = |law: &dyn ContactLaw, branch: &Branch, i: usize| {
+            law.force(branch, own.compression[i], own.rate[i]).force_n
+        };
+        if let Some(laws) = &change.laws {
+            for i in 0..Q {
+                found[i] += slope(laws[c].map(|law| at(law, &own.branch, i)), change.step);
+            }
+        }
+        let law = self.posed.laws[c];
+        for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
+            let step = LAW_STEP * size_of(&own.branch, which, &self.contacts[c]);
+            let branches = NEIGHBOURS.map(|place| shifted(&own.branch, which, place * step));
+            for i in 0..Q {
+                found[i] += by * slope(branches.each_ref().map(|branch| at(law, branch, i)), step);
+            }
+        }
+        found
+    }
+
+    // ---- the end of a panel ----
+
+    /// The end of a panel: how far it moves, what is booked, and the events there.
+    fn arrive(&mut self, h: f64, solved: &[Solved], moved: Vec<Moved>, slide: Moved, next: &Stretch) -> Option<()> {
+        let state = (next.amplitude.as_slice(), next.rate.as_slice());
+        let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
+            .map(|c| {
+                let (link, followed) = (&self.system.links[c], &self.contacts[c]);
+                let overlap = match followed.branch {
+                    Some(_) => followed.overlap,
+                    None => next.contacts[c].reference + link.sum(state.0),
+                };
+                [overlap, link.sum(state.1)]
+            })
+            .collect();
+        for (followed, [_, rate]) in self.contacts.iter_mut().zip(&overlaps) {
+            followed.rate = *rate;
+            followed.sizes[1] = followed.sizes[1].max(rate.abs());
+        }
+        // the first event fixes where the panel ends
+        let ends = next.events.first().filter(|(_, event)| *event != Event::Touch { overlaps: true });
+        let peaks = self.peaks(solved);
+        for (d, mut moved) in moved.into_iter().enumerate() {
+            let mut longer = 0.0;
+            if let Some(&(c, event)) = ends {
+                let change = self.overlap(d, c, state, (&moved.amplitude, &moved.rate));
+                let speed = [&slide.amplitude, &slide.rate].map(|values| self.system.links[c].sum(values));
+                let (changes, slope) = self.event_function(d, c, event, overlaps[c], change, speed);
+                longer = -changes / slope;
+                if !longer.is_finite() {
+                    return None;
+                }
+                for k in 0..moved.amplitude.len() {
+                    moved.amplitude[k] += longer * slide.amplitude[k];
+                    moved.rate[k] += longer * slide.rate[k];
+                }
+            }
+            for (p, own) in solved.iter().enumerate() {
+                add(&mut moved.force[p], longer, &slide.force[p]);
+                add(&mut moved.overlap[p], longer, &slide.overlap[p]);
+                let interval = self.contacts[own.contact].interval;
+                let force = BASIS.coefficients(&moved.force[p]);
+                let overlap = BASIS.coefficients(&moved.overlap[p]);
+                let Some(interval) = self.tangents[d].intervals.get_mut(interval) else { continue };
+                interval.impulse_n_s += h * force[0] + longer * evaluate(&own.force, 1.0);
+                let end = |place: f64, slope: f64| if place == 1.0 { longer * slope } else { 0.0 };
+                let [by_force, by_compression] = &peaks[p];
+                if let Some((place, slope)) = by_force {
+                    interval.peak_force_n = evaluate(&force, *place) + end(*place, slope / h);
+                }
+                if let Some((place, slope)) = by_compression {
+                    interval.peak_compression_m = evaluate(&overlap, *place) + end(*place, slope / h);
+                }
+            }
+            let tangent = &mut self.tangents[d];
+            (tangent.amplitude, tangent.rate) = (moved.amplitude, moved.rate);
+            tangent.time_s += longer;
+        }
+        for (c, event) in &next.events {
+            self.transition(*c, *event, state, overlaps[*c])?;
+        }
+        for (followed, seen) in self.contacts.iter_mut().zip(&next.contacts) {
+            followed.branch = seen.branch;
+        }
+        Some(())
+    }
+
+    /// Change of an event function at the end of an unchanged panel, and its rate of change with the length.
+    fn event_function(
+        &self,
+        d: usize,
+        c: usize,
+        event: Event,
+        [overlap, rate]: [f64; 2],
+        change: [f64; 2],
+        speed: [f64; 2],
+    ) -> (f64, f64) {
+        let carried = &self.tangents[d].contacts[c];
+        let (Event::Cross(which), Some(branch)) = (event, self.contacts[c].branch) else {
+            return (change[0] - carried.memory[0], speed[0]);
+        };
+        let law = self.posed.laws[c];
+        let boundary = law.boundaries(&branch)[which];
+        let along = |[xi, rate]: [f64; 2]| boundary.per_compression * xi + boundary.per_rate * rate;
+        let margin = |law: &dyn ContactLaw, branch: &Branch| {
+            let boundary: Boundary = law.boundaries(branch)[which];
+            boundary.margin(overlap, rate)
+        };
+        let mut changes = along(change);
+        if let Some(laws) = &self.changes[d].laws {
+            changes += slope(laws[c].map(|law| margin(law, &branch)), self.changes[d].step);
+        }
+        for (which, by) in carried.branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
+            let step = LAW_STEP * size_of(&branch, which, &self.contacts[c]);
+            changes += by * slope(NEIGHBOURS.map(|place| margin(law, &shifted(&branch, which, place * step))), step);
+        }
+        (changes, along(speed))
+    }
+
+    /// The law's own transition.
+    fn transition(&mut self, c: usize, event: Event, state: (&[f64], &[f64]), [overlap, rate]: [f64; 2]) -> Option<()> {
+        let law = self.posed.laws[c];
+        let followed = self.contacts[c];
+        let sizes = followed.sizes;
+        // the numbers that the law makes, of the four that it is given
+        type Given = [f64; 4];
+        let (given, sizes): (Given, Given) = match (event, followed.branch) {
+            (Event::Cross(_), Some(branch)) => {
+                let own = [0, 1].map(|which| size_of(&branch, which, &followed));
+                ([branch.anchor_m, branch.internal, overlap, rate], [own[0], own[1], sizes[0], sizes[1]])
+            }
+            _ => {
+                let Memory { touch_m, internal } = followed.memory;
+                let own = [sizes[0].max(touch_m.abs()), if internal == 0.0 { 1.0 } else { internal.abs() }];
+                ([touch_m, internal, rate.max(0.0), 0.0], [own[0], own[1], rate.abs(), 1.0])
+            }
+        };
+        let made = |law: &dyn ContactLaw, given: &Given| -> After {
+            match (event, followed.branch) {
+                (Event::Cross(which), Some(branch)) => {
+                    let branch = Branch { anchor_m: given[0], internal: given[1], ..branch };
+                    law.cross(&branch, which, given[2], given[3])
+                }
+                _ => {
+                    let memory = Memory { touch_m: given[0], internal: given[1] };
+                    After::Continue(law.touch(&memory, given[2]))
+                }
+            }
+        };
+        let after = made(law, &given);
+        let number = |after: &After, which: usize| match (after, which) {
+            (After::Continue(branch), 0) => branch.anchor_m,
+            (After::Continue(branch), _) => branch.internal,
+            (After::Release(memory), 0) => memory.touch_m,
+            (After::Release(memory), _) => memory.internal,
+        };
+        let kind = |after: &After| match after {
+            After::Continue(branch) => Some(branch.stage),
+            After::Release(_) => None,
+        };
+        // a law that takes another course nearby has no derivative here
+        let difference = |found: [After; 4], step: f64, which: usize| {
+            let same = found.iter().all(|found| kind(found) == kind(&after));
+            same.then(|| slope(found.each_ref().map(|found| number(found, which)), step))
+        };
+        let by_given: Vec<[f64; 2]> = (0..4)
+            .map(|i| {
+                let step = LAW_STEP * sizes[i];
+                let shifted = |place: f64| {
+                    let mut shifted = given;
+                    shifted[i] += place * step;
+                    made(law, &shifted)
+                };
+                let found = if step > 0.0 { NEIGHBOURS.map(shifted) } else { [after; 4] };
+                let step = if step > 0.0 { step } else { 1.0 };
+                Some([difference(found, step, 0)?, difference(found, step, 1)?])
+            })
+            .collect::<Option<_>>()?;
+        for d in 0..self.changes.len() {
+            let tangent = &self.tangents[d];
+            let carried = tangent.contacts[c];
+            let [by_overlap, by_rate] = self.overlap(d, c, state, (&tangent.amplitude, &tangent.rate));
+            let changes: Given = match event {
+                Event::Cross(_) => [carried.branch[0], carried.branch[1], by_overlap, by_rate],
+                Event::Touch { .. } => [carried.memory[0], carried.memory[1], by_rate, 0.0],
+            };
+            let mut made_change = [0.0; 2];
+            for (which, made_change) in made_change.iter_mut().enumerate() {
+                *made_change = (0..4).map(|i| by_given[i][which] * changes[i]).sum();
+                if let Some(laws) = &self.changes[d].laws {
+                    *made_change += difference(laws[c].map(|law| made(law, &given)), self.changes[d].step, which)?;
+                }
+            }
+            let time_s = self.tangents[d].time_s;
+            let tangent = &mut self.tangents[d];
+            match (event, &after) {
+                (Event::Touch { .. }, _) => {
+                    tangent.intervals.push(IntervalChange { start_s: time_s, end_s: time_s, ..Default::default() });
+                    tangent.contacts[c].branch = made_change;
+                }
+                (_, After::Continue(_)) => tangent.contacts[c].branch = made_change,
+                (_, After::Release(_)) => {
+                    tangent.contacts[c].memory = made_change;
+                    if let Some(interval) = tangent.intervals.get_mut(followed.interval) {
+                        interval.end_s = time_s;
+                    }
+                }
+            }
+        }
+        if let Event::Touch { overlaps } = event {
+            let speed = rate.max(0.0);
+            self.touches = [self.touches[0].min(speed), self.touches[1].max(speed)];
+            let followed = &mut self.contacts[c];
+            followed.interval = self.begun;
+            self.begun += 1;
+            followed.peaks = [0.0; 2];
+            followed.overlap = if overlaps { overlap } else { followed.memory.touch_m };
+        }
+        match after {
+            After::Continue(branch) => self.contacts[c].branch = Some(branch),
+            After::Release(memory) => (self.contacts[c].branch, self.contacts[c].memory) = (None, memory),
+        }
+        Some(())
+    }
+
+    /// Where on this panel force and compression of each contact exceed all before, with their slope there.
+    fn peaks(&mut self, solved: &[Solved]) -> Vec<[Option<(f64, f64)>; 2]> {
+        let of = |own: &Solved| {
+            let compression = BASIS.coefficients(&own.compression);
+            let followed = &mut self.contacts[own.contact];
+            [(&own.force, 0), (&compression, 1)].map(|(coefficients, which)| {
+                let (place, value) = highest(coefficients);
+                (value > followed.peaks[which]).then(|| {
+                    followed.peaks[which] = value;
+                    (place, evaluate(&derivative(coefficients), place))
+                })
+            })
+        };
+        solved.iter().map(of).collect()
+    }
+}
+
+fn rotate(rotation: &Rotation, amplitude: &mut [f64], rate: &mut [f64]) {
+    for k in 0..amplitude.len() {
+        (amplitude[k], rate[k]) = rotation.of(k).apply(amplitude[k], rate[k]);
+    }
+}
+
+/// Rate at the start of a polynomial by its values at the start and at the nodes.
+fn slope_at_start(start: f64, nodal: &Nodal, h: f64) -> f64 {
+    let rates = slopes(start, nodal, h);
+    evaluate(&BASIS.coefficients(&rates), 0.0)
+}
+
+/// Place and value of the maximum of a polynomial on [0, 1].
+fn highest(coefficients: &Nodal) -> (f64, f64) {
+    const GRID: u32 = 16;
+    let value = |place: f64| evaluate(coefficients, place);
+    let grid = (0..=GRID).map(|i| f64::from(i) / f64::from(GRID));
+    let (mut place, mut best) = grid.map(|s| (s, value(s))).fold((0.0, f64::MIN), |a, b| if b.1 > a.1 { b } else { a });
+    let slope = derivative(coefficients);
+    let bend = derivative(&slope);
+    for _ in 0..8 {
+        let next = place - evaluate(&slope, place) / evaluate(&bend, place);
+        if !((0.0..=1.0).contains(&next) && value(next) >= best) {
+            break;
+        }
+        (place, best) = (next, value(next));
+    }
+    (place, best)
+}
+
+/// The size that a number of a branch is differenced by.
+fn size_of(branch: &Branch, which: usize, followed: &Followed) -> f64 {
+    match which {
+        0 => branch.anchor_m.abs().max(followed.sizes[0]),
+        _ if branch.internal != 0.0 => branch.internal.abs(),
+        _ => 1.0,
+    }
+}
+
+fn shifted(branch: &Branch, which: usize, by: f64) -> Branch {
+    match which {
+        0 => Branch { anchor_m: branch.anchor_m + by, ..*branch },
+        _ => Branch { internal: branch.internal + by, ..*branch },
+    }
+}

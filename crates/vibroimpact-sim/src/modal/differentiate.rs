@@ -1,0 +1,301 @@
+//! How an impact changes with the numbers that pose it.
+
+use super::posed;
+use super::problem::{Mode, Settings, Start, Striker, Structure};
+use super::solution::{Outcome, Solution};
+use super::solve::{Impact, Solver};
+use crate::InvalidInput;
+use crate::assembly::change::{Change, slope};
+use crate::assembly::dense::Stretch;
+use crate::assembly::system::System;
+use crate::assembly::tangent::{IntervalChange, tangents};
+use contact_models::ContactLaw;
+
+/// An impact, all of it.
+#[derive(Clone, Copy)]
+pub struct Posing<'a> {
+    /// The structure, as seen from the contact.
+    pub structure: &'a Structure,
+    /// The compact body.
+    pub striker: &'a Striker,
+    /// The law of their contact.
+    pub law: &'a dyn ContactLaw,
+    /// How the structure moves when the clock starts.
+    pub start: &'a Start,
+}
+
+/// A parameter, by what the impact becomes at four neighbouring values of it. They must lie so near that everything which
+/// poses the impact is smooth between them, and keep the number and the order of the modes.
+#[derive(Clone, Copy)]
+pub struct Parameter<'a> {
+    /// Distance of one neighbour from the next (unit of the parameter), positive.
+    pub step: f64,
+    /// The impact at the value less two steps, less one, plus one and plus two.
+    pub neighbours: [Posing<'a>; 4],
+    /// Whether the law of contact depends on the parameter.
+    pub changes_law: bool,
+}
+
+/// A derivative, per unit of the parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivative {
+    /// The derivative.
+    pub value: f64,
+    /// By how much it may be off, from the derivative along a coarser solution; `None` where that one went another way, so
+    /// that no digit of the derivative is certain.
+    pub uncertainty: Option<f64>,
+}
+
+/// How one interval of contact changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SubImpactDerivatives {
+    /// Of first touch (s).
+    pub start_s: Derivative,
+    /// Of separation (s).
+    pub end_s: Derivative,
+    /// Of the impulse (N s).
+    pub impulse_n_s: Derivative,
+    /// Of the largest force (N).
+    pub peak_force_n: Derivative,
+    /// Of the largest compression (m).
+    pub peak_compression_m: Derivative,
+}
+
+/// How an impact changes with one parameter, per unit of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Derivatives {
+    /// Of the net restitution.
+    pub restitution: Derivative,
+    /// Of the time of the last separation (s).
+    pub end_s: Derivative,
+    /// Of the striker's velocity then (m/s).
+    pub striker_velocity_m_s: Derivative,
+    /// Of each interval of contact.
+    pub sub_impacts: Vec<SubImpactDerivatives>,
+    /// Of the modal amplitudes at the last separation (m kg^1/2), whose time changes as well.
+    pub amplitude: Vec<f64>,
+    /// Of their rates (m kg^1/2 / s).
+    pub rate: Vec<f64>,
+}
+
+/// An impact with its derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Differentiated {
+    /// The impact.
+    pub solution: Solution,
+    /// By parameter, in the order given; `None` where there are none: the impact did not end with a rebound, a contact
+    /// only grazes, or a mode whose damping changes is damped critically.
+    pub derivatives: Option<Vec<Derivatives>>,
+    /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
+    pub nearest_graze: f64,
+}
+
+/// The changes along one run, by parameter.
+struct Along {
+    changes: Vec<Changes>,
+    nearest_graze: f64,
+}
+
+struct Changes {
+    numbers: [f64; 3],
+    intervals: Vec<IntervalChange>,
+    amplitude: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+/// How much more coarsely the motion is solved whose derivatives tell the uncertainty.
+const COARSER: f64 = 32.0;
+/// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
+const ROUNDING: f64 = 1e-10;
+
+impl Solver {
+    /// Solves one impact, and how all of it changes with some parameters: the tangent of the motion, not differences of
+    /// it. Each parameter costs a part of the impact.
+    ///
+    /// ```
+    /// use contact_models::Hertz;
+    /// use vibroimpact_sim::modal::{Mode, Parameter, Posing, Settings, Solver, Start, Striker, Structure};
+    ///
+    /// let mode = Mode { omega_rad_s: 314.0, damping_ratio: 0.02, shape: 2f64.sqrt() };
+    /// let structure = Structure { modes: vec![mode] };
+    /// let (law, start) = (Hertz::new(1.8e10).unwrap(), Start::at_rest(1));
+    /// // by the mass of the ball
+    /// let step = 1e-5;
+    /// let balls = [-2.0, -1.0, 1.0, 2.0].map(|i| Striker { mass_kg: 0.1 + i * step, speed_m_s: 1.0 });
+    /// let neighbours =
+    ///     balls.each_ref().map(|striker| Posing { structure: &structure, striker, law: &law, start: &start });
+    /// let mass = Parameter { step, neighbours, changes_law: false };
+    /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
+    /// let solved = Solver::new(&structure)?.differentiate(&ball, &law, None, &Settings::default(), &[mass])?;
+    /// // two rigid bodies of m and M: (1 - m/M)/(1 + m/M)
+    /// let derivative = &solved.derivatives.unwrap()[0].restitution;
+    /// assert!((derivative.value + 2.0 / 0.5 / 1.2f64.powi(2)).abs() < 1e-2);
+    /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Solver::solve`], and for neighbours with another number of modes.
+    pub fn differentiate(
+        &mut self,
+        striker: &Striker,
+        law: &dyn ContactLaw,
+        start: Option<&Start>,
+        settings: &Settings,
+        parameters: &[Parameter],
+    ) -> Result<Differentiated, InvalidInput> {
+        let count = self.modes().len();
+        for (i, parameter) in parameters.iter().enumerate() {
+            let step = parameter.step;
+            let positive = step > 0.0 && step.is_finite();
+            InvalidInput::unless(positive, format!("parameters[{i}].step"), step, "a positive number")?;
+            for (place, neighbour) in parameter.neighbours.iter().enumerate() {
+                let found = neighbour.structure.modes.len();
+                let field = format!("parameters[{i}].neighbours[{place}].structure.modes");
+                InvalidInput::unless(found == count, field, format!("{found} modes"), "as many as the structure has")?;
+                neighbour.structure.check()?;
+                neighbour.striker.check()?;
+                neighbour.start.check(found)?;
+            }
+        }
+        let solution = self.solve(striker, law, start, settings)?;
+        let none = |solution| Differentiated { solution, derivatives: None, nearest_graze: 1.0 };
+        if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
+            return Ok(none(solution));
+        }
+        let at_rest = Start::at_rest(count);
+        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
+        let moved = self.moved_by(parameters);
+        let tolerance = settings.tolerance.min(0.1 / COARSER);
+        let Some(fine) = self.along(&impact, tolerance, parameters, &moved) else {
+            return Ok(none(solution));
+        };
+        let coarse = self.along(&impact, COARSER * tolerance, parameters, &moved);
+        let of = |(i, fine): (usize, &Changes)| {
+            let coarse = coarse.as_ref().map(|along| &along.changes[i]);
+            fine.beside(coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len()))
+        };
+        let derivatives = fine.changes.iter().enumerate().map(of).collect();
+        Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze: fine.nearest_graze })
+    }
+
+    /// The modes that move the contact, here or at a neighbour.
+    fn moved_by(&self, parameters: &[Parameter]) -> Vec<usize> {
+        let structures = || parameters.iter().flat_map(|parameter| &parameter.neighbours);
+        let moves = |k: &usize| {
+            self.modes()[*k].is_excited() || structures().any(|posing| posing.structure.modes[*k].is_excited())
+        };
+        (0..self.modes().len()).filter(moves).collect()
+    }
+
+    /// The changes along the motion at one tolerance.
+    fn along(&mut self, impact: &Impact, tolerance: f64, parameters: &[Parameter], moved: &[usize]) -> Option<Along> {
+        let modes = self.modes().to_vec();
+        let assembly = posed::assembly(&modes, moved, impact.striker, impact.start);
+        let posed = assembly.with_laws(vec![impact.law]);
+        let system = System::new(&posed);
+        let stretches: Vec<Stretch> = self.stretches(impact, tolerance, moved)?;
+        let neighbours: Vec<_> = parameters
+            .iter()
+            .map(|parameter| {
+                parameter.neighbours.each_ref().map(|at| {
+                    posed::assembly(&at.structure.modes, moved, at.striker, at.start)
+                })
+            })
+            .collect();
+        let all_posed: Vec<_> = neighbours
+            .iter()
+            .zip(parameters)
+            .map(|(assemblies, parameter)| {
+                std::array::from_fn::<_, 4, _>(|i| assemblies[i].with_laws(vec![parameter.neighbours[i].law]))
+            })
+            .collect();
+        let changes: Vec<Change> = all_posed
+            .iter()
+            .zip(parameters)
+            .map(|(posed, parameter)| {
+                Change::new(&system, posed.each_ref(), parameter.changes_law, parameter.step)
+            })
+            .collect();
+        let found = tangents(&posed, &system, &stretches, &changes)?;
+        let last = stretches.last()?;
+        let side = |system: &System| system.links[0].sides[0].clone();
+        let striker = side(&system);
+        let end = (last.amplitude.as_slice(), last.rate.as_slice());
+        let changes = found.tangents.into_iter().zip(parameters).zip(&all_posed).map(|((tangent, parameter), posed)| {
+            let by_shape = |neighbour: usize| {
+                let link = system.link(posed[neighbour].sides[0]);
+                link.sides[0].as_ref().map_or(0.0, |side| side.sum(end.1))
+            };
+            let velocity = striker.as_ref().map_or(0.0, |side| side.sum(&tangent.rate))
+                + slope(std::array::from_fn(by_shape), parameter.step);
+            let pick = |values: &[f64]| {
+                let mut all = vec![0.0; modes.len()];
+                moved.iter().zip(&system.place[posed::STRUCTURE]).for_each(|(k, place)| all[*k] = values[*place]);
+                all
+            };
+            let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
+            let end_rate = pick(end.1);
+            let velocity_now = striker.as_ref().map_or(0.0, |side| side.sum(end.1));
+            let restitution =
+                restitution_change(&modes, impact, parameter, (velocity_now, velocity), (&end_rate, &rate));
+            Changes {
+                numbers: [restitution, tangent.time_s, velocity],
+                intervals: tangent.intervals,
+                amplitude,
+                rate,
+            }
+        });
+        Some(Along { changes: changes.collect(), nearest_graze: found.nearest_graze })
+    }
+}
+
+/// Change of `(velocity - rigid(end)) / (speed + rigid(start))`, `rigid` the motion of the structure's rigid-body modes.
+fn restitution_change(
+    modes: &[Mode],
+    impact: &Impact,
+    parameter: &Parameter,
+    (velocity, velocity_change): (f64, f64),
+    (end, end_change): (&[f64], &[f64]),
+) -> f64 {
+    let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
+        modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
+    };
+    let (step, neighbours) = (parameter.step, &parameter.neighbours);
+    let by_shape = slope(neighbours.map(|at| rigid(&at.structure.modes, end)), step);
+    let parting = velocity - rigid(modes, end);
+    let parting_change = velocity_change - by_shape - rigid(modes, end_change);
+    let before = impact.striker.speed_m_s + rigid(modes, &impact.start.rate);
+    let before_of = |at: Posing| at.striker.speed_m_s + rigid(&at.structure.modes, &at.start.rate);
+    let before_change = slope(neighbours.map(before_of), step);
+    (parting_change - parting / before * before_change) / before
+}
+
+impl Changes {
+    /// As derivatives, with those along a coarser motion.
+    fn beside(&self, coarse: Option<&Changes>) -> Derivatives {
+        let with = |value: f64, other: Option<f64>| Derivative {
+            value,
+            uncertainty: other.map(|other| (other - value).abs() + ROUNDING * value.abs()),
+        };
+        let number = |i: usize| with(self.numbers[i], coarse.map(|coarse| coarse.numbers[i]));
+        let interval = |(i, change): (usize, &IntervalChange)| {
+            let other = coarse.map(|coarse| coarse.intervals[i]);
+            let of = |get: fn(&IntervalChange) -> f64| with(get(change), other.as_ref().map(get));
+            SubImpactDerivatives {
+                start_s: of(|change| change.start_s),
+                end_s: of(|change| change.end_s),
+                impulse_n_s: of(|change| change.impulse_n_s),
+                peak_force_n: of(|change| change.peak_force_n),
+                peak_compression_m: of(|change| change.peak_compression_m),
+            }
+        };
+        Derivatives {
+            restitution: number(0),
+            end_s: number(1),
+            striker_velocity_m_s: number(2),
+            sub_impacts: self.intervals.iter().enumerate().map(interval).collect(),
+            amplitude: self.amplitude.clone(),
+            rate: self.rate.clone(),
+        }
+    }
+}
