@@ -1,19 +1,42 @@
 //! How the numbers of an assembly change with a parameter, from four assemblies nearby.
 //!
 //! Whoever poses an assembly computes its modes, shapes, masses and laws from numbers of his own. How these depend on a
-//! parameter is known by posing it at four neighbouring values: central differences of fourth order. Unlike the motion,
-//! what poses it is smooth and exact to rounding, so that little is lost.
+//! parameter is known by posing it at four neighbouring values: the slope of the polynomial through them. Unlike the
+//! motion, what poses it is smooth and exact to rounding, so that little is lost.
 
 use super::problem::Posed;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
-/// Places of the neighbours, in steps from the value itself.
-pub(crate) const NEIGHBOURS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+/// Four neighbouring values of a parameter, and what they say about the slope at the value between them or beside them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stencil {
+    /// Distances from the value.
+    pub offsets: [f64; 4],
+    weights: [f64; 4],
+}
 
-/// Derivative from the values at [`NEIGHBOURS`].
-pub(crate) fn slope([far_below, below, above, far_above]: [f64; 4], step: f64) -> f64 {
-    (8.0 * (above - below) - (far_above - far_below)) / (12.0 * step)
+impl Stencil {
+    /// Distances that differ from each other.
+    pub fn new(offsets: [f64; 4]) -> Stencil {
+        // derivative at zero of Lagrange's polynomials
+        let weight = |i: usize| {
+            let others = || (0..4).filter(|j| *j != i);
+            let scale: f64 = others().map(|j| offsets[i] - offsets[j]).product();
+            let without = |skip: usize| others().filter(|j| *j != skip).map(|j| -offsets[j]).product::<f64>();
+            others().map(without).sum::<f64>() / scale
+        };
+        Stencil { offsets, weights: std::array::from_fn(weight) }
+    }
+
+    pub fn central(step: f64) -> Stencil {
+        Stencil::new([-2.0 * step, -step, step, 2.0 * step])
+    }
+
+    /// Slope from the values there: exactly zero where they are all the same.
+    pub fn slope(&self, values: [f64; 4]) -> f64 {
+        (1..4).map(|i| self.weights[i] * (values[i] - values[0])).sum()
+    }
 }
 
 /// What a unit of a parameter changes, by modes in the order of [`System`].
@@ -29,33 +52,33 @@ pub(crate) struct Change<'a> {
     pub stretch: Vec<f64>,
     /// The law of each contact at the neighbours, where it changes.
     pub laws: Option<Vec<[&'a dyn ContactLaw; 4]>>,
-    pub step: f64,
+    pub stencil: Stencil,
 }
 
 impl<'a> Change<'a> {
-    /// From the assembly at [`NEIGHBOURS`], whose modes are those of the system in the same order of their bodies.
-    pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, step: f64) -> Change<'a> {
+    /// From the assembly at the neighbours, whose modes are those of the system in the same order of their bodies.
+    pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, stencil: Stencil) -> Change<'a> {
         let n = system.modes.len();
         let mut change = Change {
             amplitude: vec![0.0; n],
             rate: vec![0.0; n],
-            gap_m: (0..system.links.len()).map(|c| slope(posed.map(|posed| posed.gaps_m[c]), step)).collect(),
+            gap_m: (0..system.links.len()).map(|c| stencil.slope(posed.map(|posed| posed.gaps_m[c]))).collect(),
             psi: Vec::new(),
             fade: vec![0.0; n],
             stretch: vec![0.0; n],
             laws: laws_change.then(|| (0..system.links.len()).map(|c| posed.map(|posed| posed.laws[c])).collect()),
-            step,
+            stencil,
         };
         for (body, places) in system.place.iter().enumerate() {
             let bodies = posed.map(|posed| &posed.bodies[body]);
             for (k, &place) in places.iter().enumerate() {
-                change.amplitude[place] = slope(bodies.map(|body| body.amplitude[k]), step);
-                change.rate[place] = slope(bodies.map(|body| body.rate[k]), step);
+                change.amplitude[place] = stencil.slope(bodies.map(|body| body.amplitude[k]));
+                change.rate[place] = stencil.slope(bodies.map(|body| body.rate[k]));
                 let mode = system.modes[place];
                 if !mode.is_rigid() {
                     let zeta = mode.damping_ratio;
-                    let by_omega = slope(bodies.map(|body| body.modes[k].omega_rad_s), step) / mode.omega_rad_s;
-                    let by_zeta = slope(bodies.map(|body| body.modes[k].damping_ratio), step);
+                    let by_omega = stencil.slope(bodies.map(|body| body.modes[k].omega_rad_s)) / mode.omega_rad_s;
+                    let by_zeta = stencil.slope(bodies.map(|body| body.modes[k].damping_ratio));
                     let by_zeta = if by_zeta == 0.0 { 0.0 } else { by_zeta / ((1.0 - zeta) * (1.0 + zeta)) };
                     change.fade[place] = mode.omega_rad_s * by_zeta;
                     change.stretch[place] = by_omega - zeta * by_zeta;
@@ -64,7 +87,7 @@ impl<'a> Change<'a> {
         }
         for (c, link) in system.links.iter().enumerate() {
             let links = posed.map(|posed| system.link(posed.sides[c]));
-            change.psi.push(difference(link, &links, step));
+            change.psi.push(difference(link, &links, &stencil));
         }
         change
     }
@@ -75,9 +98,9 @@ impl<'a> Change<'a> {
     }
 }
 
-fn difference(link: &Link, neighbours: &[Link; 4], step: f64) -> Vec<Span> {
+fn difference(link: &Link, neighbours: &[Link; 4], stencil: &Stencil) -> Vec<Span> {
     let of = |(i, span): (usize, &Span)| {
-        let psi = |k| slope(neighbours.each_ref().map(|link| link.spans[i].psi[k]), step);
+        let psi = |k| stencil.slope(neighbours.each_ref().map(|link| link.spans[i].psi[k]));
         Span { modes: span.modes.clone(), psi: (0..span.psi.len()).map(psi).collect() }
     };
     link.spans.iter().enumerate().map(of).collect()

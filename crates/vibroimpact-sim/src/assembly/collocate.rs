@@ -132,7 +132,12 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    pub fn factor<'r>(&mut self, values: &[[Force; Q]], response: &impl Fn(usize, usize) -> Option<&'r Matrix>, h: f64) {
+    pub fn factor<'r>(
+        &mut self,
+        values: &[[Force; Q]],
+        response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
+        h: f64,
+    ) {
         let n = values.len();
         self.contacts = n;
         let blocks = &mut self.blocks;

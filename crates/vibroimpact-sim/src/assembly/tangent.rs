@@ -31,7 +31,7 @@
 //! touches, and forces begin and end as `t^(3/2)` does after the change as before it. Where `G' = 0`, at a graze, there is
 //! no derivative.
 
-use super::change::{Change, NEIGHBOURS, slope};
+use super::change::{Change, Stencil};
 use super::collocate::Blocks;
 use super::dense::{Event, Stretch};
 use super::problem::Posed;
@@ -45,7 +45,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Step, relative to the size of a variable, with which a law's own functions are differenced.
-const LAW_STEP: f64 = 1e-3;
+const LAW_STEP: f64 = 1e-6;
 
 /// How an interval of contact changes.
 #[derive(Debug, Clone, Copy, Default)]
@@ -153,12 +153,7 @@ struct Walk<'a> {
 
 /// The tangents of a recorded motion without loads. `None` where one does not exist: at a graze, where a law's own course
 /// forks, and for the damping of a mode that is damped critically.
-pub(crate) fn tangents(
-    posed: &Posed,
-    system: &System,
-    stretches: &[Stretch],
-    changes: &[Change],
-) -> Option<Tangents> {
+pub(crate) fn tangents(posed: &Posed, system: &System, stretches: &[Stretch], changes: &[Change]) -> Option<Tangents> {
     let mut walk = Walk::new(posed, system, changes);
     for (i, stretch) in stretches.iter().enumerate() {
         // events that begin the record are met on a panel of no length
@@ -318,7 +313,10 @@ impl<'a> Walk<'a> {
                 let by_mode = |factors: &[f64]| product.iter().zip(factors).map(|(w, factor)| w * factor).collect();
                 let mut place = [Some(weights.len()), None, None];
                 if modes_move {
-                    of_force.iter_mut().zip(product.iter().zip(&change.stretch)).for_each(|(w, (p, c))| *w -= 2.0 * p * c);
+                    of_force
+                        .iter_mut()
+                        .zip(product.iter().zip(&change.stretch))
+                        .for_each(|(w, (p, c))| *w -= 2.0 * p * c);
                     let timed = [by_mode(&change.fade), by_mode(&change.stretch)];
                     place = [Some(weights.len()), Some(weights.len() + 1), Some(weights.len() + 2)];
                     weights.push(of_force);
@@ -386,8 +384,9 @@ impl<'a> Walk<'a> {
     /// Acceleration of all modes at the end of a panel, where these forces act.
     fn acceleration(&self, at: &Stretch, solved: &[Solved]) -> Vec<f64> {
         let system = self.system;
-        let mut bend: Vec<f64> =
-            (0..system.modes.len()).map(|k| -system.drag[k] * at.rate[k] - system.square[k] * at.amplitude[k]).collect();
+        let mut bend: Vec<f64> = (0..system.modes.len())
+            .map(|k| -system.drag[k] * at.rate[k] - system.square[k] * at.amplitude[k])
+            .collect();
         for solved in solved {
             let force = evaluate(&solved.force, 1.0);
             for span in &system.links[solved.contact].spans {
@@ -545,15 +544,15 @@ impl<'a> Walk<'a> {
         };
         if let Some(laws) = &change.laws {
             for i in 0..Q {
-                found[i] += slope(laws[c].map(|law| at(law, &own.branch, i)), change.step);
+                found[i] += change.stencil.slope(laws[c].map(|law| at(law, &own.branch, i)));
             }
         }
         let law = self.posed.laws[c];
         for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let step = LAW_STEP * size_of(&own.branch, which, &self.contacts[c]);
-            let branches = NEIGHBOURS.map(|place| shifted(&own.branch, which, place * step));
+            let stencil = Stencil::central(LAW_STEP * size_of(&own.branch, which, &self.contacts[c]));
+            let branches = stencil.offsets.map(|offset| shifted(&own.branch, which, offset));
             for i in 0..Q {
-                found[i] += by * slope(branches.each_ref().map(|branch| at(law, branch, i)), step);
+                found[i] += by * stencil.slope(branches.each_ref().map(|branch| at(law, branch, i)));
             }
         }
         found
@@ -649,11 +648,12 @@ impl<'a> Walk<'a> {
         };
         let mut changes = along(change);
         if let Some(laws) = &self.changes[d].laws {
-            changes += slope(laws[c].map(|law| margin(law, &branch)), self.changes[d].step);
+            changes += self.changes[d].stencil.slope(laws[c].map(|law| margin(law, &branch)));
         }
         for (which, by) in carried.branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let step = LAW_STEP * size_of(&branch, which, &self.contacts[c]);
-            changes += by * slope(NEIGHBOURS.map(|place| margin(law, &shifted(&branch, which, place * step))), step);
+            let stencil = Stencil::central(LAW_STEP * size_of(&branch, which, &self.contacts[c]));
+            let margins = stencil.offsets.map(|offset| margin(law, &shifted(&branch, which, offset)));
+            changes += by * stencil.slope(margins);
         }
         (changes, along(speed))
     }
@@ -700,23 +700,21 @@ impl<'a> Walk<'a> {
             After::Release(_) => None,
         };
         // a law that takes another course nearby has no derivative here
-        let difference = |found: [After; 4], step: f64, which: usize| {
+        let difference = |found: [After; 4], stencil: &Stencil, which: usize| {
             let same = found.iter().all(|found| kind(found) == kind(&after));
-            same.then(|| slope(found.each_ref().map(|found| number(found, which)), step))
+            same.then(|| stencil.slope(found.each_ref().map(|found| number(found, which))))
         };
-        let by_given: Vec<[f64; 2]> = (0..4)
-            .map(|i| {
-                let step = LAW_STEP * sizes[i];
-                let shifted = |place: f64| {
-                    let mut shifted = given;
-                    shifted[i] += place * step;
-                    made(law, &shifted)
-                };
-                let found = if step > 0.0 { NEIGHBOURS.map(shifted) } else { [after; 4] };
-                let step = if step > 0.0 { step } else { 1.0 };
-                Some([difference(found, step, 0)?, difference(found, step, 1)?])
-            })
-            .collect::<Option<_>>()?;
+        // how these numbers change with a number given
+        let by_given = |i: usize| {
+            let stencil = Stencil::central(LAW_STEP * sizes[i]);
+            let found = stencil.offsets.map(|offset| {
+                let mut shifted = given;
+                shifted[i] += offset;
+                made(law, &shifted)
+            });
+            Some([difference(found, &stencil, 0)?, difference(found, &stencil, 1)?])
+        };
+        let mut known: [Option<[f64; 2]>; 4] = [None; 4];
         for d in 0..self.changes.len() {
             let tangent = &self.tangents[d];
             let carried = tangent.contacts[c];
@@ -726,10 +724,16 @@ impl<'a> Walk<'a> {
                 Event::Touch { .. } => [carried.memory[0], carried.memory[1], by_rate, 0.0],
             };
             let mut made_change = [0.0; 2];
-            for (which, made_change) in made_change.iter_mut().enumerate() {
-                *made_change = (0..4).map(|i| by_given[i][which] * changes[i]).sum();
-                if let Some(laws) = &self.changes[d].laws {
-                    *made_change += difference(laws[c].map(|law| made(law, &given)), self.changes[d].step, which)?;
+            for i in (0..4).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
+                let slopes = match known[i] {
+                    Some(slopes) => slopes,
+                    None => *known[i].insert(by_given(i)?),
+                };
+                (0..2).for_each(|which| made_change[which] += slopes[which] * changes[i]);
+            }
+            if let Some(laws) = &self.changes[d].laws {
+                for (which, made_change) in made_change.iter_mut().enumerate() {
+                    *made_change += difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil, which)?;
                 }
             }
             let time_s = self.tangents[d].time_s;
@@ -814,7 +818,8 @@ fn highest(coefficients: &Nodal) -> (f64, f64) {
 /// The size that a number of a branch is differenced by.
 fn size_of(branch: &Branch, which: usize, followed: &Followed) -> f64 {
     match which {
-        0 => branch.anchor_m.abs().max(followed.sizes[0]),
+        0 if branch.anchor_m != 0.0 => branch.anchor_m.abs(),
+        0 => followed.sizes[0],
         _ if branch.internal != 0.0 => branch.internal.abs(),
         _ => 1.0,
     }

@@ -5,7 +5,7 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
 use super::solve::{Impact, Solver};
 use crate::InvalidInput;
-use crate::assembly::change::{Change, slope};
+use crate::assembly::change::{Change, Stencil};
 use crate::assembly::dense::Stretch;
 use crate::assembly::system::System;
 use crate::assembly::tangent::{IntervalChange, tangents};
@@ -28,9 +28,10 @@ pub struct Posing<'a> {
 /// poses the impact is smooth between them, and keep the number and the order of the modes.
 #[derive(Clone, Copy)]
 pub struct Parameter<'a> {
-    /// Distance of one neighbour from the next (unit of the parameter), positive.
-    pub step: f64,
-    /// The impact at the value less two steps, less one, plus one and plus two.
+    /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
+    /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.
+    pub offsets: [f64; 4],
+    /// The impact at these values.
     pub neighbours: [Posing<'a>; 4],
     /// Whether the law of contact depends on the parameter.
     pub changes_law: bool,
@@ -105,6 +106,8 @@ struct Changes {
 
 /// How much more coarsely the motion is solved whose derivatives tell the uncertainty.
 const COARSER: f64 = 32.0;
+/// The uncertainty in differences to them.
+const TIMES: f64 = 10.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
 const ROUNDING: f64 = 1e-10;
 
@@ -120,11 +123,11 @@ impl Solver {
     /// let structure = Structure { modes: vec![mode] };
     /// let (law, start) = (Hertz::new(1.8e10).unwrap(), Start::at_rest(1));
     /// // by the mass of the ball
-    /// let step = 1e-5;
-    /// let balls = [-2.0, -1.0, 1.0, 2.0].map(|i| Striker { mass_kg: 0.1 + i * step, speed_m_s: 1.0 });
+    /// let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
+    /// let balls = offsets.map(|more| Striker { mass_kg: 0.1 + more, speed_m_s: 1.0 });
     /// let neighbours =
     ///     balls.each_ref().map(|striker| Posing { structure: &structure, striker, law: &law, start: &start });
-    /// let mass = Parameter { step, neighbours, changes_law: false };
+    /// let mass = Parameter { offsets, neighbours, changes_law: false };
     /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
     /// let solved = Solver::new(&structure)?.differentiate(&ball, &law, None, &Settings::default(), &[mass])?;
     /// // two rigid bodies of m and M: (1 - m/M)/(1 + m/M)
@@ -145,9 +148,10 @@ impl Solver {
     ) -> Result<Differentiated, InvalidInput> {
         let count = self.modes().len();
         for (i, parameter) in parameters.iter().enumerate() {
-            let step = parameter.step;
-            let positive = step > 0.0 && step.is_finite();
-            InvalidInput::unless(positive, format!("parameters[{i}].step"), step, "a positive number")?;
+            let offsets = &parameter.offsets;
+            let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
+            let field = format!("parameters[{i}].offsets");
+            InvalidInput::unless(different, field, format!("{offsets:?}"), "four different finite numbers")?;
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
                 let found = neighbour.structure.modes.len();
                 let field = format!("parameters[{i}].neighbours[{place}].structure.modes");
@@ -197,9 +201,10 @@ impl Solver {
         let neighbours: Vec<_> = parameters
             .iter()
             .map(|parameter| {
-                parameter.neighbours.each_ref().map(|at| {
-                    posed::assembly(&at.structure.modes, moved, at.striker, at.start)
-                })
+                parameter
+                    .neighbours
+                    .each_ref()
+                    .map(|at| posed::assembly(&at.structure.modes, moved, at.striker, at.start))
             })
             .collect();
         let all_posed: Vec<_> = neighbours
@@ -213,7 +218,7 @@ impl Solver {
             .iter()
             .zip(parameters)
             .map(|(posed, parameter)| {
-                Change::new(&system, posed.each_ref(), parameter.changes_law, parameter.step)
+                Change::new(&system, posed.each_ref(), parameter.changes_law, Stencil::new(parameter.offsets))
             })
             .collect();
         let found = tangents(&posed, &system, &stretches, &changes)?;
@@ -221,30 +226,31 @@ impl Solver {
         let side = |system: &System| system.links[0].sides[0].clone();
         let striker = side(&system);
         let end = (last.amplitude.as_slice(), last.rate.as_slice());
-        let changes = found.tangents.into_iter().zip(parameters).zip(&all_posed).map(|((tangent, parameter), posed)| {
-            let by_shape = |neighbour: usize| {
-                let link = system.link(posed[neighbour].sides[0]);
-                link.sides[0].as_ref().map_or(0.0, |side| side.sum(end.1))
-            };
-            let velocity = striker.as_ref().map_or(0.0, |side| side.sum(&tangent.rate))
-                + slope(std::array::from_fn(by_shape), parameter.step);
-            let pick = |values: &[f64]| {
-                let mut all = vec![0.0; modes.len()];
-                moved.iter().zip(&system.place[posed::STRUCTURE]).for_each(|(k, place)| all[*k] = values[*place]);
-                all
-            };
-            let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let end_rate = pick(end.1);
-            let velocity_now = striker.as_ref().map_or(0.0, |side| side.sum(end.1));
-            let restitution =
-                restitution_change(&modes, impact, parameter, (velocity_now, velocity), (&end_rate, &rate));
-            Changes {
-                numbers: [restitution, tangent.time_s, velocity],
-                intervals: tangent.intervals,
-                amplitude,
-                rate,
-            }
-        });
+        let changes =
+            found.tangents.into_iter().zip(parameters).zip(&all_posed).map(|((tangent, parameter), posed)| {
+                let by_shape = |neighbour: usize| {
+                    let link = system.link(posed[neighbour].sides[0]);
+                    link.sides[0].as_ref().map_or(0.0, |side| side.sum(end.1))
+                };
+                let velocity = striker.as_ref().map_or(0.0, |side| side.sum(&tangent.rate))
+                    + Stencil::new(parameter.offsets).slope(std::array::from_fn(by_shape));
+                let pick = |values: &[f64]| {
+                    let mut all = vec![0.0; modes.len()];
+                    moved.iter().zip(&system.place[posed::STRUCTURE]).for_each(|(k, place)| all[*k] = values[*place]);
+                    all
+                };
+                let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
+                let end_rate = pick(end.1);
+                let velocity_now = striker.as_ref().map_or(0.0, |side| side.sum(end.1));
+                let restitution =
+                    restitution_change(&modes, impact, parameter, (velocity_now, velocity), (&end_rate, &rate));
+                Changes {
+                    numbers: [restitution, tangent.time_s, velocity],
+                    intervals: tangent.intervals,
+                    amplitude,
+                    rate,
+                }
+            });
         Some(Along { changes: changes.collect(), nearest_graze: found.nearest_graze })
     }
 }
@@ -260,13 +266,13 @@ fn restitution_change(
     let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
         modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
     };
-    let (step, neighbours) = (parameter.step, &parameter.neighbours);
-    let by_shape = slope(neighbours.map(|at| rigid(&at.structure.modes, end)), step);
+    let (stencil, neighbours) = (Stencil::new(parameter.offsets), &parameter.neighbours);
+    let by_shape = stencil.slope(neighbours.map(|at| rigid(&at.structure.modes, end)));
     let parting = velocity - rigid(modes, end);
     let parting_change = velocity_change - by_shape - rigid(modes, end_change);
     let before = impact.striker.speed_m_s + rigid(modes, &impact.start.rate);
     let before_of = |at: Posing| at.striker.speed_m_s + rigid(&at.structure.modes, &at.start.rate);
-    let before_change = slope(neighbours.map(before_of), step);
+    let before_change = stencil.slope(neighbours.map(before_of));
     (parting_change - parting / before * before_change) / before
 }
 
@@ -275,7 +281,7 @@ impl Changes {
     fn beside(&self, coarse: Option<&Changes>) -> Derivatives {
         let with = |value: f64, other: Option<f64>| Derivative {
             value,
-            uncertainty: other.map(|other| (other - value).abs() + ROUNDING * value.abs()),
+            uncertainty: other.map(|other| TIMES * (other - value).abs() + ROUNDING * value.abs()),
         };
         let number = |i: usize| with(self.numbers[i], coarse.map(|coarse| coarse.numbers[i]));
         let interval = |(i, change): (usize, &IntervalChange)| {
