@@ -55,8 +55,8 @@ pub use text::{headline, result};
 pub use watch::{Course, Row};
 
 use crate::scene::{
-    A_SCENE, FORMAT_VERSION, InvalidInput, Scene, SceneError, check_version, json, plain_tree, read_tree, toml,
-    versioned_tree,
+    A_SCENE, FORMAT_VERSION, InvalidInput, Scene, SceneError, check_version, json, numbers_of_materials, plain_tree,
+    read_tree, toml, versioned_tree,
 };
 
 /// What a scene file holds: one impact, or bodies, contacts and loads.
@@ -189,7 +189,8 @@ impl AssemblyScene {
     /// As [`AssemblyScene::from_json`], text aside.
     pub fn from_value(value: &Value) -> Result<AssemblyScene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
-        let outline: Outline = json::read(value)?;
+        let value = numbers_of_materials(value)?;
+        let outline: Outline = json::read(&value)?;
         let body = |(name, value): (String, Value)| {
             let body = Body::from_value(&value).map_err(|fault| fault.within(&format!("bodies.{name}")))?;
             Ok((name, body))

@@ -10,8 +10,8 @@ use vibroimpact_sim::assembly::{
 };
 
 use crate::assembly::{AssemblyScene, Posed};
+use crate::scene::FieldPath;
 use crate::scene::InvalidInput;
-use crate::sweep::FieldPath;
 
 pub use picture::picture;
 pub use text::text;

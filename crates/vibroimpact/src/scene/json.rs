@@ -13,6 +13,7 @@ use serde_path_to_error::{Path, Segment};
 
 use super::error::{InvalidInput, SceneError};
 use super::fields;
+use super::material::names_beside;
 use super::told::{did_you_mean, did_you_mean_one_of, shorten};
 
 /// A JSON tree in which no key occurs twice (a plain `Value` keeps the last silently).
@@ -192,11 +193,12 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput
 pub(crate) fn unknown_field<'a>(
     field: String,
     value: Option<&Value>,
-    known: impl Iterator<Item = &'a str> + Clone,
+    known: impl Iterator<Item = &'a str>,
 ) -> InvalidInput {
     let key = field.rsplit('.').next().unwrap_or_default();
-    let meant = did_you_mean(key, known.clone());
-    let names: Vec<&str> = known.collect();
+    let mut names: Vec<&str> = known.collect();
+    names.extend(names_beside(&names));
+    let meant = did_you_mean(key, names.iter().copied());
     let allowed = format!("{UNKNOWN_FIELD}{}{meant}", names.join(", "));
     InvalidInput { value: value.map(quote), field, allowed }
 }

@@ -2,7 +2,8 @@
 //!
 //! The types mirror the file field by field; [`Scene::impact`] turns them into the solver's terms. Fields are
 //! required unless a default is stated. Lengths are in metres, and so on: every name carries its unit. A file may say
-//! `"version": 1`, the version of this format, and an editor may find the schema by its `"$schema"`.
+//! `"version": 1`, the version of this format, and an editor may find the schema by its `"$schema"`. Where an object
+//! takes numbers of a material, it may name one of [`MATERIALS`] instead: `"material": "steel"`.
 //!
 //! A scene can as well be put together in Rust:
 //!
@@ -36,9 +37,11 @@ mod infinite;
 pub(crate) mod json;
 mod known;
 mod location;
+mod material;
 mod materials;
 mod modal;
 mod modes_file;
+mod path;
 mod plate;
 mod remainder;
 pub mod schema;
@@ -68,9 +71,11 @@ pub use fittings::{Attachment, Support};
 pub use infinite::{InfiniteBeam, InfinitePlate};
 pub(crate) use known::KnownModes;
 pub use location::Location;
+pub use material::{MATERIALS, NamedMaterial};
 pub use materials::{HertzStiffness, Materials};
 pub use modal::{Modal, Point};
 pub use modes_file::ModesFile;
+pub use path::FieldPath;
 pub use plate::{Edge, Plate, PlateTheory};
 pub(crate) use remainder::{COMPLETE, require_elastic};
 pub use segment::Segment;
@@ -81,6 +86,7 @@ pub use structure::{MOST_MODES, Structure};
 pub use theory::{BeamTheory, TheoryVariant};
 
 use crate::input::read_bytes;
+pub(crate) use material::numbers_of_materials;
 pub(crate) use modes_file::table_path;
 pub(crate) use structure::{Place, require_count};
 
@@ -217,7 +223,8 @@ impl Scene {
                            simulate` takes scenes of bodies";
             return Err(InvalidInput::new("bodies", json::quote(bodies), allowed));
         }
-        let outline: Outline = json::read(value)?;
+        let value = numbers_of_materials(value)?;
+        let outline: Outline = json::read(&value)?;
         let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
         let mut scene = Scene {
             description: outline.description,
@@ -308,11 +315,7 @@ pub(crate) fn plain_tree(part: &impl Serialize) -> Value {
 
 /// The tree of a file, which should hold `what`: TOML if its name ends in `.toml`, JSON otherwise.
 pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
-    let fault = |fault: std::string::FromUtf8Error| SceneError::Read {
-        path: path.to_owned(),
-        source: std::io::Error::new(std::io::ErrorKind::InvalidData, format!("the text is not UTF-8: {fault}")),
-    };
-    let text = String::from_utf8(read_bytes(path)?).map_err(fault)?;
+    let text = utf8(read_bytes(path)?, path)?;
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
     if is_toml {
         toml::parse(&text).map_err(|found| hinted(found, json::parse(&text, what).is_ok(), "JSON", ".json"))
@@ -320,6 +323,14 @@ pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
         let is_toml = || !text.trim().is_empty() && toml::parse(&text).is_ok();
         json::parse(&text, what).map_err(|found| hinted(found, is_toml(), "TOML", ".toml"))
     }
+}
+
+/// The bytes of a file as text.
+pub(crate) fn utf8(bytes: Vec<u8>, path: &Path) -> Result<String, SceneError> {
+    String::from_utf8(bytes).map_err(|fault| SceneError::Read {
+        path: path.to_owned(),
+        source: std::io::Error::new(std::io::ErrorKind::InvalidData, format!("the text is not UTF-8: {fault}")),
+    })
 }
 
 /// A fault in the syntax of a text that would be none in another format: the name decides the format.

@@ -8,6 +8,7 @@ use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Map, Value, json};
 
+use super::material::{MATERIAL, MATERIALS, NUMBERS, names_beside};
 use super::segment::SECTIONS;
 use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
@@ -29,6 +30,7 @@ pub fn of_scenes() -> Value {
     for name in ["Scene", "AssemblyScene"] {
         versioned(&mut definitions[name], FORMAT_VERSION);
     }
+    name_materials(&mut definitions);
     definitions["Scene"]["allOf"] = dependent_fields();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -62,8 +64,9 @@ fn dependent_fields() -> Value {
     };
     let mass_or_sphere = one_of_sets(&[&["mass_kg"], &["density_kg_m3", "radius_m"]]);
     // a radius may stand beside a mass, for the contact
-    let mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
-    let mut stop = none(&["mass_kg", "density_kg_m3"]);
+    let mut mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
+    or_material(&mut mass_or_sphere);
+    let mut stop = none(&["mass_kg", "density_kg_m3", "material"]);
     stop.insert("immovable".to_owned(), json!({ "const": true }));
     stop.insert("speed_m_s".to_owned(), json!({ "const": 0 }));
     let striker = json!({
@@ -73,7 +76,10 @@ fn dependent_fields() -> Value {
     });
     let infinite = none(&["location_m", "location", "start", "tolerance"]);
     let mut rod = none(&["location_m", "location", "start", "residual_compliance"]);
-    rod.insert("striker".to_owned(), json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m"]) }));
+    rod.insert(
+        "striker".to_owned(),
+        json!({ "properties": none(&["mass_kg", "density_kg_m3", "radius_m", "material"]) }),
+    );
     let struck = ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate"];
     json!([
         of_kind(&["beam", "string"], any(), placed("location_m", "number", "location")),
@@ -109,6 +115,70 @@ fn without(mut sets: Value, number: usize, field: &str) -> Value {
         properties.remove(field);
     }
     sets
+}
+
+/// Lets a material be named in every object that takes its numbers. (The derived schema knows the numbers alone, which
+/// take its place before a scene is read.)
+fn name_materials(schema: &mut Value) {
+    match schema {
+        Value::Object(map) => {
+            map.values_mut().for_each(name_materials);
+            let is_object = map.get("type").is_some_and(|kind| kind == "object");
+            let Some(Value::Object(properties)) = map.get_mut("properties").filter(|_| is_object) else { return };
+            let known: Vec<&str> = properties.keys().map(String::as_str).collect();
+            let names = names_beside(&known);
+            if names.is_empty() {
+                return;
+            }
+            let materials: Vec<&str> = MATERIALS.iter().map(|material| material.name).collect();
+            for name in names {
+                let whose = if name == MATERIAL { "Material" } else { "Material of the striker" };
+                let described = format!("{whose}, in place of its numbers; a number beside it takes precedence");
+                let property = json!({ "enum": materials.iter().map(|name| json!(name)).chain([Value::Null]).collect::<Vec<_>>(),
+                                       "description": described });
+                properties.insert(name.to_owned(), property);
+            }
+            if let Some(Value::Array(required)) = map.get_mut("required") {
+                let (numbers, others): (Vec<Value>, Vec<Value>) = std::mem::take(required)
+                    .into_iter()
+                    .partition(|field| NUMBERS.iter().any(|number| field == number));
+                *required = others;
+                if !numbers.is_empty() {
+                    let named = json!({ "required": [MATERIAL], "properties": { MATERIAL: { "type": "string" } } });
+                    map.insert("anyOf".to_owned(), json!([{ "required": numbers }, named]));
+                }
+            }
+            if let Some(sets) = map.get_mut("oneOf") {
+                or_material(sets);
+            }
+        }
+        Value::Array(items) => items.iter_mut().for_each(name_materials),
+        _ => {}
+    }
+}
+
+/// The sets of fields, and those in which a material stands for its numbers.
+fn or_material(sets: &mut Value) {
+    let Value::Array(sets) = sets else { return };
+    let mut named = Vec::new();
+    for set in sets.iter_mut() {
+        let mut with_name = set.clone();
+        set["properties"][MATERIAL] = json!({ "type": "null" });
+        let Some(Value::Array(required)) = with_name.get_mut("required") else { continue };
+        let before = required.len();
+        required.retain(|field| NUMBERS.iter().all(|number| field != number));
+        if required.len() < before {
+            required.push(json!(MATERIAL));
+            with_name["properties"][MATERIAL] = json!({ "type": "string" });
+            for number in NUMBERS {
+                if let Some(property) = with_name["properties"].get_mut(number) {
+                    *property = json!({ "type": ["number", "null"] });
+                }
+            }
+            named.push(with_name);
+        }
+    }
+    sets.extend(named);
 }
 
 fn settings() -> SchemaSettings {

@@ -8,10 +8,10 @@ use sha2::{Digest, Sha256};
 use super::error::SweepError;
 use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
-use super::path::FieldPath;
 use super::results::Results;
 use super::values::{Axis, AxisValues, Random};
 use crate::assembly::AnyScene;
+use crate::scene::FieldPath;
 use crate::scene::json::{self, quote};
 use crate::scene::{InvalidInput, toml};
 

@@ -7,9 +7,9 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::error::SweepError;
-use super::path::FieldPath;
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
 use crate::assembly;
+use crate::scene::FieldPath;
 use crate::scene::fields::look_up;
 use crate::scene::json::{self, number, quote};
 use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};

@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use super::path::FieldPath;
 use super::row::cell;
 use crate::plot::Axis;
+use crate::scene::FieldPath;
 
 /// The axis of a field.
 pub(super) fn axis(field: &FieldPath, log: bool, integers: bool) -> Axis {

@@ -43,7 +43,6 @@ mod labels;
 mod merge;
 #[cfg(feature = "mpi")]
 pub mod mpi;
-mod path;
 mod pictures;
 mod quantities;
 mod report;
@@ -58,13 +57,13 @@ mod values;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+pub use crate::scene::FieldPath;
 pub use columns::{Column, MOST_IN_MEMORY, run_in_memory};
 pub use definition::Sweep;
 pub use error::SweepError;
 pub use file::FORMAT_VERSION;
 pub use folder::Part;
 pub use merge::merge;
-pub use path::FieldPath;
 pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
 pub use values::{Axis, AxisValues, Interval, Random, Scale};

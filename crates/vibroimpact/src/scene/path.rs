@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// The place of a field in a scene file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,8 +74,24 @@ impl FieldPath {
         Ok(())
     }
 
+    /// As [`FieldPath::set`], but objects on the way that are not there are made. Names that the scene does not know are
+    /// left to its reader, which lists those that it knows.
+    ///
+    /// # Errors
+    /// Says what is no object, or which list is too short.
+    pub(crate) fn set_or_insert(&self, tree: &mut Value, value: Value) -> Result<(), String> {
+        for depth in 1..self.0.len() {
+            let object = matches!(self.0[depth], Step::Key(_)) && matches!(self.0[depth - 1], Step::Key(_));
+            let holder = self.upto(depth - 1);
+            if object && holder.get(tree).is_none_or(Value::is_null) {
+                holder.set(tree, Value::Object(Map::new()))?;
+            }
+        }
+        self.set(tree, value)
+    }
+
     /// Whether the other field is this one or stands within it.
-    pub(super) fn holds(&self, other: &FieldPath) -> bool {
+    pub(crate) fn holds(&self, other: &FieldPath) -> bool {
         other.0.starts_with(&self.0)
     }
 
@@ -124,5 +140,17 @@ mod tests {
         assert_eq!(set("a.b.c").unwrap_err(), "a.b is not an object");
         assert_eq!(set("a[0]").unwrap_err(), "a is not a list");
         assert_eq!(tree, json!({ "a": { "b": [1, { "c": 7 }], "new": 7 } }));
+    }
+
+    #[test]
+    fn objects_on_the_way_are_made_and_lists_are_not() {
+        let mut tree = json!({ "a": [1], "n": null });
+        let mut set = |text: &str| FieldPath::parse(text).unwrap().set_or_insert(&mut tree, json!(7));
+        assert_eq!(set("b.c.d"), Ok(()));
+        assert_eq!(set("n.x"), Ok(()));
+        assert_eq!(set("a[1]").unwrap_err(), "a has 1 entries, counted from 0");
+        assert_eq!(set("a.x").unwrap_err(), "a is not an object");
+        assert_eq!(set("list[0]").unwrap_err(), "the scene has no list");
+        assert_eq!(tree, json!({ "a": [1], "n": { "x": 7 }, "b": { "c": { "d": 7 } } }));
     }
 }
