@@ -14,9 +14,15 @@ const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// The bytes of a file.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
+    let file = File::open(path).map_err(|source| SceneError::Read { path: path.to_owned(), source })?;
+    read_all(file, path)
+}
+
+/// All that a source has to give; messages name it by `path`.
+pub(crate) fn read_all(source: impl Read, path: &Path) -> Result<Vec<u8>, SceneError> {
     let fault = |source| SceneError::Read { path: path.to_owned(), source };
     let mut bytes = Vec::new();
-    File::open(path).map_err(fault)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(fault)?;
+    source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(fault)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let told = format!("it is larger than {} MiB", MAX_FILE_BYTES >> 20);
         return Err(fault(std::io::Error::new(std::io::ErrorKind::FileTooLarge, told)));

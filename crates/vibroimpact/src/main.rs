@@ -12,25 +12,35 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
-use commands::{choice, infinite_beam, law, modes, net, orbit, shell, simulate, sweep};
+use commands::voice::Voice;
+use commands::{choice, first, infinite_beam, law, modes, net, orbit, shell, simulate, sweep, voice};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
 use vibroimpact::{InvalidInput, SceneError};
 
-const EXAMPLE: &str = r#"A scene is a JSON file (or TOML, by its name); every quantity is in SI units, and its name says which:
+const EXAMPLE: &str = r#"First steps:
+  vibroimpact demo                        a steel ball strikes a steel bar: contacts, rebound, energy
+  vibroimpact init                        writes that scene into impact.toml, every field explained
+  vibroimpact simulate impact.toml        solves it; --plot impact.svg draws it
+  vibroimpact simulate impact.toml --set striker.speed_m_s=2
+  vibroimpact plan impact.toml            which model is used, and why
 
-  { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
-                   "segments": [ { "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
-                                   "width_m": 0.011323, "thickness_m": 0.011323 } ] },
-    "striker":   { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
-    "contact":   { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
-    "location_m": 0.4, "tolerance": 1e-3 }
+A scene is a TOML or JSON file (by its name; - is the standard input). Every quantity is in SI units, and its name says
+in which:
 
-The model, and how many modes it takes, are the program's choice (see vibroimpact plan --help). Ends are clamped, pinned, free or guided. A segment may give flexural_rigidity_n_m2 and mass_per_length_kg_m
-instead. A structure without ends is { "kind": "infinite-beam" } with such a section, or "infinite-plate".
-Laws of contact: hertz, viscous, hysteretic, linear-spring, power, felt, kelvin-voigt,
-hunt-crossley, lankarani-nikravesh, flores, elastoplastic. More scenes are in the folder datasets/scenes."#;
+  { "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.01,
+                   "segments": [ { "length_m": 1, "width_m": 0.012, "thickness_m": 0.012, "material": "steel" } ] },
+    "striker":   { "material": "steel", "radius_m": 0.02, "speed_m_s": 1 },
+    "contact":   { "law": "hertz", "material": "steel" },
+    "location_m": 0.3, "tolerance": 1e-3 }
+
+Structures: beam, string, plate, modal, modes-file, infinite-beam, infinite-plate, dropped-rod; or many bodies.
+Ends: clamped, pinned, free, guided. Materials: steel, aluminium, glass, rubber, wood, or their numbers.
+Laws of contact: hertz, viscous, hysteretic, linear-spring, power, felt, kelvin-voigt, hunt-crossley,
+lankarani-nikravesh, flores, elastoplastic.
+
+vibroimpact COMMAND --help shows examples of a command, vibroimpact schema the whole format for editors."#;
 
 /// What happens when a compact body strikes a slender vibrating one.
 #[derive(Parser)]
@@ -38,10 +48,22 @@ hunt-crossley, lankarani-nikravesh, flores, elastoplastic. More scenes are in th
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Say nothing but results and errors: no progress, no names of files written
+    #[arg(long, short, global = true, conflicts_with = "verbose", help_heading = "Everywhere")]
+    quiet: bool,
+    /// Say on the standard error what is done, and how long it takes
+    #[arg(long, short, global = true, help_heading = "Everywhere")]
+    verbose: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
+    /// Solve a scene that the program brings along: a steel ball strikes a steel bar
+    #[command(after_help = first::DEMO_EXAMPLES)]
+    Demo(first::DemoArguments),
+    /// Write a first scene, complete and explained field by field
+    #[command(after_help = first::INIT_EXAMPLES)]
+    Init(first::InitArguments),
     /// Resolve one impact: every contact, the rebound, where the energy went
     #[command(after_help = simulate::EXAMPLES)]
     Simulate(simulate::Arguments),
@@ -78,9 +100,9 @@ enum Command {
     /// Print a script that completes commands and options in a shell
     #[command(after_help = shell::COMPLETIONS_EXAMPLES)]
     Completions(shell::CompletionsArguments),
-    /// Print the manual page (roff)
+    /// Print a manual page, or write those of all commands
     #[command(after_help = shell::MANUAL_EXAMPLES)]
-    Manual,
+    Manual(shell::ManualArguments),
     /// Print the JSON Schema of a kind of input file, for editors
     #[command(after_help = shell::SCHEMA_EXAMPLES)]
     Schema(shell::SchemaArguments),
@@ -91,6 +113,11 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(fault) => return misused(&fault),
     };
+    voice::set(match (cli.quiet, cli.verbose) {
+        (true, _) => Voice::Quiet,
+        (_, true) => Voice::Verbose,
+        _ => Voice::Normal,
+    });
     match run(cli.command).and_then(|printed| print(&printed)) {
         Ok(()) => ExitCode::SUCCESS,
         // a reader that has seen enough is no failure
@@ -132,6 +159,8 @@ fn misused(fault: &clap::Error) -> ExitCode {
 
 fn run(command: Command) -> Result<String, Failure> {
     match command {
+        Command::Demo(arguments) => first::demo(arguments),
+        Command::Init(arguments) => first::init(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Plan(arguments) => watched("plan", || choice::plan(arguments)),
         Command::Compare(arguments) => watched("compare", || choice::compare(arguments)),
@@ -144,7 +173,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Completions(arguments) => shell::completions(arguments, Cli::command()),
-        Command::Manual => shell::manual(Cli::command()),
+        Command::Manual(arguments) => shell::manual(arguments, Cli::command()),
         Command::Schema(arguments) => Ok(shell::schema_of(arguments)),
     }
 }

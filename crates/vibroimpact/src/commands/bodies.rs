@@ -10,6 +10,7 @@ use vibroimpact::text::quantity;
 
 use super::products::Products;
 use super::sweep::stop_on_signal;
+use super::voice::{is_quiet, signature};
 
 /// Solves the scene and returns what is to be printed; at most `intervals` intervals of contact are listed.
 pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) -> Result<String, Failure> {
@@ -30,7 +31,7 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     let summary = Summary::new(&found).listing(intervals);
     let printed = match products.json {
         true => summary.json(scene)?,
-        false => format!("{headline}\n\n{}", assembly::result(&summary)),
+        false => format!("{headline}\n\n{}{}", assembly::result(&summary), signature()),
     };
     let told = products.write(
         || assembly::picture(&headline, &found),
@@ -62,7 +63,7 @@ impl Progress {
     }
 
     fn tell(&mut self, time_s: f64) {
-        if self.begun.elapsed() < FIRST {
+        if is_quiet() || self.begun.elapsed() < FIRST {
             return;
         }
         if stderr().is_terminal() {

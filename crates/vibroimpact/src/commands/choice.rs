@@ -1,13 +1,13 @@
 //! The commands `plan` and `compare`: which model, and why.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use vibroimpact::export::{self, Failure};
-use vibroimpact::{Scene, model, pictures};
+use vibroimpact::{model, pictures};
 
 use super::headline;
 use super::products::Picture;
+use super::source::SceneSource;
+use super::voice::signature;
 
 pub const PLAN_EXAMPLES: &str = "Examples:
   vibroimpact plan ball.json                     each model: does it apply, expected error, cost
@@ -30,8 +30,8 @@ Models that do not apply are listed with the reason. Differences are from the mo
 /// The scene to plan.
 #[derive(Args)]
 pub struct PlanArguments {
-    /// The scene file
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
     /// Print one JSON object in place of the table
     #[arg(long)]
     json: bool,
@@ -40,8 +40,8 @@ pub struct PlanArguments {
 /// The scene to answer by every model.
 #[derive(Args)]
 pub struct CompareArguments {
-    /// The scene file
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
     /// Print one JSON object in place of the table
     #[arg(long)]
     json: bool,
@@ -51,15 +51,15 @@ pub struct CompareArguments {
 
 /// Carries `plan` out and returns what is to be printed.
 pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Failure> {
-    let plan = Scene::read(&scene)?.plan()?;
+    let plan = scene.impact()?.plan()?;
     if json { export::json(&plan) } else { Ok(model::plan_text(&plan)) }
 }
 
 /// Carries `compare` out and returns what is to be printed.
 pub fn compare(CompareArguments { scene, json, picture }: CompareArguments) -> Result<String, Failure> {
-    let scene = Scene::read(&scene)?;
+    let scene = scene.impact()?;
     picture.require_room()?;
     let comparison = scene.compare()?;
-    let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) };
+    let printed = if json { export::json(&comparison)? } else { model::comparison_text(&comparison) + &signature() };
     Ok(printed + &picture.draw(json, || Ok(pictures::of_comparison(&headline(&scene)?, &comparison)))?)
 }

@@ -4,6 +4,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use super::voice::{is_quiet, note, seconds};
+
 /// Before this nobody wonders.
 const FIRST: Duration = Duration::from_secs(10);
 /// Each silence is twice as long as the last, up to this.
@@ -11,7 +13,15 @@ const LONGEST: Duration = Duration::from_secs(300);
 
 /// Does the work; as long as it takes, a line now and then on the standard error says that it goes on.
 pub fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
-    watched_from(FIRST, |elapsed| eprintln!("{name}: {} s so far, still computing", elapsed.as_secs()), work)
+    let tell = |elapsed: Duration| {
+        if !is_quiet() {
+            eprintln!("{name}: {} s so far, still computing", elapsed.as_secs());
+        }
+    };
+    let begun = Instant::now();
+    let result = watched_from(FIRST, tell, work);
+    note(|| format!("{name}: computed in {}", seconds(begun.elapsed())));
+    result
 }
 
 fn watched_from<T>(first: Duration, tell: impl Fn(Duration) + Send, work: impl FnOnce() -> T) -> T {

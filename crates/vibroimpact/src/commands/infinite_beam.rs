@@ -11,6 +11,8 @@ use vibroimpact::vibroimpact_sim::infinite::{Groups, Settings, Solution, Structu
 use vibroimpact::{InvalidInput, Scene};
 
 use super::products::Products;
+use super::source::Changes;
+use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact infinite-beam --s 15                       a summary to read
@@ -28,9 +30,11 @@ A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section o
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
-    /// A scene file whose structure is an infinite-beam
+    /// A scene file whose structure is an infinite-beam; - reads the standard input
     #[arg(required_unless_present = "s", conflicts_with = "s")]
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    changes: Changes,
     /// The nondimensional number S, in place of a scene
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     s: Option<f64>,
@@ -58,8 +62,8 @@ enum Study {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     match arguments {
         Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
-        Arguments { scene: Some(path), products, .. } => {
-            let scene = Scene::read(&path)?;
+        Arguments { scene: Some(path), changes, products, .. } => {
+            let scene = changes.draft(&path)?.impact()?;
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
                 let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
@@ -116,8 +120,11 @@ fn result(
 ) -> Result<String, Failure> {
     let &Posed { scene, groups, trust, until } = posed;
     let summary = Summary::new(solution, groups);
-    let printed =
-        if products.json { json.clone() } else { format!("{headline}\n\n{}{}", text(&summary), trust_text(trust)) };
+    let printed = if products.json {
+        json.clone()
+    } else {
+        format!("{headline}\n\n{}{}{}", text(&summary), trust_text(trust), signature())
+    };
     let figure = || picture(headline, solution, groups, until);
     let told = products.write(
         figure,

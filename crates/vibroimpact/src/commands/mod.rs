@@ -2,6 +2,7 @@
 
 pub mod bodies;
 pub mod choice;
+pub mod first;
 pub mod heartbeat;
 pub mod infinite_beam;
 pub mod law;
@@ -10,7 +11,9 @@ pub mod net;
 pub mod orbit;
 pub mod shell;
 pub mod simulate;
+pub mod source;
 pub mod sweep;
+pub mod voice;
 
 mod products;
 

@@ -1,13 +1,12 @@
 //! The command `modes`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::summary::ModeTable;
-use vibroimpact::{Scene, pictures, text};
+use vibroimpact::{pictures, text};
 
 use super::products::Picture;
+use super::source::SceneSource;
 use super::{mode_count, of_option};
 
 pub const EXAMPLES: &str = "Examples:
@@ -22,8 +21,8 @@ Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.
 /// Which modes.
 #[derive(Args)]
 pub struct Arguments {
-    /// The scene file
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
     /// How many modes, from the lowest
     #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
     count: usize,
@@ -36,7 +35,7 @@ pub struct Arguments {
 
 /// Carries the command out and returns what is to be printed.
 pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
-    let scene = Scene::read(&scene)?;
+    let scene = scene.impact()?;
     picture.require_room()?;
     let modes = scene.mode_shapes(count).map_err(of_option("--count"))?;
     let printed = if json { export::json(&ModeTable::new(&modes))? } else { text::modes(&modes) };

@@ -6,8 +6,9 @@ use clap::Args;
 use vibroimpact::emoc::Parameters;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::net::{self, FitSummary};
-use vibroimpact::{Scene, text};
+use vibroimpact::text;
 
+use super::source::{Changes, SceneSource};
 use super::{mode_count, of_option};
 
 const EMOC_MODES: &str = "--emoc-modes";
@@ -45,8 +46,8 @@ a law with three parameters are not: take them as a lower bound on the uncertain
 /// The scene and the parameters of the law.
 #[derive(Args)]
 pub struct EmocArguments {
-    /// The scene file
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
     /// Moderated mass ratio coefficient, not negative; 1 when left out
     #[arg(long, allow_negative_numbers = true)]
     mu0: Option<f64>,
@@ -69,9 +70,11 @@ pub struct EmocArguments {
 pub struct FitArguments {
     /// The table (CSV): mass_kg, location_m, restitution
     data: PathBuf,
-    /// The scene file that describes the beam
+    /// The scene file that describes the beam; - reads the standard input
     #[arg(long)]
     scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
     /// Number of modes in the law
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = mode_count, allow_negative_numbers = true)]
     emoc_modes: usize,
@@ -86,14 +89,14 @@ pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     let stated = mu0.is_some() || alpha0.is_some() || alpha1.is_some();
     let [mu0, alpha0, alpha1] = [mu0, alpha0, alpha1].map(|parameter| parameter.unwrap_or(1.0));
     let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
-    let rebound = Scene::read(&scene)?.emoc(&parameters, emoc_modes);
+    let rebound = scene.impact()?.emoc(&parameters, emoc_modes);
     let rebound = if emoc_modes.is_some() { rebound.map_err(of_option(EMOC_MODES))? } else { rebound? };
     if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound, stated)) }
 }
 
 /// Carries `fit` out and returns what is to be printed.
-pub fn fit(FitArguments { data, scene, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
-    let scene = Scene::read(&scene)?;
+pub fn fit(FitArguments { data, scene, changes, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
+    let scene = changes.draft(&scene)?.impact()?;
     let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option(EMOC_MODES))?;
     let fit = FitSummary::new(&observations, emoc_modes)?;
     if json { export::json(&fit) } else { Ok(text::fit(&fit)) }

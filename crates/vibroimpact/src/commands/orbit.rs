@@ -4,13 +4,15 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::Args;
-use vibroimpact::assembly::{self, AssemblyScene};
+use vibroimpact::assembly;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::orbit::{self, Over};
 use vibroimpact::vibroimpact_sim::assembly::OrbitSettings;
 
 use super::products::{Picture, write_single};
+use super::source::SceneSource;
 use super::sweep::stop_on_signal;
+use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact orbit rig.json                     the periodic motion to which the start leads
@@ -29,8 +31,8 @@ The exit code is 0 for every result, 2 for a scene or a field that cannot be use
 /// Which motion is looked for, and where to put it.
 #[derive(Args)]
 pub struct Arguments {
-    /// The scene file, with bodies and a harmonic load
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
     /// Periods of the load after which the motion repeats itself
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
@@ -63,7 +65,7 @@ pub struct Arguments {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     arguments.picture.require_room()?;
     arguments.picture.require_room_for("--csv", arguments.csv.as_deref())?;
-    let scene = AssemblyScene::read(&arguments.scene)?;
+    let scene = arguments.scene.bodies()?;
     let headline = assembly::headline(&scene, &scene.pose()?);
     let settings = OrbitSettings {
         forcing_periods: arguments.periods,
@@ -74,7 +76,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         let found = scene.orbit(&settings)?;
         return match arguments.json {
             true => export::json(&found),
-            false => Ok(format!("{headline}\n\n{}", orbit::text(&found))),
+            false => Ok(format!("{headline}\n\n{}{}", orbit::text(&found), signature())),
         };
     };
     let over = Over { field, from: arguments.from, to, step: arguments.step };
@@ -82,7 +84,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let branch = scene.orbit_branch(&over, &settings, |_| !stop.load(Ordering::Relaxed))?;
     let mut printed = match arguments.json {
         true => export::json(&branch)?,
-        false => format!("{headline}\n\n{}", branch.text()),
+        false => format!("{headline}\n\n{}{}", branch.text(), signature()),
     };
     if let Some(path) = &arguments.csv {
         printed += &write_single(path, &branch.csv()?, arguments.json)?;

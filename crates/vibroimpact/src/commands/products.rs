@@ -9,6 +9,8 @@ use vibroimpact::plot::{Figure, Format};
 use vibroimpact::report::{Report, write_whole};
 use vibroimpact::text::printable;
 
+use super::voice::is_quiet;
+
 /// How the result is wanted: printed, and as files.
 #[derive(Args)]
 pub struct Products {
@@ -65,7 +67,8 @@ fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
+/// Refuses to replace a file that is there already.
+pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
     match path {
         Some(path) if !force && is_there(path) => Err(InvalidInput {
             field: option.to_owned(),
@@ -143,11 +146,16 @@ impl Products {
         let files = files()?;
         files.write(folder)?;
         let names: Vec<&str> = files.names().collect();
-        Ok(if self.json {
-            String::new()
-        } else {
-            format!("\n  wrote {} to {}\n", names.join(", "), printable(&folder.display().to_string()))
-        })
+        if self.json || is_quiet() {
+            return Ok(String::new());
+        }
+        let place = printable(&folder.display().to_string());
+        // the best of what is there to look at
+        let first = ["report.html", "run.svg", "impact.svg"].into_iter().find(|name| names.contains(name));
+        let look = first.map_or_else(String::new, |first| {
+            format!("  look at {} first, with a browser\n", printable(&folder.join(first).display().to_string()))
+        });
+        Ok(format!("\n  wrote {} to {place}\n{look}", names.join(", ")))
     }
 }
 
@@ -158,5 +166,6 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
 /// Writes one file and returns what to tell a reader: nothing beside JSON.
 pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
-    Ok(if json { String::new() } else { format!("\n  wrote {}\n", printable(&path.display().to_string())) })
+    let silent = json || is_quiet();
+    Ok(if silent { String::new() } else { format!("\n  wrote {}\n", printable(&path.display().to_string())) })
 }

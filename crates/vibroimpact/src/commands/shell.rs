@@ -1,10 +1,16 @@
 //! What shells, readers of manuals and editors need: `completions`, `manual`, `schema`.
 
+use std::path::PathBuf;
+
 use clap::{Args, Command, ValueEnum};
 use clap_complete::Shell;
 use vibroimpact::export::Failure;
+use vibroimpact::report::write_whole;
 use vibroimpact::scene::schema;
-use vibroimpact::sweep;
+use vibroimpact::text::{printable, shorten};
+use vibroimpact::{InvalidInput, sweep};
+
+use super::products::require_free;
 
 pub const COMPLETIONS_EXAMPLES: &str = "Examples:
   vibroimpact completions bash > ~/.local/share/bash-completion/completions/vibroimpact
@@ -12,8 +18,9 @@ pub const COMPLETIONS_EXAMPLES: &str = "Examples:
   vibroimpact completions fish > ~/.config/fish/completions/vibroimpact.fish
   vibroimpact completions powershell >> $PROFILE";
 
-pub const MANUAL_EXAMPLES: &str = "Example:
-  vibroimpact manual > ~/.local/share/man/man1/vibroimpact.1";
+pub const MANUAL_EXAMPLES: &str = "Examples:
+  vibroimpact manual --out ~/.local/share/man/man1        all pages; then: man vibroimpact-simulate
+  vibroimpact manual simulate | man -l -                  one page, at once";
 
 pub const SCHEMA_EXAMPLES: &str = "Examples:
   vibroimpact schema scene > scene.schema.json
@@ -27,6 +34,20 @@ Schema.";
 pub struct CompletionsArguments {
     /// Which shell
     shell: Shell,
+}
+
+/// Which manual pages, and where to.
+#[derive(Args)]
+pub struct ManualArguments {
+    /// The command whose page is printed; the program's own page when left out
+    #[arg(conflicts_with = "out")]
+    command: Option<String>,
+    /// Write the pages of the program and of all its commands into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
 }
 
 /// The file to describe.
@@ -56,11 +77,41 @@ pub fn completions(
     Ok(String::from_utf8(script)?)
 }
 
-/// The manual page of `program`.
-pub fn manual(program: Command) -> Result<String, Failure> {
-    let mut page = Vec::new();
-    clap_mangen::Man::new(program).render(&mut page)?;
-    Ok(String::from_utf8(page)?)
+/// The manual page of `program` or of one of its commands, or all of them into a folder.
+pub fn manual(
+    ManualArguments { command, out, force }: ManualArguments,
+    mut program: Command,
+) -> Result<String, Failure> {
+    // names the pages of commands after the program, as in vibroimpact-simulate
+    program.build();
+    let page = |command: &Command| -> Result<String, Failure> {
+        let mut page = Vec::new();
+        clap_mangen::Man::new(command.clone()).render(&mut page)?;
+        Ok(String::from_utf8(page)?)
+    };
+    let commands = || program.get_subcommands().filter(|command| command.get_name() != "help");
+    let Some(folder) = out else {
+        let Some(name) = command else { return page(&program) };
+        let of_name = commands().find(|command| command.get_name() == name);
+        return page(of_name.ok_or_else(|| {
+            let names: Vec<&str> = commands().map(Command::get_name).collect();
+            let value = Some(shorten(&printable(&name)));
+            InvalidInput { field: "COMMAND".to_owned(), value, allowed: format!("one of {}", names.join(", ")) }
+        })?);
+    };
+    let mut pages = vec![("vibroimpact.1".to_owned(), page(&program)?)];
+    for command in commands() {
+        pages.push((format!("vibroimpact-{}.1", command.get_name()), page(command)?));
+    }
+    for (name, _) in &pages {
+        require_free("--out", Some(&folder.join(name)), force)?;
+    }
+    for (name, text) in &pages {
+        write_whole(&folder.join(name), text.as_bytes())
+            .map_err(|error| format!("cannot write to {}: {error}", folder.display()))?;
+    }
+    let place = printable(&folder.display().to_string());
+    Ok(format!("wrote {} pages to {place}\n  read one with: man -l {place}/vibroimpact-simulate.1\n", pages.len()))
 }
 
 /// The JSON Schema of a kind of file.

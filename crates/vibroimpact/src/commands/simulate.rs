@@ -1,7 +1,5 @@
 //! The command `simulate`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
 use vibroimpact::export::{Failure, Files};
@@ -15,6 +13,8 @@ use super::headline;
 use super::heartbeat::watched;
 use super::infinite_beam;
 use super::products::Products;
+use super::source::SceneSource;
+use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json                 a summary to read
@@ -35,16 +35,29 @@ used (the message names the field, its value and what is allowed; nothing is wri
 /// What to solve, and where to put it.
 #[derive(Args)]
 pub struct Arguments {
-    /// The scene file
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneSource,
+    #[command(flatten)]
+    extent: Extent,
+    #[command(flatten)]
+    products: Products,
+}
+
+/// How much of a course in time is shown.
+#[derive(Args)]
+pub struct Extent {
     /// List at most so many intervals of contact of a scene of bodies, the first ones; files hold all
     #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
     intervals: usize,
     /// How far histories and pictures go, from the start of the clock; a little past the last contact when left out
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
-    #[command(flatten)]
-    products: Products,
+}
+
+impl Default for Extent {
+    fn default() -> Extent {
+        Extent { intervals: MOST_INTERVALS, until: None }
+    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -53,13 +66,19 @@ fn seconds(text: &str) -> Result<f64, String> {
 }
 
 /// Carries the command out and returns what is to be printed.
-pub fn run(Arguments { scene, intervals, until, products }: Arguments) -> Result<String, Failure> {
-    let scene = AnyScene::read(&scene)?;
+pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, Failure> {
+    let scene = scene.any()?;
     products.require_room()?;
+    answer(scene, extent, &products)
+}
+
+/// Solves a scene and returns what is to be printed of it.
+pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<String, Failure> {
+    let Extent { intervals, until } = extent;
     let scene = match (scene, until) {
         (AnyScene::Impact(scene), _) => *scene,
         // it tells by itself how far it has come
-        (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, &products),
+        (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, products),
         (AnyScene::Bodies(_), Some(until)) => {
             let allowed = "left out for a scene of bodies, whose field end_s says how far it goes".to_owned();
             return Err(InvalidInput { field: "--until".into(), value: Some(until.to_string()), allowed }.into());
@@ -69,11 +88,11 @@ pub fn run(Arguments { scene, intervals, until, products }: Arguments) -> Result
     let scene = found.scene(&scene);
     let trust = scene.trust(&found)?;
     match &found {
-        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, until, &products),
+        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, until, products),
         Simulation::Infinite { groups, solution } => {
-            infinite_beam::of_scene(&scene, (groups, solution), &trust, until, found.json(&scene)?, &products)
+            infinite_beam::of_scene(&scene, (groups, solution), &trust, until, found.json(&scene)?, products)
         }
-        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, &trust, answer, &products),
+        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, &trust, answer, products),
     }
 }
 
@@ -90,7 +109,7 @@ fn in_modes(
     let printed = if products.json {
         json.clone()
     } else {
-        format!("{headline}\n\n{}{}", text::result(summary), trust::trust_text(trust))
+        format!("{headline}\n\n{}{}{}", text::result(summary), trust::trust_text(trust), signature())
     };
     let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
     let modelled = report::modelled(scene, impact, reason);
@@ -118,7 +137,7 @@ fn without_course(
     } else {
         let trust = trust::trust_text(trust);
         let hint = "\n  This model gives the net result alone; \"model\": \"modal\" resolves the course in time.\n";
-        format!("{headline}\n\n{}{trust}{hint}", model::net_text(answer))
+        format!("{headline}\n\n{}{trust}{hint}{}", model::net_text(answer), signature())
     };
     let figure = || pictures::of_answer(&headline, answer);
     let told = products.write(

@@ -13,6 +13,8 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::sweep::{self, Part, Status, Sweep, SweepError, Tally};
 use vibroimpact::text::printable;
 
+use super::voice::is_quiet;
+
 pub const SWEEP_EXAMPLES: &str = r#"Examples:
   vibroimpact sweep sweep.json --out results/                  computes, shows how long it takes, goes on if cut off
   vibroimpact sweep sweep.json --out part-3/ --shard 3/8       the third of eight parts, for a job array
@@ -63,9 +65,6 @@ pub struct SweepArguments {
     /// Print one JSON object in place of the summary
     #[arg(long)]
     json: bool,
-    /// Show no progress
-    #[arg(long)]
-    quiet: bool,
 }
 
 /// The parts of a sweep, and where the whole goes.
@@ -90,7 +89,7 @@ fn part(text: &str) -> Result<Part, &'static str> {
 pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
     let part = arguments.shard.unwrap_or(Part::WHOLE);
     let stop = stop_on_signal()?;
-    let mut progress = Progress::new(arguments.quiet);
+    let mut progress = Progress::new(is_quiet());
     let tally = if arguments.mpi {
         match over_ranks(&arguments, part, &stop, &mut progress)? {
             Some(tally) => tally,

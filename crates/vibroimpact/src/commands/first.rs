@@ -1,0 +1,111 @@
+//! The first steps of a new user: `demo` solves a scene that the program brings along, `init` writes one to start from.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use vibroimpact::draft::Draft;
+use vibroimpact::export::Failure;
+use vibroimpact::text::printable;
+
+use super::products::{Products, require_free, write_single};
+use super::simulate;
+use super::source::Changes;
+
+pub const DEMO_EXAMPLES: &str = "Examples:
+  vibroimpact demo                               the impact, to read
+  vibroimpact demo --plot demo.svg               and as a picture
+  vibroimpact demo --report demo.html            and as a page with pictures and tables
+  vibroimpact demo --set location_m=0.5          the same with another place of impact
+  vibroimpact init                               write this scene into a file, to change it
+
+The scene is a steel ball of 40 mm that strikes a steel bar on two supports at 1 m/s. Nothing is written unless a file
+is asked for.";
+
+pub const INIT_EXAMPLES: &str = "Examples:
+  vibroimpact init                               a ball on a beam, into impact.toml
+  vibroimpact init --kind plate pane.toml        a ball on a plate, into pane.toml
+  vibroimpact init - | vibroimpact simulate -    to the standard output, and solved at once
+
+The file is complete, and each of its fields is explained in it. Change a line, and solve it again.";
+
+/// How the result of the built-in scene is wanted.
+#[derive(Args)]
+pub struct DemoArguments {
+    #[command(flatten)]
+    changes: Changes,
+    #[command(flatten)]
+    products: Products,
+}
+
+/// Which scene, and where to.
+#[derive(Args)]
+pub struct InitArguments {
+    /// The file to write, which ends in .toml; - is the standard output
+    #[arg(default_value = "impact.toml", value_parser = toml_file)]
+    file: PathBuf,
+    /// What is struck
+    #[arg(long, value_enum, default_value_t = Kind::Beam)]
+    kind: Kind,
+    /// Replace the file if it exists
+    #[arg(long)]
+    force: bool,
+}
+
+/// The scenes that the program brings along.
+#[derive(Clone, Copy, ValueEnum)]
+enum Kind {
+    /// A beam on two supports, struck by a ball
+    Beam,
+    /// A stepped cantilever with a mass at its tip, struck by a ball
+    Cantilever,
+    /// A plate that is held along its edges, struck by a ball
+    Plate,
+    /// A ball that falls on a beam again and again
+    Bodies,
+}
+
+impl Kind {
+    fn scene(self) -> &'static str {
+        match self {
+            Kind::Beam => include_str!("scenes/beam.toml"),
+            Kind::Cantilever => include_str!("scenes/cantilever.toml"),
+            Kind::Plate => include_str!("scenes/plate.toml"),
+            Kind::Bodies => include_str!("scenes/bodies.toml"),
+        }
+    }
+}
+
+fn toml_file(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    if is_toml || name == "-" { Ok(path) } else { Err("allowed is a file name that ends in .toml, or -".to_owned()) }
+}
+
+/// Carries `demo` out and returns what is to be printed.
+pub fn demo(DemoArguments { changes, products }: DemoArguments) -> Result<String, Failure> {
+    products.require_room()?;
+    let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?)?.any()?;
+    let json = products.json;
+    let printed = simulate::answer(scene, simulate::Extent::default(), &products)?;
+    Ok(if json { printed } else { printed + NEXT })
+}
+
+const NEXT: &str = "
+  next
+    vibroimpact demo --plot demo.svg           draws this impact
+    vibroimpact demo --set location_m=0.5      strikes the beam in the middle
+    vibroimpact init                           writes the scene, with comments, to change it
+";
+
+/// Carries `init` out and returns what is to be printed.
+pub fn init(InitArguments { file, kind, force }: InitArguments) -> Result<String, Failure> {
+    if file == Path::new("-") {
+        return Ok(kind.scene().to_owned());
+    }
+    require_free("FILE", Some(&file), force)?;
+    let name = printable(&file.display().to_string()).replace('\n', " ");
+    // the comments speak of the file by its name
+    let scene = kind.scene().replace("impact.toml", &name);
+    let told = write_single(&file, scene.as_bytes(), false)?;
+    Ok(if told.is_empty() { told } else { format!("{told}  solve it with: vibroimpact simulate {name}\n") })
+}

@@ -1,0 +1,68 @@
+//! Where a command has its scene from: a file, or the standard input, and fields that are set on the command line.
+
+use std::io::stdin;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use vibroimpact::assembly::{AnyScene, AssemblyScene};
+use vibroimpact::draft::Draft;
+use vibroimpact::text::printable;
+use vibroimpact::{Scene, SceneError};
+
+use super::voice::note;
+
+/// The scene of a command.
+#[derive(Args)]
+pub struct SceneSource {
+    /// The scene, a JSON or TOML file; - reads the standard input
+    scene: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
+}
+
+/// Fields that differ from those in the file.
+#[derive(Args)]
+pub struct Changes {
+    /// Set a field of the scene, as in striker.speed_m_s=2; may be repeated
+    #[arg(long = "set", value_name = "FIELD=VALUE", help_heading = "Scene")]
+    set: Vec<String>,
+}
+
+impl SceneSource {
+    /// The scene of one impact.
+    pub fn impact(&self) -> Result<Scene, SceneError> {
+        self.changes.draft(&self.scene)?.impact()
+    }
+
+    /// The scene of bodies.
+    pub fn bodies(&self) -> Result<AssemblyScene, SceneError> {
+        self.changes.draft(&self.scene)?.bodies()
+    }
+
+    /// The scene, of either kind.
+    pub fn any(&self) -> Result<AnyScene, SceneError> {
+        self.changes.draft(&self.scene)?.any()
+    }
+}
+
+impl Changes {
+    /// The scene in a file, or `-` for the standard input, with these fields.
+    pub fn draft(&self, path: &Path) -> Result<Draft, SceneError> {
+        let draft = if path == Path::new("-") {
+            Draft::from_reader(stdin().lock(), "the standard input")?
+        } else {
+            Draft::read(path)?
+        };
+        note(|| format!("read {}", printable(&path.display().to_string())));
+        self.apply(draft)
+    }
+
+    /// A scene with these fields.
+    pub fn apply(&self, mut draft: Draft) -> Result<Draft, SceneError> {
+        for assignment in &self.set {
+            draft.set(assignment)?;
+            note(|| format!("set {}", printable(assignment)));
+        }
+        Ok(draft)
+    }
+}

@@ -1,0 +1,124 @@
+//! A scene whose fields can still be changed: read from a file, a stream or a text, altered field by field, and only then
+//! checked as a scene.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::assembly::{AnyScene, AssemblyScene};
+use crate::input::read_all;
+use crate::scene::{A_SCENE, FieldPath, InvalidInput, Scene, SceneError, json, read_tree, told, toml, utf8};
+
+/// The fields of a scene before they are checked.
+///
+/// ```
+/// use vibroimpact::draft::Draft;
+///
+/// let mut draft = Draft::from_text(r#"
+///     location_m = 0.3
+///     modes = 20
+///     structure = { kind = "string", length_m = 1, tension_n = 100, mass_per_length_kg_m = 0.01 }
+///     striker = { mass_kg = 0.01, speed_m_s = 1 }
+///     contact = { law = "hertz", stiffness_n_m1_5 = 1e7 }
+/// "#)?;
+/// draft.set("striker.speed_m_s=2.5")?;
+/// assert_eq!(draft.impact()?.striker.speed_m_s, 2.5);
+/// # Ok::<(), vibroimpact::SceneError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    tree: Value,
+    /// Where tables that the scene names are looked for.
+    folder: PathBuf,
+}
+
+impl Draft {
+    /// Reads a file: TOML if its name ends in `.toml`, JSON otherwise.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or text that is neither JSON nor TOML.
+    pub fn read(path: &Path) -> Result<Draft, SceneError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
+    }
+
+    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages call the stream `name`;
+    /// tables that the scene names are looked for in the current folder.
+    ///
+    /// # Errors
+    /// As [`Draft::read`].
+    pub fn from_reader(source: impl Read, name: &str) -> Result<Draft, SceneError> {
+        let name = Path::new(name);
+        Draft::from_text(&utf8(read_all(source, name)?, name)?)
+    }
+
+    /// Reads text likewise.
+    ///
+    /// # Errors
+    /// Text that is neither JSON nor TOML.
+    pub fn from_text(text: &str) -> Result<Draft, SceneError> {
+        let is_json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+        // an empty text is no scene in either format; JSON's message says so
+        let tree = if is_json || text.trim().is_empty() { json::parse(text, A_SCENE)? } else { toml::parse(text)? };
+        Ok(Draft { tree, folder: PathBuf::new() })
+    }
+
+    /// Sets one field, as in `striker.speed_m_s=2`, `structure.segments[0].material=steel` or
+    /// `structure.ends=["clamped","free"]`. The value is JSON; anything else is taken as a text. Objects on the way that
+    /// are not there are made.
+    ///
+    /// # Errors
+    /// No `=`, no path of a field, a list that is shorter, or broken JSON after a bracket or quotation mark. A name that
+    /// no scene has is found when the scene is read.
+    pub fn set(&mut self, assignment: &str) -> Result<(), InvalidInput> {
+        let fault = |allowed: &str| InvalidInput {
+            field: "--set".to_owned(),
+            value: Some(told::shorten(assignment)),
+            allowed: allowed.to_owned(),
+        };
+        let (field, text) = assignment.split_once('=').ok_or_else(|| fault(ASSIGNMENT))?;
+        let field = FieldPath::parse(field.trim()).ok_or_else(|| fault(ASSIGNMENT))?;
+        let text = text.trim();
+        let value = match json::parse(text, "a value") {
+            Ok(value) => value,
+            Err(_) if text.starts_with(['{', '[', '"']) => {
+                return Err(fault("a JSON value after the =, or a text that does not begin with {, [ or \""));
+            }
+            Err(_) => Value::String(text.to_owned()),
+        };
+        field.set_or_insert(&mut self.tree, value).map_err(|reason| fault(&format!("{ASSIGNMENT}; {reason}")))
+    }
+
+    /// The scene of one impact.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn impact(&self) -> Result<Scene, SceneError> {
+        let mut scene = Scene::from_value(&self.tree)?;
+        scene.read_modes_file(&self.folder)?;
+        Ok(scene)
+    }
+
+    /// The scene of bodies.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::read`].
+    pub fn bodies(&self) -> Result<AssemblyScene, SceneError> {
+        let mut scene = AssemblyScene::from_value(&self.tree)?;
+        scene.read_tables(&self.folder)?;
+        Ok(scene)
+    }
+
+    /// The scene, of either kind.
+    ///
+    /// # Errors
+    /// As [`AnyScene::read`].
+    pub fn any(&self) -> Result<AnyScene, SceneError> {
+        let mut scene = AnyScene::from_value(&self.tree)?;
+        scene.read_tables(&self.folder)?;
+        Ok(scene)
+    }
+}
+
+const ASSIGNMENT: &str = "FIELD=VALUE with the path of a field, as in striker.speed_m_s=2";

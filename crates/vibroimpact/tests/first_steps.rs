@@ -1,0 +1,251 @@
+//! What a new user meets first: `demo`, `init`, fields set on the command line, scenes from the standard input, materials
+//! by name, manual pages, and how much is said.
+
+mod program;
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use program::{run, stdout};
+use serde_json::Value;
+use vibroimpact::Scene;
+use vibroimpact::scene::{MATERIALS, schema};
+
+/// Runs the program on a text at its standard input.
+fn fed(folder: &Path, arguments: &[&str], text: &str) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_vibroimpact"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // a program that refuses its arguments does not read
+    let _ = program.stdin.take().unwrap().write_all(text.as_bytes());
+    program.wait_with_output().unwrap()
+}
+
+fn refused(output: &Output) -> String {
+    let message = String::from_utf8(output.stderr.clone()).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(output.stdout.is_empty(), "{message}");
+    message
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_str(&stdout(output)).unwrap()
+}
+
+/// The text of the first scene of a kind.
+fn first_scene(folder: &Path, kind: &str) -> String {
+    stdout(&run(folder, &["init", "--kind", kind, "-"]))
+}
+
+#[test]
+fn the_demo_needs_no_file_and_writes_none_unasked() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stdout(&run(folder.path(), &["demo"]));
+    for part in
+        ["rebound", "restitution", "sub-impacts           5", concat!("vibroimpact ", env!("CARGO_PKG_VERSION"))]
+    {
+        assert!(text.contains(part), "{part} in\n{text}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+
+    let text = stdout(&run(folder.path(), &["demo", "--plot", "demo.svg", "--report", "demo.html"]));
+    assert!(text.contains("wrote demo.svg") && text.contains("wrote demo.html"), "{text}");
+    assert!(fs::read_to_string(folder.path().join("demo.svg")).unwrap().starts_with("<svg"));
+    // the same impact by the file that init writes, on another way
+    stdout(&run(folder.path(), &["init"]));
+    let [demo, file] = [["demo", "--json"].as_slice(), &["simulate", "impact.toml", "--json"]]
+        .map(|arguments| stdout(&run(folder.path(), arguments)));
+    assert_eq!(demo, file);
+}
+
+#[test]
+fn init_writes_scenes_that_can_be_solved() {
+    let folder = tempfile::tempdir().unwrap();
+    let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
+    for kind in ["beam", "cantilever", "plate", "bodies"] {
+        let file = format!("{kind}.toml");
+        let told = stdout(&run(folder.path(), &["init", "--kind", kind, &file]));
+        assert!(told.contains(&format!("wrote {file}")) && told.contains(&format!("simulate {file}")), "{told}");
+        let text = fs::read_to_string(folder.path().join(&file)).unwrap();
+        assert!(text.lines().filter(|line| line.starts_with('#')).count() > 10 && text.contains(&file), "{text}");
+        let tree = serde_json::to_value(text.parse::<toml::Table>().unwrap()).unwrap();
+        assert!(
+            validator.is_valid(&tree),
+            "{kind}: {:?}",
+            validator.iter_errors(&tree).map(|e| e.to_string()).collect::<Vec<_>>()
+        );
+        let result = json(&run(folder.path(), &["simulate", &file, "--json"]));
+        assert!(result["outcome"] == if kind == "bodies" { "end" } else { "rebound" }, "{kind}: {}", result["outcome"]);
+    }
+    let message = refused(&run(folder.path(), &["init", "beam.toml"]));
+    assert!(message.contains("FILE = beam.toml is not allowed: this file exists"), "{message}");
+    stdout(&run(folder.path(), &["init", "beam.toml", "--kind", "plate", "--force"]));
+    assert!(fs::read_to_string(folder.path().join("beam.toml")).unwrap().contains("kind = \"plate\""));
+    assert!(refused(&run(folder.path(), &["init", "impact.json"])).contains("a file name that ends in .toml"));
+}
+
+#[test]
+fn a_scene_may_come_from_the_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let toml = first_scene(folder.path(), "beam");
+    fs::write(folder.path().join("scene.toml"), &toml).unwrap();
+    let as_json = Scene::from_toml(&toml).unwrap().to_json();
+    for arguments in [&["simulate"][..], &["plan"], &["modes", "--count", "3"], &["emoc"]] {
+        let with = |scene| [arguments, &["--json", scene][..]].concat();
+        let from_file = stdout(&run(folder.path(), &with("scene.toml")));
+        assert_eq!(stdout(&fed(folder.path(), &with("-"), &toml)), from_file, "{arguments:?}");
+        assert_eq!(stdout(&fed(folder.path(), &with("-"), &as_json)), from_file, "{arguments:?}");
+    }
+    for (text, part) in [
+        ("", "ends too early"),
+        ("{", "ends too early"),
+        ("structure", "line 1"),
+        ("\u{feff}{}", "structure is missing"),
+    ] {
+        let message = refused(&fed(folder.path(), &["simulate", "-"], text));
+        assert!(message.contains(part), "{text:?}: {message}");
+    }
+}
+
+#[test]
+fn fields_are_set_on_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let toml = first_scene(folder.path(), "beam");
+    fs::write(folder.path().join("scene.toml"), toml.replace("speed_m_s = 1", "speed_m_s = 2")).unwrap();
+    let in_file = stdout(&run(folder.path(), &["simulate", "scene.toml", "--json", "--set", "modes=30"]));
+    let set = ["demo", "--json", "--set", "striker.speed_m_s=2", "--set", " modes = 30 "];
+    assert_eq!(stdout(&run(folder.path(), &set)), in_file);
+    // a text, a list, a field of an object that is not there yet, and one left out
+    let set = [
+        "demo",
+        "--json",
+        "--set",
+        "structure.ends=[\"clamped\",\"free\"]",
+        "--set",
+        "start.gap_m=0.001",
+        "--set",
+        "modes=9",
+        "--set",
+        "structure.segments[0].material=glass",
+        "--set",
+        "contact.striker_material=rubber",
+        "--set",
+        "tolerance=null",
+    ];
+    let scene = &json(&run(folder.path(), &set))["scene"];
+    assert_eq!(scene["structure"]["ends"][0], "clamped");
+    assert_eq!(scene["start"]["gap_m"], 0.001);
+    assert_eq!(scene["structure"]["segments"][0]["youngs_modulus_pa"], 7e10);
+    assert!(scene.get("tolerance").is_none());
+    for (assignment, part) in [
+        ("striker", "--set = striker is not allowed: FIELD=VALUE"),
+        ("=1", "FIELD=VALUE"),
+        ("a..b=1", "FIELD=VALUE"),
+        ("strkier.speed_m_s=2", "did you mean striker?"),
+        ("striker.sped_m_s=2", "striker.sped_m_s = 2 is not allowed: unknown field"),
+        ("structure.segments[0].materail=steel", "did you mean material?"),
+        ("structure.segments[7].length_m=2", "counted from 0"),
+        ("striker.speed_m_s=fast", "striker.speed_m_s = \"fast\" is not allowed: a finite number"),
+        ("striker.speed_m_s=NaN", "striker.speed_m_s = \"NaN\" is not allowed"),
+        ("structure.ends=[1", "a JSON value after the ="),
+        ("location_m=3", "location_m = 3 is not allowed"),
+        ("striker.radius_m=-1", "striker.radius_m = -1.0 is not allowed"),
+    ] {
+        let message = refused(&run(folder.path(), &["demo", "--out", "there", "--set", assignment]));
+        assert!(message.contains(part), "{assignment}: {message}");
+        assert!(!folder.path().join("there").exists());
+    }
+    // every command that reads a scene takes it
+    for arguments in [&["plan"][..], &["compare"], &["modes", "--count", "2"], &["emoc"]] {
+        let set = [arguments, &["scene.toml", "--set", "location_m=9"]].concat();
+        assert!(refused(&run(folder.path(), &set)).contains("location_m = 9"), "{arguments:?}");
+    }
+}
+
+/// By the numbers of the norms, written out.
+#[test]
+fn a_material_is_its_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let by_name = Scene::from_toml(&first_scene(folder.path(), "cantilever")).unwrap();
+    let numbers = |text: &str, number: &str| text.replace("material = \"aluminium\"", number);
+    let text = first_scene(folder.path(), "cantilever")
+        .replace("material = \"rubber\"\nradius", "density_kg_m3 = 1100\nradius")
+        .replace("striker_material = \"rubber\"", "striker_youngs_modulus_pa = 2.2e6\nstriker_poissons_ratio = 0.4996");
+    let (structure, contact) = text.split_once("[contact]").unwrap();
+    let by_number = numbers(structure, "youngs_modulus_pa = 7e10\npoissons_ratio = 0.3\ndensity_kg_m3 = 2700")
+        + "[contact]"
+        + &numbers(contact, "youngs_modulus_pa = 7e10\npoissons_ratio = 0.3");
+    assert!(!by_number.contains("material ="), "{by_number}");
+    assert_eq!(Scene::from_toml(&by_number).unwrap(), by_name);
+    // the schema knows where a name may stand
+    let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
+    let named: Value =
+        serde_json::to_value(first_scene(folder.path(), "beam").parse::<toml::Table>().unwrap()).unwrap();
+    for (place, value, valid) in [
+        ("/structure/segments/0/material", Value::from("wood"), true),
+        ("/structure/segments/0/material", Value::from("gold"), false),
+        ("/structure/segments/0/material", Value::Null, false),
+        ("/structure/segments/0/density_kg_m3", Value::from(7800), true),
+        ("/structure/segments/0/flexural_rigidity_n_m2", Value::from(300), false),
+        ("/striker/mass_kg", Value::from(1), false),
+        ("/striker/density_kg_m3", Value::from(7800), true),
+        ("/contact/striker_material", Value::from("glass"), true),
+        ("/contact/striker_material", Value::from("gold"), false),
+    ] {
+        let mut scene = named.clone();
+        let (holder, field) = place.rsplit_once('/').unwrap();
+        scene.pointer_mut(holder).unwrap()[field] = value;
+        assert_eq!(validator.is_valid(&scene), valid, "{place}: {scene}");
+        let read = Scene::from_value(&scene).map_err(|fault| fault.to_string());
+        let solved = read.and_then(|scene| scene.plan().map(|_| ()).map_err(|fault| fault.to_string()));
+        assert_eq!(solved.is_ok(), valid, "{place}: {solved:?}");
+    }
+    // the book lists what the program knows
+    let book = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/how-to/materials.md")).unwrap();
+    for material in MATERIALS {
+        let row = format!(
+            "| `{}` | {:e} | {} | {} |",
+            material.name, material.youngs_modulus_pa, material.poissons_ratio, material.density_kg_m3
+        );
+        assert!(book.contains(&row), "{row}");
+    }
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = stdout(&run(folder.path(), &["manual", "--out", "man"]));
+    assert!(told.contains("man -l man/vibroimpact-simulate.1"), "{told}");
+    let help = stdout(&run(folder.path(), &["--help"]));
+    let commands = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    for command in commands.lines().filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help") {
+        let page = fs::read_to_string(folder.path().join(format!("man/vibroimpact-{command}.1"))).unwrap();
+        assert!(page.contains(&format!(".TH vibroimpact-{command} 1")), "{command}: {page}");
+        assert_eq!(stdout(&run(folder.path(), &["manual", command])), page);
+    }
+    let program = fs::read_to_string(folder.path().join("man/vibroimpact.1")).unwrap();
+    assert!(program.contains("vibroimpact\\-simulate(1)"), "{program}");
+    assert!(refused(&run(folder.path(), &["manual", "--out", "man"])).contains("this file exists"));
+    assert!(refused(&run(folder.path(), &["manual", "simulat"])).contains("COMMAND = simulat is not allowed: one of"));
+}
+
+#[test]
+fn the_voice_is_quiet_or_verbose_as_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = stdout(&run(folder.path(), &["demo", "--out", "run"]));
+    assert!(told.contains("look at run/impact.svg first"), "{told}");
+    let told = stdout(&run(folder.path(), &["demo", "--quiet", "--out", "run", "--force"]));
+    assert!(told.contains("restitution") && !told.contains("wrote"), "{told}");
+    let output = run(folder.path(), &["demo", "--json", "--verbose", "--set", "modes=10"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("set modes=10") && said.contains("simulate: computed in"), "{said}");
+    assert!(serde_json::from_slice::<Value>(&output.stdout).is_ok());
+    assert!(refused(&run(folder.path(), &["demo", "--quiet", "--verbose"])).contains("cannot be used with"));
+}
