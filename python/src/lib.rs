@@ -21,7 +21,7 @@ mod _vibroimpact {
     #[pymodule_export]
     use super::emoc::{emoc, emoc_restitution, fit};
     #[pymodule_export]
-    use super::impact::{compare, infinite_beam, modes, plan, simulate, turning_points};
+    use super::impact::{compare, infinite_beam, modes, plan, sensitivity, simulate, turning_points};
     #[pymodule_export]
     use super::sweep::sweep;
     use super::*;

@@ -98,6 +98,12 @@ def test_plan_and_compare(name, command_line):
     assert plain(vibroimpact.compare(path)) == command_line("compare", path)
 
 
+def test_sensitivity(command_line):
+    path = SCENES / "dropped-rod.json"
+    by = ["structure.length_m", "striker.speed_m_s"]
+    assert plain(vibroimpact.sensitivity(path, by)) == command_line("sensitivity", path, "--by", ",".join(by))
+
+
 def test_a_model_without_a_course_in_time(scene, command_line, tmp_path):
     file = tmp_path / "scene.json"
     file.write_text(json.dumps(scene | {"model": "emoc"}))

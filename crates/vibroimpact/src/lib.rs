@@ -36,6 +36,7 @@
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
+//! | [`sensitivity`] | derivatives of an impact by the numbers of its scene |
 //! | [`sweep`] | many scenes that differ in some fields: grids, lists, ranges, random draws |
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
@@ -62,6 +63,7 @@ pub mod pictures;
 pub mod plot;
 pub mod report;
 pub mod scene;
+pub mod sensitivity;
 pub mod simulate;
 pub mod summary;
 pub mod sweep;

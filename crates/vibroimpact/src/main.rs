@@ -13,7 +13,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
 use commands::voice::Voice;
-use commands::{choice, first, infinite_beam, law, modes, net, orbit, shell, simulate, sweep, voice};
+use commands::{choice, first, infinite_beam, law, modes, net, orbit, sensitivity, shell, simulate, sweep, voice};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
@@ -91,6 +91,9 @@ enum Command {
     /// Find the periodic motion of bodies under a harmonic load, and follow it over a field
     #[command(after_help = orbit::EXAMPLES)]
     Orbit(orbit::Arguments),
+    /// Differentiate an impact by the numbers of its scene: what matters, and how much
+    #[command(after_help = sensitivity::EXAMPLES)]
+    Sensitivity(sensitivity::Arguments),
     /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
     #[command(after_help = sweep::SWEEP_EXAMPLES)]
     Sweep(sweep::SweepArguments),
@@ -170,6 +173,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::InfiniteBeam(arguments) => watched("infinite-beam", || infinite_beam::run(arguments)),
         Command::Law(arguments) => law::run(arguments),
         Command::Orbit(arguments) => watched("orbit", || orbit::run(arguments)),
+        Command::Sensitivity(arguments) => watched("sensitivity", || sensitivity::run(arguments)),
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Completions(arguments) => shell::completions(arguments, Cli::command()),

@@ -165,20 +165,7 @@ impl Tables {
 
     /// Free motion of all modes over one panel.
     pub fn rotate(&mut self, system: &System, j: i32, amplitude: &mut [f64], rate: &mut [f64]) {
-        let rotation = self.rotation(system, j);
-        let n = amplitude.len();
-        let (less, p12) = (&rotation.p11_less_1[..n], &rotation.p12[..n]);
-        let (p21, p22, rate) = (&rotation.p21[..n], &rotation.p22[..n], &mut rate[..n]);
-        vectorized(
-            #[inline(always)]
-            || {
-                for k in 0..n {
-                    let (a, b) = (amplitude[k], rate[k]);
-                    amplitude[k] = a + (less[k] * a + p12[k] * b);
-                    rate[k] = p21[k] * a + p22[k] * b;
-                }
-            },
-        );
+        self.rotation(system, j).apply(amplitude, rate);
     }
 
     /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
@@ -274,6 +261,22 @@ impl Forced {
                         for i in 0..Q {
                             moved[i] += from_a[i] * a + from_b[i] * b;
                         }
+                    }
+                }
+                moved
+            },
+        )
+    }
+
+    /// How far free motion moves the sum of all modes at the nodes, each from its own multiple of a unit motion.
+    pub fn sum_at_nodes(&self, amplitude: &[f64], rate: &[f64]) -> Nodal {
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut moved = [0.0; Q];
+                for ((from_a, from_b), (a, b)) in self.at_nodes.iter().zip(amplitude.iter().zip(rate)) {
+                    for i in 0..Q {
+                        moved[i] += from_a[i] * a + from_b[i] * b;
                     }
                 }
                 moved

@@ -110,6 +110,11 @@ struct Expansion {
     changed: Vec<Vec<[Option<Response>; 3]>>,
 }
 
+/// Expansions of panels whose length comes again, by that length and the contacts that are closed: for one system and the
+/// same changes.
+#[derive(Default)]
+pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
+
 /// The closed contacts of a panel, as the record has them.
 struct Solved {
     contact: usize,
@@ -142,7 +147,7 @@ struct Walk<'a> {
     /// `c_1 psi` and `c_2 psi` of each change and contact.
     faded: Vec<Vec<Vec<Span>>>,
     stretched: Vec<Vec<Vec<Span>>>,
-    kept: HashMap<(u64, Vec<usize>), Rc<Expansion>>,
+    expansions: &'a mut Expansions,
     blocks: Blocks,
     contacts: Vec<Followed>,
     tangents: Vec<Tangent>,
@@ -153,8 +158,14 @@ struct Walk<'a> {
 
 /// The tangents of a recorded motion without loads. `None` where one does not exist: at a graze, where a law's own course
 /// forks, and for the damping of a mode that is damped critically.
-pub(crate) fn tangents(posed: &Posed, system: &System, stretches: &[Stretch], changes: &[Change]) -> Option<Tangents> {
-    let mut walk = Walk::new(posed, system, changes);
+pub(crate) fn tangents(
+    posed: &Posed,
+    system: &System,
+    stretches: &[Stretch],
+    changes: &[Change],
+    expansions: &mut Expansions,
+) -> Option<Tangents> {
+    let mut walk = Walk::new(posed, system, changes, expansions);
     for (i, stretch) in stretches.iter().enumerate() {
         // events that begin the record are met on a panel of no length
         if i == 0 && !stretch.events.is_empty() {
@@ -194,7 +205,12 @@ fn times(one: &Nodal, other: &Nodal) -> Nodal {
 }
 
 impl<'a> Walk<'a> {
-    fn new(posed: &'a Posed<'a>, system: &'a System, changes: &'a [Change<'a>]) -> Walk<'a> {
+    fn new(
+        posed: &'a Posed<'a>,
+        system: &'a System,
+        changes: &'a [Change<'a>],
+        expansions: &'a mut Expansions,
+    ) -> Walk<'a> {
         let weighted = |factors: fn(&'a Change<'a>) -> &'a [f64]| {
             let of = |change| system.links.iter().map(|link| scaled(link, factors(change))).collect();
             changes.iter().map(of).collect()
@@ -221,7 +237,7 @@ impl<'a> Walk<'a> {
             changes,
             faded: weighted(|change| &change.fade),
             stretched: weighted(|change| &change.stretch),
-            kept: HashMap::new(),
+            expansions,
             blocks: Blocks::default(),
             contacts: posed.gaps_m.iter().map(followed).collect(),
             tangents: changes.iter().map(tangent).collect(),
@@ -278,7 +294,7 @@ impl<'a> Walk<'a> {
 
     fn expansion(&mut self, h: f64, closed: &[usize]) -> Rc<Expansion> {
         let key = (h.to_bits(), closed.to_vec());
-        if let Some(kept) = self.kept.get(&key) {
+        if let Some(kept) = self.expansions.0.get(&key) {
             return kept.clone();
         }
         let system = self.system;
@@ -343,7 +359,7 @@ impl<'a> Walk<'a> {
         let own = whole[..n * n].to_vec();
         let expansion = Rc::new(Expansion { rotation, forced, own, changed });
         if step_s(level_within(h)) == h {
-            self.kept.insert(key, expansion.clone());
+            self.expansions.0.insert(key, expansion.clone());
         }
         expansion
     }
@@ -425,15 +441,21 @@ impl<'a> Walk<'a> {
             let c = own.contact;
             let link = &system.links[c];
             let [start, _] = self.overlap(d, c, (a, b), (&tangent.amplitude, &tangent.rate));
-            let mut found = expansion.forced.free_at_nodes(&link.spans, &amplitude, &rate);
-            add(&mut found, 1.0, &expansion.forced.free_at_nodes(&change.psi[c], a, b));
+            let (mut from_a, mut from_b) = (vec![0.0; a.len()], vec![0.0; a.len()]);
+            weigh(&link.spans, (&amplitude, &rate), (&mut from_a, &mut from_b));
+            weigh(&change.psi[c], (a, b), (&mut from_a, &mut from_b));
+            let mut found = expansion.forced.sum_at_nodes(&from_a, &from_b);
             found.iter_mut().for_each(|value| *value += start);
             // what is multiplied by the time
             let mut timed = [0.0; Q];
             if modes_move {
                 let (faded, stretched) = (&self.faded[d][c], &self.stretched[d][c]);
-                add(&mut timed, -1.0, &expansion.forced.free_at_nodes(faded, a, b));
-                add(&mut timed, 1.0, &expansion.forced.free_at_nodes(stretched, b, &bend));
+                from_a.fill(0.0);
+                from_b.fill(0.0);
+                weigh(faded, (a, b), (&mut from_a, &mut from_b));
+                from_a.iter_mut().chain(&mut from_b).for_each(|value| *value = -*value);
+                weigh(stretched, (b, &bend), (&mut from_a, &mut from_b));
+                timed = expansion.forced.sum_at_nodes(&from_a, &from_b);
                 let at_start = sum(stretched, b) - sum(faded, a);
                 timed.iter_mut().for_each(|value| *value += at_start);
             }
@@ -471,7 +493,7 @@ impl<'a> Walk<'a> {
             }
         }
         // y at the end
-        rotate(&expansion.rotation, &mut amplitude, &mut rate);
+        expansion.rotation.apply(&mut amplitude, &mut rate);
         for (own, force) in solved.iter().zip(&force) {
             let c = own.contact;
             let link = &system.links[c];
@@ -785,9 +807,14 @@ impl<'a> Walk<'a> {
     }
 }
 
-fn rotate(rotation: &Rotation, amplitude: &mut [f64], rate: &mut [f64]) {
-    for k in 0..amplitude.len() {
-        (amplitude[k], rate[k]) = rotation.of(k).apply(amplitude[k], rate[k]);
+/// Adds the motion of each mode, times its weight.
+fn weigh(spans: &[Span], (a, b): (&[f64], &[f64]), (to_a, to_b): (&mut [f64], &mut [f64])) {
+    for Span { modes, psi } in spans {
+        let rows = [(a, to_a as &mut [f64]), (b, to_b as &mut [f64])];
+        for (from, to) in rows {
+            let motion = psi.iter().zip(&from[modes.clone()]);
+            to[modes.clone()].iter_mut().zip(motion).for_each(|(to, (psi, value))| *to += psi * value);
+        }
     }
 }
 

@@ -3,13 +3,14 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
-use super::solve::{Impact, Solver};
+use super::solve::{AMPLIFIED, Impact, Keep, LEAST, LOOSEST, Run, Solver};
 use crate::InvalidInput;
 use crate::assembly::change::{Change, Stencil};
-use crate::assembly::dense::Stretch;
-use crate::assembly::system::System;
-use crate::assembly::tangent::{IntervalChange, tangents};
+use crate::assembly::problem::Posed;
+use crate::assembly::system::{Span, System};
+use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use contact_models::ContactLaw;
+use std::array;
 
 /// An impact, all of it.
 #[derive(Clone, Copy)]
@@ -42,7 +43,7 @@ pub struct Parameter<'a> {
 pub struct Derivative {
     /// The derivative.
     pub value: f64,
-    /// By how much it may be off, from the derivative along a coarser solution; `None` where that one went another way, so
+    /// By how much it may be off, from the derivatives along two coarser solutions; `None` where one of these went another way, so
     /// that no digit of the derivative is certain.
     pub uncertainty: Option<f64>,
 }
@@ -91,12 +92,8 @@ pub struct Differentiated {
     pub nearest_graze: f64,
 }
 
-/// The changes along one run, by parameter.
-struct Along {
-    changes: Vec<Changes>,
-    nearest_graze: f64,
-}
-
+/// The changes along one run with one parameter.
+#[derive(Clone)]
 struct Changes {
     numbers: [f64; 3],
     intervals: Vec<IntervalChange>,
@@ -104,8 +101,8 @@ struct Changes {
     rate: Vec<f64>,
 }
 
-/// How much more coarsely the motion is solved whose derivatives tell the uncertainty.
-const COARSER: f64 = 32.0;
+/// How much more coarsely the two motions are solved whose derivatives tell the uncertainty: two may agree by accident.
+const COARSER: [f64; 2] = [32.0, 6.0];
 /// The uncertainty in differences to them.
 const TIMES: f64 = 10.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
@@ -161,25 +158,67 @@ impl Solver {
                 neighbour.start.check(found)?;
             }
         }
-        let solution = self.solve(striker, law, start, settings)?;
+        let moved = self.moved_by(parameters);
+        let mut other = (moved != self.moved()).then(|| self.moving(moved));
+        other.as_mut().unwrap_or(self).along_all(striker, law, start, settings, parameters)
+    }
+
+    /// The impact at its tolerance and at two coarser ones, differentiated along each.
+    fn along_all(
+        &mut self,
+        striker: &Striker,
+        law: &dyn ContactLaw,
+        start: Option<&Start>,
+        settings: &Settings,
+        parameters: &[Parameter],
+    ) -> Result<Differentiated, InvalidInput> {
+        let once = Settings { estimate_uncertainty: false, ..*settings };
+        let (mut solution, fine) = self.solve_into(striker, law, start, &once, Keep::Motion)?;
+        let at_rest = Start::at_rest(self.modes().len());
+        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
+        let tolerance = settings.tolerance.min(LOOSEST);
+        let coarse = COARSER.map(|factor| self.run(&impact, factor * tolerance, Keep::Motion));
+        if let (Some(value), true) = (solution.restitution, settings.estimate_uncertainty) {
+            let error = |run: &Run| self.restitution(run, striker, impact.start).map(|other| (other - value).abs());
+            let spread = coarse.iter().map(error).try_fold(0.0, |most: f64, error| error.map(|error| most.max(error)));
+            let uncertainty = spread.map_or(1.0, |spread| LEAST * settings.tolerance + AMPLIFIED * spread);
+            solution.restitution_uncertainty = Some(uncertainty);
+        }
         let none = |solution| Differentiated { solution, derivatives: None, nearest_graze: 1.0 };
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution));
         }
-        let at_rest = Start::at_rest(count);
-        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
-        let moved = self.moved_by(parameters);
-        let tolerance = settings.tolerance.min(0.1 / COARSER);
-        let Some(fine) = self.along(&impact, tolerance, parameters, &moved) else {
+        let (modes, moved) = (self.modes(), self.moved());
+        let pose = |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, moved, striker, start);
+        let assembly = pose(modes, striker, impact.start);
+        let posed = assembly.with_laws(vec![law]);
+        let system = System::new(&posed);
+        let near = |at: &Posing| pose(&at.structure.modes, at.striker, at.start);
+        let neighbours: Vec<_> = parameters.iter().map(|by| by.neighbours.each_ref().map(near)).collect();
+        let mut changes = Vec::with_capacity(parameters.len());
+        let mut sides = Vec::with_capacity(parameters.len());
+        for (assemblies, by) in neighbours.iter().zip(parameters) {
+            let posed: [Posed; 4] = array::from_fn(|i| assemblies[i].with_laws(vec![by.neighbours[i].law]));
+            let stencil = Stencil::new(by.offsets);
+            changes.push(Change::new(&system, posed.each_ref(), by.changes_law, stencil));
+            sides.push(posed.each_ref().map(|posed| system.link(posed.sides[0]).sides[0].clone()));
+        }
+        let along = Along { modes, moved, impact, parameters, posed: &posed, system: &system, changes, sides };
+        let mut expansions = Expansions::default();
+        let Some((changes, nearest_graze)) = along.changes(&fine, &mut expansions) else {
             return Ok(none(solution));
         };
-        let coarse = self.along(&impact, COARSER * tolerance, parameters, &moved);
+        let coarse = coarse.map(|run| along.changes(&run, &mut expansions).map(|(changes, _)| changes));
         let of = |(i, fine): (usize, &Changes)| {
-            let coarse = coarse.as_ref().map(|along| &along.changes[i]);
-            fine.beside(coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len()))
+            let same = |coarse: &'_ Option<Vec<Changes>>| {
+                let changes = &coarse.as_ref()?[i];
+                (changes.intervals.len() == fine.intervals.len()).then(|| changes.clone())
+            };
+            let [one, other] = coarse.each_ref().map(same);
+            fine.beside(one.zip(other).map(|(one, other)| [one, other]).as_ref())
         };
-        let derivatives = fine.changes.iter().enumerate().map(of).collect();
-        Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze: fine.nearest_graze })
+        let derivatives = changes.iter().enumerate().map(of).collect();
+        Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze })
     }
 
     /// The modes that move the contact, here or at a neighbour.
@@ -190,68 +229,47 @@ impl Solver {
         };
         (0..self.modes().len()).filter(moves).collect()
     }
+}
 
-    /// The changes along the motion at one tolerance.
-    fn along(&mut self, impact: &Impact, tolerance: f64, parameters: &[Parameter], moved: &[usize]) -> Option<Along> {
-        let modes = self.modes().to_vec();
-        let assembly = posed::assembly(&modes, moved, impact.striker, impact.start);
-        let posed = assembly.with_laws(vec![impact.law]);
-        let system = System::new(&posed);
-        let stretches: Vec<Stretch> = self.stretches(impact, tolerance, moved)?;
-        let neighbours: Vec<_> = parameters
-            .iter()
-            .map(|parameter| {
-                parameter
-                    .neighbours
-                    .each_ref()
-                    .map(|at| posed::assembly(&at.structure.modes, moved, at.striker, at.start))
-            })
-            .collect();
-        let all_posed: Vec<_> = neighbours
-            .iter()
-            .zip(parameters)
-            .map(|(assemblies, parameter)| {
-                std::array::from_fn::<_, 4, _>(|i| assemblies[i].with_laws(vec![parameter.neighbours[i].law]))
-            })
-            .collect();
-        let changes: Vec<Change> = all_posed
-            .iter()
-            .zip(parameters)
-            .map(|(posed, parameter)| {
-                Change::new(&system, posed.each_ref(), parameter.changes_law, Stencil::new(parameter.offsets))
-            })
-            .collect();
-        let found = tangents(&posed, &system, &stretches, &changes)?;
-        let last = stretches.last()?;
-        let side = |system: &System| system.links[0].sides[0].clone();
-        let striker = side(&system);
-        let end = (last.amplitude.as_slice(), last.rate.as_slice());
-        let changes =
-            found.tangents.into_iter().zip(parameters).zip(&all_posed).map(|((tangent, parameter), posed)| {
-                let by_shape = |neighbour: usize| {
-                    let link = system.link(posed[neighbour].sides[0]);
-                    link.sides[0].as_ref().map_or(0.0, |side| side.sum(end.1))
-                };
-                let velocity = striker.as_ref().map_or(0.0, |side| side.sum(&tangent.rate))
-                    + Stencil::new(parameter.offsets).slope(std::array::from_fn(by_shape));
-                let pick = |values: &[f64]| {
-                    let mut all = vec![0.0; modes.len()];
-                    moved.iter().zip(&system.place[posed::STRUCTURE]).for_each(|(k, place)| all[*k] = values[*place]);
-                    all
-                };
-                let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-                let end_rate = pick(end.1);
-                let velocity_now = striker.as_ref().map_or(0.0, |side| side.sum(end.1));
-                let restitution =
-                    restitution_change(&modes, impact, parameter, (velocity_now, velocity), (&end_rate, &rate));
-                Changes {
-                    numbers: [restitution, tangent.time_s, velocity],
-                    intervals: tangent.intervals,
-                    amplitude,
-                    rate,
-                }
-            });
-        Some(Along { changes: changes.collect(), nearest_graze: found.nearest_graze })
+/// What it takes to differentiate motions of one impact.
+struct Along<'a> {
+    modes: &'a [Mode],
+    moved: &'a [usize],
+    impact: Impact<'a>,
+    parameters: &'a [Parameter<'a>],
+    posed: &'a Posed<'a>,
+    system: &'a System,
+    /// By parameter, as is the striker as it moves at the neighbours.
+    changes: Vec<Change<'a>>,
+    sides: Vec<[Option<Span>; 4]>,
+}
+
+impl Along<'_> {
+    /// The changes along the motion of one run, and how nearly it grazes.
+    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Option<(Vec<Changes>, f64)> {
+        if run.outcome != Outcome::Rebound {
+            return None;
+        }
+        let found = tangents(self.posed, self.system, &run.stretches, &self.changes, expansions)?;
+        let end = run.stretches.last()?.rate.as_slice();
+        let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
+        let striker = &self.system.links[0].sides[0];
+        let pick = |values: &[f64]| {
+            let mut all = vec![0.0; self.modes.len()];
+            let places = &self.system.place[posed::STRUCTURE];
+            self.moved.iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
+            all
+        };
+        let of = |((tangent, parameter), sides): ((Tangent, &Parameter), &[Option<Span>; 4])| {
+            let by_mass = Stencil::new(parameter.offsets).slope(sides.each_ref().map(|side| velocity_of(side, end)));
+            let velocity = [velocity_of(striker, end), velocity_of(striker, &tangent.rate) + by_mass];
+            let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
+            let restitution = restitution_change(self.modes, &self.impact, parameter, velocity, [&pick(end), &rate]);
+            let numbers = [restitution, tangent.time_s, velocity[1]];
+            Changes { numbers, intervals: tangent.intervals, amplitude, rate }
+        };
+        let changes = found.tangents.into_iter().zip(self.parameters).zip(&self.sides).map(of).collect();
+        Some((changes, found.nearest_graze))
     }
 }
 
@@ -260,8 +278,8 @@ fn restitution_change(
     modes: &[Mode],
     impact: &Impact,
     parameter: &Parameter,
-    (velocity, velocity_change): (f64, f64),
-    (end, end_change): (&[f64], &[f64]),
+    [velocity, velocity_change]: [f64; 2],
+    [end, end_change]: [&[f64]; 2],
 ) -> f64 {
     let rigid = |modes: &[Mode], rate: &[f64]| -> f64 {
         modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid()).map(|(mode, rate)| mode.shape * rate).sum()
@@ -277,16 +295,17 @@ fn restitution_change(
 }
 
 impl Changes {
-    /// As derivatives, with those along a coarser motion.
-    fn beside(&self, coarse: Option<&Changes>) -> Derivatives {
-        let with = |value: f64, other: Option<f64>| Derivative {
-            value,
-            uncertainty: other.map(|other| TIMES * (other - value).abs() + ROUNDING * value.abs()),
+    /// As derivatives, with those along coarser motions.
+    fn beside(&self, coarse: Option<&[Changes; 2]>) -> Derivatives {
+        let with = |of: &dyn Fn(&Changes) -> f64| {
+            let value = of(self);
+            let spread =
+                |coarse: &[Changes; 2]| coarse.iter().map(|coarse| (of(coarse) - value).abs()).fold(0.0, f64::max);
+            Derivative { value, uncertainty: coarse.map(|coarse| TIMES * spread(coarse) + ROUNDING * value.abs()) }
         };
-        let number = |i: usize| with(self.numbers[i], coarse.map(|coarse| coarse.numbers[i]));
-        let interval = |(i, change): (usize, &IntervalChange)| {
-            let other = coarse.map(|coarse| coarse.intervals[i]);
-            let of = |get: fn(&IntervalChange) -> f64| with(get(change), other.as_ref().map(get));
+        let number = |i: usize| with(&|changes| changes.numbers[i]);
+        let interval = |i: usize| {
+            let of = |get: fn(&IntervalChange) -> f64| with(&|changes| get(&changes.intervals[i]));
             SubImpactDerivatives {
                 start_s: of(|change| change.start_s),
                 end_s: of(|change| change.end_s),
@@ -299,7 +318,7 @@ impl Changes {
             restitution: number(0),
             end_s: number(1),
             striker_velocity_m_s: number(2),
-            sub_impacts: self.intervals.iter().enumerate().map(interval).collect(),
+            sub_impacts: (0..self.intervals.len()).map(interval).collect(),
             amplitude: self.amplitude.clone(),
             rate: self.rate.clone(),
         }

@@ -17,7 +17,7 @@ use contact_models::ContactLaw;
 
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.
-const LOOSEST: f64 = 1e-4;
+pub(crate) const LOOSEST: f64 = 1e-4;
 /// How much more coarsely than the solution those are computed that tell its uncertainty: in the same unit of time, in
 /// another one, and a third where these differ by more than the tolerance.
 const COARSER: f64 = 32.0;
@@ -25,8 +25,8 @@ const OTHERWISE: f64 = 8.0;
 const THIRD: f64 = 8.0;
 /// The uncertainty in differences to them: without and with the third; and what is stated of the tolerance in any case.
 const ORDINARY: f64 = 2.5;
-const AMPLIFIED: f64 = 5.0;
-const LEAST: f64 = 3e-3;
+pub(crate) const AMPLIFIED: f64 = 5.0;
+pub(crate) const LEAST: f64 = 3e-3;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less.
@@ -66,9 +66,19 @@ pub(crate) struct Impact<'a> {
     pub settings: &'a Settings,
 }
 
+/// What is kept of a run beside its result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keep {
+    Result,
+    /// The whole motion.
+    Motion,
+    /// The same, with the energy ledger.
+    Record,
+}
+
 /// One run at one tolerance.
-struct Run {
-    outcome: Outcome,
+pub(crate) struct Run {
+    pub outcome: Outcome,
     end_s: f64,
     sub_impacts: Vec<SubImpact>,
     striker_velocity_m_s: f64,
@@ -77,7 +87,7 @@ struct Run {
     counts: Counts,
     contact_work_j: f64,
     energy: Option<Ledger>,
-    stretches: Vec<Stretch>,
+    pub stretches: Vec<Stretch>,
 }
 
 /// Collects the intervals of contact.
@@ -122,7 +132,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<Solution, InvalidInput> {
-        Ok(self.solve_into(striker, law, start, settings, false)?.0)
+        Ok(self.solve_into(striker, law, start, settings, Keep::Result)?.0)
     }
 
     /// Solves one impact and keeps its whole history.
@@ -136,7 +146,7 @@ impl Solver {
         start: Option<&Start>,
         settings: &Settings,
     ) -> Result<(Solution, History<L>), InvalidInput> {
-        let (solution, run) = self.solve_into(striker, law, start, settings, true)?;
+        let (solution, run) = self.solve_into(striker, law, start, settings, Keep::Record)?;
         let start = start.cloned().unwrap_or_else(|| Start::at_rest(self.modes.len()));
         let recorded = Recorded {
             modes: self.modes.clone(),
@@ -153,13 +163,13 @@ impl Solver {
         Ok((solution, history))
     }
 
-    fn solve_into(
+    pub(crate) fn solve_into(
         &mut self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
         settings: &Settings,
-        record: bool,
+        keep: Keep,
     ) -> Result<(Solution, Run), InvalidInput> {
         striker.check()?;
         settings.check()?;
@@ -180,7 +190,7 @@ impl Solver {
         )?;
 
         let impact = Impact { striker, law, start, settings };
-        let mut run = self.run(&impact, settings.tolerance.min(LOOSEST), record);
+        let mut run = self.run(&impact, settings.tolerance.min(LOOSEST), keep);
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
         let restitution_uncertainty = restitution
@@ -226,7 +236,7 @@ impl Solver {
 
     /// The restitution of the same impact at another tolerance.
     fn again(&mut self, impact: &Impact, tolerance: f64, counts: &mut Counts) -> Option<f64> {
-        let run = self.run(impact, tolerance, false);
+        let run = self.run(impact, tolerance, Keep::Result);
         *counts += run.counts;
         self.restitution(&run, impact.striker, impact.start)
     }
@@ -235,28 +245,31 @@ impl Solver {
         &self.modes
     }
 
-    /// The whole motion of an impact that ends with a rebound, of these modes, at this tolerance.
-    pub(crate) fn stretches(&mut self, impact: &Impact, tolerance: f64, moved: &[usize]) -> Option<Vec<Stretch>> {
-        if moved != self.moved {
-            let mut other = Solver { moved: moved.to_vec(), ..Solver::unchecked(self.modes.clone()) };
-            return other.stretches(impact, tolerance, moved);
-        }
-        let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
-        let posed = assembly.with_laws(vec![impact.law]);
-        let wanted = wanted(impact.settings, tolerance, false);
-        let (system, tables) = self.tables(&posed);
-        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut (), true);
-        (run.outcome == assembly::Outcome::Parted).then_some(stretches)
+    /// The same structure, in which these modes are moved by the contact.
+    pub(crate) fn moving(&self, moved: Vec<usize>) -> Solver {
+        Solver { moved, ..Solver::unchecked(self.modes.clone()) }
     }
 
-    fn run(&mut self, impact: &Impact, tolerance: f64, record: bool) -> Run {
+    pub(crate) fn moved(&self) -> &[usize] {
+        &self.moved
+    }
+
+    pub(crate) fn run(&mut self, impact: &Impact, tolerance: f64, keep: Keep) -> Run {
         let Impact { striker, law, start, settings } = *impact;
         let assembly = posed::assembly(&self.modes, &self.moved, striker, start);
         let posed = assembly.with_laws(vec![law]);
-        let wanted = wanted(settings, tolerance, record);
-        let mut watch = Watch { intervals: Vec::new(), records: record };
+        let wanted = assembly::Settings {
+            end_s: f64::INFINITY,
+            tolerance: tolerance.min(0.1),
+            max_steps: settings.max_steps,
+            max_intervals: settings.max_sub_impacts as u64,
+            stop_at_rest: true,
+            stop_when_over: true,
+            rest_from_s: if keep == Keep::Record { settings.until_s } else { 0.0 },
+        };
+        let mut watch = Watch { intervals: Vec::new(), records: keep == Keep::Record };
         let (system, tables) = self.tables(&posed);
-        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut watch, record);
+        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut watch, keep != Keep::Result);
         let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
             assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
@@ -304,7 +317,7 @@ impl Solver {
         (system, tables)
     }
 
-    fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
+    pub(crate) fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
         let rigid = |rate: &[f64]| {
             let rigid = self.modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid());
             rigid.map(|(mode, rate)| mode.shape * rate).sum::<f64>()
@@ -315,19 +328,6 @@ impl Solver {
         let ratio = (run.striker_velocity_m_s - rigid(&run.rate)) / before;
         // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
-    }
-}
-
-/// The settings of a run of which nothing is left out that matters to the restitution.
-fn wanted(settings: &Settings, tolerance: f64, record: bool) -> assembly::Settings {
-    assembly::Settings {
-        end_s: f64::INFINITY,
-        tolerance: tolerance.min(0.1),
-        max_steps: settings.max_steps,
-        max_intervals: settings.max_sub_impacts as u64,
-        stop_at_rest: true,
-        stop_when_over: true,
-        rest_from_s: if record { settings.until_s } else { 0.0 },
     }
 }
 

@@ -1,6 +1,7 @@
 //! Panels of `h = 2^-j` s, whose tables can be kept.
 
 use super::oscillator::{BodyMode, Propagator, propagate};
+use super::vector::vectorized;
 
 /// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of a second.
 pub(crate) const J_MIN: i32 = -120;
@@ -36,6 +37,23 @@ impl Rotation {
             p22.push(p.p22);
         }
         Rotation { p11_less_1, p12, p21, p22 }
+    }
+
+    /// Moves all modes freely.
+    pub fn apply(&self, amplitude: &mut [f64], rate: &mut [f64]) {
+        let n = amplitude.len();
+        let (less, p12) = (&self.p11_less_1[..n], &self.p12[..n]);
+        let (p21, p22, rate) = (&self.p21[..n], &self.p22[..n], &mut rate[..n]);
+        vectorized(
+            #[inline(always)]
+            || {
+                for k in 0..n {
+                    let (a, b) = (amplitude[k], rate[k]);
+                    amplitude[k] = a + (less[k] * a + p12[k] * b);
+                    rate[k] = p21[k] * a + p22[k] * b;
+                }
+            },
+        );
     }
 
     /// Free motion of one mode.

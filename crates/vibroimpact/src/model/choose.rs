@@ -2,9 +2,9 @@
 
 use super::pose::{Pose, chooses_modes, modal_only};
 use super::theory::theory_of;
-use super::{Answer, Cost, Kept, Model, infinite, rigid, settle, stated};
+use super::{Answer, Cost, Kept, Model, Modes, infinite, rigid, settle, stated};
 use crate::impact::Impact;
-use crate::scene::{InvalidInput, Scene};
+use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure};
 
 /// An answer, and the modal problem that it came from if it came from one.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,6 +108,42 @@ impl Scene {
         }
         // where the program chooses the modes there are enough of them
         self.impact_of(if chooses_modes(self) { Some(0) } else { self.modes.count() }, kept).map(drop)
+    }
+}
+
+impl Scene {
+    /// The scene with all that stated which the program would choose: the theory of bending and, in place of a tolerance
+    /// of the whole, as many modes as the restitution needs to settle, with remainder modes for the others.
+    pub(crate) fn settled(&self) -> Result<Scene, InvalidInput> {
+        if !chooses_modes(self) {
+            return Ok(Scene { model: Model::Auto, ..self.clone() });
+        }
+        let open = self.with_theory(&mut Cost::default())?;
+        let mut scene = open.map_or_else(|| self.clone(), |(scene, _)| scene);
+        let impact = settled_impact(&scene)?;
+        let kept = impact.kept_modes();
+        let fastest = impact.structure.modes[..kept].last().map_or(0.0, |mode| mode.omega_rad_s);
+        // slow modes that are hardly excited were left out of those
+        let mut count = kept;
+        while count < MOST_MODES {
+            let known = scene.mode_shapes(2 * count.max(8))?;
+            let found = known.iter().take_while(|mode| mode.omega_rad_s <= fastest).count();
+            count = found.max(kept);
+            if found < known.len() || known.len() < 2 * kept.max(8) {
+                break;
+            }
+            count = known.len();
+        }
+        if let Structure::Beam(beam) = &mut scene.structure {
+            beam.as_the_thesis();
+        }
+        Ok(Scene {
+            model: Model::Auto,
+            modes: Modes::Count(count.min(MOST_MODES)),
+            residual_compliance: Some(impact.remainder_modes > 0),
+            tolerance: None,
+            ..scene
+        })
     }
 }
 

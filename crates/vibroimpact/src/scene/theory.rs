@@ -49,7 +49,7 @@ impl Beam {
     }
 
     /// States Euler-Bernoulli's theory where the choice is open and there is one: for scenes that state their modes.
-    pub(super) fn as_the_thesis(&mut self) {
+    pub(crate) fn as_the_thesis(&mut self) {
         if self.theory.is_none() && self.has_shear() == Ok(true) {
             self.theory = Some(BeamTheory::EulerBernoulli);
         }

@@ -1,0 +1,184 @@
+//! How an impact changes with the numbers of its scene.
+//!
+//! The motion is differentiated along itself ([`vibroimpact_sim::modal::Solver::differentiate`]). What a field does to the
+//! modes, the masses and the law is known by posing the scene at four neighbouring values of the field, so that every
+//! number of a scene can be asked for, and no impact is solved but the one that is differentiated. The model is chosen
+//! once, for the scene itself, and kept.
+
+mod neighbours;
+mod picture;
+mod text;
+
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use vibroimpact_sim::modal::{Derivative, Derivatives, Mode, Parameter, Posing, Settings, Solver, Start};
+
+use crate::impact::{Impact, in_scene};
+use crate::scene::json::{number, quote};
+use crate::scene::{FieldPath, InvalidInput, Scene};
+use neighbours::Neighbours;
+
+pub use picture::figure;
+pub use text::text;
+
+/// The modes whose frequencies and shapes are differentiated too, from the lowest.
+const MODES: usize = 10;
+
+/// A derivative of an output by a field, in the unit of the output over that of the field.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OfField {
+    /// The derivative.
+    pub value: f64,
+    /// By how much it may be off; null where no digit of it is certain.
+    pub uncertainty: Option<f64>,
+}
+
+/// A field by which outputs were differentiated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Field {
+    /// Its path, such as `striker.mass_kg`.
+    pub path: String,
+    /// Its value in the scene.
+    pub value: f64,
+}
+
+/// An impact, with the derivatives of its outputs by fields of its scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sensitivity {
+    /// Net restitution of the impact that was differentiated.
+    pub restitution: f64,
+    /// Estimated error of it, for the modes kept.
+    pub restitution_uncertainty: Option<f64>,
+    /// Number of separate contacts.
+    pub sub_impact_count: usize,
+    /// Number of modes kept, and of remainder modes beside them.
+    pub modes: usize,
+    /// Remainder modes, which stand for all others.
+    pub remainder_modes: usize,
+    /// Speed of the slowest touch in parts of the fastest. Where it comes near zero a contact only grazes, and the
+    /// derivatives grow beyond all bounds.
+    pub nearest_graze: f64,
+    /// The fields, in the order asked for.
+    pub fields: Vec<Field>,
+    /// By output, then by field: `restitution`, `end_s`, `striker_velocity_m_s`, `sub_impacts[0].impulse_n_s` and the
+    /// like, `omega_rad_s[0]`, `shape[0]` and so on for the lowest modes.
+    pub derivatives: BTreeMap<String, BTreeMap<String, OfField>>,
+    /// The scene with the model and the modes that were kept.
+    pub scene: Value,
+    /// Version of the program.
+    pub version: &'static str,
+}
+
+impl Sensitivity {
+    /// The derivative of an output by a field, if there is such a one.
+    pub fn of(&self, output: &str, field: &str) -> Option<OfField> {
+        self.derivatives.get(output)?.get(field).copied()
+    }
+}
+
+impl Scene {
+    /// Differentiates the impact by these fields, each the path of a number that the scene states; by all of them if none
+    /// is named.
+    ///
+    /// # Errors
+    /// As [`Scene::impact`]; a field that is no number, that the scene does not state, or that cannot change by a little;
+    /// an impact that does not end with a rebound, or that only grazes.
+    ///
+    /// ```
+    /// use vibroimpact::Scene;
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
+    ///                    "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
+    ///     "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+    ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 },
+    ///     "location_m": 0.3, "modes": 10
+    /// }"#)?;
+    /// let found = scene.sensitivity(&["striker.mass_kg".to_owned()])?;
+    /// let by_mass = found.of("restitution", "striker.mass_kg").unwrap();
+    /// assert!(by_mass.uncertainty.unwrap() < 1e-5 * by_mass.value.abs());
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn sensitivity(&self, fields: &[String]) -> Result<Sensitivity, InvalidInput> {
+        if self.is_infinite() {
+            let allowed = "a structure with modes: derivatives go along the motion of modes";
+            return Err(InvalidInput::new("structure", "an infinite one", allowed));
+        }
+        let scene = self.settled()?;
+        let tree = scene.tree();
+        let fields = match fields {
+            [] => neighbours::all_numbers(&tree),
+            named => named.to_vec(),
+        };
+        let base = scene.impact()?;
+        let around: Vec<Neighbours> =
+            fields.iter().map(|field| Neighbours::of(&tree, field, &base)).collect::<Result<_, _>>()?;
+        differentiate(&base, around, tree)
+    }
+}
+
+fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<Sensitivity, InvalidInput> {
+    let at_rest = Start::at_rest(base.structure.modes.len());
+    let mut parameters = Vec::with_capacity(around.len());
+    for Neighbours { offsets, impacts, .. } in &around {
+        let changes_law = impacts.iter().any(|impact| impact.law != base.law);
+        let neighbours = impacts.each_ref().map(|impact| posing(impact, &at_rest));
+        parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
+    }
+    let mut solver = Solver::new(&base.structure).map_err(in_scene)?;
+    let Impact { striker, law, start, .. } = base;
+    let settings = Settings { tolerance: base.settings.tolerance, ..Settings::default() };
+    let found = solver.differentiate(striker, law, start.as_ref(), &settings, &parameters).map_err(in_scene)?;
+    let solution = &found.solution;
+    let (Some(derivatives), Some(restitution)) = (&found.derivatives, solution.restitution) else {
+        let allowed = "an impact that ends with a rebound and does not only graze: elsewhere there is no derivative";
+        let outcome = solution.outcome.as_str();
+        return Err(InvalidInput::new("scene", format!("an impact whose outcome is \"{outcome}\""), allowed));
+    };
+    let mut table: BTreeMap<String, BTreeMap<String, OfField>> = BTreeMap::new();
+    for (neighbours, derivatives) in around.iter().zip(derivatives) {
+        for (output, derivative) in outputs(derivatives).into_iter().chain(neighbours.of_modes(base)) {
+            let of_field = OfField { value: derivative.value, uncertainty: derivative.uncertainty };
+            table.entry(output).or_default().insert(neighbours.field.clone(), of_field);
+        }
+    }
+    Ok(Sensitivity {
+        restitution,
+        restitution_uncertainty: solution.restitution_uncertainty,
+        sub_impact_count: solution.sub_impacts.len(),
+        modes: base.kept_modes(),
+        remainder_modes: base.remainder_modes,
+        nearest_graze: found.nearest_graze,
+        fields: around.iter().map(|at| Field { path: at.field.clone(), value: at.value }).collect(),
+        derivatives: table,
+        scene: tree,
+        version: env!("CARGO_PKG_VERSION"),
+    })
+}
+
+fn posing<'a>(impact: &'a Impact, at_rest: &'a Start) -> Posing<'a> {
+    let Impact { structure, striker, law, start, .. } = impact;
+    Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
+}
+
+/// The outputs of an impact by their names in a result.
+fn outputs(derivatives: &Derivatives) -> Vec<(String, Derivative)> {
+    let mut outputs = vec![
+        ("restitution".to_owned(), derivatives.restitution),
+        ("end_s".to_owned(), derivatives.end_s),
+        ("striker_velocity_m_s".to_owned(), derivatives.striker_velocity_m_s),
+    ];
+    for (i, sub_impact) in derivatives.sub_impacts.iter().enumerate() {
+        for (quantity, derivative) in [
+            ("start_s", sub_impact.start_s),
+            ("end_s", sub_impact.end_s),
+            ("impulse_n_s", sub_impact.impulse_n_s),
+            ("peak_force_n", sub_impact.peak_force_n),
+            ("peak_compression_m", sub_impact.peak_compression_m),
+        ] {
+            outputs.push((format!("sub_impacts[{i}].{quantity}"), derivative));
+        }
+    }
+    outputs
+}

@@ -1,0 +1,166 @@
+//! A scene at neighbouring values of one of its numbers.
+
+use super::*;
+
+/// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five
+/// of the sixteen digits that they have.
+const STEP: f64 = 1e-5;
+/// The same where the value is zero, in its unit.
+const STEP_AT_ZERO: f64 = 1e-6;
+/// Modes that change by more than this part between neighbours are not the same ones.
+const SAME: f64 = 1e-2;
+
+/// The impact at four neighbouring values of a field.
+pub(super) struct Neighbours {
+    pub field: String,
+    pub value: f64,
+    pub offsets: [f64; 4],
+    pub impacts: [Impact; 4],
+}
+
+impl Neighbours {
+    pub fn of(tree: &Value, field: &str, base: &Impact) -> Result<Neighbours, InvalidInput> {
+        let named = |value: &str, allowed: String| InvalidInput::new("--by", format!("{value} of {field}"), allowed);
+        let path = FieldPath::parse(field).ok_or_else(|| {
+            InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
+        })?;
+        let known = || format!("the path of a number that the scene states: {}", all_numbers(tree).join(", "));
+        let stated = path.get(tree).ok_or_else(|| InvalidInput::new("--by", quote(&field.into()), known()))?;
+        let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
+        let step = if value == 0.0 { STEP_AT_ZERO } else { STEP * value.abs() };
+        let mut fault = None;
+        // on both sides, or beside a bound
+        for places in [[-2.0, -1.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [-4.0, -3.0, -2.0, -1.0]] {
+            let offsets = places.map(|place| place * step);
+            let mut impacts = Vec::with_capacity(4);
+            for offset in offsets {
+                match posed(tree, &path, value + offset) {
+                    Ok(impact) => impacts.push(impact),
+                    Err(refused) => {
+                        fault.get_or_insert(refused);
+                        break;
+                    }
+                }
+            }
+            if let Ok(mut impacts) = <[Impact; 4]>::try_from(impacts) {
+                if !impacts.iter_mut().all(|impact| modes_are_continuous(base, impact)) {
+                    let allowed = "a field with which the modes change smoothly: here two of them change places";
+                    return Err(named(&number(value), allowed.to_owned()));
+                }
+                // the value itself is what a number of a file can hold, and so are its neighbours
+                let offsets = places.map(|place| (value + place * step) - value);
+                return Ok(Neighbours { field: field.to_owned(), value, offsets, impacts });
+            }
+        }
+        let why = fault.map_or_else(String::new, |fault| format!(": {fault}"));
+        Err(named(&number(value), format!("a field that can change by a little{why}")))
+    }
+
+    /// Frequencies and shapes of the lowest modes.
+    pub fn of_modes(&self, base: &Impact) -> Vec<(String, Derivative)> {
+        let mut found = Vec::new();
+        for k in 0..base.kept_modes().min(MODES) {
+            let quantities: [(&str, fn(&Mode) -> f64); 2] =
+                [("omega_rad_s", |mode| mode.omega_rad_s), ("shape", |mode| mode.shape)];
+            for (name, of) in quantities {
+                let at = |impact: &Impact| of(&impact.structure.modes[k]);
+                found.push((format!("{name}[{k}]"), self.slope(at(base), self.impacts.each_ref().map(at))));
+            }
+        }
+        found
+    }
+
+    /// Slope of the polynomial through the value and its neighbours, and how much it differs from that through the
+    /// neighbours nearest to it.
+    fn slope(&self, value: f64, at: [f64; 4]) -> Derivative {
+        let places: Vec<f64> = std::iter::once(0.0).chain(self.offsets).collect();
+        let values: Vec<f64> = std::iter::once(value).chain(at).collect();
+        let through = |chosen: &[usize]| -> f64 {
+            let slope_of = |i: &usize| {
+                let others = || chosen.iter().filter(|j| *j != i);
+                let scale: f64 = others().map(|j| places[*i] - places[*j]).product();
+                let without = |skip| others().filter(|j| *j != skip).map(|j| -places[*j]).product::<f64>();
+                (values[*i] - value) * others().map(without).sum::<f64>() / scale
+            };
+            chosen.iter().map(slope_of).sum()
+        };
+        let mut nearest: Vec<usize> = (1..5).collect();
+        nearest.sort_by(|i, j| places[*i].abs().total_cmp(&places[*j].abs()));
+        let (all, few) = (through(&[0, 1, 2, 3, 4]), through(&[0, nearest[0], nearest[1]]));
+        let rounding = 4.0 * f64::EPSILON * value.abs() / places[nearest[0]].abs();
+        Derivative { value: all, uncertainty: Some((all - few).abs() + rounding) }
+    }
+}
+
+fn posed(tree: &Value, path: &FieldPath, value: f64) -> Result<Impact, InvalidInput> {
+    let mut tree = tree.clone();
+    // the field is there: it was read from the same tree
+    path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.to_string(), number(value), why))?;
+    Scene::from_value(&tree)?.impact()
+}
+
+/// Whether a neighbour's modes are those of the scene. They may come with another sign, and two of them in another order
+/// where their frequencies cross; both are undone.
+fn modes_are_continuous(base: &Impact, near: &mut Impact) -> bool {
+    let modes = &base.structure.modes;
+    if near.structure.modes.len() != modes.len() {
+        return false;
+    }
+    let largest = modes.iter().fold(f64::MIN_POSITIVE, |most, mode| most.max(mode.shape.abs()));
+    let distance = |one: &Mode, other: &Mode| {
+        let by_shape = (one.shape.abs() - other.shape.abs()).abs() / largest;
+        by_shape.max((one.omega_rad_s - other.omega_rad_s).abs() / one.omega_rad_s.max(f64::MIN_POSITIVE))
+    };
+    for (k, mode) in modes.iter().enumerate() {
+        let later = (k + 1..modes.len().min(k + 3))
+            .filter(|i| distance(mode, &near.structure.modes[*i]) < distance(mode, &near.structure.modes[k]));
+        let nearest = later.min_by(|i, j| {
+            let from = |i: &usize| distance(mode, &near.structure.modes[*i]);
+            from(i).total_cmp(&from(j))
+        });
+        let i = nearest.unwrap_or(k);
+        near.structure.modes.swap(k, i);
+        let other = &mut near.structure.modes[k];
+        let turned = (other.shape + mode.shape).abs() < (other.shape - mode.shape).abs();
+        if turned {
+            other.shape = -other.shape;
+        }
+        if distance(mode, other) > SAME {
+            return false;
+        }
+        if let Some(start) = &mut near.start {
+            for values in [&mut start.amplitude, &mut start.rate] {
+                values.swap(k, i);
+                values[k] *= if turned { -1.0 } else { 1.0 };
+            }
+        }
+    }
+    true
+}
+
+/// Every number of a scene that can change by a little, lists of numbers apart.
+pub(super) fn all_numbers(tree: &Value) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open = vec![(String::new(), tree)];
+    while let Some((path, value)) = open.pop() {
+        match value {
+            Value::Object(entries) => {
+                for (key, value) in entries.iter().rev() {
+                    let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                    open.push((path, value));
+                }
+            }
+            Value::Array(list) if list.iter().any(Value::is_object) => {
+                for (i, value) in list.iter().enumerate().rev() {
+                    open.push((format!("{path}[{i}]"), value));
+                }
+            }
+            Value::Number(_) if !CHOICES.contains(&path.rsplit('.').next().unwrap_or_default()) => found.push(path),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Numbers that say how to solve, and not what.
+const CHOICES: [&str; 6] = ["version", "modes", "mode", "tolerance", "bending_modes", "axial_modes"];
