@@ -3,7 +3,6 @@
 mod bench;
 mod book;
 mod chapters;
-mod ci;
 mod examples;
 mod fuzz;
 mod pages;
@@ -28,8 +27,6 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Check everything: format, clippy, docs, packages, tests, and the chapters in their quick form
-    Ci,
     /// Check the book: links, commands, scenes, and the chapters' numbers against a run of them
     Book {
         /// Write the chapters' tables and figures from a run, and check nothing
@@ -131,10 +128,6 @@ fn main() -> ExitCode {
 fn run(task: Task) -> Result<(), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().ok_or("no workspace above xtask")?;
     match task {
-        Task::Ci => {
-            // the record's counts and errors are held by a test; its instructions by `bench-check`
-            ci::run(root, || reproduce(Chapters::All, &root.join("out/ci"), true, None))
-        }
         Task::Book { write: true } => pages::write(root),
         Task::Book { write: false } => book::run(root).and_then(|()| pages::check(root)),
         Task::Examples { alone: false } => examples::of_crates(root),

@@ -11,7 +11,7 @@ pub fn page(record: &Record, history: &[Row]) -> String {
 
 A fixed list of problems is solved; steps, iterations, evaluations and instructions are counted, and results are compared
 with references. No clock is read, so that the figures are the same on a busy machine and on an idle one.
-`cargo xtask bench-check`, a part of `cargo xtask ci`, fails if
+`cargo xtask bench-check`, which the workflow runs, fails if
 
 - a count has grown by more than {cost:.0} % and by more than {counts},
 - instructions have grown by more than {instructions:.0} % (compared where compiler, target, profile and valgrind are those

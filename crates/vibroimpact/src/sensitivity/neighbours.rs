@@ -60,12 +60,12 @@ impl Neighbours {
     pub fn of_modes(&self, base: &Impact) -> Vec<(String, Derivative)> {
         let mut found = Vec::new();
         for k in 0..base.kept_modes().min(MODES) {
-            let quantities: [(&str, fn(&Mode) -> f64); 2] =
-                [("omega_rad_s", |mode| mode.omega_rad_s), ("shape", |mode| mode.shape)];
-            for (name, of) in quantities {
-                let at = |impact: &Impact| of(&impact.structure.modes[k]);
-                found.push((format!("{name}[{k}]"), self.slope(at(base), self.impacts.each_ref().map(at))));
-            }
+            let of = |quantity: fn(&Mode) -> f64| {
+                let at = |impact: &Impact| quantity(&impact.structure.modes[k]);
+                self.slope(at(base), self.impacts.each_ref().map(at))
+            };
+            found.push((format!("omega_rad_s[{k}]"), of(|mode| mode.omega_rad_s)));
+            found.push((format!("shape[{k}]"), of(|mode| mode.shape)));
         }
         found
     }

@@ -1,10 +1,11 @@
 //! Everything that must hold before a change goes in, in the order in which it fails soonest.
 
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
-use crate::chapters::Failure;
+type Failure = Box<dyn Error>;
 
 /// One call of cargo: its arguments, and the flags for rustdoc.
 struct Step {
@@ -36,6 +37,8 @@ const STEPS: [Step; 5] = [
             "--exclude",
             "xtask",
             "--exclude",
+            "ci",
+            "--exclude",
             "impactbench",
             "--no-verify",
             "--allow-dirty",
@@ -46,15 +49,39 @@ const STEPS: [Step; 5] = [
     Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
 ];
 
+/// The tasks, which reproduce the chapters.
+const TASKS: Step = Step {
+    name: "tasks",
+    arguments: &["build", "--workspace", "--bin", "xtask", "--locked", "FEATURES"],
+    rustdocflags: "",
+};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 /// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests (sweeps over MPI among them where it is
-/// installed), and at last the chapters in their quick form.
-pub fn run(root: &Path, quick_chapters: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+/// installed), and at last the chapters in their quick form, by a program of the libraries that the tests have built.
+fn run() -> Result<(), Failure> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).ok_or("no workspace above xtask/ci")?;
     let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
     if !mpi {
         eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
     }
-    STEPS.iter().try_for_each(|step| carry_out(step, root, mpi))?;
-    timed("chapters, quick form", quick_chapters)
+    STEPS.iter().try_for_each(|step| timed(step.name, || carry_out(step, root, mpi)))?;
+    timed("chapters, quick form", || {
+        carry_out(&TASKS, root, mpi)?;
+        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+        let mut chapters = Command::new(root.join(target).join("debug/xtask"));
+        chapters.current_dir(root).args(["reproduce-chapter", "all", "--quick", "--output", "out/ci"]);
+        require_success(&mut chapters)
+    })
 }
 
 /// What the `mpi` feature is built and tested with; clang stands for its library.
@@ -66,23 +93,25 @@ fn is_installed(program: &str) -> bool {
 }
 
 fn carry_out(step: &Step, root: &Path, mpi: bool) -> Result<(), Failure> {
-    timed(step.name, || {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let mut command = Command::new(cargo);
-        command.current_dir(root);
-        for argument in step.arguments {
-            match *argument {
-                "FEATURES" if mpi => command.args(["--features", "vibroimpact/mpi"]),
-                "FEATURES" => &mut command,
-                argument => command.arg(argument),
-            };
-        }
-        if !step.rustdocflags.is_empty() {
-            command.env("RUSTDOCFLAGS", step.rustdocflags);
-        }
-        let status = command.status()?;
-        if status.success() { Ok(()) } else { Err(format!("cargo {} failed", step.arguments.join(" ")).into()) }
-    })
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.current_dir(root);
+    for argument in step.arguments {
+        match *argument {
+            "FEATURES" if mpi => command.args(["--features", "vibroimpact/mpi"]),
+            "FEATURES" => &mut command,
+            argument => command.arg(argument),
+        };
+    }
+    if !step.rustdocflags.is_empty() {
+        command.env("RUSTDOCFLAGS", step.rustdocflags);
+    }
+    require_success(&mut command)
+}
+
+fn require_success(command: &mut Command) -> Result<(), Failure> {
+    let status = command.status()?;
+    if status.success() { Ok(()) } else { Err(format!("{command:?} failed").into()) }
 }
 
 fn timed(name: &str, work: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
