@@ -90,6 +90,11 @@ impl Draft {
         field.set_or_insert(&mut self.tree, value).map_err(|reason| fault(&format!("{ASSIGNMENT}; {reason}")))
     }
 
+    /// The fields as they are, and the folder in which tables that they name are looked for.
+    pub(crate) fn tree(&self) -> (&Value, &Path) {
+        (&self.tree, &self.folder)
+    }
+
     /// The scene of one impact.
     ///
     /// # Errors

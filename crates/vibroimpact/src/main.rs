@@ -13,7 +13,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
 use commands::voice::Voice;
-use commands::{choice, first, infinite_beam, law, modes, net, orbit, sensitivity, shell, simulate, sweep, voice};
+use commands::{
+    choice, first, infinite_beam, law, modes, net, orbit, predictability, sensitivity, shell, simulate, sweep, voice,
+};
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::text::{printable, shorten};
@@ -97,6 +99,9 @@ enum Command {
     /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
     #[command(after_help = sweep::SWEEP_EXAMPLES)]
     Sweep(sweep::SweepArguments),
+    /// Map where the restitution can be predicted: its spread over one or two fields, under a stated blur
+    #[command(after_help = predictability::EXAMPLES)]
+    Predictability(predictability::Arguments),
     /// Join the parts of a sweep, and prove that none is missing
     #[command(after_help = sweep::MERGE_EXAMPLES)]
     Merge(sweep::MergeArguments),
@@ -175,6 +180,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::Orbit(arguments) => watched("orbit", || orbit::run(arguments)),
         Command::Sensitivity(arguments) => watched("sensitivity", || sensitivity::run(arguments)),
         Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Predictability(arguments) => predictability::run(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Completions(arguments) => shell::completions(arguments, Cli::command()),
         Command::Manual(arguments) => shell::manual(arguments, Cli::command()),

@@ -9,6 +9,7 @@ pub mod law;
 pub mod modes;
 pub mod net;
 pub mod orbit;
+pub mod predictability;
 pub mod sensitivity;
 pub mod shell;
 pub mod simulate;

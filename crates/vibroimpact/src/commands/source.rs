@@ -29,6 +29,11 @@ pub struct Changes {
 }
 
 impl SceneSource {
+    /// The scene before it is checked.
+    pub fn draft(&self) -> Result<Draft, SceneError> {
+        self.changes.draft(&self.scene)
+    }
+
     /// The scene of one impact.
     pub fn impact(&self) -> Result<Scene, SceneError> {
         self.changes.draft(&self.scene)?.impact()

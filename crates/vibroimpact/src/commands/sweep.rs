@@ -28,6 +28,12 @@ A sweep file holds a scene (or names one) and the fields that vary:
               { "field": "structure.damping_ratio", "values": [0, 0.02] } ],
     "random": { "seed": 1, "draws": 10, "fields": [ { "field": "striker.speed_m_s", "from": 0.5, "to": 2 } ] } }
 
+In place of "random" fields may be known as distributions; the restitution is then told as one, with sampling errors:
+
+  { "scene_file": "ball.json",
+    "uncertain": { "location_m": { "normal": [0.4, 1e-3] }, "striker.speed_m_s": { "uniform": [0.9, 1.1] } },
+    "sampling": { "draws": 65536, "sampling_error": 0.002, "indices": true } }
+
 The axes of "vary" form a grid, whose last axis runs fastest; each of its points is met by every random draw. The folder
 gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes do not depend on threads, parts
 or ranks. A scene that cannot be solved is a row with its error.
@@ -45,26 +51,33 @@ The results have the very bytes that an undivided sweep gives.";
 /// Exit code of a sweep that was asked to stop.
 pub const STOPPED: u8 = 130;
 
+/// Where results go, and how they are computed and told.
+#[derive(Args)]
+pub struct Run {
+    /// The folder for the results; one that holds a part of them goes on
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Threads; as many as the machine has cores when left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    threads: Option<u16>,
+    /// Print one JSON object in place of the summary
+    #[arg(long)]
+    json: bool,
+}
+
 /// A sweep, and where it goes.
 #[derive(Args)]
 pub struct SweepArguments {
     /// The sweep file
     sweep: PathBuf,
-    /// The folder for the results; one that holds a part of them goes on
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    #[command(flatten)]
+    run: Run,
     /// Compute the K-th of N parts only
     #[arg(long, value_name = "K/N", value_parser = part)]
     shard: Option<Part>,
-    /// Threads; as many as the machine has cores when left out
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    threads: Option<u16>,
     /// Compute on the ranks of an MPI job, under mpirun; the first rank hands out the work
     #[arg(long, conflicts_with = "threads")]
     mpi: bool,
-    /// Print one JSON object in place of the summary
-    #[arg(long)]
-    json: bool,
 }
 
 /// The parts of a sweep, and where the whole goes.
@@ -88,21 +101,30 @@ fn part(text: &str) -> Result<Part, &'static str> {
 /// Carries the command `sweep` out and returns what is to be printed.
 pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
     let part = arguments.shard.unwrap_or(Part::WHOLE);
+    if !arguments.mpi {
+        return compute(&Sweep::read(&arguments.sweep)?, part, &arguments.run);
+    }
     let stop = stop_on_signal()?;
     let mut progress = Progress::new(is_quiet());
-    let tally = if arguments.mpi {
-        match over_ranks(&arguments, part, &stop, &mut progress)? {
-            Some(tally) => tally,
-            // another rank tells
-            None => return Ok(String::new()),
-        }
-    } else {
-        let sweep = Sweep::read(&arguments.sweep)?;
-        let threads = arguments.threads.map_or(0, usize::from);
-        sweep::run(&sweep, part, &arguments.out, threads, &stop, &mut |status| progress.tell(status))?
-    };
+    match over_ranks(&arguments, part, &stop, &mut progress)? {
+        Some(tally) => told(&tally, &arguments.run, &progress),
+        // another rank tells
+        None => Ok(String::new()),
+    }
+}
+
+/// Computes a sweep that has been read, and returns what is to be printed.
+pub fn compute(sweep: &Sweep, part: Part, run: &Run) -> Result<String, Failure> {
+    let stop = stop_on_signal()?;
+    let mut progress = Progress::new(is_quiet());
+    let threads = run.threads.map_or(0, usize::from);
+    let tally = sweep::run(sweep, part, &run.out, threads, &stop, &mut |status| progress.tell(status))?;
+    told(&tally, run, &progress)
+}
+
+fn told(tally: &Tally, run: &Run, progress: &Progress) -> Result<String, Failure> {
     progress.finish();
-    solved(&tally, printed(&tally, &arguments.out, arguments.json, Some(&progress))?)
+    solved(tally, printed(tally, &run.out, run.json, Some(progress))?)
 }
 
 #[cfg(feature = "mpi")]
@@ -112,7 +134,9 @@ fn over_ranks(
     stop: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Option<Tally>, SweepError> {
-    sweep::mpi::run(|| Sweep::read(&arguments.sweep), part, &arguments.out, stop, &mut |status| progress.tell(status))
+    sweep::mpi::run(|| Sweep::read(&arguments.sweep), part, &arguments.run.out, stop, &mut |status| {
+        progress.tell(status)
+    })
 }
 
 #[cfg(not(feature = "mpi"))]

@@ -13,6 +13,7 @@
 mod attached;
 mod choose;
 mod compare;
+mod draw;
 mod emoc;
 mod guess;
 mod infinite;
@@ -38,6 +39,7 @@ pub use attached::largest_share;
 pub use choose::Choice;
 pub(crate) use choose::settled_impact;
 pub use compare::{Comparison, Tier};
+pub(crate) use draw::Draw;
 pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;

@@ -60,7 +60,7 @@ pub fn run_in_memory(
         Kind::Truth | Kind::Text => (name, Column::Texts(Vec::new())),
     };
     let mut table = Table { sweep, columns: columns(sweep).into_iter().map(column).collect(), chunks: 0, points: 0 };
-    threads::compute(sweep, Part::WHOLE, &mut table, threads, stop, tell)?;
+    threads::compute(sweep, Part::WHOLE, sweep.chunks(), &mut table, threads, stop, tell)?;
     Ok(table.columns)
 }
 

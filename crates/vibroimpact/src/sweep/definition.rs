@@ -8,8 +8,10 @@ use sha2::{Digest, Sha256};
 use super::error::SweepError;
 use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
+use super::folder::Part;
 use super::results::Results;
-use super::values::{Axis, AxisValues, Random};
+use super::uncertain::Uncertain;
+use super::values::{Axis, AxisValues, Random, json_number};
 use crate::assembly::AnyScene;
 use crate::scene::FieldPath;
 use crate::scene::json::{self, quote};
@@ -37,6 +39,8 @@ pub struct Sweep {
     pub axes: Vec<Axis>,
     /// What is drawn at random.
     pub random: Option<Random>,
+    /// What is known as distributions.
+    pub uncertain: Option<Uncertain>,
     scene: Value,
     canonical: Value,
     points: u64,
@@ -77,17 +81,18 @@ impl Sweep {
     }
 
     fn new(contents: Contents) -> Result<Sweep, InvalidInput> {
-        let Contents { description, scene, axes, random, canonical } = contents;
-        let sizes = axes.iter().map(Axis::count).chain(random.iter().map(|random| random.draws));
+        let Contents { description, scene, axes, random, uncertain, canonical } = contents;
+        let drawn = uncertain.as_ref().map(|uncertain| uncertain.draws().count());
+        let sizes = axes.iter().map(Axis::count).chain(random.iter().map(|random| random.draws)).chain(drawn);
         let points = sizes.clone().try_fold(1u64, u64::checked_mul).filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| {
             let product = sizes.map(|size| size.to_string()).collect::<Vec<_>>().join(" x ");
             InvalidInput::new("number of points", product, "at most 1e12 in all")
         })?;
-        let results = Results::OfImpact;
-        let mut sweep = Sweep { description, axes, random, scene, canonical, points, results };
+        let results = Results::Impact;
+        let mut sweep = Sweep { description, axes, random, uncertain, scene, canonical, points, results };
         sweep.check_overlap()?;
-        sweep.results = Results::of(&sweep.check_values()?);
+        sweep.results = sweep.results_of(&sweep.check_values()?)?;
         sweep.check_scene()?;
         Ok(sweep)
     }
@@ -99,16 +104,73 @@ impl Sweep {
 
     /// The varied fields, those of the grid first: the columns of the results.
     pub fn fields(&self) -> impl Iterator<Item = &FieldPath> {
-        self.axes.iter().map(|axis| &axis.field).chain(self.drawn().map(|(field, _)| field))
+        let random = self.random.iter().flat_map(|random| &random.fields).map(|(field, _)| field);
+        let uncertain = self.uncertain.iter().flat_map(|uncertain| &uncertain.fields).map(|(field, _)| field);
+        self.axes.iter().map(|axis| &axis.field).chain(random).chain(uncertain)
     }
 
-    fn drawn(&self) -> impl Iterator<Item = &(FieldPath, super::values::Interval)> {
-        self.random.iter().flat_map(|random| &random.fields)
+    /// Their columns. A field that is uncertain about the values of an axis has two.
+    pub(super) fn names(&self) -> impl Iterator<Item = String> {
+        self.fields().enumerate().map(|(number, field)| {
+            if self.axis_before(number).is_some() { format!("drawn.{field}") } else { field.to_string() }
+        })
+    }
+
+    /// The axis of the very field with this number in [`Sweep::fields`], if that is an uncertain one.
+    fn axis_before(&self, number: usize) -> Option<usize> {
+        let drawn = number.checked_sub(self.axes.len())?;
+        let (field, _) = self.uncertain.as_ref()?.fields.get(drawn)?;
+        self.axes.iter().position(|axis| axis.field == *field)
     }
 
     /// Draws at each point of the grid; 1 if nothing is drawn.
     pub(super) fn draws(&self) -> u64 {
-        self.random.as_ref().map_or(1, |random| random.draws)
+        let uncertain = self.uncertain.as_ref().map(|uncertain| uncertain.draws().count());
+        self.random.as_ref().map(|random| random.draws).or(uncertain).unwrap_or(1)
+    }
+
+    /// What the points of a sweep with this scene come to.
+    fn results_of(&self, scene: &AnyScene) -> Result<Results, InvalidInput> {
+        match (scene, &self.uncertain) {
+            (AnyScene::Impact(_), Some(_)) => Ok(Results::Draw),
+            (AnyScene::Bodies(_), Some(_)) => {
+                let allowed = "left out of a scene of bodies, which has no restitution of its own; random draws them";
+                Err(InvalidInput::new("uncertain", "{...}", allowed))
+            }
+            (_, None) => Ok(Results::of(scene)),
+        }
+    }
+
+    /// The numbers of chunks of a part after which it is asked whether more are needed; the last is all that there are.
+    pub(super) fn stages(&self, part: Part) -> Vec<u64> {
+        let chunks = part.chunks(self);
+        match &self.uncertain {
+            // without a grid
+            Some(uncertain) if self.is_adaptive() => {
+                uncertain.stages().map(|draws| draws.div_ceil(self.points_per_chunk())).collect()
+            }
+            _ => vec![chunks.end - chunks.start],
+        }
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.uncertain.as_ref().is_some_and(|uncertain| uncertain.sampling.sampling_error.is_some())
+    }
+
+    /// A part of a sweep that ends by its sampling error cannot know when.
+    pub(super) fn check_part(&self, part: Part) -> Result<(), InvalidInput> {
+        if part == Part::WHOLE { Ok(()) } else { self.check_undivided() }
+    }
+
+    /// Whether the points may be computed on several machines.
+    pub(super) fn check_undivided(&self) -> Result<(), InvalidInput> {
+        match self.uncertain.as_ref().and_then(|uncertain| uncertain.sampling.sampling_error) {
+            Some(error) => {
+                let allowed = "left out where a sweep is computed in parts or over MPI, whose number of draws is fixed";
+                Err(InvalidInput::new("sampling.sampling_error", json::number(error), allowed))
+            }
+            None => Ok(()),
+        }
     }
 
     /// For each axis the number of its value at a point.
@@ -131,8 +193,15 @@ impl Sweep {
     /// The values of the varied fields at a point, in the order of [`Sweep::fields`].
     pub fn values(&self, point: u64) -> Vec<Value> {
         let grid = self.axes.iter().zip(self.places(point)).map(|(axis, place)| axis.value(place));
-        let drawn = self.random.iter().flat_map(|random| random.draw(point % random.draws));
-        grid.chain(drawn).collect()
+        let random = self.random.iter().flat_map(|random| random.draw(point % random.draws));
+        let mut values: Vec<Value> = grid.chain(random).collect();
+        let Some(uncertain) = &self.uncertain else { return values };
+        let drawn = uncertain.draw(point % self.draws());
+        for (drawn, (_, distribution)) in drawn.into_iter().zip(&uncertain.fields) {
+            let beside = self.axis_before(values.len()).and_then(|axis| values[axis].as_f64());
+            values.push(json_number(beside.map_or(drawn, |value| distribution.about(value, drawn))));
+        }
+        values
     }
 
     /// The scene with these values of the varied fields.
@@ -155,7 +224,8 @@ impl Sweep {
 
     /// Points of a chunk, the unit in which work is handed out; the last chunk may have fewer.
     pub(super) fn points_per_chunk(&self) -> u64 {
-        (self.points / CHUNKS).clamp(1, LARGEST_CHUNK)
+        let whole = self.uncertain.as_ref().map(|uncertain| uncertain.draws_per_chunk(LARGEST_CHUNK));
+        whole.unwrap_or((self.points / CHUNKS).clamp(1, LARGEST_CHUNK))
     }
 
     pub(super) fn chunks(&self) -> u64 {
@@ -183,18 +253,32 @@ impl Sweep {
     fn entry(&self, number: usize) -> String {
         match number.checked_sub(self.axes.len()) {
             None => format!("vary[{number}]"),
-            Some(drawn) => format!("random.fields[{drawn}]"),
+            Some(drawn) => match self.uncertain.as_ref().and_then(|uncertain| uncertain.fields.get(drawn)) {
+                Some((field, _)) => format!("uncertain.{field}"),
+                None => format!("random.fields[{drawn}]"),
+            },
         }
+    }
+
+    /// Where the path of that field is written.
+    fn entry_field(&self, number: usize) -> String {
+        let entry = self.entry(number);
+        if self.uncertain.is_some() && number >= self.axes.len() { entry } else { format!("{entry}.field") }
     }
 
     /// No field may undo what one before it has set.
     fn check_overlap(&self) -> Result<(), InvalidInput> {
         let fields: Vec<&FieldPath> = self.fields().collect();
         for (i, field) in fields.iter().enumerate() {
-            if let Some(before) = fields[..i].iter().position(|before| field.holds(before)) {
+            let beside = self.axis_before(i);
+            if let Some(axis) = beside.filter(|axis| !self.axes[*axis].is_numeric()) {
+                let allowed = format!("numbers, about which {} is uncertain", self.entry(i));
+                return Err(InvalidInput::new(format!("{}.values", self.entry(axis)), "[...]", allowed));
+            }
+            let mut others = fields[..i].iter().enumerate().filter(|(before, _)| beside != Some(*before));
+            if let Some((before, _)) = others.find(|(_, before)| field.holds(before)) {
                 let allowed = format!("a field that does not overwrite that of {}", self.entry(before));
-                let name = format!("{}.field", self.entry(i));
-                return Err(InvalidInput::new(name, format!("\"{field}\""), allowed));
+                return Err(InvalidInput::new(self.entry_field(i), format!("\"{field}\""), allowed));
             }
         }
         Ok(())
@@ -208,7 +292,7 @@ impl Sweep {
         for (i, (field, value)) in self.fields().zip(&first).enumerate() {
             field.set(&mut tree, value.clone()).map_err(|reason| {
                 let allowed = format!("the path of a field of the scene; {reason}");
-                InvalidInput::new(format!("{}.field", self.entry(i)), format!("\"{field}\""), allowed)
+                InvalidInput::new(self.entry_field(i), format!("\"{field}\""), allowed)
             })?;
         }
         let scene = AnyScene::from_value(&tree).map_err(|fault| self.blame(fault))?;
@@ -243,8 +327,10 @@ impl Sweep {
         match self.varies(&fault) {
             None => fault.within("scene"),
             Some(i) if fault.allowed.starts_with(crate::scene::json::UNKNOWN_FIELD) => {
-                let name = format!("{}.field", self.entry(i));
-                InvalidInput::new(name, format!("\"{}\"", fault.field), fault.allowed)
+                InvalidInput::new(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
+            }
+            Some(i) if self.uncertain.is_some() && i >= self.axes.len() => {
+                InvalidInput { field: self.entry(i), ..fault }
             }
             Some(i) => {
                 let list = self.axes.get(i).is_some_and(|axis| matches!(axis.values, AxisValues::List(_)));

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{Outcome, Reason};
 
-use super::results::{Results, of_impact};
+use super::results::{Results, of_draw, of_impact};
 use crate::assembly::{AnyScene, Wanted};
 use crate::model::Kept;
 use crate::scene::InvalidInput;
@@ -28,10 +28,13 @@ pub(super) fn evaluate(
     stop: &dyn Fn() -> bool,
 ) -> Option<Result<Vec<String>, String>> {
     let cells = guarded(|| match (scene.map_err(|fault| fault.to_string())?, results) {
-        (AnyScene::Impact(scene), Results::OfImpact) => {
+        (AnyScene::Impact(scene), Results::Impact) => {
             Ok(Some(of_impact(&scene.answer_with(kept).map_err(|fault| fault.to_string())?)))
         }
-        (AnyScene::Bodies(scene), Results::OfRun(_)) => {
+        (AnyScene::Impact(scene), Results::Draw) => {
+            Ok(Some(of_draw(&scene.draw_with(kept).map_err(|fault| fault.to_string())?)))
+        }
+        (AnyScene::Bodies(scene), Results::Run(_)) => {
             let ended = AtomicBool::new(false);
             let mut look = |_| ended.store(stop(), Ordering::Relaxed);
             let wanted =

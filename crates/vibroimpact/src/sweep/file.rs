@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::error::SweepError;
+use super::uncertain::{self, SamplingEntry, Uncertain, UncertainEntry};
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
 use crate::assembly;
 use crate::scene::FieldPath;
@@ -25,7 +26,7 @@ const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or 
 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
-    ("", "a sweep is an object with scene or scene_file, and vary or random or both"),
+    ("", "a sweep is an object with scene or scene_file, and vary, random or uncertain"),
     ("$schema", "a text: where the schema of sweeps stands"),
     ("version", "a whole number, the version of the format: 1"),
     ("description", "a text"),
@@ -45,6 +46,14 @@ const FIELDS: &[(&str, &str)] = &[
     ("draws", "a whole number from 1 to 1e12"),
     ("fields", "a list of at least one object with field, from and to"),
     ("fields[]", "an object with field, from and to"),
+    (
+        "sampling",
+        "an object with seed, draws, sequence, replicates, sampling_error and indices, each of which may be left out",
+    ),
+    ("sequence", "sobol or random"),
+    ("replicates", "a whole number from 2 to 1000"),
+    ("sampling_error", "a number greater than 0"),
+    ("indices", "true or false"),
 ];
 
 fn fault(field: impl Into<String>, value: impl Into<String>) -> InvalidInput {
@@ -63,7 +72,8 @@ fn missing(field: impl Into<String>) -> InvalidInput {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Sweep", extend("oneOf" = [{ "required": ["scene"] }, { "required": ["scene_file"] }],
-           "anyOf" = [{ "required": ["vary"] }, { "required": ["random"] }]))]
+           "anyOf" = [{ "required": ["vary"] }, { "required": ["random"] }, { "required": ["uncertain"] }],
+           "dependentRequired" = { "sampling": ["uncertain"] }))]
 pub(super) struct SweepFile {
     /// A text for the reader, the title of report and pictures; may be left out.
     description: Option<String>,
@@ -85,6 +95,12 @@ pub(super) struct SweepFile {
     /// What is drawn at random at each point of the grid.
     #[schemars(with = "Option<RandomEntry>")]
     random: Option<Value>,
+    /// Fields that are known as distributions, at each point of the grid; the restitution is told as a distribution then.
+    #[schemars(with = "Option<UncertainEntry>")]
+    uncertain: Option<Value>,
+    /// How uncertain fields are drawn.
+    #[schemars(with = "Option<SamplingEntry>")]
+    sampling: Option<Value>,
 }
 
 /// A field that runs through values: `values`, or `from`, `to` and `count`.
@@ -153,6 +169,7 @@ pub(super) struct Contents {
     pub scene: Value,
     pub axes: Vec<Axis>,
     pub random: Option<Random>,
+    pub uncertain: Option<Uncertain>,
     /// The file as a tree, with the scene in it.
     pub canonical: Value,
 }
@@ -189,7 +206,7 @@ fn in_file(path: &Path, found: SceneError) -> SceneError {
 }
 
 /// Puts the numbers of tables that the scene names in their places. A fault of the scene's own fields has their path.
-fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), SceneError> {
+pub(super) fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), SceneError> {
     let read = match scene.get("bodies") {
         Some(_) => assembly::read_tables_into(scene, folder),
         None => read_modes_into(scene, folder),
@@ -223,10 +240,26 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     let axes = file.vary.into_iter().enumerate().map(|(i, entry)| axis(&format!("vary[{i}]"), entry));
     let axes = axes.collect::<Result<Vec<_>, _>>()?;
     let random = file.random.map(|value| random(&value).map_err(|found| found.within("random"))).transpose()?;
-    if axes.is_empty() && random.is_none() {
-        return Err(InvalidInput::missing("vary", "give vary or random: something must change"));
+    let sampling = file.sampling.as_ref();
+    let uncertain = match &file.uncertain {
+        Some(uncertain) => Some(uncertain::read(uncertain, sampling, typed)?),
+        None if sampling.is_some() => {
+            return Err(InvalidInput::missing("uncertain", "the fields that are to be drawn"));
+        }
+        None => None,
+    };
+    if axes.is_empty() && random.is_none() && uncertain.is_none() {
+        return Err(InvalidInput::missing("vary", "give vary, random or uncertain: something must change"));
     }
-    Ok(Contents { description: file.description, scene, axes, random, canonical })
+    if uncertain.is_some() && random.is_some() {
+        let allowed = "left out beside uncertain, which draws all that is to be drawn";
+        return Err(InvalidInput::new("random", "{...}", allowed));
+    }
+    if let Some(error) = uncertain.as_ref().and_then(|u| u.sampling.sampling_error).filter(|_| !axes.is_empty()) {
+        let allowed = "left out beside vary: every point of a grid has the same draws";
+        return Err(InvalidInput::new("sampling.sampling_error", number(error), allowed));
+    }
+    Ok(Contents { description: file.description, scene, axes, random, uncertain, canonical })
 }
 
 /// Reads an object; what is allowed is told in the terms of sweeps.

@@ -11,9 +11,11 @@ use super::report;
 use super::row::{Row, columns};
 use super::table::Table;
 use super::tally::Tally;
+use super::uncertain::{self, Collector};
 
 pub(super) const TABLE: &str = "results.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
+pub(super) const DISTRIBUTION: &str = "distribution.csv";
 
 /// Makes the rest of a folder's files, whose rows are complete. A part has a summary only: the rest is made when the
 /// parts are merged.
@@ -27,16 +29,40 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     let unfinished = file.with_extension("part");
     let mut table = Table::create(&unfinished, "results", columns(sweep))?;
     let mut pictures = Pictures::new(sweep);
-    let tally = each_row(sweep, part, folder, |point, row| {
-        pictures.add(point, row);
+    let mut distributions = sweep.uncertain.as_ref().map(Collector::new);
+    let mut tally = each_row(sweep, part, folder, |point, row| {
+        match &mut distributions {
+            Some(distributions) => distributions.add(row),
+            None => pictures.add(point, row),
+        }
         table.add(row.cells(), &unfinished)
     })?;
     table.close(&unfinished)?;
     settle(&unfinished, &file).map_err(SweepError::io(&file))?;
     let path = folder.path();
-    report::report(sweep, &tally, pictures).and_then(|report| report.write(path)).map_err(SweepError::io(path))?;
+    let figures = match distributions {
+        Some(distributions) => {
+            let found = distributions.finish();
+            tally.add_distributions(!sweep.axes.is_empty(), &found);
+            write_durably(&path.join(DISTRIBUTION), &uncertain::table(sweep, &found))?;
+            uncertain::figures(sweep, &found)
+        }
+        None => pictures.figures(),
+    };
+    report::report(sweep, &tally, figures).and_then(|report| report.write(path)).map_err(SweepError::io(path))?;
     close(folder, &tally)?;
     Ok(tally)
+}
+
+/// Whether the draws that are there have the sampling error that is wanted.
+pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bool, SweepError> {
+    let wanted = sweep.uncertain.as_ref().filter(|uncertain| uncertain.sampling.sampling_error.is_some());
+    let Some(mut draws) = wanted.map(Collector::new) else { return Ok(false) };
+    each_row(sweep, part, folder, |_, row| {
+        draws.add(row);
+        Ok(())
+    })?;
+    Ok(draws.enough())
 }
 
 /// The summary of a folder that is finished.
@@ -63,7 +89,9 @@ fn each_row(
     let mut table = csv::Reader::from_reader(BufReader::with_capacity(1 << 20, file));
     let mut cells = csv::StringRecord::new();
     let mut tally = Tally::default();
-    for point in part.points(sweep) {
+    let first = part.chunks(sweep).start;
+    let there = sweep.first_of_chunk(first)..sweep.first_of_chunk(first + folder.progress().chunks);
+    for point in there {
         // after the last row nothing is read, and an empty row is refused
         table.read_record(&mut cells).map_err(blame)?;
         let row = Row::new(sweep, point, &cells)?;

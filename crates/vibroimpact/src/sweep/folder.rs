@@ -101,8 +101,16 @@ pub(super) const RESULTS: &str = "results.csv";
 const PROGRESS: &str = "progress.json";
 const LOCK: &str = "lock";
 /// What a sweep writes beside its record. Where there is no record these are another's, and are not replaced.
-const WRITTEN: [&str; 7] =
-    [RESULTS, PROGRESS, super::finish::TABLE, super::finish::SUMMARY, "report.html", "report.md", "figures"];
+const WRITTEN: [&str; 8] = [
+    RESULTS,
+    PROGRESS,
+    super::finish::TABLE,
+    super::finish::SUMMARY,
+    super::finish::DISTRIBUTION,
+    "report.html",
+    "report.md",
+    "figures",
+];
 
 impl Folder {
     /// Opens the folder of a sweep to begin, or to go on.

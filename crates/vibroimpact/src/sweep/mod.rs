@@ -10,6 +10,7 @@
 //! | `results.csv` | one row a point: `index`, the varied fields, the result, its cost, `error` if there is none |
 //! | `results.parquet` | the same, typed and compressed |
 //! | `report.html`, `report.md`, `figures/` | what was varied, what came out, pictures |
+//! | `distribution.csv` | of a sweep with uncertain fields: figures of the restitution at each grid point |
 //! | `summary.json` | a [`Tally`] |
 //! | `sweep.json`, `progress.json`, `lock` | what is computed here, how far it has come, who is at it |
 //!
@@ -44,6 +45,7 @@ mod merge;
 #[cfg(feature = "mpi")]
 pub mod mpi;
 mod pictures;
+mod predictability;
 mod quantities;
 mod report;
 mod results;
@@ -52,6 +54,7 @@ mod schema;
 pub(crate) mod table;
 mod tally;
 mod threads;
+mod uncertain;
 mod values;
 
 use std::path::Path;
@@ -64,8 +67,12 @@ pub use error::SweepError;
 pub use file::FORMAT_VERSION;
 pub use folder::Part;
 pub use merge::merge;
+pub use predictability::{Blur, BlurWidth, Over};
 pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
+pub use uncertain::{
+    Distribution, Estimate, Histogram, Quantile, RestitutionDistribution, Sampling, Sequence, SobolIndices, Uncertain,
+};
 pub use values::{Axis, AxisValues, Interval, Random, Scale};
 
 use folder::Folder;
@@ -99,7 +106,8 @@ impl Status {
 ///
 /// # Errors
 /// A folder that cannot be used, as [`SweepError`] says; [`SweepError::Stopped`] after `stop` has become true, which
-/// loses nothing that was finished. Scenes that cannot be solved are rows.
+/// loses nothing that was finished; a part of a sweep that ends by itself once its sampling error is small enough. Scenes
+/// that cannot be solved are rows.
 pub fn run(
     sweep: &Sweep,
     part: Part,
@@ -108,11 +116,20 @@ pub fn run(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<Tally, SweepError> {
+    sweep.check_part(part)?;
     let mut folder = Folder::open(path, sweep, part)?;
     tell(Status::of(sweep, part, &folder));
     if folder.progress().finished {
         return finish::summary(&folder);
     }
-    threads::compute(sweep, part, &mut folder, threads, stop, tell)?;
+    for until in sweep.stages(part) {
+        // a stage that is over was not enough, or it is asked anew
+        if folder.chunks() < until {
+            threads::compute(sweep, part, until, &mut folder, threads, stop, tell)?;
+        }
+        if folder.chunks() == until && finish::is_enough(sweep, part, &folder)? {
+            break;
+        }
+    }
     finish::finish(sweep, part, &mut folder)
 }

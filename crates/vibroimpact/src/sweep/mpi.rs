@@ -50,7 +50,11 @@ pub fn run(
         work(&world, stop);
         return Ok(None);
     }
-    let begun = read().and_then(|sweep| Folder::open(path, &sweep, part).map(|folder| (sweep, folder)));
+    let begun = read().and_then(|sweep| {
+        sweep.check_undivided()?;
+        let folder = Folder::open(path, &sweep, part)?;
+        Ok((sweep, folder))
+    });
     let text = match &begun {
         Ok((sweep, folder)) if !folder.progress().finished => sweep.canonical().to_string(),
         // the others have nothing to do

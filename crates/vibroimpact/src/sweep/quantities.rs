@@ -89,13 +89,13 @@ pub(super) fn ranked(motions: &[(String, u64)]) -> (Vec<usize>, Vec<String>) {
 /// What is drawn of a sweep, and how a title calls it.
 pub(super) fn of_results(results: &Results) -> (&'static str, Vec<Quantity>) {
     match results {
-        Results::OfImpact => {
+        Results::Impact | Results::Draw => {
             let restitution = Quantity::new("restitution", Axis::new("restitution"));
             let uncertainty = Some("restitution_uncertainty");
             let sub_impacts = Quantity::new("sub_impact_count", Axis::new("sub-impacts").integers());
             ("Restitution and sub-impacts", vec![Quantity { uncertainty, ..restitution }, sub_impacts])
         }
-        Results::OfRun(_) => (
+        Results::Run(_) => (
             "Contact",
             vec![
                 Quantity::new("largest_force_n", Axis::new("largest force").unit("N")),

@@ -3,26 +3,37 @@
 use std::io;
 
 use super::definition::Sweep;
-use super::pictures::Pictures;
+use super::finish::DISTRIBUTION;
 use super::row::cell;
 use super::tally::Tally;
+use super::uncertain::{Sampling, Sequence};
 use super::values::{AxisValues, Interval, Scale};
+use crate::plot::Figure;
 use crate::report::{Report, significant};
 
 /// Values of a list that are told one by one.
 const VALUES_TOLD: usize = 12;
 
-pub(super) fn report(sweep: &Sweep, tally: &Tally, pictures: Pictures) -> io::Result<Report> {
+pub(super) fn report(sweep: &Sweep, tally: &Tally, figures: Vec<(&'static str, Figure, String)>) -> io::Result<Report> {
     let mut report = Report::new(sweep.description.as_deref().unwrap_or("A sweep"));
     report.heading("What came out");
     report.text(&format!("```text\n{}```", tally.text()));
-    for (name, figure, caption) in pictures.figures() {
+    for (name, figure, caption) in figures {
         report.figure(name, &figure, &caption)?;
     }
     report.heading("What was varied");
     report.table(&["field", "values", "number"], &varied(sweep));
     if let Some(random) = &sweep.random {
         report.text(&format!("Seed of the random draws: {}.", random.seed));
+    }
+    if let Some(uncertain) = &sweep.uncertain {
+        let Sampling { seed, sequence, replicates, .. } = uncertain.sampling;
+        let from = match sequence {
+            Sequence::Sobol => "Draws are scrambled Sobol' points",
+            Sequence::Random => "Draws are random",
+        };
+        report
+            .text(&format!("{from}, in {replicates} independent replicates; seed {seed}. Figures: `{DISTRIBUTION}`."));
     }
     report.heading("The scene");
     let scene = sweep.canonical().get("scene").map_or_else(String::new, |scene| format!("{scene:#}"));
@@ -55,5 +66,11 @@ fn varied(sweep: &Sweep) -> Vec<Vec<String>> {
             vec![format!("`{field}`"), format!("{}, at random", interval(range)), random.draws.to_string()]
         })
     });
-    axes.chain(drawn).collect()
+    let uncertain = sweep.uncertain.iter().flat_map(|uncertain| {
+        uncertain
+            .fields
+            .iter()
+            .map(|(field, distribution)| vec![format!("`{field}`"), distribution.text(), sweep.draws().to_string()])
+    });
+    axes.chain(drawn).chain(uncertain).collect()
 }

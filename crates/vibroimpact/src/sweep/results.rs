@@ -2,7 +2,7 @@
 
 use super::table::Kind;
 use crate::assembly::{AnyScene, Simulation, Summary};
-use crate::model::Answer;
+use crate::model::{Answer, Draw};
 use crate::scene::json::number;
 
 /// The columns of an impact.
@@ -28,6 +28,19 @@ const OF_IMPACT: [(&str, Kind); 23] = [
     ("flight_steps", Kind::Whole),
     ("mode_steps", Kind::Whole),
     ("panels", Kind::Whole),
+    ("stopped_by", Kind::Text),
+    ("error", Kind::Text),
+];
+
+/// The columns of a draw of uncertain fields.
+const OF_DRAW: [(&str, Kind); 9] = [
+    ("outcome", Kind::Text),
+    ("restitution", Kind::Number),
+    ("sub_impact_count", Kind::Whole),
+    ("model", Kind::Text),
+    ("contact_steps", Kind::Whole),
+    ("law_evaluations", Kind::Whole),
+    ("mode_steps", Kind::Whole),
     ("stopped_by", Kind::Text),
     ("error", Kind::Text),
 ];
@@ -77,19 +90,21 @@ const LAST: [(&str, Kind); 11] = [
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Results {
     /// Those of one impact.
-    OfImpact,
+    Impact,
+    /// Those of one impact of many with uncertain fields.
+    Draw,
     /// Those of a run with these contacts, which are the contacts of the first point. Of another point with other contacts
     /// the cells of those that it does not have stay empty.
-    OfRun(Vec<String>),
+    Run(Vec<String>),
 }
 
 impl Results {
     /// The results that scenes like this one have.
     pub(super) fn of(scene: &AnyScene) -> Results {
         match scene {
-            AnyScene::Impact(_) => Results::OfImpact,
+            AnyScene::Impact(_) => Results::Impact,
             AnyScene::Bodies(scene) => {
-                Results::OfRun(scene.contacts.iter().flat_map(|contact| contact.names()).collect())
+                Results::Run(scene.contacts.iter().flat_map(|contact| contact.names()).collect())
             }
         }
     }
@@ -98,8 +113,9 @@ impl Results {
     pub(super) fn columns(&self) -> Vec<(String, Kind)> {
         let owned = |(name, kind): &(&str, Kind)| ((*name).to_owned(), *kind);
         match self {
-            Results::OfImpact => OF_IMPACT.iter().map(owned).collect(),
-            Results::OfRun(contacts) => {
+            Results::Impact => OF_IMPACT.iter().map(owned).collect(),
+            Results::Draw => OF_DRAW.iter().map(owned).collect(),
+            Results::Run(contacts) => {
                 let of_contact = |contact: &String| OF_CONTACT.map(|(name, kind)| (format!("{contact}.{name}"), kind));
                 let contacts = contacts.iter().flat_map(of_contact);
                 OF_RUN.iter().map(owned).chain(contacts).chain(LAST.iter().map(owned)).collect()
@@ -111,8 +127,9 @@ impl Results {
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         let among = |columns: &[(&str, Kind)]| columns.iter().position(|(column, _)| *column == name);
         match self {
-            Results::OfImpact => among(&OF_IMPACT),
-            Results::OfRun(contacts) => {
+            Results::Impact => among(&OF_IMPACT),
+            Results::Draw => among(&OF_DRAW),
+            Results::Run(contacts) => {
                 let last = || among(&LAST).map(|place| OF_RUN.len() + contacts.len() * OF_CONTACT.len() + place);
                 among(&OF_RUN).or_else(last)
             }
@@ -145,8 +162,8 @@ impl Results {
             known(energy.map(|energy| energy.load_work_j)),
         ];
         let names = match self {
-            Results::OfImpact => &[][..],
-            Results::OfRun(names) => names,
+            Results::Impact | Results::Draw => &[][..],
+            Results::Run(names) => names,
         };
         let of_contact = |name: &String| {
             let empty: [String; OF_CONTACT.len()] = Default::default();
@@ -212,6 +229,22 @@ pub(super) fn of_impact(answer: &Answer) -> Vec<String> {
         cost.mode_steps.to_string(),
         cost.panels.to_string(),
         answer.stopped_by.map_or_else(String::new, |reason| reason.as_str().to_owned()),
+        String::new(),
+    ];
+    cells.to_vec()
+}
+
+/// The cells of a draw.
+pub(super) fn of_draw(draw: &Draw) -> Vec<String> {
+    let cells: [String; OF_DRAW.len()] = [
+        draw.outcome.to_owned(),
+        known(draw.restitution),
+        draw.sub_impact_count.map_or_else(String::new, |count| count.to_string()),
+        draw.model.as_str().to_owned(),
+        draw.cost.contact_steps.to_string(),
+        draw.cost.law_evaluations.to_string(),
+        draw.cost.mode_steps.to_string(),
+        draw.stopped_by.map_or_else(String::new, |reason| reason.as_str().to_owned()),
         String::new(),
     ];
     cells.to_vec()

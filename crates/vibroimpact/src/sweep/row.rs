@@ -15,7 +15,7 @@ pub(super) const NO_MOTION: &str = "none";
 /// Every column of a sweep's results: `index`, the varied fields under their paths, the results.
 pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Kind)> {
     let axes = sweep.axes.iter().map(|axis| if axis.is_numeric() { Kind::Number } else { Kind::Text });
-    let fields = sweep.fields().map(ToString::to_string).zip(axes.chain(std::iter::repeat(Kind::Number)));
+    let fields = sweep.names().zip(axes.chain(std::iter::repeat(Kind::Number)));
     std::iter::once(("index".to_owned(), Kind::Whole)).chain(fields).chain(sweep.results().columns()).collect()
 }
 
@@ -49,7 +49,7 @@ pub(super) fn cell(value: &Value) -> String {
 }
 
 /// One line of a table. A line break within a cell becomes a space, so that rows and lines are the same.
-fn line(cells: impl Iterator<Item = String>) -> Vec<u8> {
+pub(super) fn line(cells: impl Iterator<Item = String>) -> Vec<u8> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let cells = cells.map(|cell| if cell.contains(['\n', '\r']) { cell.replace(['\n', '\r'], " ") } else { cell });
     // memory does not fail to be written

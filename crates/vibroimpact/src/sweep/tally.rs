@@ -6,6 +6,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 
 use super::row::Row;
+use super::uncertain::{self, RestitutionDistribution};
 use crate::report::significant;
 
 /// Failures that are told one by one.
@@ -40,6 +41,12 @@ pub struct Tally {
     pub contact_work_rate_w: Option<Extremes>,
     /// Runs under a harmonic load by the motion to which they have settled, as `intervals/periods`, or `none`.
     pub motions: BTreeMap<String, u64>,
+    /// What the restitution is with uncertain fields, where there is no grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distribution: Option<RestitutionDistribution>,
+    /// Least and greatest width of the interval of nine draws of ten, by points of the grid, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_90: Option<Extremes>,
     /// Steps in contact, over all points.
     pub contact_steps: u64,
     /// Evaluations of the contact law, over all points.
@@ -121,6 +128,18 @@ impl Tally {
         self.mode_steps = self.mode_steps.saturating_add(count("mode_steps"));
     }
 
+    /// Takes the distributions at the points of a grid, or the one where there is none.
+    pub(super) fn add_distributions(&mut self, has_grid: bool, found: &[Option<RestitutionDistribution>]) {
+        if let ([Some(one)], false) = (found, has_grid) {
+            self.distribution = Some(one.clone());
+        }
+        for (place, one) in (0..).zip(found) {
+            if let (Some(one), true) = (one, has_grid) {
+                self.width_90 = Some(Extremes::with(self.width_90, one.width_90.value, place));
+            }
+        }
+    }
+
     /// The lines that a person reads.
     pub fn text(&self) -> String {
         let counts = |counts: &BTreeMap<String, u64>| {
@@ -162,6 +181,7 @@ impl Tally {
             ("intervals", &self.intervals),
             ("largest force, N", &self.largest_force_n),
             ("contact work rate, W", &self.contact_work_rate_w),
+            ("width of 9 in 10", &self.width_90),
         ] {
             if let Some(extremes) = found {
                 line(name, &range(extremes));
@@ -172,6 +192,7 @@ impl Tally {
         if *mode_steps > 0 {
             line("", &format!("{mode_steps} steps times modes"));
         }
+        lines += &self.distribution.as_ref().map_or_else(String::new, uncertain::text);
         lines
     }
 }

@@ -40,19 +40,20 @@ pub(super) trait Sink {
     fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
 }
 
-/// Computes what is missing in the sink, a folder for example, and puts it there in order. `threads` of 0 stands for
-/// as many as the machine has cores.
+/// Computes what is missing in the sink, a folder for example, of the chunks before `until`, and puts it there in order.
+/// `threads` of 0 stands for as many as the machine has cores.
 pub(super) fn compute(
     sweep: &Sweep,
     part: Part,
+    until: u64,
     sink: &mut impl Sink,
     threads: usize,
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
     let threads = if threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { threads };
-    let chunks = part.chunks(sweep);
-    let begun = (chunks.start + sink.chunks())..chunks.end;
+    let first = part.chunks(sweep).start;
+    let begun = (first + sink.chunks())..(first + until);
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
     // a writer that fails ends the workers too
     let ended = AtomicBool::new(false);

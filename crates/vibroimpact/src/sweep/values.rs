@@ -124,7 +124,7 @@ fn unit(bits: u64) -> f64 {
 }
 
 /// A number as JSON has it; whole ones without a fraction, so that fields that count things can take them.
-fn json_number(value: f64) -> Value {
+pub(super) fn json_number(value: f64) -> Value {
     const EXACT: f64 = (1u64 << 53) as f64;
     if value.fract() == 0.0 && value.abs() <= EXACT {
         Value::from(value as i64)

@@ -98,7 +98,7 @@ fn faults_of_the_sweep_file_name_their_field() {
     refused(|file| file["random"]["fields"] = json!([]), "random.fields = [] is not allowed");
     refused(|file| file["random"]["fields"][1]["to"] = json!(null), "random.fields[1].to = null is not allowed");
     refused(|file| drop(file.as_object_mut().unwrap().remove("scene")), "scene is missing");
-    refused(|file| *file = json!({ "scene": scene() }), "vary is missing: give vary or random");
+    refused(|file| *file = json!({ "scene": scene() }), "vary is missing: give vary, random or uncertain");
     refused(|file| *file = json!([1]), "is not allowed: a sweep is an object");
     refused(|file| file["scene_file"] = json!("a.json"), "left out beside scene_file");
 }

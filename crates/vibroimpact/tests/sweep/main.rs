@@ -6,6 +6,7 @@ mod definition;
 mod files;
 mod parts;
 mod resume;
+mod uncertain;
 
 use std::fs;
 use std::path::{Path, PathBuf};

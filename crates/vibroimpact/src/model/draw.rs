@@ -1,0 +1,55 @@
+//! One draw among many: the restitution, without a word on how well it is known.
+
+use vibroimpact_sim::StopReason;
+use vibroimpact_sim::modal::Settings;
+
+use super::pose::{chooses_modes, modal_only};
+use super::{Answer, Cost, Kept, Model};
+use crate::impact::{Impact, in_scene};
+use crate::scene::{InvalidInput, Scene};
+
+/// Tolerance of the solver where the scene states none: no draw is told by itself, and the scatter of a thousand is
+/// a hundred times as large.
+const TOLERANCE: f64 = 1e-4;
+
+/// What one impact of many came to.
+pub(crate) struct Draw {
+    pub model: Model,
+    pub outcome: &'static str,
+    pub stopped_by: Option<StopReason>,
+    pub restitution: Option<f64>,
+    pub sub_impact_count: Option<usize>,
+    pub cost: Cost,
+}
+
+impl From<Answer> for Draw {
+    fn from(answer: Answer) -> Draw {
+        let Answer { model, outcome, stopped_by, restitution, sub_impact_count, cost, .. } = answer;
+        Draw { model, outcome, stopped_by, restitution, sub_impact_count, cost }
+    }
+}
+
+impl Scene {
+    /// Solves one draw of many. Stated modes are solved once, at [`TOLERANCE`] where the scene states none; whatever else
+    /// is answered as ever.
+    pub(crate) fn draw_with(&self, kept: &mut Kept) -> Result<Draw, InvalidInput> {
+        let stated = modal_only(self).is_some() || !chooses_modes(self);
+        if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) || !stated {
+            return self.answer_with(kept).map(Draw::from);
+        }
+        let Impact { structure, striker, law, start, settings, .. } = self.impact_of(self.modes.count(), kept)?;
+        let tolerance = self.tolerance.unwrap_or(TOLERANCE);
+        let settings = Settings { tolerance, estimate_uncertainty: false, ..settings };
+        let solution = kept.solver(&structure)?.solve(&striker, &law, start.as_ref(), &settings).map_err(in_scene)?;
+        let mut cost = Cost::default();
+        cost.add(&solution.counts, structure.modes.len());
+        Ok(Draw {
+            model: Model::Modal,
+            outcome: solution.outcome.as_str(),
+            stopped_by: solution.outcome.stopped_by(),
+            restitution: solution.restitution,
+            sub_impact_count: Some(solution.sub_impacts.len()),
+            cost,
+        })
+    }
+}

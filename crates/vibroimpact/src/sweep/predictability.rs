@@ -1,0 +1,118 @@
+//! Where the restitution can be predicted: its spread over one or two fields of a scene, under a stated blur.
+
+use serde_json::{Map, Value, json};
+
+use super::definition::Sweep;
+use super::error::SweepError;
+use super::file::read_tables_into;
+use super::values::Scale;
+use crate::draft::Draft;
+use crate::scene::FieldPath;
+use crate::scene::InvalidInput;
+use crate::scene::json::quote;
+
+/// A field over which the spread is mapped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Over {
+    /// The path of the field.
+    pub field: String,
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// How many.
+    pub count: u64,
+    /// Equal differences or equal ratios.
+    pub scale: Scale,
+}
+
+/// How well a field is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blur {
+    /// The path of the field.
+    pub field: String,
+    /// The standard deviation about its value.
+    pub width: BlurWidth,
+}
+
+/// The standard deviation of a field that is known about a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BlurWidth {
+    /// In the unit of the field; it is normally distributed.
+    Absolute(f64),
+    /// As a share of its value; its logarithm is normally distributed.
+    Relative(f64),
+}
+
+impl Sweep {
+    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), where some fields are known
+    /// within a `blur` only: about the value on the map, or about the scene's own. Every point has as many draws, by the same
+    /// `seed`.
+    ///
+    /// # Errors
+    /// A scene that cannot be read or used, or a field or number that cannot be; a fault names the option of the command
+    /// `predictability`.
+    pub fn predictability(
+        draft: &Draft,
+        over: &[Over],
+        blur: &[Blur],
+        draws: u64,
+        seed: u64,
+    ) -> Result<Sweep, SweepError> {
+        let (tree, folder) = draft.tree();
+        let mut scene = tree.clone();
+        read_tables_into(&mut scene, folder)?;
+        if !(1..=2).contains(&over.len()) {
+            let allowed = "one or two fields, each with its values";
+            return Err(InvalidInput::new("--over", format!("{} fields", over.len()), allowed).into());
+        }
+        let mut uncertain = Map::new();
+        for Blur { field, width } in blur {
+            let about = if over.iter().any(|over| over.field == *field) { None } else { Some(value(&scene, field)?) };
+            let distribution = match width {
+                BlurWidth::Absolute(sd) => json!({ "normal": [about.unwrap_or(0.0), sd] }),
+                BlurWidth::Relative(share) => json!({ "lognormal": [about.unwrap_or(1.0), share] }),
+            };
+            if uncertain.insert(field.clone(), distribution).is_some() {
+                return Err(InvalidInput::new("--blur", quote(&json!(field)), "every field once").into());
+            }
+        }
+        let axis = |Over { field, from, to, count, scale }: &Over| {
+            let scale = if *scale == Scale::Log { "log" } else { "linear" };
+            json!({ "field": field, "from": from, "to": to, "count": count, "scale": scale })
+        };
+        let sweep = json!({
+            "description": "How predictable the restitution is",
+            "scene": scene,
+            "vary": over.iter().map(axis).collect::<Vec<_>>(),
+            "uncertain": uncertain,
+            "sampling": { "draws": draws, "seed": seed },
+        });
+        Sweep::from_value(&sweep).map_err(|fault| of_option(fault, over).into())
+    }
+}
+
+/// The number that the scene has in a field.
+fn value(scene: &Value, field: &str) -> Result<f64, InvalidInput> {
+    let found = FieldPath::parse(field).and_then(|path| path.get(scene).cloned());
+    found.as_ref().and_then(Value::as_f64).ok_or_else(|| {
+        let allowed = "a field in which the scene has a number, or one that --over varies";
+        InvalidInput::new("--blur", quote(&json!(field)), allowed)
+    })
+}
+
+/// A fault of the sweep under the name of the option that caused it.
+fn of_option(fault: InvalidInput, over: &[Over]) -> InvalidInput {
+    let of_axis = |(i, over): (usize, &Over)| {
+        let rest = fault.field.strip_prefix(&format!("vary[{i}]."))?;
+        Some(format!("--over {}, {rest}", over.field))
+    };
+    let of_blur = || fault.field.strip_prefix("uncertain.").map(|field| format!("--blur {field}"));
+    let others = || match fault.field.as_str() {
+        "uncertain" => Some("--blur".to_owned()),
+        "sampling.draws" => Some("--draws".to_owned()),
+        of_scene => of_scene.strip_prefix("scene.").map(str::to_owned),
+    };
+    let field = over.iter().enumerate().find_map(of_axis).or_else(of_blur).or_else(others);
+    InvalidInput { field: field.unwrap_or_else(|| fault.field.clone()), ..fault }
+}

@@ -1,0 +1,130 @@
+//! First and total indices of Sobol', by equations (2) and (3).
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::design::Draws;
+use super::estimate::{Estimate, mean};
+
+/// How much of the variance a field answers for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SobolIndices {
+    /// By itself: the share that would be gone if it were known.
+    pub first: Estimate,
+    /// With all that it has in common with others: the share that would be left if all others were known.
+    pub total: Estimate,
+}
+
+/// The sums behind the indices of one field.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    groups: f64,
+    a: f64,
+    b: f64,
+    squares: f64,
+    first: f64,
+    total: f64,
+}
+
+impl Sums {
+    fn add(&mut self, a: f64, b: f64, mixed: f64) {
+        self.groups += 1.0;
+        self.a += a;
+        self.b += b;
+        self.squares += 0.5 * (a * a + b * b);
+        self.first += b * (mixed - a);
+        self.total += 0.5 * (mixed - a).powi(2);
+    }
+
+    fn plus(self, other: Sums) -> Sums {
+        Sums {
+            groups: self.groups + other.groups,
+            a: self.a + other.a,
+            b: self.b + other.b,
+            squares: self.squares + other.squares,
+            first: self.first + other.first,
+            total: self.total + other.total,
+        }
+    }
+
+    /// First and total index.
+    fn shares(&self) -> [f64; 2] {
+        let n = self.groups;
+        let variance = self.squares / n - (0.5 * (self.a + self.b) / n).powi(2);
+        [self.first / n / variance, self.total / n / variance]
+    }
+}
+
+/// The indices of these fields; `None` where the draws do not vary. Every draw must have a value.
+pub(super) fn indices(values: &[f64], draws: Draws, fields: &[String]) -> Option<BTreeMap<String, SobolIndices>> {
+    // by their own mean, so that nothing of equation (2) is lost to rounding, nor to the scatter of f(b)
+    let middle = mean(values);
+    let of = |(field, name): (usize, &String)| {
+        let mut sums = vec![Sums::default(); draws.replicates as usize];
+        for (number, group) in values.chunks_exact(draws.impacts as usize).enumerate() {
+            let replicate = number % sums.len();
+            sums[replicate].add(group[0] - middle, group[1] - middle, group[field + 2] - middle);
+        }
+        let all = sums.iter().fold(Sums::default(), |all, sums| all.plus(*sums)).shares();
+        let estimate = |which: usize| Estimate::new(all[which], sums.iter().map(|sums| sums.shares()[which]));
+        let known = all.iter().all(|share| share.is_finite());
+        known.then(|| (name.clone(), SobolIndices { first: estimate(0), total: estimate(1) }))
+    };
+    fields.iter().enumerate().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::FieldPath;
+    use crate::sweep::uncertain::{Distribution, Sampling, Sequence, Uncertain};
+
+    /// The indices of a function of three numbers that are uniform from 0 to 1.
+    fn of(f: impl Fn(&[f64]) -> f64, sequence: Sequence, draws: u64) -> Vec<SobolIndices> {
+        let names = ["x", "y", "z"].map(str::to_owned);
+        let fields = names.clone().map(|name| (FieldPath::parse(&name).unwrap(), Distribution::Uniform([0.0, 1.0])));
+        let sampling = Sampling { seed: 3, draws, sequence, replicates: 16, sampling_error: None, indices: true };
+        let uncertain = Uncertain::new(fields.to_vec(), sampling);
+        let values: Vec<f64> = (0..uncertain.draws().count()).map(|number| f(&uncertain.draw(number))).collect();
+        indices(&values, uncertain.draws(), &names).unwrap().into_values().collect()
+    }
+
+    /// Within four standard errors of what is known, and known well.
+    #[track_caller]
+    fn holds(found: &Estimate, known: f64, error: f64) {
+        let Estimate { value, standard_error: Some(s) } = *found else { panic!("{found:?}") };
+        assert!((value - known).abs() <= 4.0 * s + 1e-12 && s < error, "{found:?}, known {known}");
+    }
+
+    #[test]
+    fn an_additive_function_has_the_shares_of_its_terms() {
+        // variances 1/12 times 1, 4 and 16
+        for (sequence, error) in [(Sequence::Sobol, 1e-3), (Sequence::Random, 1e-1)] {
+            let found = of(|x| x[0] + 2.0 * x[1] - 4.0 * x[2], sequence, 80 * 1024);
+            for (indices, share) in found.iter().zip([1.0, 4.0, 16.0]) {
+                holds(&indices.first, share / 21.0, error);
+                holds(&indices.total, share / 21.0, error);
+            }
+        }
+    }
+
+    #[test]
+    fn the_function_of_ishigami_has_its_indices() {
+        use std::f64::consts::PI;
+        let angle = |u: f64| PI * (2.0 * u - 1.0);
+        let f = |x: &[f64]| {
+            let [x, y, z] = [angle(x[0]), angle(x[1]), angle(x[2])];
+            x.sin() + 7.0 * y.sin().powi(2) + 0.1 * z.powi(4) * x.sin()
+        };
+        // Ishigami and Homma (1990), a = 7, b = 0.1
+        let (v1, v2) = (0.5 * (1.0 + 0.1 * PI.powi(4) / 5.0).powi(2), 49.0 / 8.0);
+        let v13 = 0.01 * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
+        let v = v1 + v2 + v13;
+        let found = of(f, Sequence::Sobol, 80 * 4096);
+        for (indices, [first, total]) in found.iter().zip([[v1, v1 + v13], [v2, v2], [0.0, v13]]) {
+            holds(&indices.first, first / v, 5e-3);
+            holds(&indices.total, total / v, 5e-3);
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! Fields that are known as distributions, and what the restitution is then: a distribution too.
+//!
+//! Draw `m` of a replicate `r` are numbers `u` from (0, 1), one a field, by scrambled Sobol' points (`sobol.rs`) or at random,
+//! and each field has the value `Q_j(u_j)` with the quantile function of its distribution. Every replicate is an
+//! independent scrambling. With `theta` any figure of the distribution (mean, standard deviation, quantile, index), from all draws, and
+//! `theta_r` the same from replicate `r` of `R`, its standard error is
+//!
+//! ```text
+//! s^2 = sum_r (theta_r - mean theta_r)^2 / (R (R - 1)).                                     (1)
+//! ```
+//!
+//! The indices of Sobol' tell which field the variance `V` comes from. Each draw then is a group of `k + 2` impacts: of two
+//! independent points `a` and `b`, and of `ab_j`, which is `a` with the field `j` of `b`:
+//!
+//! ```text
+//! S_j = mean( f(b) (f(ab_j) - f(a)) ) / V       first order (Saltelli et al. 2010)         (2)
+//! T_j = mean( (f(ab_j) - f(a))^2 ) / (2 V)      total (Jansen 1999)                        (3)
+//! ```
+//!
+//! `S_j` is the share of the variance that would be gone if field `j` were known, `T_j` the share that would be left if
+//! all others were. Draws that end without a restitution are counted by their outcome; the figures are those of the others.
+
+mod collect;
+mod design;
+mod distribution;
+mod estimate;
+mod file;
+mod indices;
+mod pictures;
+mod sobol;
+mod text;
+
+pub use design::{Sampling, Sequence, Uncertain};
+pub use distribution::Distribution;
+pub use estimate::{Estimate, Histogram, Quantile, RestitutionDistribution};
+pub use indices::SobolIndices;
+
+pub(super) use collect::{Collector, table};
+pub(super) use file::{SamplingEntry, UncertainEntry, read};
+pub(super) use pictures::figures;
+pub(super) use text::text;

@@ -1,0 +1,115 @@
+//! Pictures of distributions: histogram, cumulative share and indices of one, the median and the width of those of a grid.
+
+use super::estimate::{Histogram, RestitutionDistribution};
+use crate::plot::{Axis, Colour, Figure, HeatMap, Marker, Panel, Series};
+use crate::sweep::definition::Sweep;
+use crate::sweep::labels::{axis, label_and_unit};
+use crate::sweep::values::{Axis as Varied, AxisValues, Scale};
+
+/// Larger grids have no picture.
+const MOST_POINTS: usize = 40_000;
+
+/// The pictures, each with a name and a caption.
+pub(in crate::sweep) fn figures(
+    sweep: &Sweep,
+    found: &[Option<RestitutionDistribution>],
+) -> Vec<(&'static str, Figure, String)> {
+    match (sweep.axes.as_slice(), found) {
+        ([], [Some(found)]) => vec![of_one(found)],
+        ([along], _) if along.is_numeric() && found.len() <= MOST_POINTS => vec![over_one(along, found)],
+        ([y, x], _) if x.is_numeric() && y.is_numeric() && found.len() <= MOST_POINTS => vec![over_two(x, y, found)],
+        _ => Vec::new(),
+    }
+}
+
+fn of_one(found: &RestitutionDistribution) -> (&'static str, Figure, String) {
+    let Histogram { from, to, counts } = &found.histogram;
+    let width = (to - from) / counts.len() as f64;
+    let all = found.with_restitution as f64;
+    // a step keeps its value up to the next edge
+    let edges: Vec<f64> = (0..=counts.len()).map(|i| from + width * i as f64).collect();
+    let shares: Vec<f64> = counts.iter().chain(counts.last()).map(|count| *count as f64 / all).collect();
+    let below = std::iter::once(0.0).chain(counts.iter().scan(0.0, |sum, count| {
+        *sum += *count as f64 / all;
+        Some(*sum)
+    }));
+    let below: Vec<f64> = below.collect();
+    let quantiles = |of: fn(&super::Quantile) -> f64| found.quantiles.iter().map(of).collect::<Vec<_>>();
+    let (value, share) = (quantiles(|quantile| quantile.value), quantiles(|quantile| quantile.share));
+    let error = quantiles(|quantile| 2.0 * quantile.standard_error.unwrap_or(0.0));
+    let restitution = || Axis::new("restitution");
+    let histogram = Panel::new(restitution(), Axis::new("share of the draws")).with(Series::step(&edges, &shares));
+    let cumulative = Panel::new(restitution(), Axis::new("share below").limits(0.0, 1.0))
+        .with(Series::line(&edges, &below))
+        .with(Series::level_error_bars(&value, &share, &error, Marker::Dot).label("quantiles"));
+    let figure = Figure::new("Restitution with uncertain fields").row([histogram, cumulative]).width(860.0);
+    let caption = "Left: shares of the draws. Right: the share below a restitution, and quantiles with two standard errors \
+                   either way.";
+    match &found.indices {
+        None => ("distribution", figure, caption.to_owned()),
+        Some(indices) => {
+            let rows: Vec<f64> = (0..indices.len()).map(|row| -(row as f64)).collect();
+            let last = indices.len() as f64;
+            let names = indices.keys().zip(&rows).map(|(name, row)| (*row, name.clone()));
+            let y = Axis::new("").ticks_at(names).limits(0.5 - last, 0.5);
+            let panel = Panel::new(Axis::new("share of the variance"), y).height(60.0 + 30.0 * last);
+            let of = |shift: f64, which: fn(&super::SobolIndices) -> super::Estimate, marker| {
+                let y: Vec<f64> = rows.iter().map(|row| row + shift).collect();
+                let values: Vec<f64> = indices.values().map(|found| which(found).value).collect();
+                let errors: Vec<f64> =
+                    indices.values().map(|found| 2.0 * which(found).standard_error.unwrap_or(0.0)).collect();
+                Series::level_error_bars(&values, &y, &errors, marker)
+            };
+            let panel = panel
+                .with(of(0.12, |found| found.first, Marker::Dot).label("first index"))
+                .with(of(-0.12, |found| found.total, Marker::Circle).label("total index"));
+            let caption = format!("{caption} Below: indices of Sobol' with two standard errors either way.");
+            ("distribution", figure.row([panel]), caption)
+        }
+    }
+}
+
+/// Values along an axis.
+fn along(axis: &Varied) -> Vec<f64> {
+    (0..axis.count()).map(|number| axis.value(number).as_f64().unwrap_or(f64::NAN)).collect()
+}
+
+fn labelled(varied: &Varied) -> Axis {
+    let log = matches!(&varied.values, AxisValues::Range(range, _) if range.scale == Scale::Log);
+    axis(&varied.field, log, false)
+}
+
+fn at(found: &Option<RestitutionDistribution>, share: f64) -> f64 {
+    found.as_ref().and_then(|found| found.quantile(share)).map_or(f64::NAN, |quantile| quantile.value)
+}
+
+fn over_one(varied: &Varied, found: &[Option<RestitutionDistribution>]) -> (&'static str, Figure, String) {
+    let x = along(varied);
+    let of = |share: f64| found.iter().map(|found| at(found, share)).collect::<Vec<_>>();
+    let panel = Panel::new(labelled(varied), Axis::new("restitution"))
+        .with(Series::band(&x, &of(0.05), &of(0.95)).colour(Colour::Blue).label("9 draws of 10"))
+        .with(Series::line(&x, &of(0.5)).colour(Colour::Blue).label("median"));
+    let figure = Figure::new("Restitution with uncertain fields").row([panel]).width(720.0);
+    ("predictability", figure, "Median of the draws, and the interval that holds nine of ten.".to_owned())
+}
+
+fn over_two(x: &Varied, y: &Varied, found: &[Option<RestitutionDistribution>]) -> (&'static str, Figure, String) {
+    let (columns, lines) = (along(x), along(y));
+    let map = |title: &str, value: Axis, of: &dyn Fn(&Option<RestitutionDistribution>) -> f64| {
+        let rows = found.chunks(columns.len()).map(|row| row.iter().map(of).collect()).collect();
+        let panel = Panel::new(labelled(x), labelled(y)).title(title).height(300.0);
+        panel.map(HeatMap::new(&columns, &lines, rows, value))
+    };
+    let width = |found: &Option<RestitutionDistribution>| found.as_ref().map_or(f64::NAN, |it| it.width_90.value);
+    let panels = [
+        map("(a) median", Axis::new("restitution").limits(0.0, 1.0), &|found| at(found, 0.5)),
+        map("(b) width of the interval of 9 draws of 10", Axis::new("width"), &width),
+    ];
+    let (name, _) = label_and_unit(&x.field);
+    let (other, _) = label_and_unit(&y.field);
+    let figure =
+        Figure::new(format!("How predictable the restitution is, over {name} and {other}")).row(panels).width(1000.0);
+    let caption =
+        "Median of the draws at each point, and the width of the interval from their 5 % to their 95 % quantile.";
+    ("predictability", figure, caption.to_owned())
+}

@@ -1,0 +1,40 @@
+//! A distribution as a person reads it.
+
+use std::fmt::Write;
+
+use super::estimate::{Estimate, RestitutionDistribution};
+use crate::report::significant;
+
+/// A figure with its standard error, to the digits that this leaves.
+fn told(figure: Estimate) -> String {
+    let Estimate { value, standard_error } = figure;
+    match standard_error {
+        Some(error) if error > 0.0 => {
+            // two digits of the error, as many decimals of the figure
+            let decimals = (1 - error.log10().floor() as i32).clamp(0, 15) as usize;
+            format!("{value:.decimals$} ± {error:.decimals$}")
+        }
+        _ => significant(value, 6),
+    }
+}
+
+/// The lines on a distribution.
+pub(in crate::sweep) fn text(found: &RestitutionDistribution) -> String {
+    let mut lines = String::new();
+    // a String does not fail to be written
+    let mut line = |name: &str, text: String| {
+        let _ = writeln!(lines, "  {name:<22}{text}");
+    };
+    let RestitutionDistribution { draws, with_restitution, quantiles, indices, .. } = found;
+    line("restitution of draws", format!("{with_restitution} of {draws}; every figure ± its standard error"));
+    line("mean", told(found.mean));
+    line("standard deviation", told(found.standard_deviation));
+    for quantile in quantiles {
+        let figure = Estimate { value: quantile.value, standard_error: quantile.standard_error };
+        line(&format!("{} % below", 100.0 * quantile.share), told(figure));
+    }
+    for (field, indices) in indices.iter().flatten() {
+        line(field, format!("first index {}, total {}", told(indices.first), told(indices.total)));
+    }
+    lines
+}

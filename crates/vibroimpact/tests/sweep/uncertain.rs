@@ -1,0 +1,270 @@
+//! Fields that are known as distributions.
+
+use super::*;
+use std::f64::consts::PI;
+
+/// A ball on one mode that is slow against the contact, as on a free mass: `e = (1 - Z)/(1 + Z) = -tanh(ln(Z)/2)` with
+/// `Z = m phi^2`. Below `Z = 1/3`, five standard deviations away, the mode's return does not reach the ball.
+fn on_a_slow_mode() -> Value {
+    json!({
+        "scene": {
+            "structure": { "kind": "modal", "omega_rad_s": [2], "shape_at_location": [1] },
+            "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
+            "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 }
+        },
+        "uncertain": {
+            "striker.mass_kg": { "lognormal": [0.1, 0.15] },
+            "structure.shape_at_location[0]": { "lognormal": [1, 0.1] }
+        },
+        "sampling": { "draws": 2048 }
+    })
+}
+
+/// Mean and standard deviation of the normal `ln(Z)`.
+const LN_Z: [f64; 2] = [-2.3025850929940455, 0.25];
+
+/// Computes a sweep and gives its summary.
+fn summary(sweep: &Value) -> (Bench, Value) {
+    let bench = Bench::new(sweep);
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    let summary = serde_json::from_slice(&bench.read("out/summary.json")).unwrap();
+    (bench, summary)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// Within four standard errors, which are smaller than `error`; and the draws' own tolerance.
+#[track_caller]
+fn holds(figure: &Value, known: f64, error: f64) {
+    let (value, s) = (number(&figure["value"]), number(&figure["standard_error"]));
+    assert!((value - known).abs() <= 4.0 * s + 1e-4 && s < error, "{figure}, known {known}");
+}
+
+#[test]
+fn quantiles_are_those_of_the_closed_form() {
+    let (_, summary) = summary(&on_a_slow_mode());
+    let found = &summary["distribution"];
+    assert_eq!((&found["draws"], &found["with_restitution"]), (&json!(2048), &json!(2048)));
+    // quantiles of the standard normal distribution
+    for (quantile, x) in found["quantiles"].as_array().unwrap().iter().zip([-2.326_348, -1.644_854, -0.674_490, 0.0]) {
+        // e falls with Z
+        let known = -(0.5 * (LN_Z[0] - LN_Z[1] * x)).tanh();
+        holds(quantile, known, 1e-2);
+    }
+}
+
+#[test]
+fn indices_of_sobol_are_those_of_the_closed_form() {
+    let mut sweep = on_a_slow_mode();
+    sweep["sampling"] = json!({ "draws": 8192, "indices": true });
+    let (bench, summary) = summary(&sweep);
+    // f = -tanh((x + y)/2), x = ln m and y = 2 ln phi: integrals over standard normal numbers by the trapezoidal rule
+    let steps: Vec<f64> = (-60..=60).map(|k| 0.1 * f64::from(k)).collect();
+    let weight = |x: f64| 0.1 * (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
+    let f = |x: f64, y: f64| -(0.5 * (LN_Z[0] + 0.15 * x + 0.2 * y)).tanh();
+    let over = |g: &dyn Fn(f64) -> f64| steps.iter().map(|&x| weight(x) * g(x)).sum::<f64>();
+    let mean = over(&|x| over(&|y| f(x, y)));
+    let variance = over(&|x| over(&|y| (f(x, y) - mean).powi(2)));
+    let of_mass = over(&|x| (over(&|y| f(x, y)) - mean).powi(2)) / variance;
+    let of_shape = over(&|y| (over(&|x| f(x, y)) - mean).powi(2)) / variance;
+    let found = &summary["distribution"];
+    holds(&found["mean"], mean, 1e-3);
+    holds(&found["standard_deviation"], variance.sqrt(), 1e-3);
+    let indices = &found["indices"];
+    let [mass, shape] = ["striker.mass_kg", "structure.shape_at_location[0]"].map(|field| &indices[field]);
+    holds(&mass["first"], of_mass, 0.02);
+    holds(&mass["total"], 1.0 - of_shape, 0.02);
+    holds(&shape["first"], of_shape, 0.02);
+    holds(&shape["total"], 1.0 - of_mass, 0.02);
+    let table = String::from_utf8(bench.read("out/distribution.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(header.starts_with("draws,with_restitution,mean,mean_standard_error,"), "{header}");
+    assert!(header.ends_with("total_index_structure.shape_at_location[0]_standard_error"), "{header}");
+    let told = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    assert!(told.contains("first index") && told.contains("50 % below"), "{told}");
+}
+
+#[test]
+fn it_ends_once_the_sampling_error_is_small_enough_whatever_happens_on_the_way() {
+    let mut sweep = on_a_slow_mode();
+    sweep["sampling"] = json!({ "draws": 1_000_000, "sampling_error": 4e-3 });
+    let (bench, summary) = summary(&sweep);
+    let draws = number(&summary["points"]) as u64;
+    assert!([1024, 2048, 4096, 8192].contains(&draws), "{draws}");
+    let errors = summary["distribution"]["quantiles"].as_array().unwrap();
+    assert!(errors.iter().all(|quantile| number(&quantile["standard_error"]) <= 4e-3));
+    // stopped on the way, and on another number of threads
+    assert_eq!(bench.rows("out").len() as u64, draws);
+    let mut child =
+        bench.command(&["sweep", "sweep.json", "--out", "again", "--threads", "1", "--quiet"]).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(60));
+    let _ = child.kill();
+    child.wait().unwrap();
+    bench.succeeds(&["sweep", "sweep.json", "--out", "again", "--threads", "3", "--quiet"]);
+    assert_same(&bench.path("out"), &bench.path("again"));
+    // parts cannot know when the whole is enough
+    let told = bench.refuses(&["sweep", "sweep.json", "--out", "part", "--shard", "1/2"]);
+    assert!(told.contains("sampling.sampling_error = 0.004 is not allowed"), "{told}");
+    assert!(!bench.path("part").exists());
+}
+
+#[test]
+fn a_fixed_number_of_draws_can_be_computed_in_parts() {
+    let (bench, _) = summary(&on_a_slow_mode());
+    for part in ["1/2", "2/2"] {
+        bench.succeeds(&["sweep", "sweep.json", "--out", &part[..1], "--shard", part, "--quiet"]);
+    }
+    bench.succeeds(&["merge", "1", "2", "--out", "merged"]);
+    assert_same(&bench.path("out"), &bench.path("merged"));
+}
+
+#[test]
+fn about_the_points_of_a_grid_it_tells_the_width_at_each() {
+    let mut sweep = on_a_slow_mode();
+    sweep["vary"] = json!([
+        { "field": "structure.shape_at_location[0]", "from": 0.5, "to": 2, "count": 3, "scale": "log" },
+        { "field": "striker.mass_kg", "values": [0.01, 0.07] }
+    ]);
+    // one per cent of the mass, a hundredth of the shape
+    sweep["uncertain"] = json!({
+        "striker.mass_kg": { "lognormal": [1, 0.01] },
+        "structure.shape_at_location[0]": { "uniform": [-0.01, 0.01] }
+    });
+    sweep["sampling"] = json!({ "draws": 256 });
+    let (bench, summary) = summary(&sweep);
+    assert_eq!((&summary["points"], summary.get("distribution")), (&json!(6 * 256), None));
+    let results = String::from_utf8(bench.read("out/results.csv")).unwrap();
+    let header = "index,structure.shape_at_location[0],striker.mass_kg,drawn.striker.mass_kg,drawn.structure.shape_at_location[0],";
+    assert!(results.starts_with(header), "{}", &results[..200]);
+    assert!(bench.path("out/figures/predictability.svg").exists());
+    let mut table = csv::Reader::from_reader(&*bench.read("out/distribution.csv").leak());
+    let names = table.headers().unwrap().clone();
+    let at = |name: &str| names.iter().position(|column| column == name).unwrap();
+    let rows: Vec<Vec<f64>> =
+        table.records().map(|row| row.unwrap().iter().map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 6);
+    for row in &rows {
+        let (phi, mass) = (row[0], row[1]);
+        let z = mass * phi * phi;
+        assert!((row[at("quantile_0.5")] - (1.0 - z) / (1.0 + z)).abs() < 1e-3);
+        // to first order: de = 2 Z/(1+Z)^2 d ln Z
+        let of_ln_z = (0.01f64.powi(2) + (2.0 * 0.01 / phi).powi(2) / 3.0).sqrt();
+        let expected = 2.0 * z / (1.0 + z).powi(2) * of_ln_z;
+        assert!((row[at("standard_deviation")] / expected - 1.0).abs() < 0.03, "{row:?}, {expected}");
+    }
+}
+
+#[test]
+fn faults_name_field_value_and_what_is_allowed() {
+    let refused = |change: &dyn Fn(&mut Value), message: &str| {
+        let mut sweep = on_a_slow_mode();
+        change(&mut sweep);
+        let bench = Bench::new(&sweep);
+        let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
+        assert!(told.contains(message), "{message:?} in {told}");
+        assert!(!bench.path("out").exists());
+    };
+    let distribution = |value: Value| move |sweep: &mut Value| sweep["uncertain"]["striker.mass_kg"] = value.clone();
+    let of_mass = "uncertain.striker.mass_kg = ";
+    let list =
+        "is not allowed: an object with one of uniform, log-uniform, normal and lognormal, which is a list of two";
+    for (value, allowed) in [
+        (json!(3), list),
+        (json!({ "gauss": [1, 2] }), list),
+        (json!({ "normal": [1] }), list),
+        (json!({ "normal": [1, 2], "uniform": [1, 2] }), list),
+        (json!({ "normal": [1, 0] }), "is not allowed: a finite mean and a positive standard deviation"),
+        (json!({ "uniform": [2, 1] }), "is not allowed: two finite numbers, the first below the second"),
+        (json!({ "log-uniform": [0, 1] }), "is not allowed: two positive numbers, the first below the second"),
+        (json!({ "lognormal": [-1, 1] }), "is not allowed: a positive median and a positive standard deviation"),
+    ] {
+        refused(&distribution(value.clone()), &format!("{of_mass}{value} {allowed}"));
+    }
+    refused(&|sweep| sweep["uncertain"] = json!({}), "uncertain = {} is not allowed: an object with 1 to 16 fields");
+    refused(&|sweep| sweep["uncertain"]["striker.weight"] = json!({ "normal": [1, 2] }), "uncertain.striker.weight = ");
+    refused(&|sweep| sweep["uncertain"]["a..b"] = json!({ "normal": [1, 2] }), "uncertain.a..b = ");
+    refused(&|sweep| sweep["uncertain"]["structure.kind"] = json!({ "normal": [1, 2] }), "uncertain.structure.kind = ");
+    refused(
+        &|sweep| sweep["sampling"]["draws"] = json!(16),
+        "sampling.draws = 16 is not allowed: a whole number from 32",
+    );
+    refused(&|sweep| sweep["sampling"]["draws"] = json!(-1), "sampling.draws = -1 is not allowed");
+    refused(&|sweep| sweep["sampling"]["draws"] = json!(2_000_000_000_000u64), "sampling.draws = 2000000000000");
+    refused(
+        &|sweep| sweep["sampling"]["replicates"] = json!(1),
+        "sampling.replicates = 1 is not allowed: a whole number",
+    );
+    refused(
+        &|sweep| sweep["sampling"]["sequence"] = json!("sobel"),
+        "sampling.sequence = \"sobel\" is not allowed: sobol",
+    );
+    refused(&|sweep| sweep["sampling"]["sampling_error"] = json!(0), "sampling.sampling_error = 0.0 is not allowed");
+    refused(&|sweep| sweep["sampling"]["indices"] = json!(3), "sampling.indices = 3 is not allowed: true or false");
+    refused(&|sweep| sweep["sampling"]["count"] = json!(3), "sampling.count = 3 is not allowed: unknown field");
+    refused(&|sweep| drop(sweep.as_object_mut().unwrap().remove("uncertain")), "uncertain is missing");
+    refused(
+        &|sweep| {
+            sweep["vary"] = json!([{ "field": "striker.speed_m_s", "values": [1, 2] }]);
+            sweep["sampling"]["sampling_error"] = json!(0.1);
+        },
+        "sampling.sampling_error = 0.1 is not allowed: left out beside vary",
+    );
+    refused(
+        &|sweep| {
+            let speeds = json!([{ "field": "striker.speed_m_s", "from": 1, "to": 2 }]);
+            sweep["random"] = json!({ "seed": 1, "draws": 2, "fields": speeds });
+        },
+        "random = {...} is not allowed: left out beside uncertain",
+    );
+}
+
+#[test]
+fn predictability_maps_the_width_under_a_blur() {
+    let bench = Bench::new(&json!({}));
+    fs::write(bench.path("scene.json"), on_a_slow_mode()["scene"].to_string()).unwrap();
+    let map = |options: &[&str]| {
+        let fixed = ["predictability", "scene.json", "--blur", "structure.shape_at_location[0]=0.01", "--out", "out"];
+        bench.run(&[&fixed[..], options].concat())
+    };
+    let shape = "structure.shape_at_location[0]=0.5:1.5:3";
+    let options = ["--over", shape, "--over", "striker.mass_kg=0.01:0.1:2:log", "--blur", "striker.speed_m_s=1%"];
+    let output = map(&options);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("width of 9 in 10"), "{told}");
+    assert_eq!(bench.rows("out").len(), 3 * 2 * 256);
+    // the speed blurs about the scene's own 1 m/s, and does not matter with Hertz's law; the shape as to first order
+    let table = bench.read("out/distribution.csv");
+    for row in csv::Reader::from_reader(&table[..]).records().map(Result::unwrap) {
+        let at = |place: usize| row[place].parse::<f64>().unwrap();
+        let (phi, mass) = (at(0), at(1));
+        let z = mass * phi * phi;
+        // the interval of 9 in 10 of a normal distribution
+        let width = 2.0 * 1.644_854 * 4.0 * mass * phi / (1.0 + z).powi(2) * 0.01;
+        assert!((at(8) / width - 1.0).abs() < 0.05, "{row:?}, {width}");
+    }
+    assert!(String::from_utf8_lossy(&map(&options).stdout).contains("nothing; all was there"));
+
+    let refused = |options: &[&str], message: &str| {
+        fs::remove_dir_all(bench.path("out")).unwrap_or_default();
+        let output = map(options);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains(message), "{message:?} in {told}");
+        assert!(!bench.path("out").exists());
+    };
+    refused(&["--over", "striker.mass_kg=0:1:3:log"], "--over striker.mass_kg, from = 0.0 is not allowed");
+    refused(&["--over", "striker.mass_kg=0:1"], "give FIELD=FROM:TO:COUNT");
+    refused(&["--over", "striker.mass_kg=NaN:1:3"], "--over striker.mass_kg, from");
+    refused(&["--over", "striker.weight=1:2:3"], "--over striker.weight");
+    refused(&["--over", shape, "--blur", "striker.weight=1"], "--blur = \"striker.weight\" is not allowed");
+    refused(&["--over", shape, "--blur", "striker.mass_kg=x"], "give FIELD=WIDTH");
+    refused(
+        &["--over", shape, "--blur", "striker.mass_kg=-1%"],
+        "--blur striker.mass_kg = {\"lognormal\":[0.1,-0.01]}",
+    );
+    refused(&["--over", shape, "--draws", "3"], "--draws = 3 is not allowed: a whole number from 32");
+    refused(&["--over", shape, "--over", "a=1:2:3", "--over", "b=1:2:3"], "--over = 3 fields is not allowed");
+}
