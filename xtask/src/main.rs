@@ -112,6 +112,15 @@ enum Task {
     },
     /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
     StudyAuto(RandomScenes),
+    /// Fit the scatter of the law of energy minimisation, and put its intervals to the test on beams left out
+    StudyScatter {
+        /// Fewer points through the same code
+        #[arg(long)]
+        quick: bool,
+        /// The folder to write to
+        #[arg(long, value_name = "DIR", default_value = "out/study-scatter")]
+        out: PathBuf,
+    },
 }
 
 fn main() -> ExitCode {
@@ -154,6 +163,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
         Task::Impactbench { arguments } => impactbench(&arguments),
         Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
+        Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
     }
 }
 

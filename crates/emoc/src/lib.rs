@@ -67,6 +67,8 @@
 //!   equal ([`Rebound::kink_margin`] is zero); nowhere else.
 //! - [`MovingImpact::rebound`]: the same for a structure that moves already, in two nested bisections, without
 //!   allocation.
+//! - `ScatteredLaw` (feature `scatter`): the distribution of the restitution about the law, and draws from it by a uniform random
+//!   number, as an engine wants them.
 //! - [`newton_restitution`]: a constant coefficient at the contact points, for comparison.
 //! - `Problem` and `lcp` (feature `alloc`): several contacts at once; the linear complementarity baseline.
 //! - `Solver` (feature `qp`): energy minimisation under outward constraints for several contacts, a structure that
@@ -74,7 +76,8 @@
 //!   reduced form as quadratic programs.
 //!
 //! Without features the crate depends on nothing and needs neither `std` nor an allocator. `qp` (default) brings
-//! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel).
+//! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel); `scatter` brings [libm](https://docs.rs/libm), which needs
+//! neither.
 //!
 //! # Limits
 //!
@@ -152,6 +155,8 @@ mod program;
 mod real;
 #[cfg(feature = "qp")]
 mod scaled;
+#[cfg(feature = "scatter")]
+mod scatter;
 #[cfg(feature = "qp")]
 mod single;
 
@@ -165,6 +170,8 @@ pub use parameters::{Impact, ParameterGradient, Parameters, Site};
 #[cfg(feature = "alloc")]
 pub use problem::{Contact, Friction, Mode, Outcome, Problem, Solution};
 pub use real::Real;
+#[cfg(feature = "scatter")]
+pub use scatter::{Scatter, ScatteredLaw};
 #[cfg(feature = "qp")]
 pub use single::{SingleImpact, SingleSolution};
 

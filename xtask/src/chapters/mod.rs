@@ -14,6 +14,7 @@ mod choice;
 mod ensemble;
 mod figures;
 mod impact;
+mod scatter;
 pub mod statement;
 mod study;
 pub mod tally;
@@ -145,6 +146,14 @@ pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
     study.claims("Targets, and what was found");
     let introduction = choice::run(&mut study, wanted)?;
     Ok(study.finish("The automatic choice of the model", introduction)?.summary)
+}
+
+/// Fits the scatter of the law to the tables of chapter 4, and writes the folder of that study.
+pub fn study_scatter(out: &Path, quick: bool) -> Result<String, Failure> {
+    let mut study = Study::new(0, out, quick)?;
+    study.claims("Targets, and what was found");
+    let introduction = scatter::run(&mut study)?;
+    Ok(study.finish("The scatter of the law", introduction)?.summary)
 }
 
 #[cfg(test)]

@@ -13,16 +13,16 @@ use vibroimpact::plot::Colour;
 use vibroimpact::report::significant;
 
 /// What a law may know of one impact, and what came of it.
-struct Datum {
-    impact: Impact,
+pub(in crate::chapters) struct Datum {
+    pub impact: Impact,
     /// `(omega_k tau)^2` and `m phi_k^2` of the modes, slowest first.
     answers: Vec<[f64; 2]>,
     largest_share: f64,
-    observed: f64,
+    pub observed: f64,
 }
 
 impl Datum {
-    fn all(data: &Dataset) -> Result<Vec<Datum>, Failure> {
+    pub fn all(data: &Dataset) -> Result<Vec<Datum>, Failure> {
         let observations = data.observations(LAW_MODES)?;
         let datum = |(row, impact): (&&crate::chapters::impact::Row, &Impact)| {
             let ball = data.table.balls.iter().find(|ball| ball.mass_kg == row.mass_kg).ok_or("a ball of no table")?;
@@ -52,11 +52,11 @@ impl Datum {
 }
 
 /// A law: its parameters and what it makes of an impact.
-struct Law {
+pub(in crate::chapters) struct Law {
     name: &'static str,
     formula: &'static str,
-    parameters: &'static [&'static str],
-    restitution: fn(&[f64], &Datum) -> f64,
+    pub parameters: &'static [&'static str],
+    pub restitution: fn(&[f64], &Datum) -> f64,
 }
 
 fn saturate(x: f64) -> f64 {
@@ -67,7 +67,7 @@ fn dipped(t: f64) -> f64 {
     (t * t + 1.0) / (t * t + t + 1.0)
 }
 
-const LAWS: [Law; 4] = [
+pub(in crate::chapters) const LAWS: [Law; 4] = [
     Law {
         name: "thesis's form",
         formula: "ē(μ₀Z) max(1/(1+Z), (β₀+β₁)/(1+β₀))",

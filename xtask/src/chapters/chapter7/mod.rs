@@ -2,7 +2,7 @@
 
 pub(super) mod failure;
 pub(super) mod fits;
-mod laws;
+pub(super) mod laws;
 mod pictures;
 
 use super::Failure;

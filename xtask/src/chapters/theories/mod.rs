@@ -61,7 +61,7 @@ fn coefficients(material: &Material) -> [Coefficient; 4] {
 }
 
 /// The coefficient that the program takes where none is stated.
-fn kaneko(material: &Material) -> f64 {
+pub(super) fn kaneko(material: &Material) -> f64 {
     let nu = material.poissons_ratio;
     5.0 * (1.0 + nu) / (6.0 + 5.0 * nu)
 }
