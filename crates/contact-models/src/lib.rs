@@ -45,7 +45,8 @@
 //! force is continuous on the way in and out. [`Law`] holds any of them; it also gives the
 //! restitution of a rigid striker at a wall, [`Law::wall_restitution`], for any law. Between the
 //! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
-//! has dissipated. [`trace`] drives a law with a prescribed motion.
+//! has dissipated. [`trace`] drives a law with a prescribed motion, and [`check_contract`] tries what a law of one's own
+//! promises to an integrator.
 //!
 //! The other way round, [`Wanted`] gives the parameters of a law for a wanted restitution, exactly and not by the papers'
 //! approximations, and [`stepped_restitution`] what an engine with a fixed step makes of them.
@@ -68,6 +69,7 @@
 //! # Ok::<(), contact_models::InvalidInput>(())
 //! ```
 
+mod check;
 mod conservative;
 mod damped;
 mod error;
@@ -94,6 +96,7 @@ mod wanted;
 #[doc = include_str!("../README.md")]
 mod readme {}
 
+pub use check::{Breach, Promise, check_contract, check_contract_along};
 pub use error::{InvalidInput, LARGEST};
 pub use felt::Felt;
 pub use flores::Flores;

@@ -20,22 +20,31 @@ pub struct TracePoint {
     pub stored_energy_j: f64,
 }
 
+/// A contact on its way.
 #[derive(Clone, Copy)]
-enum State {
+pub(crate) enum State {
     Apart(Memory),
     Touching(Branch),
 }
 
 impl State {
+    /// Its branch while the surfaces touch.
+    pub fn branch(&self) -> Option<Branch> {
+        match self {
+            State::Apart(_) => None,
+            State::Touching(branch) => Some(*branch),
+        }
+    }
+
     /// The half planes within which the state lasts.
-    fn boundaries(&self, law: &impl ContactLaw) -> [Boundary; 2] {
+    pub fn boundaries(&self, law: &impl ContactLaw) -> [Boundary; 2] {
         match self {
             State::Apart(memory) => [Boundary::compression_rises_to(memory.touch_m), Boundary::NEVER],
             State::Touching(branch) => law.boundaries(branch),
         }
     }
 
-    fn next(&self, law: &impl ContactLaw, which: usize, (xi, rate): (f64, f64)) -> State {
+    pub fn next(&self, law: &impl ContactLaw, which: usize, (xi, rate): (f64, f64)) -> State {
         match self {
             State::Apart(memory) => State::Touching(law.touch(memory, rate.max(0.0))),
             State::Touching(branch) => match law.cross(branch, which, xi, rate) {
@@ -124,7 +133,7 @@ fn point(law: &impl ContactLaw, state: &State, time_s: f64, (xi, rate): (f64, f6
 }
 
 /// The first time in the interval at which the motion is beyond a boundary, and which boundary.
-fn first_met(
+pub(crate) fn first_met(
     boundaries: &[Boundary; 2],
     start: f64,
     end: f64,

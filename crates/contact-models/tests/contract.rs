@@ -2,61 +2,19 @@
 
 mod common;
 
-use common::{Motion, laws, motions, release_level, walk};
-use contact_models::{Boundary, Branch, ContactLaw, Law, Memory, trace};
+use common::{Motion, laws, motions, walk};
+use contact_models::{ContactLaw, Law, Memory, check_contract, check_contract_along, trace};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, rng_seed: RngSeed::Fixed(31617), ..ProptestConfig::default() })]
 
-    /// Never a pull inside the boundaries, and derivatives that are those of the force.
+    /// The promises that a law of one's own can be tried for hold for every law here.
     #[test]
-    fn force_and_derivatives(law in laws(), motion in motions()) {
-        for state in walk(&law, &motion).states {
-            let (branch, xi, v) = (state.branch, state.compression_m, state.rate_m_s);
-            let force = law.force(&branch, xi, v);
-            prop_assert!(force.force_n >= -1e-12, "{law:?} {state:?} {force:?}");
-            // away from the square root's end, where differences would measure only themselves
-            let depth = xi - release_level(&law, &branch);
-            if depth < 1e-3 {
-                continue;
-            }
-            let (h, g) = (1e-5 * depth, 1e-5);
-            let difference = |a: f64, b: f64, step: f64| (a - b) / (2.0 * step);
-            // the whole stencil must lie in the branch, and on one side of its anchor
-            let within = |b: &Boundary| {
-                b.margin(xi, v) > 2.0 * (b.per_compression.abs() * h + b.per_rate.abs() * g)
-            };
-            let inside = law.boundaries(&branch).iter().all(within) && (xi - branch.anchor_m).abs() > 2.0 * h;
-            if inside {
-                let at = |xi: f64, v: f64| law.force(&branch, xi, v).force_n;
-                let by_compression = difference(at(xi + h, v), at(xi - h, v), h);
-                let by_rate = difference(at(xi, v + g), at(xi, v - g), g);
-                let scale = 1e-7 * (1.0 + by_compression.abs() + force.force_n / depth);
-                prop_assert!((force.per_compression_n_m - by_compression).abs() < scale, "{law:?} {state:?} {by_compression} {force:?}");
-                prop_assert!((force.per_rate_n_s_m - by_rate).abs() < 1e-8 * (1.0 + force.force_n), "{law:?} {state:?}");
-                prop_assert!(law.depends_on_rate() || force.per_rate_n_s_m == 0.0);
-            }
-        }
-    }
-
-    /// From one branch to the next the force is continuous, at a release it is zero, and the next
-    /// branch is valid where it begins.
-    #[test]
-    fn crossings(law in laws(), motion in motions()) {
-        for crossing in walk(&law, &motion).crossings {
-            let jump = (crossing.force_before_n - crossing.force_after_n).abs();
-            // rounding of a motion of order 1, through the slopes
-            let (xi, v) = (crossing.compression_m, crossing.rate_m_s);
-            let spread = |branch: Branch| {
-                let slopes = law.force(&branch, xi, v);
-                slopes.per_compression_n_m.abs() * (1.0 + xi.abs()) + slopes.per_rate_n_s_m.abs() * (1.0 + v.abs())
-            };
-            let scale = 1.0 + spread(crossing.branch_before) + crossing.branch_after.map_or(0.0, spread);
-            prop_assert!(jump < 1e-13 * scale, "{law:?} {crossing:?}");
-            prop_assert!(crossing.margin_after > -1e-12, "{law:?} {crossing:?}");
-        }
+    fn promises(law in laws(), motion in motions()) {
+        let kept = check_contract_along(&law, &motion.times(), |t| motion.at(t));
+        prop_assert!(kept.is_ok(), "{law:?} {}", kept.unwrap_err());
     }
 
     /// The force is finite for every finite compression and rate, and continuous across the
@@ -165,6 +123,21 @@ fn random_motions_reach_every_stage() {
     for (name, stages) in expected {
         for stage in stages {
             assert!(seen.contains(&(name, format!("{stage:?}"))), "{name} never reaches {stage:?}");
+        }
+    }
+}
+
+/// On the scales of impacts, by the motions of the library.
+#[test]
+fn laws_keep_their_promises_on_any_scale() {
+    use proptest::strategy::ValueTree;
+    use proptest::test_runner::TestRunner;
+    let mut runner = TestRunner::deterministic();
+    for _ in 0..60 {
+        let law = laws().new_tree(&mut runner).unwrap().current();
+        for (compression_m, speed_m_s) in [(1.0, 1.0), (1e-5, 1.0), (1e-3, 0.01), (0.1, 30.0)] {
+            let kept = check_contract(&law, compression_m, speed_m_s);
+            assert!(kept.is_ok(), "{law:?} {compression_m} {speed_m_s}: {}", kept.unwrap_err());
         }
     }
 }

@@ -18,17 +18,20 @@ pub enum StopReason {
     Flight,
     /// Further contacts differ from one another by less than the rounding of what led to them.
     DigitsExhausted,
+    /// The law of contact does not keep what laws promise; [`contact_models::check_contract`] says which promise, and where.
+    Law,
 }
 
 impl StopReason {
     /// All reasons.
-    pub const ALL: [StopReason; 6] = [
+    pub const ALL: [StopReason; 7] = [
         StopReason::Steps,
         StopReason::FinestStep,
         StopReason::SubImpacts,
         StopReason::LawRange,
         StopReason::Flight,
         StopReason::DigitsExhausted,
+        StopReason::Law,
     ];
 
     /// The reason as a word for tables and files.
@@ -44,6 +47,7 @@ impl StopReason {
             StopReason::LawRange => "law range",
             StopReason::Flight => "flight",
             StopReason::DigitsExhausted => "digits exhausted",
+            StopReason::Law => "law",
         }
     }
 
@@ -68,6 +72,9 @@ impl StopReason {
             StopReason::DigitsExhausted => {
                 "the contacts that follow depend on digits that numbers do not have: what is listed is certain, what \
                  follows is not known"
+            }
+            StopReason::Law => {
+                "the contact law breaks what laws promise: contact_models::check_contract tells which promise, and where"
             }
         }
     }

@@ -6,6 +6,7 @@ use std::fs;
 
 use gallery::{assemblies, assembly, assert_checked_in, datasets, gallery, named, paths};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use serde_json::{Value, json};
 use vibroimpact::assembly::AssemblyScene;
 use vibroimpact::scene::{MovingMode, Start, Structure, schema};
@@ -489,7 +490,13 @@ fn mutated(mut text: Vec<char>, changes: &[(prop::sample::Index, Option<char>, b
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    // what a run draws is the same everywhere, as is the time it takes; `cargo xtask fuzz` looks further
+    #![proptest_config(ProptestConfig {
+        cases: 400,
+        rng_seed: RngSeed::Fixed(2019),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     /// Whatever the text, a scene is understood or refused with a place in the text or a field.
     #[test]

@@ -125,14 +125,8 @@ pub struct Visit {
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing {
     pub branch_before: Branch,
-    /// None after a release.
-    pub branch_after: Option<Branch>,
     pub compression_m: f64,
     pub rate_m_s: f64,
-    pub force_before_n: f64,
-    pub force_after_n: f64,
-    /// The smaller margin of the next branch where it begins; zero after a release.
-    pub margin_after: f64,
 }
 
 #[derive(Debug, Default)]
@@ -172,28 +166,11 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
                 contact = Some(law.touch(&memory, land.1.max(0.0)));
                 continue;
             };
-            let force = |branch: &Branch| law.force(branch, land.0, land.1).force_n;
-            let (force_after_n, margin_after) = match law.cross(&before, which, land.0, land.1) {
-                After::Release(left) => {
-                    memory = left;
-                    contact = None;
-                    (0.0, 0.0)
-                }
-                After::Continue(next) => {
-                    contact = Some(next);
-                    let margins = law.boundaries(&next).map(|b| b.margin(land.0, land.1));
-                    (force(&next), margins[0].min(margins[1]))
-                }
-            };
-            walk.crossings.push(Crossing {
-                branch_before: before,
-                branch_after: contact,
-                compression_m: land.0,
-                rate_m_s: land.1,
-                force_before_n: force(&before),
-                force_after_n,
-                margin_after,
-            });
+            match law.cross(&before, which, land.0, land.1) {
+                After::Release(left) => (contact, memory) = (None, left),
+                After::Continue(next) => contact = Some(next),
+            }
+            walk.crossings.push(Crossing { branch_before: before, compression_m: land.0, rate_m_s: land.1 });
         }
         if let Some(branch) = contact {
             walk.states.push(Visit { branch, compression_m: to.0, rate_m_s: to.1 });

@@ -22,7 +22,7 @@ use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, evaluate_at, slopes, truncation};
 use crate::panel::peak::Peak;
 use crate::panel::vector::{sum_over, vectorized};
-use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory};
+use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory, check_contract};
 
 /// Part of the stated tolerance that one panel may use up.
 const STEP_SHARE: f64 = 0.1;
@@ -44,6 +44,8 @@ const WINDOW: i32 = 2;
 const CHATTER: u64 = 10_000;
 /// Rest is looked for once in so many committed panels.
 const REST: u64 = 64;
+/// The laws are tried once so many panels with contact have been made, many times what an impact takes.
+const TRY_LAWS: u64 = 5_000;
 /// The observer is asked whether to stop once in so many panels.
 const ASK: u64 = 64;
 
@@ -253,7 +255,23 @@ impl<'a> March<'a> {
         self.states.iter().zip(self.laws).map(of).sum()
     }
 
+    /// Whether the run has to stop here. Before it stops in the middle of a contact, and once a run is long, the laws are
+    /// tried: one that breaks its contract is what keeps a run from ending.
     fn limit(&mut self) -> Option<Reason> {
+        let reason = self.reached_limit();
+        let in_contact = matches!(reason, Some(Reason::FinestStep | Reason::LawRange | Reason::Chatter));
+        if in_contact || reason.is_none() && self.counts.contact_steps == TRY_LAWS {
+            let broken = |(state, law): (&State, &&dyn ContactLaw)| {
+                state.scales().is_some_and(|(xi, speed)| check_contract(*law, xi, speed).is_err())
+            };
+            if self.states.iter().zip(self.laws).any(broken) {
+                return Some(Reason::Law);
+            }
+        }
+        reason
+    }
+
+    fn reached_limit(&mut self) -> Option<Reason> {
         let steps = self.counts.steps();
         if steps >= self.settings.max_steps {
             Some(Reason::Steps)

@@ -30,6 +30,8 @@ pub enum Reason {
     LawRange,
     /// Contacts opened and closed again and again without time going on.
     Chatter,
+    /// A law of contact does not keep what laws promise ([`contact_models::check_contract`] says which promise, and where).
+    Law,
     /// The observer asked for it.
     Interrupted,
 }
@@ -55,6 +57,7 @@ impl Reason {
             Reason::FinestStep => "finest step",
             Reason::LawRange => "range of the contact law",
             Reason::Chatter => "contacts that open and close without time going on",
+            Reason::Law => "contact law that breaks its contract",
             Reason::Interrupted => "interrupted",
         }
     }

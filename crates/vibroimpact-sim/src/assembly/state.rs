@@ -58,6 +58,17 @@ impl State {
         self.momentum * self.inverse_mass
     }
 
+    /// Compression and speed of the contact, in size: those met so far, within what laws compute with.
+    pub fn scales(&self) -> Option<(f64, f64)> {
+        let touch = self.touch()?;
+        let compression = touch.peak_compression.value().max(self.overlap);
+        let speed = touch.interval.approach_speed_m_s.max(self.rate.abs());
+        let within = |value: f64| (1e-30..=1e10).contains(&value);
+        // of a contact that has only begun, what its speed covers in a microsecond
+        let compression = if within(compression) { compression } else { 1e-6 * speed };
+        (within(compression) && within(speed)).then_some((compression, speed))
+    }
+
     pub fn is_closed(&self) -> bool {
         matches!(self.phase, Phase::Closed(_))
     }

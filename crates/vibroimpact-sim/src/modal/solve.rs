@@ -339,6 +339,7 @@ fn stop_reason(reason: assembly::Reason, closed: bool) -> StopReason {
         assembly::Reason::FinestStep => StopReason::FinestStep,
         assembly::Reason::LawRange => StopReason::LawRange,
         assembly::Reason::Chatter => StopReason::DigitsExhausted,
+        assembly::Reason::Law => StopReason::Law,
     }
 }
 

@@ -1,0 +1,315 @@
+//! What a law promises to whoever integrates it, tried along motions.
+//!
+//! | promise | why an integrator needs it |
+//! |---|---|
+//! | numbers are finite, wherever the law is asked | an iteration may step beyond a branch |
+//! | no pull within a branch | surfaces part where the law says so, and nowhere else |
+//! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
+//! | [`depends_on_rate`](ContactLaw::depends_on_rate) says whether it does | the rate is computed only where it is asked for |
+//! | the force is continuous from branch to branch, and zero at a release | events carry no impulse |
+//! | a branch is valid where it begins, and at one instant few follow each other | time goes on |
+//! | a complete contact returns no more work than it took | energy is not made |
+
+use crate::trace::{State, first_met, trace};
+use crate::{Branch, ContactLaw, Force, Memory};
+
+/// A promise that a law has not kept, and where.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{promise}, at a compression of {compression_m:e} m and a rate of {rate_m_s:e} m/s on {branch:?}")]
+pub struct Breach {
+    /// What was promised.
+    pub promise: Promise,
+    /// The branch; `None` between contacts.
+    pub branch: Option<Branch>,
+    /// Compression (m).
+    pub compression_m: f64,
+    /// Its rate (m/s).
+    pub rate_m_s: f64,
+}
+
+/// What a law has not kept.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Promise {
+    /// Force, derivatives and stored energy are finite numbers everywhere.
+    #[error("the law gives a number that is not finite")]
+    Finite,
+    /// The force never pulls within a branch.
+    #[error("the force pulls: {force_n:e} N")]
+    Push {
+        /// The force (N).
+        force_n: f64,
+    },
+    /// The derivatives are those of the force.
+    #[error("a derivative is stated as {stated:e} where the force changes by {found:e}")]
+    Derivative {
+        /// The derivative that the law states (N/m or N s/m).
+        stated: f64,
+        /// The one that differences of its force show.
+        found: f64,
+    },
+    /// A law whose force depends on the rate says so.
+    #[error("the force depends on the rate, and the law says that it does not")]
+    Rate,
+    /// The force is continuous from one branch to the next, and zero where surfaces part.
+    #[error("the force jumps from {before_n:e} N to {after_n:e} N where a branch ends")]
+    Continuous {
+        /// Force before (N).
+        before_n: f64,
+        /// Force after (N).
+        after_n: f64,
+    },
+    /// A branch is valid where it begins.
+    #[error("a branch begins beyond its own boundary")]
+    Begins,
+    /// Branches end: at one instant no more than a few follow each other.
+    #[error("branches follow each other without time going on")]
+    Settles,
+    /// Energy is stored or dissipated, never made.
+    #[error("a complete contact gives back {made_j:e} J more than it took")]
+    Energy {
+        /// The energy made (J).
+        made_j: f64,
+    },
+}
+
+/// Branches that may follow each other at one instant.
+const AT_ONCE: usize = 8;
+/// Relative step of differences, what they may miss of a derivative, and what rounding may leave of a force.
+const STEP: f64 = 1e-5;
+const DIFFERENCE: f64 = 1e-6;
+const ROUNDING: f64 = 1e-12;
+/// What quadrature of the work may miss.
+const WORK: f64 = 1e-7;
+/// Motions that are tried, and instants between two changes of their acceleration.
+const MOTIONS: u64 = 40;
+const INSTANTS: u32 = 40;
+
+/// Tries a law along motions of about this compression (m) and speed (m/s), which load and unload it in many orders. A law
+/// of one's own should pass before it is given to a solver.
+///
+/// # Errors
+/// The first promise that is not kept.
+///
+/// ```
+/// use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory, Promise, Stage, check_contract};
+///
+/// /// A spring whose stated stiffness is wrong.
+/// struct Wrong;
+///
+/// impl ContactLaw for Wrong {
+///     fn touch(&self, _: &Memory, _: f64) -> Branch {
+///         Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
+///     }
+///     fn force(&self, _: &Branch, xi: f64, _: f64) -> Force {
+///         Force { force_n: 1e6 * xi.clamp(0.0, 1.0), per_compression_n_m: 2e6, per_rate_n_s_m: 0.0 }
+///     }
+///     fn stored_energy_j(&self, _: &Branch, xi: f64) -> f64 {
+///         5e5 * xi.clamp(0.0, 1.0).powi(2)
+///     }
+///     fn boundaries(&self, _: &Branch) -> [Boundary; 2] {
+///         [Boundary::compression_falls_to(0.0), Boundary::NEVER]
+///     }
+///     fn cross(&self, _: &Branch, _: usize, _: f64, _: f64) -> After {
+///         After::Release(Memory::default())
+///     }
+///     fn depends_on_rate(&self) -> bool {
+///         false
+///     }
+/// }
+///
+/// let breach = check_contract(&Wrong, 1e-5, 1.0).unwrap_err();
+/// assert!(matches!(breach.promise, Promise::Derivative { .. }));
+/// ```
+pub fn check_contract(law: &dyn ContactLaw, compression_m: f64, speed_m_s: f64) -> Result<(), Breach> {
+    (0..MOTIONS).try_for_each(|seed| {
+        let motion = Motion::new(seed, compression_m, speed_m_s);
+        check_contract_along(law, &motion.times(), |time| motion.at(time))
+    })
+}
+
+/// Tries a law along one motion, which gives compression (m) and rate (m/s) at a time (s), from a fresh surface. `times_s`
+/// increase, and resolve the motion's swings.
+///
+/// # Errors
+/// As [`check_contract`].
+pub fn check_contract_along(
+    law: &dyn ContactLaw,
+    times_s: &[f64],
+    motion: impl Fn(f64) -> (f64, f64),
+) -> Result<(), Breach> {
+    let mut state = State::Apart(Memory::default());
+    let largest = |sizes: (f64, f64), &time: &f64| {
+        let (xi, rate) = motion(time);
+        (sizes.0.max(xi.abs()), sizes.1.max(rate.abs()))
+    };
+    let sizes = times_s.iter().fold((0.0, 0.0), largest);
+    for pair in times_s.windows(2) {
+        let (mut from, to) = (pair[0], pair[1]);
+        let mut events = 0;
+        while let Some((time, which)) = first_met(&state.boundaries(&law), from, to, &motion) {
+            let at = Place { law, branch: state.branch(), motion: motion(time), sizes };
+            events = if time > from { 0 } else { events + 1 };
+            at.require(events <= AT_ONCE, || Promise::Settles)?;
+            let next = state.next(&law, which, at.motion);
+            if at.branch.is_some() {
+                at.crosses_to(&next)?;
+            }
+            (state, from) = (next, time);
+        }
+        Place { law, branch: state.branch(), motion: motion(to), sizes }.holds()?;
+    }
+    // what comes back of a contact is bound where it is over
+    let Ok(path) = trace(&law, times_s, &motion) else { return Ok(()) };
+    let largest = path.iter().map(|point| point.work_j.abs()).fold(f64::MIN_POSITIVE, f64::max);
+    let mut dissipated = 0.0;
+    for point in path.iter().filter(|point| point.stored_energy_j == 0.0 && point.force_n == 0.0) {
+        let made_j = dissipated - point.work_j;
+        let at = Place { law, branch: None, motion: (point.compression_m, point.rate_m_s), sizes };
+        at.require(made_j <= WORK * largest, || Promise::Energy { made_j })?;
+        dissipated = point.work_j;
+    }
+    Ok(())
+}
+
+/// A law somewhere on a motion.
+struct Place<'a> {
+    law: &'a dyn ContactLaw,
+    branch: Option<Branch>,
+    motion: (f64, f64),
+    /// Largest compression and rate of the motion.
+    sizes: (f64, f64),
+}
+
+impl Place<'_> {
+    fn require(&self, holds: bool, promise: impl FnOnce() -> Promise) -> Result<(), Breach> {
+        let (compression_m, rate_m_s) = self.motion;
+        if holds { Ok(()) } else { Err(Breach { promise: promise(), branch: self.branch, compression_m, rate_m_s }) }
+    }
+
+    fn finite(&self, force: &Force) -> Result<(), Breach> {
+        let sum = force.force_n + force.per_compression_n_m + force.per_rate_n_s_m;
+        self.require(sum.is_finite(), || Promise::Finite)
+    }
+
+    /// What the force may miss by the rounding of where the motion is.
+    fn rounding(&self, force: &Force) -> f64 {
+        let (xi, rate) = self.sizes;
+        ROUNDING * (force.force_n.abs() + force.per_compression_n_m.abs() * xi + force.per_rate_n_s_m.abs() * rate)
+    }
+
+    /// The promises of a point within a branch.
+    fn holds(&self) -> Result<(), Breach> {
+        let (Some(branch), (xi, rate)) = (self.branch, self.motion) else { return Ok(()) };
+        let law = self.law;
+        let force = law.force(&branch, xi, rate);
+        self.finite(&force)?;
+        for far in [1e3, 1e30] {
+            for (by_xi, by_rate) in [(-1.0, 1.0), (-1.0, -1.0), (1.0, 1.0), (1.0, -1.0)] {
+                self.finite(&law.force(&branch, by_xi * far * (1.0 + xi.abs()), by_rate * far * (1.0 + rate.abs())))?;
+            }
+        }
+        let stored = law.stored_energy_j(&branch, xi);
+        self.require(stored.is_finite() && stored >= 0.0, || Promise::Finite)?;
+        let force_n = force.force_n;
+        self.require(force_n >= -self.rounding(&force), || Promise::Push { force_n })?;
+        if !law.depends_on_rate() {
+            let same = law.force(&branch, xi, 0.5 * rate).force_n == force_n && force.per_rate_n_s_m == 0.0;
+            self.require(same, || Promise::Rate)?;
+        }
+        self.derivatives_are_those_of(&branch, &force)
+    }
+
+    fn derivatives_are_those_of(&self, branch: &Branch, force: &Force) -> Result<(), Breach> {
+        let (law, (xi, rate)) = (self.law, self.motion);
+        // away from the branch's ends and from where it began, by which powers may be anchored
+        let ends = law.boundaries(branch);
+        let end = ends.iter().filter(|end| end.per_rate == 0.0 && end.per_compression > 0.0);
+        let end = end.map(|end| end.level / end.per_compression).fold(0.0, f64::max);
+        let depth = (xi - end).min((xi - branch.anchor_m).abs());
+        let (by_xi, by_rate) = (STEP * depth, STEP * rate.abs());
+        let room = |end: &crate::Boundary| {
+            end.margin(xi, rate) > 2.0 * (end.per_compression.abs() * by_xi + end.per_rate.abs() * by_rate)
+        };
+        // nearer to its end a force is too small for its differences to tell
+        let within = depth > 1e-3 * xi.abs() && by_rate > 0.0 && ends.iter().all(room);
+        if !within {
+            return Ok(());
+        }
+        let at = |xi: f64, rate: f64| law.force(branch, xi, rate).force_n;
+        let pairs = [
+            (force.per_compression_n_m, at(xi + by_xi, rate) - at(xi - by_xi, rate), by_xi),
+            (force.per_rate_n_s_m, at(xi, rate + by_rate) - at(xi, rate - by_rate), by_rate),
+        ];
+        for (stated, change, step) in pairs {
+            let found = change / (2.0 * step);
+            let allowed = DIFFERENCE * (stated.abs() + found.abs()) + 1e-14 * force.force_n.abs() / step;
+            self.require((stated - found).abs() <= allowed, || Promise::Derivative { stated, found })?;
+        }
+        Ok(())
+    }
+
+    /// The promises of a change from this branch to what follows.
+    fn crosses_to(&self, next: &State) -> Result<(), Breach> {
+        let (law, (xi, rate)) = (self.law, self.motion);
+        let force = |branch: Option<Branch>| branch.map_or(Force::ZERO, |branch| law.force(&branch, xi, rate));
+        let (before, after) = (force(self.branch), force(next.branch()));
+        self.finite(&after)?;
+        let allowed = self.rounding(&before) + self.rounding(&after);
+        let (before_n, after_n) = (before.force_n, after.force_n);
+        self.require((before_n - after_n).abs() <= allowed, || Promise::Continuous { before_n, after_n })?;
+        let Some(branch) = next.branch() else { return Ok(()) };
+        let inside = law.boundaries(&branch).iter().all(|end| {
+            let size = end.per_compression.abs() * self.sizes.0 + end.per_rate.abs() * self.sizes.1;
+            end.margin(xi, rate) >= -ROUNDING * (size + end.level.abs())
+        });
+        self.require(inside, || Promise::Begins)
+    }
+}
+
+/// A motion of piecewise constant acceleration that begins at first touch and ends well apart.
+struct Motion {
+    /// Rates at whole multiples of `unit_s`, and the compressions there.
+    rates: Vec<f64>,
+    compressions: Vec<f64>,
+    unit_s: f64,
+}
+
+impl Motion {
+    fn new(seed: u64, compression_m: f64, speed_m_s: f64) -> Motion {
+        // a linear congruential generator is random enough to load and unload in any order
+        let mut random = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
+        let mut part = || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let unit_s = compression_m / speed_m_s;
+        let mut rates = vec![(0.1 + 0.9 * part()) * speed_m_s];
+        for _ in 0..2 + seed % 7 {
+            rates.push((2.0 * part() - 1.0) * speed_m_s);
+        }
+        let mut compressions = vec![0.0];
+        for i in 0.. {
+            if i + 1 == rates.len() {
+                if compressions[i] < -0.2 * compression_m {
+                    break;
+                }
+                rates.push(-speed_m_s);
+            }
+            compressions.push(compressions[i] + 0.5 * unit_s * (rates[i] + rates[i + 1]));
+        }
+        Motion { rates, compressions, unit_s }
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let count = INSTANTS * (self.rates.len() as u32 - 1);
+        (0..=count).map(|i| self.unit_s * f64::from(i) / f64::from(INSTANTS)).collect()
+    }
+
+    fn at(&self, time_s: f64) -> (f64, f64) {
+        let unit = time_s / self.unit_s;
+        let i = (unit as usize).min(self.rates.len() - 2);
+        let (part, from, change) = (unit - i as f64, self.rates[i], self.rates[i + 1] - self.rates[i]);
+        (self.compressions[i] + self.unit_s * part * (from + 0.5 * part * change), from + part * change)
+    }
+}

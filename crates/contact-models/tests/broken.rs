@@ -1,0 +1,98 @@
+//! Laws that break their contract, each in one way, and what is told of them.
+
+use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory, Promise, Stage, check_contract};
+
+/// A linear spring with one fault.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Broken {
+    Nothing,
+    Pulls,
+    Jumps,
+    HidesItsRate,
+    MakesEnergy,
+    NeverSettles,
+    BeginsBeyond,
+    NotANumber,
+}
+
+const STIFFNESS: f64 = 1e6;
+
+fn branch(stage: Stage) -> Branch {
+    Branch { stage, anchor_m: 0.0, internal: 0.0 }
+}
+
+impl ContactLaw for Broken {
+    fn touch(&self, _: &Memory, _: f64) -> Branch {
+        branch(Stage::Loading)
+    }
+
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+        let xi = compression_m.clamp(0.0, 1.0);
+        let stiffness = if (0.0..1.0).contains(&compression_m) { STIFFNESS } else { 0.0 };
+        let spring = Force { force_n: STIFFNESS * xi, per_compression_n_m: stiffness, per_rate_n_s_m: 0.0 };
+        let unloads = branch.stage == Stage::Unloading;
+        let times = |factor: f64| Force {
+            force_n: factor * spring.force_n,
+            per_compression_n_m: factor * stiffness,
+            per_rate_n_s_m: 0.0,
+        };
+        match self {
+            Broken::Pulls if unloads => times(-1.0),
+            Broken::Jumps if unloads => times(0.5),
+            Broken::HidesItsRate => times(1.0 + 1e-3 * rate_m_s.clamp(-1.0, 1.0)),
+            // on the way back it pushes harder, and keeps to that way
+            Broken::MakesEnergy if unloads => {
+                let root = (xi * branch.internal).sqrt();
+                Force {
+                    force_n: STIFFNESS * root,
+                    per_compression_n_m: 0.5 * STIFFNESS * root / xi.max(1e-300),
+                    ..spring
+                }
+            }
+            Broken::NotANumber if xi > 3e-6 => times(f64::NAN),
+            _ => spring,
+        }
+    }
+
+    fn stored_energy_j(&self, _: &Branch, compression_m: f64) -> f64 {
+        0.5 * STIFFNESS * compression_m.clamp(0.0, 1.0).powi(2)
+    }
+
+    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
+        match branch.stage {
+            Stage::Loading => [Boundary::rate_falls_to(0.0), Boundary::NEVER],
+            Stage::Unloading if *self == Broken::MakesEnergy => [Boundary::compression_falls_to(0.0), Boundary::NEVER],
+            Stage::Slack => [Boundary { level: 1.0, ..Boundary::NEVER }, Boundary::NEVER],
+            _ => [Boundary::compression_falls_to(0.0), Boundary::rate_rises_to(0.0)],
+        }
+    }
+
+    fn cross(&self, before: &Branch, which: usize, compression_m: f64, _: f64) -> After {
+        match (self, before.stage, which) {
+            (_, Stage::Unloading, 0) => After::Release(Memory::default()),
+            (Broken::NeverSettles, Stage::Unloading | Stage::Loading, _) => After::Continue(*before),
+            (Broken::BeginsBeyond, ..) => After::Continue(branch(Stage::Slack)),
+            (_, Stage::Loading, _) => After::Continue(Branch { internal: compression_m, ..branch(Stage::Unloading) }),
+            _ => After::Continue(branch(Stage::Loading)),
+        }
+    }
+
+    fn depends_on_rate(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn each_fault_is_named() {
+    let told = |law: Broken| check_contract(&law, 1e-5, 1.0).map_err(|breach| breach.promise);
+    assert_eq!(told(Broken::Nothing), Ok(()));
+    assert!(matches!(told(Broken::Pulls), Err(Promise::Continuous { .. })));
+    assert!(matches!(told(Broken::Jumps), Err(Promise::Continuous { .. })));
+    assert_eq!(told(Broken::HidesItsRate), Err(Promise::Rate));
+    assert!(matches!(told(Broken::MakesEnergy), Err(Promise::Energy { made_j }) if made_j > 0.0));
+    assert_eq!(told(Broken::NeverSettles), Err(Promise::Settles));
+    assert_eq!(told(Broken::BeginsBeyond), Err(Promise::Begins));
+    assert_eq!(told(Broken::NotANumber), Err(Promise::Finite));
+    let message = check_contract(&Broken::HidesItsRate, 1e-5, 1.0).unwrap_err().to_string();
+    assert!(message.contains("depends on the rate") && message.contains("Loading"), "{message}");
+}
