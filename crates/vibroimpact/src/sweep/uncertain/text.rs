@@ -5,6 +5,9 @@ use std::fmt::Write;
 use super::estimate::{Estimate, RestitutionDistribution};
 use crate::report::significant;
 
+/// Characters before the figures.
+const NAMES: usize = 22;
+
 /// A figure with its standard error, to the digits that this leaves.
 fn told(figure: Estimate) -> String {
     let Estimate { value, standard_error } = figure;
@@ -23,7 +26,8 @@ pub(in crate::sweep) fn text(found: &RestitutionDistribution) -> String {
     let mut lines = String::new();
     // a String does not fail to be written
     let mut line = |name: &str, text: String| {
-        let _ = writeln!(lines, "  {name:<22}{text}");
+        let gap = if name.len() < NAMES { "" } else { "  " };
+        let _ = writeln!(lines, "  {name:<NAMES$}{gap}{text}");
     };
     let RestitutionDistribution { draws, with_restitution, quantiles, indices, .. } = found;
     line("restitution of draws", format!("{with_restitution} of {draws}; every figure ± its standard error"));
