@@ -43,6 +43,10 @@ pub struct Settings {
     /// Number of starting points: the parameters' own, then a Halton sequence over their search intervals (in the
     /// transformed coordinates). Default 8.
     pub starts: usize,
+    /// Points of the sequence at which the sum of squares is evaluated to choose the starting points from: those where it
+    /// is least. Default 0: the first of the sequence, whatever they are worth. Worth it where evaluating costs little
+    /// beside searching, and the sum of squares has many minima.
+    pub candidates: usize,
     /// Relative change in the sum of squares and in the parameters at which a search ends, from 1e-15 to 0.1.
     /// Default 1e-10. The search from each start ends at 1e-5 already, and the best goes on from there.
     pub tolerance: f64,
@@ -52,7 +56,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { method: Method::Both, starts: 8, tolerance: 1e-10, max_evaluations: 2000 }
+        Settings { method: Method::Both, starts: 8, candidates: 0, tolerance: 1e-10, max_evaluations: 2000 }
     }
 }
 
@@ -128,6 +132,9 @@ impl Settings {
         if !(1..=100_000).contains(&self.starts) {
             return Err(InvalidInput::new("starts", self.starts, "1 to 100000 starting points"));
         }
+        if self.candidates > 1_000_000 {
+            return Err(InvalidInput::new("candidates", self.candidates, "0 to 1000000 points"));
+        }
         if !(1..=100_000_000).contains(&self.max_evaluations) {
             return Err(InvalidInput::new("max_evaluations", self.max_evaluations, "1 to 1e8 evaluations"));
         }
@@ -169,8 +176,7 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     let mut best: Option<(Vec<f64>, f64, Outcome)> = None;
     // where a start leads needs few digits; the best one is then followed to the end
     let scouting = Settings { tolerance: settings.tolerance.max(1e-5), ..*settings };
-    for index in 0..settings.starts {
-        let from = starting_point(problem, index);
+    for from in starting_points(&objective, settings, &mut buffer) {
         let (u, outcome) = search(&objective, &scouting, &from, &mut buffer);
         let value = objective.sum_of_squares(&u, &mut buffer);
         starts.push(Start {
@@ -218,6 +224,20 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
         covariance,
         transforms: problem.parameters.clone(),
     })
+}
+
+/// The parameters' own start, then points of the sequence: the first, or of the candidates those with the least sum.
+fn starting_points(objective: &Objective, settings: &Settings, buffer: &mut [f64]) -> Vec<Vec<f64>> {
+    let point = |index| starting_point(objective.problem, index);
+    let more = settings.starts - 1;
+    if settings.candidates <= more {
+        return (0..settings.starts).map(point).collect();
+    }
+    let mut candidates: Vec<(f64, Vec<f64>)> =
+        (1..=settings.candidates).map(point).map(|u| (objective.sum_of_squares(&u, buffer), u)).collect();
+    // the sort is stable: of equal ones the first of the sequence
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+    std::iter::once(point(0)).chain(candidates.into_iter().take(more).map(|(_, u)| u)).collect()
 }
 
 /// The parameters' own start, then Halton's points over the search intervals.

@@ -1,5 +1,6 @@
 //! How well the parameters are known.
 
+use crate::distributions::two_sided_quantile;
 use crate::fit::{Fit, Problem, Settings, fit_weighted};
 use crate::objective::Objective;
 use crate::random::Random;
@@ -31,7 +32,7 @@ impl Fit {
         require_level(level)?;
         let n = self.parameters.len();
         let Some(covariance) = &self.covariance else { return Ok(None) };
-        let t = student_quantile(level, self.report.count - n);
+        let t = two_sided_quantile(level, Some(self.report.count - n));
         let interval = |(j, parameter): (usize, &crate::Parameter)| {
             let (u, half) = (parameter.inward(self.parameters[j]), t * covariance[j * n + j].sqrt());
             Interval { low: parameter.outward(u - half), high: parameter.outward(u + half) }
@@ -138,31 +139,4 @@ pub(crate) fn covariance(
     let inverse = factor.inverse();
     let variance = sum_of_squares / freedom as f64;
     Some((0..n * n).map(|k| variance * inverse[(k / n, k % n)] / (lengths[k / n] * lengths[k % n])).collect())
-}
-
-/// `t` such that Student's variable lies within `-t..t` with probability `level`:
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`.
-fn student_quantile(level: f64, freedom: usize) -> f64 {
-    let f = freedom.max(1) as f64;
-    let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
-    (f * (1.0 - x) / x).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::student_quantile;
-
-    #[test]
-    fn student_quantiles_are_those_of_the_tables() {
-        // exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables
-        let level: f64 = 0.95;
-        let exact =
-            [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
-        for (freedom, t) in exact {
-            assert!((student_quantile(level, freedom) / t - 1.0).abs() < 1e-8, "{freedom}");
-        }
-        for (freedom, t) in [(10, 2.228138852), (30, 2.042272456), (100, 1.983971519)] {
-            assert!((student_quantile(level, freedom) - t).abs() < 1e-7, "{freedom}");
-        }
-    }
 }

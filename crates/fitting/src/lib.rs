@@ -20,6 +20,9 @@
 //!   goes on from the best point ([`Method::Both`], the default).
 //! - **Intervals.** `C = s^2 (J^T J)^-1`, `s^2 = S/(m - n)`, in `u`, with Student's quantile ([`Fit::intervals`]; its
 //!   assumptions are stated there), or by resampling with a seed ([`bootstrap`]).
+//! - **What is determined.** [`Information`] tells covariance, directions that the residuals leave open, and what
+//!   further ones would add; [`profile`] follows the sum of squares where the covariance is too simple; and
+//!   [`chi_square_tail`] and [`fisher_tail`] tell whether the misfit is one of noise.
 //! - **Prediction.** [`cross_validate`] leaves out random folds ([`k_folds`]) or groups that belong together.
 //!
 //! The same input gives the same bits: one thread, sums in order, random numbers from a seed only.
@@ -44,21 +47,27 @@
 //! [`FitError::NonFiniteModel`]; where it is not finite on the way, the search turns back. A search that ends at its
 //! limit says so in its [`Outcome`]. No closure that returns makes the crate panic or loop without end.
 
+mod distributions;
 mod error;
 mod fit;
 mod gradient_method;
+mod information;
 mod intervals;
 mod objective;
 mod parameter;
+mod profile;
 mod random;
 mod report;
 mod simplex;
 mod validation;
 
+pub use distributions::{chi_square_tail, fisher_tail, two_sided_quantile};
 pub use error::{FitError, InvalidInput};
 pub use fit::{Fit, Method, Outcome, Problem, ResidualsFn, Settings, Start, fit};
+pub use information::{Direction, Information};
 pub use intervals::{Interval, bootstrap};
 pub use parameter::{Parameter, Range};
+pub use profile::{Profile, profile};
 pub use report::Residuals;
 pub use validation::{CrossValidation, Fold, cross_validate, k_folds};
 

@@ -75,7 +75,7 @@ impl Parameter {
     }
 
     /// `u` of a parameter `p`.
-    pub(crate) fn inward(&self, p: f64) -> f64 {
+    pub fn inward(&self, p: f64) -> f64 {
         match self.range {
             Range::Free => p,
             Range::Positive => p.ln(),
@@ -84,7 +84,7 @@ impl Parameter {
     }
 
     /// The parameter at `u`.
-    pub(crate) fn outward(&self, u: f64) -> f64 {
+    pub fn outward(&self, u: f64) -> f64 {
         let clamped = u.clamp(-LARGEST, LARGEST);
         match self.range {
             Range::Free => u,
@@ -94,7 +94,7 @@ impl Parameter {
     }
 
     /// `dp/du` at a parameter `p`.
-    pub(crate) fn slope(&self, p: f64) -> f64 {
+    pub fn slope(&self, p: f64) -> f64 {
         match self.range {
             Range::Free => 1.0,
             Range::Positive => p,

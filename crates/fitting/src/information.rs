@@ -1,0 +1,139 @@
+//! What observations say about parameters: covariance, directions that they do not determine, further observations.
+//!
+//! With `J` the Jacobian of residuals of unit variance in the coordinates `u`,
+//!
+//! ```text
+//! M = J^T J,        C = M^-1,        M v_k = v_k / s_k^2.
+//! ```
+//!
+//! Along the unit vector `v_k` the coordinates are known with the standard deviation `s_k`: where it is large, the
+//! observations do not determine the combination. A further observation with the row `a` of its Jacobian gives
+//! `M + a^T a`, and the volume of the confidence region shrinks by `sqrt(det M / det(M + a^T a))`.
+
+use crate::InvalidInput;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Entries of `M` below this share of the largest are rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// The information `M = J^T J` that observations hold about coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Information {
+    matrix: DMatrix<f64>,
+}
+
+/// A direction in the space of the coordinates, and how well the observations determine it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Direction {
+    /// Unit vector; its largest entry is positive.
+    pub vector: Vec<f64>,
+    /// Standard deviation along it; infinite where the observations say nothing.
+    pub standard_deviation: f64,
+}
+
+impl Information {
+    /// From the Jacobian of residuals of unit variance, row by row, in `n` coordinates.
+    ///
+    /// # Errors
+    /// No coordinate, rows that are no multiple of `n` numbers, or a number that is not finite.
+    ///
+    /// ```
+    /// // two readings of the sum of two coordinates tell nothing of their difference
+    /// let readings = fitting::Information::of(&[1.0, 1.0, 1.0, 1.0], 2)?;
+    /// let directions = readings.directions();
+    /// assert!(directions[0].standard_deviation.is_infinite());
+    /// assert!((directions[1].standard_deviation - 0.5).abs() < 1e-12);
+    /// assert!(readings.covariance().is_none());
+    /// # Ok::<(), fitting::InvalidInput>(())
+    /// ```
+    pub fn of(rows: &[f64], n: usize) -> Result<Information, InvalidInput> {
+        if n == 0 || !rows.len().is_multiple_of(n) {
+            let allowed = "rows of as many numbers as there are coordinates, of which there is at least one";
+            return Err(InvalidInput::new("rows.len()", rows.len(), allowed));
+        }
+        if let Some(entry) = rows.iter().find(|entry| entry.is_nan() || entry.abs() >= 1e150) {
+            return Err(InvalidInput::new("rows", entry, "numbers of magnitude below 1e150"));
+        }
+        let jacobian = DMatrix::from_row_slice(rows.len() / n, n, rows);
+        Ok(Information { matrix: jacobian.transpose() * jacobian })
+    }
+
+    /// The same with a normal prior on each coordinate, of the standard deviation given for it; what is not positive
+    /// or lacks is no prior.
+    #[must_use]
+    pub fn with_prior(mut self, standard_deviations: &[f64]) -> Information {
+        for (j, sd) in standard_deviations.iter().enumerate().take(self.matrix.nrows()) {
+            if *sd > 0.0 {
+                self.matrix[(j, j)] += sd.powi(-2);
+            }
+        }
+        self
+    }
+
+    /// With the information of further rows, which must have as many numbers each.
+    ///
+    /// # Errors
+    /// As [`Information::of`].
+    pub fn with_rows(&self, rows: &[f64]) -> Result<Information, InvalidInput> {
+        let further = Information::of(rows, self.matrix.nrows())?;
+        Ok(Information { matrix: &self.matrix + further.matrix })
+    }
+
+    /// The directions that the observations determine each by itself, the worst known first.
+    pub fn directions(&self) -> Vec<Direction> {
+        let eigen = SymmetricEigen::new(self.matrix.clone());
+        let largest = eigen.eigenvalues.iter().fold(0.0f64, |most, value| most.max(*value));
+        let mut found: Vec<Direction> = eigen
+            .eigenvalues
+            .iter()
+            .zip(eigen.eigenvectors.column_iter())
+            .map(|(&value, vector)| {
+                let leading = vector.iter().copied().fold(0.0f64, |a, b| if b.abs() > a.abs() { b } else { a });
+                let sign = if leading < 0.0 { -1.0 } else { 1.0 };
+                let known = value > ROUNDING * largest && value > 0.0;
+                let standard_deviation = if known { value.sqrt().recip() } else { f64::INFINITY };
+                Direction { vector: vector.iter().map(|entry| sign * entry).collect(), standard_deviation }
+            })
+            .collect();
+        found.sort_by(|a, b| b.standard_deviation.total_cmp(&a.standard_deviation));
+        found
+    }
+
+    /// The covariance `C`, row by row; `None` where a direction is not determined.
+    pub fn covariance(&self) -> Option<Vec<f64>> {
+        let directions = self.directions();
+        if directions.iter().any(|direction| direction.standard_deviation.is_infinite()) {
+            return None;
+        }
+        let n = self.matrix.nrows();
+        let entry = |i: usize, j: usize| -> f64 {
+            directions.iter().map(|d| d.standard_deviation.powi(2) * d.vector[i] * d.vector[j]).sum()
+        };
+        Some((0..n * n).map(|k| entry(k / n, k % n)).collect())
+    }
+
+    /// Standard deviation of each coordinate, the others unknown; infinite where it is not determined.
+    pub fn standard_deviations(&self) -> Vec<f64> {
+        let directions = self.directions();
+        let of = |j: usize| -> f64 {
+            // an undetermined direction matters to the coordinates that have a part in it
+            let share = |d: &Direction| if d.vector[j].abs() > 1e-7 { d.vector[j] * d.standard_deviation } else { 0.0 };
+            directions.iter().map(|d| share(d).powi(2)).sum::<f64>().sqrt()
+        };
+        (0..self.matrix.nrows()).map(of).collect()
+    }
+
+    /// Standard deviation of a linear prediction `row . u`.
+    pub fn of_prediction(&self, row: &[f64]) -> f64 {
+        let along = |d: &Direction| -> f64 {
+            let part: f64 = d.vector.iter().zip(row).map(|(v, a)| v * a).sum();
+            if part == 0.0 { 0.0 } else { (part * d.standard_deviation).powi(2) }
+        };
+        self.directions().iter().map(along).sum::<f64>().sqrt()
+    }
+
+    /// Logarithm of `sqrt(det M)`: the volume of the confidence region is its negative exponential.
+    pub fn log_precision(&self) -> f64 {
+        -self.directions().iter().map(|direction| direction.standard_deviation.ln()).sum::<f64>()
+    }
+}
