@@ -79,6 +79,11 @@ impl Table {
 }
 
 impl Row {
+    /// The text in the column at `place`.
+    pub fn text(&self, place: usize) -> &str {
+        self.cells.get(place).unwrap_or_default()
+    }
+
     /// The finite number in the column at `place`, whose name is for messages.
     pub fn number(&self, place: usize, name: &str) -> Result<f64, InvalidInput> {
         let field = format!("line {}, {name}", self.line);

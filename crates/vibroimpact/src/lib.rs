@@ -33,6 +33,7 @@
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`trust`] | how far the theories behind a result can be trusted |
 //! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
+//! | [`identify`] | fields of a scene from measurements, by resolved impacts |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
@@ -55,6 +56,7 @@ mod result_file;
 pub mod assembly;
 pub mod draft;
 pub mod export;
+pub mod identify;
 pub mod infinite;
 pub mod model;
 pub mod net;

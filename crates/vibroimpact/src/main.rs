@@ -14,7 +14,7 @@ use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
 use commands::voice::Voice;
 use commands::{
-    choice, first, infinite_beam, law, modes, net, orbit, predictability, sensitivity, shell, simulate, sweep, voice,
+    choice, first, identify, infinite_beam, law, modes, net, orbit, predictability, sensitivity, shell, simulate, sweep, voice,
 };
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
@@ -84,6 +84,9 @@ enum Command {
     /// Fit the three parameters of `emoc` to a table of restitutions
     #[command(after_help = net::FIT_EXAMPLES)]
     Fit(net::FitArguments),
+    /// Find fields of a scene from measurements, by resolved impacts: values, intervals, what the data leave open
+    #[command(after_help = identify::EXAMPLES)]
+    Identify(identify::Arguments),
     /// Give the parameters of laws of contact for a wanted restitution, exactly and for a fixed step
     #[command(after_help = law::EXAMPLES)]
     Law(law::Arguments),
@@ -175,6 +178,7 @@ fn run(command: Command) -> Result<String, Failure> {
         Command::Modes(arguments) => watched("modes", || modes::run(arguments)),
         Command::Emoc(arguments) => watched("emoc", || net::emoc(arguments)),
         Command::Fit(arguments) => watched("fit", || net::fit(arguments)),
+        Command::Identify(arguments) => watched("identify", || identify::run(arguments)),
         Command::InfiniteBeam(arguments) => watched("infinite-beam", || infinite_beam::run(arguments)),
         Command::Law(arguments) => law::run(arguments),
         Command::Orbit(arguments) => watched("orbit", || orbit::run(arguments)),

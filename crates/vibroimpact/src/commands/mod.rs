@@ -4,6 +4,7 @@ pub mod bodies;
 pub mod choice;
 pub mod first;
 pub mod heartbeat;
+pub mod identify;
 pub mod infinite_beam;
 pub mod law;
 pub mod modes;

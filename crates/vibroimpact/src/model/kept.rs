@@ -38,7 +38,7 @@ pub struct Kept {
 
 impl Kept {
     /// A solver for a structure, with the tables that it has from before.
-    pub(super) fn solver(&mut self, structure: &Structure) -> Result<&mut Solver, InvalidInput> {
+    pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&mut Solver, InvalidInput> {
         let known = self.solvers.iter().position(|(kept, _)| kept == structure);
         let last = match known.and_then(|place| self.solvers.remove(place)) {
             Some(known) => known,

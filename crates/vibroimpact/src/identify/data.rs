@@ -1,0 +1,203 @@
+//! The table of measurements.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::gauge::ForceRecord;
+use super::quantity::Quantity;
+use crate::input::{Row as Cells, Table, read_bytes};
+use crate::scene::json::number;
+use crate::scene::{InvalidInput, SceneError, table_path};
+use crate::scene::FieldPath;
+
+/// Most rows of a table.
+const MOST_ROWS: usize = 10_000;
+const FORCE_FILE: &str = "force_file";
+/// The name of the measured force, in whose column of standard deviations its noise is stated.
+pub(super) const FORCE: &str = "force_n";
+const SD: &str = "_sd";
+
+const NEEDED: &str = "a table of comma-separated values whose line of names holds fields of the scene and what was \
+                      measured: quantities, their standard deviations (restitution_sd and so on), force_file";
+
+/// Measured impacts, a row each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Data {
+    /// Fields of the scene that the rows state.
+    pub fields: Vec<FieldPath>,
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// Whether standard deviations are stated.
+    pub stated: bool,
+}
+
+/// One impact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Line of the file, from 1, for messages.
+    pub line: u64,
+    /// The values of the fields.
+    pub values: Vec<Value>,
+    /// What was measured, with the standard deviation if it is stated.
+    pub measured: Vec<(Quantity, f64, Option<f64>)>,
+    /// The force over time, with the standard deviation of its noise (N) if it is stated.
+    pub force: Option<(ForceRecord, Option<f64>)>,
+}
+
+impl Data {
+    /// Reads a table of measurements, and the force histories that it names, which stand in its folder or below.
+    ///
+    /// # Errors
+    /// A file that cannot be read; a column or a cell that cannot be used, by line and name.
+    pub fn read(path: &Path) -> Result<Data, SceneError> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        Data::parse(&read_bytes(path)?, &|name| read_bytes(&folder.join(name)))
+    }
+
+    /// Reads the table from the bytes of a file; `open` gives those of a force history.
+    ///
+    /// # Errors
+    /// As [`Data::read`].
+    ///
+    /// ```
+    /// use std::io::{Error, ErrorKind};
+    /// use vibroimpact::identify::{Data, Quantity};
+    /// let table = b"location_m,restitution,restitution_sd\n0.4,0.31,0.01\n";
+    /// let none = |_: &std::path::Path| unreachable!("the table names no file");
+    /// let data = Data::parse(table, &none)?;
+    /// assert_eq!(data.rows[0].measured, [(Quantity::Restitution, 0.31, Some(0.01))]);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn parse(bytes: &[u8], open: &dyn Fn(&Path) -> Result<Vec<u8>, SceneError>) -> Result<Data, SceneError> {
+        let table = Table::parse(bytes, NEEDED)?;
+        let columns = Columns::of(&table)?;
+        if columns.measured.is_empty() && columns.force.is_none() {
+            let allowed = format!("at least one column of what was measured: {}, or {FORCE_FILE}", Quantity::names());
+            return Err(InvalidInput::missing("a measured quantity", allowed).into());
+        }
+        let sds = columns.measured.iter().map(|(_, _, sd)| *sd).chain(columns.force.map(|(_, sd)| sd));
+        let stated = sds.clone().all(|sd| sd.is_some());
+        if !stated && sds.clone().any(|sd| sd.is_some()) {
+            let names = columns.measured.iter().map(|(quantity, _, sd)| (quantity.name(), *sd));
+            let lacks = names.chain(columns.force.map(|(_, sd)| (FORCE, sd))).find(|(_, sd)| sd.is_none());
+            let name = lacks.map_or("", |(name, _)| name);
+            let allowed = "a column of standard deviations for every measured quantity, or for none: they are then \
+                           estimated";
+            return Err(InvalidInput::missing(format!("column {name}{SD}"), allowed).into());
+        }
+        let rows = columns.rows(&table, open)?;
+        let values = rows.iter().map(|row| row.measured.len() + usize::from(row.force.is_some())).sum::<usize>();
+        if values == 0 {
+            return Err(InvalidInput::new("measured values", "0", "at least one in the table").into());
+        }
+        Ok(Data { fields: columns.fields(), rows, stated })
+    }
+
+    /// Reads a table of experiments that could be made: fields of the scene only.
+    ///
+    /// # Errors
+    /// A file that cannot be read; a column of measured values, or a cell that cannot be used.
+    pub fn read_candidates(path: &Path) -> Result<Data, SceneError> {
+        let table = Table::parse(&read_bytes(path)?, NEEDED)?;
+        let columns = Columns::of(&table)?;
+        let too_much = columns.measured.first().map(|(quantity, ..)| quantity.name());
+        if let Some(name) = too_much.or(columns.force.map(|_| FORCE_FILE)) {
+            let allowed = "left out of a table of candidates, which holds fields of the scene only";
+            return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed).into());
+        }
+        let rows = columns.rows(&table, &|_| Ok(Vec::new()))?;
+        Ok(Data { fields: columns.fields(), rows, stated: false })
+    }
+}
+
+/// What each column holds, by its place.
+struct Columns {
+    fields: Vec<(FieldPath, usize)>,
+    measured: Vec<(Quantity, usize, Option<usize>)>,
+    force: Option<(usize, Option<usize>)>,
+}
+
+impl Columns {
+    fn of(table: &Table) -> Result<Columns, InvalidInput> {
+        let column = |name: &str| table.column(name, NEEDED);
+        let sd_of = |name: &str| column(&format!("{name}{SD}"));
+        let mut columns = Columns { fields: Vec::new(), measured: Vec::new(), force: None };
+        for (place, name) in table.header.iter().enumerate() {
+            column(name)?;
+            if let Some(quantity) = Quantity::named(name) {
+                columns.measured.push((quantity, place, sd_of(name)?));
+            } else if name == FORCE_FILE {
+                columns.force = Some((place, sd_of(FORCE)?));
+            } else if let Some(quantity) = name.strip_suffix(SD) {
+                let known = Quantity::named(quantity).is_some() || quantity == FORCE;
+                let beside = if quantity == FORCE { FORCE_FILE } else { quantity };
+                if !known || column(beside)?.is_none() {
+                    let allowed = format!(
+                        "beside the column of what it is the standard deviation of: {}, {FORCE}",
+                        Quantity::names()
+                    );
+                    return Err(InvalidInput::new(format!("column {name}"), "1 column", allowed));
+                }
+            } else {
+                let path = FieldPath::parse(name).ok_or_else(|| {
+                    let allowed =
+                        format!("the path of a field of the scene, or one of {}, {FORCE_FILE}", Quantity::names());
+                    InvalidInput::new(format!("the name of column {}", place + 1), format!("\"{name}\""), allowed)
+                })?;
+                columns.fields.push((path, place));
+            }
+        }
+        Ok(columns)
+    }
+
+    fn fields(&self) -> Vec<FieldPath> {
+        self.fields.iter().map(|(field, _)| field.clone()).collect()
+    }
+
+    fn rows(&self, table: &Table, open: &dyn Fn(&Path) -> Result<Vec<u8>, SceneError>) -> Result<Vec<Row>, SceneError> {
+        if table.rows.is_empty() || table.rows.len() > MOST_ROWS {
+            let allowed = format!("1 to {MOST_ROWS} below the line of names");
+            return Err(InvalidInput::new("number of rows", table.rows.len().to_string(), allowed).into());
+        }
+        table.rows.iter().map(|cells| self.row(cells, open)).collect()
+    }
+
+    fn row(&self, cells: &Cells, open: &dyn Fn(&Path) -> Result<Vec<u8>, SceneError>) -> Result<Row, SceneError> {
+        let line = cells.line;
+        let mut row = Row { line, values: Vec::new(), measured: Vec::new(), force: None };
+        for (field, place) in &self.fields {
+            let text = cells.text(*place);
+            if text.is_empty() {
+                let allowed = "a value that the field can have; rows that vary other fields belong in another table";
+                return Err(InvalidInput::missing(format!("line {line}, {field}"), allowed).into());
+            }
+            let value = text.parse().ok().filter(|value: &f64| value.is_finite());
+            row.values.push(value.map_or_else(|| Value::from(text), Value::from));
+        }
+        // an empty cell is a quantity that was not measured in this impact
+        for &(quantity, place, sd) in self.measured.iter().filter(|(_, place, _)| !cells.text(*place).is_empty()) {
+            let value = cells.number(place, quantity.name())?;
+            let field = || format!("line {line}, {}", quantity.name());
+            quantity.allows(value).map_err(|allowed| InvalidInput::new(field(), number(value), allowed))?;
+            row.measured.push((quantity, value, deviation(cells, sd, quantity.name())?));
+        }
+        if let Some((place, sd)) = self.force
+            && !cells.text(place).is_empty()
+        {
+            let name = cells.text(place);
+            let path: PathBuf = table_path(&format!("line {line}, {FORCE_FILE}"), name)?.to_owned();
+            let record = ForceRecord::parse(name, &open(&path)?)?;
+            row.force = Some((record, deviation(cells, sd, FORCE)?));
+        }
+        Ok(row)
+    }
+}
+
+fn deviation(cells: &Cells, place: Option<usize>, name: &str) -> Result<Option<f64>, InvalidInput> {
+    let Some(place) = place else { return Ok(None) };
+    let name = format!("{name}{SD}");
+    let value = cells.number(place, &name)?;
+    InvalidInput::require_positive(&format!("line {}, {name}", cells.line), value)?;
+    Ok(Some(value))
+}

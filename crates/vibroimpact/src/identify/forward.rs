@@ -1,0 +1,208 @@
+//! From parameters to predictions: the impact of each row, resolved with one number of modes.
+
+use std::num::NonZero;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use contact_models::Law;
+use serde_json::{Value, json};
+use vibroimpact_sim::modal::{History, Settings, Solution};
+
+use super::data::{Data, Row};
+use super::free::Free;
+use super::gauge::Signal;
+use super::quantity::Quantity;
+use crate::impact::{Impact, in_scene};
+use crate::model::{Kept, chooses_modes};
+use crate::scene::json::quote;
+use crate::scene::{InvalidInput, Scene};
+use crate::scene::FieldPath;
+
+/// Tolerance of the solver: differences of impacts are to be smooth.
+const TOLERANCE: f64 = 1e-10;
+/// An impact that takes more than this is none that was measured: the search turns back from it.
+const MOST_SUB_IMPACTS: usize = 1000;
+const MOST_STEPS: u64 = 20_000;
+/// Rows, spread over the table, for which the number of modes is chosen.
+const PROBES: usize = 12;
+/// The restitution is to be independent of the number of modes within this share of the stated noise, within these limits.
+const SHARE_OF_NOISE: f64 = 0.2;
+const TIGHTEST: f64 = 1e-6;
+const LOOSEST: f64 = 1e-2;
+
+/// The impacts of a table as functions of the free fields.
+pub(super) struct Model<'a> {
+    pub data: &'a Data,
+    pub free: &'a [Free],
+    tree: Value,
+    modes: Option<usize>,
+    /// What impacts leave for the next, for each thread.
+    kept: Vec<Mutex<Kept>>,
+}
+
+/// Rows that take less than this together are solved on one thread: to start another costs as much.
+const WORTH_A_THREAD: Duration = Duration::from_millis(4);
+
+/// A resolved impact of a row.
+pub(super) struct Course {
+    pub solution: Solution,
+    /// The force that the gauge shows, if one was recorded.
+    pub signal: Option<Signal>,
+}
+
+impl<'a> Model<'a> {
+    /// The impacts of `data` on the scene in `tree`; chooses the number of modes with the free fields at `start`.
+    pub fn new(tree: &Value, data: &'a Data, free: &'a [Free], start: &[f64]) -> Result<Model<'a>, InvalidInput> {
+        let threads = thread::available_parallelism().map_or(1, NonZero::get).min(data.rows.len());
+        let kept = (0..threads).map(|_| Mutex::default()).collect();
+        let mut model = Model { data, free, tree: tree.clone(), modes: None, kept };
+        let mut kept = Kept::default();
+        let mut most = None;
+        let stride = data.rows.len().div_ceil(PROBES);
+        for (i, row) in data.rows.iter().enumerate() {
+            let scene = model.scene(row, start)?;
+            if scene.is_infinite() {
+                let allowed = "a structure with modes: a beam, string or plate with ends, a rod, or a list of modes";
+                return Err(InvalidInput::new("structure.kind", scene.structure.kind(), allowed));
+            }
+            let in_line = |fault| in_line(row, fault);
+            scene.check().map_err(in_line)?;
+            let count = if !chooses_modes(&scene) {
+                scene.modes.count()
+            } else if i % stride == 0 {
+                let tolerance = Some(tolerance(&scene, row));
+                let scene = Scene { model: crate::model::Model::Modal, tolerance, ..scene };
+                let answer = scene.answer_with(&mut kept).map_err(in_line)?;
+                // the theory of bending is chosen with the modes, and kept like them
+                if let (None, Some(beam)) = (most, model.tree.get_mut("structure")) {
+                    let answered = scene.as_answered(Some(&answer)).tree();
+                    if let Some(theory) = answered.get("structure").and_then(|structure| structure.get("theory")) {
+                        beam["theory"] = theory.clone();
+                    }
+                }
+                Some(answer.modes)
+            } else {
+                None
+            };
+            most = most.max(count);
+        }
+        model.modes = most;
+        // an impact that cannot be resolved is told before the search begins
+        for row in &data.rows {
+            model.impact(row, start, &mut kept).map_err(|fault| in_line(row, fault))?;
+        }
+        let begun = Instant::now();
+        data.rows.iter().for_each(|row| drop(model.course(row, start, &mut kept)));
+        if begun.elapsed() < WORTH_A_THREAD {
+            model.kept.truncate(1);
+        }
+        Ok(model)
+    }
+
+    /// The same impacts for another table, with the number of modes that was chosen.
+    pub fn for_table<'b>(&'b self, data: &'b Data) -> Model<'b> {
+        let kept = self.kept.iter().map(|_| Mutex::default()).collect();
+        Model { data, free: self.free, tree: self.tree.clone(), modes: self.modes, kept }
+    }
+
+    /// The number of modes that was chosen or stated; `None` for all that are listed.
+    pub fn modes(&self) -> Option<usize> {
+        self.modes
+    }
+
+    /// The scene of a row.
+    fn scene(&self, row: &Row, parameters: &[f64]) -> Result<Scene, InvalidInput> {
+        let mut tree = self.tree.clone();
+        let mut faults = Ok(());
+        let mut set = |path: &FieldPath, value: Value| {
+            let told = quote(&value);
+            if let Err(reason) = path.set(&mut tree, value) {
+                faults = Err(InvalidInput::new(path.to_string(), told, reason));
+            }
+        };
+        for (field, value) in self.data.fields.iter().zip(&row.values) {
+            set(field, value.clone());
+        }
+        for (free, value) in self.free.iter().zip(parameters) {
+            if let Some(path) = FieldPath::parse(&free.field).filter(|_| !free.is_of_gauge()) {
+                set(&path, json!(value));
+            }
+        }
+        faults?;
+        Scene::from_value(&tree).map_err(|fault| in_line(row, fault))
+    }
+
+    fn impact(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Result<Impact, InvalidInput> {
+        let scene = self.scene(row, parameters)?;
+        let scene = match (chooses_modes(&scene), scene.residual_compliance) {
+            (true, None) => Scene { residual_compliance: Some(true), ..scene },
+            _ => scene,
+        };
+        let impact = scene.impact_of(self.modes, kept)?;
+        let settings = Settings {
+            tolerance: TOLERANCE,
+            estimate_uncertainty: false,
+            max_sub_impacts: MOST_SUB_IMPACTS,
+            max_steps: MOST_STEPS,
+            ..impact.settings
+        };
+        Ok(Impact { settings, ..impact })
+    }
+
+    /// Resolves the impact of a row; `None` if it cannot be resolved, or takes too long.
+    pub fn course(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Option<Course> {
+        let course = self.resolve(row, parameters, kept).ok()?;
+        course.solution.outcome.stopped_by().is_none().then_some(course)
+    }
+
+    fn resolve(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Result<Course, InvalidInput> {
+        let impact = self.impact(row, parameters, kept)?;
+        let solver = kept.solver(&impact.structure)?;
+        let Impact { striker, law, start, settings, .. } = &impact;
+        if row.force.is_none() {
+            let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(in_scene)?;
+            return Ok(Course { solution, signal: None });
+        }
+        let (solution, history): (Solution, History<Law>) =
+            solver.record(striker, law, start.as_ref(), settings).map_err(in_scene)?;
+        let constant = self.free.iter().position(Free::is_of_gauge).and_then(|place| parameters.get(place));
+        let signal = Some(Signal::new(&history, constant.copied().unwrap_or(0.0)));
+        Ok(Course { solution, signal })
+    }
+
+    /// Calls `work` for every row, on all threads; the answers come in the order of the rows.
+    pub fn for_rows<T: Send>(&self, work: impl Fn(usize, &Row, &mut Kept) -> T + Sync) -> Vec<T> {
+        let size = self.data.rows.len().div_ceil(self.kept.len().max(1)).max(1);
+        let chunks = self.data.rows.chunks(size).zip(&self.kept).enumerate();
+        let of_chunk = |(chunk, (rows, kept)): (usize, (&[Row], &Mutex<Kept>))| -> Vec<T> {
+            let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            rows.iter().enumerate().map(|(i, row)| work(chunk * size + i, row, &mut kept)).collect()
+        };
+        if self.kept.len() == 1 {
+            return chunks.flat_map(of_chunk).collect();
+        }
+        thread::scope(|scope| {
+            let of_chunk = &of_chunk;
+            let threads: Vec<_> = chunks.map(|chunk| scope.spawn(move || of_chunk(chunk))).collect();
+            let joined = threads.into_iter().map(|thread| thread.join());
+            joined.flat_map(|rows| rows.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+        })
+    }
+}
+
+/// The accuracy for which modes are chosen: a share of the stated noise, or the scene's own where none is stated.
+fn tolerance(scene: &Scene, row: &Row) -> f64 {
+    let noise = row.measured.iter().filter_map(|(quantity, value, sd)| match quantity {
+        Quantity::Restitution => *sd,
+        _ => sd.map(|sd| sd / value.abs().max(sd)),
+    });
+    let least = noise.fold(f64::INFINITY, f64::min);
+    let stated = scene.tolerance.unwrap_or(crate::model::DEFAULT_TOLERANCE);
+    if least.is_finite() { (SHARE_OF_NOISE * least).clamp(TIGHTEST, LOOSEST) } else { stated }
+}
+
+/// A fault in the scene of a row, by its line.
+fn in_line(row: &Row, fault: InvalidInput) -> InvalidInput {
+    InvalidInput { field: format!("line {}, {}", row.line, fault.field), ..fault }
+}

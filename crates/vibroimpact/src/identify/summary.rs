@@ -1,0 +1,168 @@
+//! What an identification found.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// What `vibroimpact identify --json` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Identification {
+    /// The parameters, in the order asked for.
+    pub parameters: Vec<Identified>,
+    /// Probability with which an interval holds its parameter.
+    pub level: f64,
+    /// Correlations of the parameters' coordinates, row by row; null where the data do not determine all.
+    pub correlation: Option<Vec<Vec<f64>>>,
+    /// Combinations that the data leave open.
+    pub undetermined: Vec<Undetermined>,
+    /// Number of measured values, samples of force histories among them.
+    pub count: usize,
+    /// That number less the parameters and the offsets of force histories.
+    pub degrees_of_freedom: usize,
+    /// Weighted sum of squares, Eq. (1).
+    pub sum_of_squares: f64,
+    /// Whether the search ended at a minimum.
+    pub converged: bool,
+    /// Noise of each measured quantity.
+    pub noise: Vec<Noise>,
+    /// Tests of the model against the noise; empty where the data allow none.
+    pub lack_of_fit: Vec<LackOfFit>,
+    /// Number of modes, chosen once; null for all that are listed.
+    pub modes: Option<usize>,
+    /// Rows whose number of contacts changes within the steps of the derivative: they graze, and the sum of squares is rough there.
+    pub grazing_lines: Vec<u64>,
+    /// Where the searches started, and where they led.
+    pub starts: Vec<StartFound>,
+    /// Measured and predicted values.
+    pub predictions: Vec<Predicted>,
+    /// Force histories.
+    pub records: Vec<RecordFit>,
+    /// Experiments that could be made, the most telling first; empty if none were asked about.
+    pub candidates: Vec<Candidate>,
+    /// The profiles behind the intervals.
+    pub profiles: Vec<ProfileCurve>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Identified {
+    /// Path of the field.
+    pub field: String,
+    /// What the scene says; of the time constant of a gauge, where the search began.
+    pub start: f64,
+    /// What the data say.
+    pub value: f64,
+    /// Interval by the covariance; null where the data do not determine the parameter.
+    pub covariance_interval: Option<[f64; 2]>,
+    /// Interval by the likelihood profile; an end is null where the sum of squares does not rise enough.
+    pub profile_interval: [Option<f64>; 2],
+    /// Whether the two differ by more than a tenth of their half-width: the covariance is then too simple.
+    pub bent: bool,
+}
+
+/// A combination of parameters that the data leave open.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Undetermined {
+    /// Unit vector in the coordinates of the parameters (logarithms, mostly), by their fields; entries below 0.1 are left out.
+    pub direction: BTreeMap<String, f64>,
+    /// Standard deviation along it; null where the data say nothing.
+    pub standard_deviation: Option<f64>,
+    /// The same in words.
+    pub text: String,
+}
+
+/// Noise of a measured quantity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Noise {
+    /// The quantity.
+    pub quantity: String,
+    /// Number of its values.
+    pub count: usize,
+    /// Standard deviation in its unit: estimated, or the root mean square of those stated.
+    pub standard_deviation: f64,
+    /// Whether it was stated.
+    pub stated: bool,
+    /// Root mean square of measurement less prediction, in its unit.
+    pub rms: f64,
+}
+
+/// A test of the model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LackOfFit {
+    /// Which.
+    pub test: String,
+    /// Sum of squares, ratio of variances, or correlation.
+    pub statistic: f64,
+    /// Probability that the right model leaves as much.
+    pub probability: f64,
+    /// Whether that is below 0.01.
+    pub noticed: bool,
+}
+
+/// A starting point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StartFound {
+    /// Where the search began.
+    pub from: Vec<f64>,
+    /// Where it ended, to a few digits.
+    pub parameters: Vec<f64>,
+    /// The robust sum there, of `ln(1 + r^2)`; null where the model does not exist.
+    pub robust_sum: Option<f64>,
+}
+
+/// A measured value beside its prediction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Predicted {
+    /// Line of the table.
+    pub line: u64,
+    /// Which quantity.
+    pub quantity: &'static str,
+    /// Measured.
+    pub measured: f64,
+    /// Predicted with the parameters found.
+    pub predicted: f64,
+    /// Standard deviation of the measurement.
+    pub measured_sd: f64,
+    /// Standard deviation of the prediction, from that of the parameters; null where that is not determined.
+    pub predicted_sd: Option<f64>,
+}
+
+/// A force history beside its prediction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordFit {
+    /// Line of the table.
+    pub line: u64,
+    /// The file.
+    pub file: String,
+    /// Time of the first touch by the clock of the gauge (s).
+    pub offset_s: f64,
+    /// Samples: time (s), measured and predicted force (N).
+    #[serde(skip)]
+    pub samples: [Vec<f64>; 3],
+}
+
+/// An experiment that could be made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Line of the table of candidates.
+    pub line: u64,
+    /// Its fields.
+    pub fields: BTreeMap<String, serde_json::Value>,
+    /// Volume of the confidence region with it over that without: the less, the more it tells.
+    pub volume_ratio: f64,
+    /// Standard deviation of each parameter's coordinate with it over that without.
+    pub sd_ratios: Vec<f64>,
+}
+
+/// A likelihood profile.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ProfileCurve {
+    /// The parameter.
+    pub field: String,
+    /// Values at which it was held.
+    pub values: Vec<f64>,
+    /// Least sum of squares there, less that of the fit.
+    pub rise: Vec<f64>,
+    /// The rise at the ends of the interval.
+    pub limit: f64,
+}
