@@ -9,7 +9,8 @@ venv=$target/python-venv
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 # shellcheck disable=SC1091
 source "$venv/bin/activate"
-python -m pip install --quiet --disable-pip-version-check 'maturin>=1.7,<2' numpy pytest mypy matplotlib nbclient ipykernel
+python -m pip install --quiet --disable-pip-version-check 'maturin>=1.7,<2' numpy pytest mypy matplotlib nbclient ipykernel \
+  scipy pyNastran pyuff
 cargo fmt --check --manifest-path python/Cargo.toml
 cargo clippy --quiet --locked --manifest-path python/Cargo.toml -- -D warnings
 cargo build --quiet --locked --package vibroimpact

@@ -1,0 +1,26 @@
+"""Structures from other programs and from tests, as a ``modes-file`` for scenes.
+
+Each reader returns a :class:`Structure`: frequencies, shapes at named points, and the static compliance at these points
+where it is known. ``structure.write("bat.csv")`` writes the table and returns what a scene says under ``structure``. All
+numbers must be in SI units; a model in millimetres and tonnes is brought to them by ``length_m`` and ``mass_kg``, the
+metres of its unit of length and the kilograms of its unit of mass.
+
+====================================  ==========================================  =================
+reader                                reads                                       needs
+====================================  ==========================================  =================
+:func:`from_calculix`                 CalculiX ``.dat`` and ``.frd``              numpy
+:func:`from_nastran`                  Nastran ``.op2``                            pyNastran
+:func:`from_matrices`                 K and M, Matrix Market or scipy.sparse      scipy
+:func:`from_universal`                frequency responses, universal file 58      pyuff
+:func:`from_table`                    modes of a test with standard deviations    numpy
+====================================  ==========================================  =================
+"""
+
+from ._calculix import from_calculix
+from ._matrices import from_matrices
+from ._nastran import from_nastran
+from ._structure import Structure
+from ._table import from_table
+from ._universal import from_universal
+
+__all__ = ["Structure", "from_calculix", "from_matrices", "from_nastran", "from_table", "from_universal"]

@@ -1,0 +1,112 @@
+"""Modes and static compliances from stiffness and mass matrices.
+
+With ``K`` and ``M`` the pencil ``K x = omega^2 M x`` is solved for its lowest modes by Lanczos' method with a shift
+(scipy's ``eigsh``). The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``; of a structure that
+moves freely, it is that of the elastic modes alone: the load is balanced by inertia, ``g = f - M R R^T f`` with the
+mass-normalised rigid-body modes ``R``, and the rigid part of the answer is taken out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._structure import Floats, Structure, units
+
+# an eigenvalue below this share of the largest found is that of a rigid-body mode
+_RIGID = 1e-8
+
+
+def from_matrices(
+    stiffness: Any,
+    mass: Any,
+    points: Mapping[str, int | ArrayLike],
+    count: int,
+    *,
+    damping_ratios: Sequence[float] | float | None = None,
+    shift: float | None = None,
+    length_m: float = 1.0,
+    mass_kg: float = 1.0,
+) -> Structure:
+    """The ``count`` lowest modes.
+
+    ``stiffness`` and ``mass`` are Matrix Market files or scipy.sparse matrices, symmetric, without the fixed degrees of freedom.
+    ``points`` gives, for each place that may be struck, its degree of freedom (from 0) or a vector of weights over all
+    of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those sought; left out, it is chosen: slightly negative, so that
+    a structure that moves freely can be factorised.
+    """
+    from scipy.sparse.linalg import eigsh, splu
+
+    k, m = _matrix("stiffness", stiffness), _matrix("mass", mass)
+    size = k.shape[0]
+    if m.shape != k.shape:
+        raise ValueError(f"mass = {m.shape} is not allowed: as large as the stiffness matrix, {k.shape}")
+    if not 0 < count < size:
+        raise ValueError(f"count = {count} is not allowed: 1 to {size - 1}, one less than the degrees of freedom")
+    shape_factor, compliance_factor = units(length_m, mass_kg)
+    loads = {name: _load(name, point, size) for name, point in points.items()}
+    if shift is None:
+        # far below any elastic mode of a sound mesh, yet above rounding
+        shift = -1e-9 * float(abs(k.diagonal()).sum() / abs(m.diagonal()).sum())
+    # a start of its own would make every run differ
+    start = np.random.default_rng(0).standard_normal(size)
+    eigenvalues, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
+    order = np.argsort(eigenvalues)
+    eigenvalues, vectors = eigenvalues[order], vectors[:, order]
+    vectors = vectors / np.sqrt(np.einsum("ij,ij->j", vectors, m @ vectors))
+    rigid = np.abs(eigenvalues) < _RIGID * np.abs(eigenvalues).max()
+    if np.any(eigenvalues[~rigid] < 0.0):
+        raise ValueError(f"stiffness is not allowed: the eigenvalue {eigenvalues.min()} is negative, the structure unstable")
+    modes = vectors[:, rigid]
+    # with rigid-body modes the shifted matrix is factorised in place of K, and its error is taken out by iteration
+    factors = splu((k - shift * m).tocsc() if rigid.any() else k.tocsc())
+
+    def compliance(load: Floats) -> float:
+        balanced = load - m @ (modes @ (modes.T @ load))
+        answer = np.zeros(size)
+        for _ in range(20):
+            answer = answer + factors.solve(balanced - k @ answer)
+            answer = answer - modes @ (modes.T @ (m @ answer))
+            if np.linalg.norm(balanced - k @ answer) <= 1e-12 * np.linalg.norm(balanced):
+                break
+        return float(balanced @ answer)
+
+    omega = np.where(rigid, 0.0, np.sqrt(np.maximum(eigenvalues, 0.0)))
+    damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
+    return Structure(
+        omega_rad_s=omega,
+        shapes={name: vectors.T @ load * shape_factor for name, load in loads.items()},
+        damping_ratios=damping,
+        static_compliances_m_n={name: compliance(load) * compliance_factor for name, load in loads.items()},
+    )
+
+
+def _matrix(name: str, given: Any) -> Any:
+    from scipy.io import mmread
+    from scipy.sparse import csr_array
+
+    matrix = csr_array(mmread(given) if isinstance(given, (str, PathLike)) else given)
+    if matrix.shape[0] != matrix.shape[1]:
+        raise ValueError(f"{name} = {matrix.shape} is not allowed: a square matrix")
+    if not np.all(np.isfinite(matrix.data)):
+        raise ValueError(f"{name} is not allowed: finite numbers only")
+    if abs(matrix - matrix.T).max() > 1e-9 * abs(matrix).max():
+        raise ValueError(f"{name} is not allowed: a symmetric matrix")
+    return matrix
+
+
+def _load(name: str, point: int | ArrayLike, size: int) -> Floats:
+    if isinstance(point, (int, np.integer)):
+        if not 0 <= point < size:
+            raise ValueError(f"point {name} = {point} is not allowed: a degree of freedom from 0 to {size - 1}")
+        load = np.zeros(size)
+        load[point] = 1.0
+        return load
+    load = np.asarray(point, dtype=np.float64)
+    if load.shape != (size,) or not np.all(np.isfinite(load)) or not load.any():
+        raise ValueError(f"point {name} is not allowed: a degree of freedom, or {size} finite weights, not all 0")
+    return load
