@@ -81,7 +81,7 @@ fn identify(scene: &Value, table: &str, options: &[&str]) -> Value {
 }
 
 fn in_folder(folder: &Path, options: &[&str]) -> Value {
-    let arguments = [&["identify", "data.csv", "--scene", "scene.json", "--json"], options].concat();
+    let arguments = [&["--quiet", "identify", "data.csv", "--scene", "scene.json", "--json"], options].concat();
     serde_json::from_str(&stdout(&run(folder, &arguments))).unwrap()
 }
 
@@ -455,7 +455,7 @@ fn the_example_of_the_documentation_is_made_here_and_gives_its_truth_back() {
     let folder = repository().join("datasets");
     let free = "contact.striker_youngs_modulus_pa,contact.restitution";
     let arguments =
-        ["identify", "identification/rubber-ball.csv", "--scene", "scenes/rubber-ball.json", "--free", free];
+        ["--quiet", "identify", "identification/rubber-ball.csv", "--scene", "scenes/rubber-ball.json", "--free", free];
     let candidates = ["--candidates", "identification/rubber-ball-next.csv"];
     let found: Value =
         serde_json::from_str(&stdout(&run(&folder, &[&arguments[..], &candidates, &["--json"]].concat()))).unwrap();

@@ -133,7 +133,8 @@ impl<'a> Model<'a> {
         Scene::from_value(&tree).map_err(|fault| in_line(row, fault))
     }
 
-    fn impact(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Result<Impact, InvalidInput> {
+    /// The impact of a row.
+    pub fn impact(&self, row: &Row, parameters: &[f64], kept: &mut Kept) -> Result<Impact, InvalidInput> {
         let scene = self.scene(row, parameters)?;
         let scene = match (chooses_modes(&scene), scene.residual_compliance) {
             (true, None) => Scene { residual_compliance: Some(true), ..scene },

@@ -1,6 +1,6 @@
 //! What can be measured of an impact as one number.
 
-use vibroimpact_sim::modal::Solution;
+use vibroimpact_sim::modal::{Derivatives, Solution, SubImpact};
 
 /// A measured quantity; its name is that of the column of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -77,8 +77,7 @@ impl Quantity {
     pub(super) fn of(self, solution: &Solution) -> f64 {
         let contacts = &solution.sub_impacts;
         let first = contacts.first();
-        let largest =
-            |of: fn(&vibroimpact_sim::modal::SubImpact) -> f64| contacts.iter().map(of).fold(f64::NAN, f64::max);
+        let largest = |of: fn(&SubImpact) -> f64| contacts.iter().map(of).fold(f64::NAN, f64::max);
         let value = match self {
             Quantity::Restitution => solution.restitution,
             Quantity::StrikerVelocity => solution.restitution.map(|_| solution.striker_velocity_m_s),
@@ -93,5 +92,27 @@ impl Quantity {
             Quantity::PeakCompression => Some(largest(|contact| contact.peak_compression_m)),
         };
         value.unwrap_or(f64::NAN)
+    }
+
+    /// Its derivative, from those of the impact; `None` where it has none.
+    pub(super) fn change(self, solution: &Solution, change: &Derivatives) -> Option<f64> {
+        let (contacts, changes) = (&solution.sub_impacts, &change.sub_impacts);
+        let first = changes.first()?;
+        // the largest changes as that contact does
+        let largest = |of: fn(&SubImpact) -> f64| {
+            let place = (0..contacts.len()).max_by(|&a, &b| of(&contacts[a]).total_cmp(&of(&contacts[b])))?;
+            changes.get(place)
+        };
+        Some(match self {
+            Quantity::Restitution => change.restitution.value,
+            Quantity::StrikerVelocity => change.striker_velocity_m_s.value,
+            Quantity::FirstContact => first.end_s.value - first.start_s.value,
+            Quantity::FirstImpulse => first.impulse_n_s.value,
+            Quantity::FirstPeakForce => first.peak_force_n.value,
+            Quantity::LastSeparation => change.end_s.value - first.start_s.value,
+            Quantity::Impulse => changes.iter().map(|contact| contact.impulse_n_s.value).sum(),
+            Quantity::PeakForce => largest(|contact| contact.peak_force_n)?.peak_force_n.value,
+            Quantity::PeakCompression => largest(|contact| contact.peak_compression_m)?.peak_compression_m.value,
+        })
     }
 }
