@@ -5,6 +5,7 @@ mod book;
 mod chapters;
 mod examples;
 mod fuzz;
+mod identification;
 mod pages;
 mod soak;
 
@@ -121,6 +122,8 @@ enum Task {
         #[arg(long, value_name = "DIR", default_value = "out/study-scatter")]
         out: PathBuf,
     },
+    /// Put identification to the test: random tables of synthetic measurements with noise
+    StudyIdentify(identification::Wanted),
 }
 
 fn main() -> ExitCode {
@@ -164,6 +167,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Impactbench { arguments } => impactbench(&arguments),
         Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
         Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
+        Task::StudyIdentify(wanted) => say(&identification::run(&wanted)?),
     }
 }
 
