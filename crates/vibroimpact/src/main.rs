@@ -14,7 +14,8 @@ use commands::heartbeat::watched;
 use commands::sweep::NoPointSolved;
 use commands::voice::Voice;
 use commands::{
-    choice, first, identify, infinite_beam, law, modes, net, orbit, predictability, sensitivity, shell, simulate, sweep, voice,
+    choice, first, identify, infinite_beam, law, modes, net, orbit, predictability, sensitivity, shell, simulate,
+    sweep, voice,
 };
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;

@@ -7,9 +7,9 @@ use serde_json::Value;
 use super::gauge::ForceRecord;
 use super::quantity::Quantity;
 use crate::input::{Row as Cells, Table, read_bytes};
+use crate::scene::FieldPath;
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, SceneError, table_path};
-use crate::scene::FieldPath;
 
 /// Most rows of a table.
 const MOST_ROWS: usize = 10_000;

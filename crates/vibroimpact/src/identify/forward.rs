@@ -15,9 +15,9 @@ use super::gauge::Signal;
 use super::quantity::Quantity;
 use crate::impact::{Impact, in_scene};
 use crate::model::{Kept, chooses_modes};
+use crate::scene::FieldPath;
 use crate::scene::json::quote;
 use crate::scene::{InvalidInput, Scene};
-use crate::scene::FieldPath;
 
 /// Tolerance of the solver: differences of impacts are to be smooth.
 const TOLERANCE: f64 = 1e-10;

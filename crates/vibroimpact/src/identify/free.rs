@@ -3,9 +3,9 @@
 use fitting::{Parameter, Range};
 use serde_json::Value;
 
+use crate::scene::FieldPath;
 use crate::scene::InvalidInput;
 use crate::scene::json::{number, quote};
-use crate::scene::FieldPath;
 
 /// The time constant of the gauge, which is no field of the scene.
 pub(super) const TIME_CONSTANT: &str = "gauge.time_constant_s";
