@@ -44,10 +44,16 @@
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
 //! [`fitting`], [`fracdiff`].
 //!
+//! Without default features the crate reads scenes and solves them, and leaves out the program (feature `program`) and all
+//! that becomes files: tables, pictures, reports, sweeps (feature `files`). It then also runs on `wasm32-unknown-unknown`.
+//!
 //! # Limits
 //!
 //! Linear structures, one point of contact, a striker that moves along one line without rotation; no gravity and no
 //! friction during the impact. The mathematics, with its symbols, is in the crates that solve.
+
+// without files some helpers of sweeps and pictures have no user
+#![cfg_attr(not(feature = "files"), allow(dead_code))]
 
 mod impact;
 mod input;
@@ -61,13 +67,17 @@ pub mod infinite;
 pub mod model;
 pub mod net;
 pub mod orbit;
+#[cfg(feature = "files")]
 pub mod pictures;
+#[cfg(feature = "files")]
 pub mod plot;
+#[cfg(feature = "files")]
 pub mod report;
 pub mod scene;
 pub mod sensitivity;
 pub mod simulate;
 pub mod summary;
+#[cfg(feature = "files")]
 pub mod sweep;
 pub mod text;
 pub mod trust;

@@ -7,7 +7,6 @@ use vibroimpact_sim::modal::{Mode, Striker};
 
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
-use crate::report::significant;
 pub use crate::scene::told::{printable, shorten};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
@@ -28,6 +27,47 @@ pub(crate) fn filled(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
         }
     }
     lines
+}
+
+/// A number with so many significant digits, trailing zeros left out, and a power of ten where
+/// it would otherwise grow long.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "not a number".into();
+    }
+    if value == 0.0 {
+        return "0".into();
+    }
+    let digits = digits.clamp(1, 17);
+    let scientific = format!("{:.*e}", digits - 1, value);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let trim = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text.to_string(),
+    };
+    let text = if (-4..digits.max(6) as i32).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        trim(&format!("{value:.decimals$}"))
+    } else {
+        format!("{}×10{}", trim(mantissa), superscript(exponent))
+    };
+    text.replace('-', "\u{2212}")
+}
+
+/// A whole number in superscript digits.
+pub(crate) fn superscript(number: i32) -> String {
+    number
+        .to_string()
+        .chars()
+        .map(|c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            digit => char::from_u32(0x2070 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
+        })
+        .collect()
 }
 
 /// A number with four significant digits and its unit, with an SI prefix: `1.235 ms`.

@@ -29,7 +29,7 @@ fn the_table_of_the_gallery_is_current() {
             intervals: MOST_INTERVALS,
             reliability: true,
             course: true,
-            folder: None,
+            take: None,
             stop: &AtomicBool::new(false),
             tell: &mut |_| (),
         };

@@ -28,7 +28,7 @@ const INTERVALS: [(&str, Kind); 9] = [
 ];
 
 /// The files that hold all intervals, while a run is under way. They appear when it is over.
-pub(super) struct IntervalFiles {
+pub struct IntervalFiles {
     folder: PathBuf,
     aside: TempDir,
     names: Vec<String>,
@@ -45,7 +45,10 @@ fn blame(folder: &Path) -> impl Fn(std::io::Error) -> Failure + '_ {
 }
 
 impl IntervalFiles {
-    /// Begins the files in a folder, which is made if it is missing.
+    /// Begins the files in a folder, which is made if it is missing; `names` are those of the contacts.
+    ///
+    /// # Errors
+    /// A folder or file that cannot be written.
     pub fn create(folder: &Path, names: &[String]) -> Result<IntervalFiles, Failure> {
         fs::create_dir_all(folder).map_err(blame(folder))?;
         let aside = TempDir::new_in(folder).map_err(blame(folder))?;
@@ -58,6 +61,10 @@ impl IntervalFiles {
         Ok(IntervalFiles { folder: folder.to_owned(), aside, names: names.to_vec(), counts, csv, parquet })
     }
 
+    /// Adds an interval of a contact.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
     pub fn add(&mut self, contact: usize, interval: &Interval) -> Result<(), Failure> {
         self.counts[contact] += 1;
         let number = |value: f64| crate::scene::json::number(value);
@@ -79,6 +86,9 @@ impl IntervalFiles {
     }
 
     /// Ends the files and puts them in their places.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
     pub fn close(mut self) -> Result<(), Failure> {
         self.csv.flush().map_err(blame(&self.folder))?;
         self.parquet.close(&self.aside.path().join(PARQUET))?;

@@ -19,10 +19,13 @@
 mod body;
 mod contact;
 pub(crate) mod fields;
+#[cfg(feature = "files")]
 mod files;
 mod load;
+#[cfg(feature = "files")]
 mod pictures;
 mod pose;
+#[cfg(feature = "files")]
 mod report;
 mod rod;
 mod schema;
@@ -42,17 +45,20 @@ use serde_json::{Map, Value};
 
 pub use body::{Body, Elastic, Elastics, Mass, MassKind, Start};
 pub use contact::{Contact, Ground, Point, Side};
-pub use files::{NAMES, files, history};
+#[cfg(feature = "files")]
+pub use files::{IntervalFiles, NAMES, files, history};
 pub use load::{GroundMotion, Load};
+#[cfg(feature = "files")]
 pub use pictures::picture;
 pub use pose::Posed;
+#[cfg(feature = "files")]
 pub use report::report;
 pub use rod::{AxialEnd, AxialSegment, Rod, RodKind};
 pub use simulate::{MOST_INTERVALS, Simulation, Wanted};
 pub use steady::SteadyMotion;
 pub use summary::{BodyEnergy, Cost, Energy, Interval, Point as EndPoint, Statistics, Summary};
 pub use text::{headline, result};
-pub use watch::{Course, Row};
+pub use watch::{Course, Row, Sink};
 
 use crate::scene::{
     A_SCENE, FORMAT_VERSION, InvalidInput, Scene, SceneError, check_version, json, numbers_of_materials, plain_tree,

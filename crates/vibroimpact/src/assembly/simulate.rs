@@ -1,11 +1,9 @@
 //! A scene of bodies solved.
 
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{Force, Interval, Outcome, Reason, Run, Solver};
 
-use super::files::IntervalFiles;
 use super::steady::SteadyMotion;
 use super::watch::{Course, Sink, Watch};
 use super::{AssemblyScene, Posed};
@@ -24,8 +22,8 @@ pub struct Wanted<'a> {
     pub reliability: bool,
     /// Whether samples of the motion are kept, for histories and pictures.
     pub course: bool,
-    /// A folder into which all intervals go as they are found.
-    pub folder: Option<&'a Path>,
+    /// Takes all intervals as they are found, with the number of their contact.
+    pub take: Option<Sink<'a>>,
     /// Ends the run when it becomes true; what was found is kept.
     pub stop: &'a AtomicBool,
     /// Hears now and then how far the run has come (s).
@@ -77,7 +75,7 @@ impl AssemblyScene {
             intervals: MOST_INTERVALS,
             reliability: true,
             course: false,
-            folder: None,
+            take: None,
             stop: &AtomicBool::new(false),
             tell: &mut |_| (),
         })
@@ -86,19 +84,13 @@ impl AssemblyScene {
     /// Solves the scene and keeps what is wanted.
     ///
     /// # Errors
-    /// As [`AssemblyScene::pose`], or a folder that cannot be written.
+    /// As [`AssemblyScene::pose`], or a fault of what takes the intervals.
     pub fn simulate_with(&self, wanted: Wanted) -> Result<Simulation, Failure> {
         let posed = self.pose()?;
-        let mut files = wanted.folder.map(|folder| IntervalFiles::create(folder, &posed.contacts)).transpose()?;
         let period_s = period_s(&posed);
         let course = wanted.course.then(|| Course::new(posed.settings.end_s, period_s));
-        let mut take = |contact: usize, interval: &Interval| match &mut files {
-            Some(files) => files.add(contact, interval),
-            None => Ok(()),
-        };
-        let sink: Sink = &mut take;
         let contacts = posed.contacts.len();
-        let mut watch = Watch::new(contacts, wanted.intervals, Some(sink), course, period_s, wanted.stop, wanted.tell);
+        let mut watch = Watch::new(contacts, wanted.intervals, wanted.take, course, period_s, wanted.stop, wanted.tell);
         let in_scene = |fault| posed.in_scene(fault);
         let mut solver = Solver::new(&posed.assembly).map_err(in_scene)?;
         let run = solver.run(&posed.settings, &mut watch).map_err(in_scene)?;
@@ -106,9 +98,6 @@ impl AssemblyScene {
         let steady = moments.and_then(|moments| moments.steady());
         if let Some(fault) = fault {
             return Err(fault);
-        }
-        if let Some(files) = files {
-            files.close()?;
         }
         let whole = left_out.iter().all(|count| *count == 0) && run.outcome != Outcome::Stopped(Reason::Interrupted);
         let reliable_until_s = match wanted.reliability && whole {

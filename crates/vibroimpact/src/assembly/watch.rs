@@ -17,7 +17,7 @@ const WITHIN: usize = 4;
 const MOST_SECTIONS: usize = 100_000;
 
 /// Takes the intervals one after the other.
-pub(super) type Sink<'a> = &'a mut dyn FnMut(usize, &Interval) -> Result<(), Failure>;
+pub type Sink<'a> = &'a mut dyn FnMut(usize, &Interval) -> Result<(), Failure>;
 
 /// All contacts at one moment.
 #[derive(Debug, Clone, PartialEq)]

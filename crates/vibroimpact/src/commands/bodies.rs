@@ -4,9 +4,10 @@ use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use vibroimpact::assembly::{self, AssemblyScene, MOST_INTERVALS, Summary, Wanted};
+use vibroimpact::assembly::{self, AssemblyScene, IntervalFiles, MOST_INTERVALS, Summary, Wanted};
 use vibroimpact::export::{Failure, Files};
 use vibroimpact::text::quantity;
+use vibroimpact::vibroimpact_sim::assembly::Interval;
 
 use super::products::Products;
 use super::sweep::stop_on_signal;
@@ -15,19 +16,28 @@ use super::voice::{is_quiet, signature};
 /// Solves the scene and returns what is to be printed; at most `intervals` intervals of contact are listed.
 pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) -> Result<String, Failure> {
     // a fault of the scene is told before anything is written
-    let headline = assembly::headline(scene, &scene.pose()?);
+    let posed = scene.pose()?;
+    let headline = assembly::headline(scene, &posed);
+    let mut files = products.out.as_deref().map(|folder| IntervalFiles::create(folder, &posed.contacts)).transpose()?;
+    let mut take = |contact: usize, interval: &Interval| match &mut files {
+        Some(files) => files.add(contact, interval),
+        None => Ok(()),
+    };
     let stop = stop_on_signal()?;
     let mut progress = Progress::new(scene.end_s);
     let wanted = Wanted {
         intervals: MOST_INTERVALS,
         reliability: true,
         course: products.want_course(),
-        folder: products.out.as_deref(),
+        take: Some(&mut take),
         stop: &stop,
         tell: &mut |time_s| progress.tell(time_s),
     };
     let found = scene.simulate_with(wanted)?;
     progress.finish();
+    if let Some(files) = files {
+        files.close()?;
+    }
     let summary = Summary::new(&found).listing(intervals);
     let printed = match products.json {
         true => summary.json(scene)?,

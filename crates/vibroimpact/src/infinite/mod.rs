@@ -1,7 +1,9 @@
 //! Impacts on infinite beams and plates, as files and people read them: [`Summary`] for programs, [`text`] for people,
 //! [`files`] for tables, [`picture`] for a figure. The solver is [`vibroimpact_sim::infinite`].
 
+#[cfg(feature = "files")]
 mod files;
+mod history;
 mod text;
 
 use serde::Serialize;
@@ -12,7 +14,9 @@ use vibroimpact_sim::infinite::{
 
 use crate::scene::InvalidInput;
 
-pub use files::{files, history, picture};
+#[cfg(feature = "files")]
+pub use files::{files, picture};
+pub use history::history;
 pub use text::{text, turning_points_text};
 
 /// What `infinite-beam --json` prints: one object. Times are in units of `T`, speeds of `v`, forces of `F` (thesis

@@ -7,7 +7,7 @@ use crate::text::{filled, quantity, restitution, stopped};
 
 /// A number in passing: two significant digits.
 pub(crate) fn small(value: f64) -> String {
-    crate::report::significant(value, 2)
+    crate::text::significant(value, 2)
 }
 
 /// Breaks a sentence into lines of at most this many characters.

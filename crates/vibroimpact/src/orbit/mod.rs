@@ -1,5 +1,6 @@
 //! Periodic motions of scenes of bodies under harmonic loads, and their branches over a field of the scene.
 
+#[cfg(feature = "files")]
 mod picture;
 mod text;
 
@@ -13,6 +14,7 @@ use crate::assembly::{AssemblyScene, Posed};
 use crate::scene::FieldPath;
 use crate::scene::InvalidInput;
 
+#[cfg(feature = "files")]
 pub use picture::picture;
 pub use text::text;
 

@@ -1,6 +1,7 @@
 //! Axes: limits, ticks and their labels.
 
-use super::text::{fixed, superscript, width_px};
+use super::text::{fixed, width_px};
+use crate::text::superscript;
 
 /// What an axis shows.
 #[derive(Debug, Clone, PartialEq)]

@@ -36,7 +36,6 @@ pub use colour::Colour;
 pub use format::Format;
 pub use heat::HeatMap;
 pub use series::{Marker, Series};
-pub(crate) use text::superscript;
 
 use std::io;
 

@@ -1,6 +1,7 @@
 use super::axis::{Axis, Scale, full_label};
-use super::text::{fixed, superscript, width_px, wrapped};
+use super::text::{fixed, width_px, wrapped};
 use super::*;
+use crate::text::superscript;
 
 /// The coordinates of every polyline of a picture.
 fn polylines(svg: &str) -> Vec<Vec<(f64, f64)>> {

@@ -1,5 +1,7 @@
 //! A published number beside ours.
 
+use crate::text::{significant, superscript};
+
 /// What a publication leads us to expect.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
@@ -140,34 +142,8 @@ fn last_digit(printed: &str) -> f64 {
 fn pretty(printed: &str) -> String {
     match printed.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => {
-            format!("{mantissa}×10{}", exponent.parse().map_or(exponent.into(), crate::plot::superscript))
+            format!("{mantissa}×10{}", exponent.parse().map_or(exponent.into(), superscript))
         }
         None => printed.into(),
     }
-}
-
-/// A number with so many significant digits, trailing zeros left out, and a power of ten where
-/// it would otherwise grow long.
-pub fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() {
-        return "not a number".into();
-    }
-    if value == 0.0 {
-        return "0".into();
-    }
-    let digits = digits.clamp(1, 17);
-    let scientific = format!("{:.*e}", digits - 1, value);
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let trim = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text.to_string(),
-    };
-    let text = if (-4..digits.max(6) as i32).contains(&exponent) {
-        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-        trim(&format!("{value:.decimals$}"))
-    } else {
-        format!("{}×10{}", trim(mantissa), crate::plot::superscript(exponent))
-    };
-    text.replace('-', "\u{2212}")
 }

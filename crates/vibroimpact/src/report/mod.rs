@@ -20,7 +20,8 @@ mod comparison;
 mod html;
 mod simulation;
 
-pub use comparison::{Comparison, Expected, Verdict, significant};
+pub use crate::text::significant;
+pub use comparison::{Comparison, Expected, Verdict};
 pub use simulation::{modelled, of_impact, of_infinite_impact, of_net_impact};
 
 use crate::plot::Figure;

@@ -38,7 +38,7 @@ pub(super) fn evaluate(
             let ended = AtomicBool::new(false);
             let mut look = |_| ended.store(stop(), Ordering::Relaxed);
             let wanted =
-                Wanted { intervals: 0, reliability: false, course: false, folder: None, stop: &ended, tell: &mut look };
+                Wanted { intervals: 0, reliability: false, course: false, take: None, stop: &ended, tell: &mut look };
             let found = scene.simulate_with(wanted).map_err(|fault| fault.to_string())?;
             let whole = found.run.outcome != Outcome::Stopped(Reason::Interrupted);
             Ok(whole.then(|| results.of_run(&found)))

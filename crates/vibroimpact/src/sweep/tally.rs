@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::row::Row;
 use super::uncertain::{self, RestitutionDistribution};
-use crate::report::significant;
+use crate::text::significant;
 
 /// Failures that are told one by one.
 const FAILURES_TOLD: usize = 5;

@@ -1,0 +1,84 @@
+//! Results for programs: histories as tables, the result as JSON, and the files of one impact.
+
+#[cfg(feature = "files")]
+mod files;
+
+use std::error::Error;
+
+use contact_models::Law;
+use vibroimpact_sim::modal::{History, Sample};
+
+#[cfg(feature = "files")]
+pub use files::Files;
+
+/// Whatever can go wrong between the numbers and the disk.
+pub type Failure = Box<dyn Error + Send + Sync>;
+
+/// Equal intervals of a history; every step in contact comes on top.
+const HISTORY_INTERVALS: usize = 1000;
+/// Equal intervals of the modal energies.
+const ENERGY_INTERVALS: usize = 400;
+
+/// The summary as JSON text, ending in a line break.
+///
+/// # Errors
+/// None that an impact could cause.
+pub fn json(summary: &impl serde::Serialize) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(summary)? + "\n")
+}
+
+/// Columns of numbers, each under its name; all of one length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Names, which carry the units, and values.
+    pub columns: Vec<(String, Vec<f64>)>,
+}
+
+impl Table {
+    /// The table as comma-separated values under a line of names.
+    ///
+    /// # Errors
+    /// None that an impact could cause.
+    pub fn csv(&self) -> Result<Vec<u8>, Failure> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(self.columns.iter().map(|(name, _)| name))?;
+        let mut columns: Vec<_> = self.columns.iter().map(|(_, values)| values.iter()).collect();
+        let mut row: Vec<f64> = columns.iter_mut().map_while(Iterator::next).copied().collect();
+        while !row.is_empty() {
+            table.serialize(&row)?;
+            row.clear();
+            row.extend(columns.iter_mut().map_while(Iterator::next));
+        }
+        Ok(table.into_inner()?)
+    }
+}
+
+/// Motion and force over time until `until_s`: what `history.csv` holds.
+pub fn history(history: &History<Law>, until_s: f64) -> Table {
+    let times = history.times(until_s, HISTORY_INTERVALS);
+    let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
+    let column = |name: &str, of: fn(&Sample) -> f64| (name.to_owned(), samples.iter().map(of).collect());
+    Table {
+        columns: vec![
+            column("time_s", |sample| sample.time_s),
+            column("structure_displacement_m", |sample| sample.structure_displacement_m),
+            column("striker_displacement_m", |sample| sample.striker_displacement_m),
+            column("structure_velocity_m_s", |sample| sample.structure_velocity_m_s),
+            column("striker_velocity_m_s", |sample| sample.striker_velocity_m_s),
+            column("compression_m", |sample| sample.compression_m),
+            column("force_n", |sample| sample.force_n),
+        ],
+    }
+}
+
+/// The energy of each mode over time until `until_s`: what `modal_energies.csv` holds.
+pub fn modal_energies(history: &History<Law>, until_s: f64) -> Table {
+    let times: Vec<f64> = (0..=ENERGY_INTERVALS).map(|i| until_s * i as f64 / ENERGY_INTERVALS as f64).collect();
+    let rows: Vec<Vec<f64>> = times.iter().map(|time_s| history.modal_energies_j(*time_s)).collect();
+    let modes = rows.first().map_or(0, Vec::len);
+    let mode = |k: usize| {
+        let energies = rows.iter().filter_map(|row| row.get(k)).copied().collect();
+        (format!("mode_{}_energy_j", k + 1), energies)
+    };
+    Table { columns: std::iter::once(("time_s".to_owned(), times)).chain((0..modes).map(mode)).collect() }
+}
