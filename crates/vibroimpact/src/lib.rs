@@ -28,6 +28,7 @@
 //! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
 //! | [`scene::schema`] | its JSON Schema |
 //! | [`draft`] | a scene file whose fields are still to be changed |
+//! | [`deflection`] | how a beam or a string deflects along its length during an impact |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
@@ -60,6 +61,7 @@ mod input;
 mod result_file;
 
 pub mod assembly;
+pub mod deflection;
 pub mod draft;
 pub mod export;
 pub mod identify;

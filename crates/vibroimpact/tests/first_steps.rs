@@ -12,6 +12,7 @@ use program::{run, stdout};
 use serde_json::Value;
 use vibroimpact::Scene;
 use vibroimpact::scene::{MATERIALS, schema};
+use vibroimpact::simulate::Simulation;
 
 /// Runs the program on a text at its standard input.
 fn fed(folder: &Path, arguments: &[&str], text: &str) -> Output {
@@ -169,6 +170,32 @@ fn fields_are_set_on_the_command_line() {
     }
 }
 
+/// The picture of the README is what the program draws.
+#[test]
+fn the_readme_shows_the_demo() {
+    let folder = tempfile::tempdir().unwrap();
+    stdout(&run(folder.path(), &["demo", "--plot", "demo.svg"]));
+    let drawn = fs::read_to_string(folder.path().join("demo.svg")).unwrap();
+    let checked_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures/first-impact.svg");
+    if std::env::var_os("VIBROIMPACT_BLESS").is_some() {
+        fs::write(&checked_in, &drawn).unwrap();
+    }
+    let shown = fs::read_to_string(&checked_in).unwrap();
+    assert!(shown == drawn, "docs/figures/first-impact.svg is not current; VIBROIMPACT_BLESS=1 writes it");
+    let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
+    assert!(readme.contains("](docs/figures/first-impact.svg)"));
+}
+
+/// The page with the library in it, but for the library itself, which `web/check.sh` tries in a browser.
+#[test]
+fn the_page_to_play_with_is_current_and_small() {
+    let read = |name: &str| fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)).unwrap();
+    let (source, page) = (read("web/page.html"), read("docs/play.html"));
+    let (before, after) = source.split_once("@MODULE@").unwrap();
+    assert!(page.starts_with(before) && page.ends_with(after), "docs/play.html is not current; web/build.sh writes it");
+    assert!(page.len() < 1_500_000 && !page.contains("http"), "{} bytes", page.len());
+}
+
 /// By the numbers of the norms, written out.
 #[test]
 fn a_material_is_its_numbers() {
@@ -248,4 +275,33 @@ fn the_voice_is_quiet_or_verbose_as_asked() {
     assert!(said.contains("set modes=10") && said.contains("simulate: computed in"), "{said}");
     assert!(serde_json::from_slice::<Value>(&output.stdout).is_ok());
     assert!(refused(&run(folder.path(), &["demo", "--quiet", "--verbose"])).contains("cannot be used with"));
+}
+
+/// The sum of the modes at the place of impact, against the motion that the solver itself records there.
+#[test]
+fn the_deflection_passes_through_the_place_of_impact() {
+    let folder = tempfile::tempdir().unwrap();
+    for kind in ["beam", "cantilever"] {
+        let scene = Scene::from_toml(&first_scene(folder.path(), kind)).unwrap();
+        let found = scene.simulate().unwrap();
+        let scene = found.scene(&scene);
+        let Simulation::Modal(resolved) = &found else { panic!("a beam has modes") };
+        let until_s = resolved.until_s(None);
+        // 0.3 of 1 m and 0.25 of 0.3 m are places of the grid
+        let deflection = resolved.deflection(&scene, until_s, [60, 50]).unwrap().unwrap();
+        let place = if kind == "beam" { 18 } else { 50 };
+        let history = &resolved.history;
+        let (modes, kept) = (&resolved.impact.structure.modes, resolved.impact.kept_modes());
+        let largest = deflection.structure_m.iter().map(|row| row[place].abs()).fold(0.0, f64::max);
+        for (i, &time_s) in deflection.time_s.iter().enumerate() {
+            let amplitudes = history.amplitudes(time_s);
+            let remainder: f64 = modes[kept..].iter().zip(&amplitudes[kept..]).map(|(mode, q)| mode.shape * q).sum();
+            let there = history.at(time_s).structure_displacement_m;
+            let sum = deflection.structure_m[i][place] + remainder;
+            assert!((sum - there).abs() < 1e-9 * largest, "{kind} at {time_s} s: {sum} and {there}");
+            assert_eq!(deflection.striker_m[i], history.at(time_s).striker_displacement_m);
+        }
+        // a support does not move
+        assert!(deflection.structure_m.iter().all(|row| row[0].abs() < 1e-9 * largest));
+    }
 }

@@ -1,0 +1,131 @@
+//! How a beam or a string deflects during an impact, along its whole length: what an animation shows.
+//!
+//! With the mass-normalised shapes `phi_k(x)` and the amplitudes `q_k(t)` of the modes that were kept,
+//!
+//! ```text
+//! w(x, t) = sum_k phi_k(x) q_k(t)                                                      (1)
+//! ```
+//!
+//! Remainder modes stand for the local response of all others at the place of impact. They have no shape elsewhere and
+//! are left out, so that at that place (1) lacks a part of the displacement there, which is small beside the whole.
+
+use serde::Serialize;
+
+use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure};
+use crate::simulate::Resolved;
+
+/// The motion of structure and striker at some times. Displacements are positive away from the side that is struck.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Deflection {
+    /// Places along the structure (m).
+    pub location_m: Vec<f64>,
+    /// Times (s).
+    pub time_s: Vec<f64>,
+    /// Displacement of the structure (m): for each time one number a place.
+    pub structure_m: Vec<Vec<f64>>,
+    /// Displacement of the striker (m).
+    pub striker_m: Vec<f64>,
+    /// Contact force (N).
+    pub force_n: Vec<f64>,
+}
+
+impl Resolved {
+    /// The deflection at so many equal intervals of the length, until `until_s` at so many equal intervals of time. `scene` is
+    /// the one that was solved, [`crate::simulate::Simulation::scene`]. `None` for a structure that is neither a beam nor a string.
+    ///
+    /// # Errors
+    /// None that the scene of this result could cause.
+    ///
+    /// ```
+    /// use vibroimpact::Scene;
+    /// use vibroimpact::simulate::Simulation;
+    ///
+    /// let scene = Scene::from_toml(r#"
+    ///     location_m = 0.5
+    ///     modes = 20
+    ///     structure = { kind = "string", length_m = 1, tension_n = 100, mass_per_length_kg_m = 0.01, damping_ratio = 0.01 }
+    ///     striker = { mass_kg = 0.001, speed_m_s = 1 }
+    ///     contact = { law = "hertz", stiffness_n_m1_5 = 1e7 }
+    /// "#)?;
+    /// let Simulation::Modal(found) = scene.simulate()? else { panic!("a string has modes") };
+    /// let deflection = found.deflection(&scene, 0.001, [10, 100])?.expect("a string has a length");
+    /// // before anything has moved, and pushed in later
+    /// assert_eq!(deflection.structure_m[0][5], 0.0);
+    /// assert!(deflection.structure_m[50][5] < 0.0);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn deflection(
+        &self,
+        scene: &Scene,
+        until_s: f64,
+        [pieces, intervals]: [usize; 2],
+    ) -> Result<Option<Deflection>, InvalidInput> {
+        let kept: Vec<f64> =
+            self.impact.structure.modes[..self.impact.kept_modes()].iter().map(|mode| mode.omega_rad_s).collect();
+        let Some((location_m, shapes)) = shapes_along(scene, &kept, pieces.max(1))? else { return Ok(None) };
+        let intervals = intervals.max(1);
+        let time_s: Vec<f64> = (0..=intervals).map(|i| until_s * i as f64 / intervals as f64).collect();
+        let samples: Vec<_> = time_s.iter().map(|time_s| self.history.at(*time_s)).collect();
+        let at = |time_s: &f64| -> Vec<f64> {
+            let amplitudes = self.history.amplitudes(*time_s);
+            // no shape is listed for a remainder mode, which ends the sum
+            shapes.iter().map(|shape| shape.iter().zip(&amplitudes).map(|(phi, q)| phi * q).sum()).collect()
+        };
+        Ok(Some(Deflection {
+            structure_m: time_s.iter().map(at).collect(),
+            striker_m: samples.iter().map(|sample| sample.striker_displacement_m).collect(),
+            force_n: samples.iter().map(|sample| sample.force_n).collect(),
+            location_m,
+            time_s,
+        }))
+    }
+}
+
+/// Frequencies that differ by less than this part are those of one mode.
+const SAME: f64 = 1e-9;
+
+/// Places along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
+/// Modes that the place of impact does not excite may have been left out between them.
+fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<(Vec<f64>, Vec<Vec<f64>>)>, InvalidInput> {
+    let highest = kept.last().copied().unwrap_or(0.0) * (1.0 - SAME);
+    let mut count = kept.len();
+    loop {
+        let Some((omega, length_m, shapes_at)) = modes(scene, count)? else { return Ok(None) };
+        if omega.last().is_some_and(|last| *last < highest) && count < MOST_MODES {
+            count = (2 * count).min(MOST_MODES);
+            continue;
+        }
+        let mut numbers = 0..omega.len();
+        let number = |kept: &f64| numbers.find(|&k| omega[k] >= kept * (1.0 - SAME));
+        let numbers: Vec<usize> = kept.iter().filter_map(number).collect();
+        let places: Vec<f64> = (0..=pieces).map(|i| length_m * i as f64 / pieces as f64).collect();
+        let at = |x: &f64| -> Result<Vec<f64>, InvalidInput> {
+            let all = shapes_at(*x).map_err(in_structure)?;
+            Ok(numbers.iter().map(|&k| all[k]).collect())
+        };
+        let shapes = places.iter().map(at).collect::<Result<_, _>>()?;
+        return Ok(Some((places, shapes)));
+    }
+}
+
+type ShapesAt = Box<dyn Fn(f64) -> Result<Vec<f64>, beam_modes::InvalidInput>>;
+
+/// The first `count` modes of a beam or string: frequencies, its length (m), and the shapes at any place.
+fn modes(scene: &Scene, count: usize) -> Result<Option<(Vec<f64>, f64, ShapesAt)>, InvalidInput> {
+    Ok(match &scene.structure {
+        Structure::Beam(beam) => {
+            let system = beam.to_system().map_err(|fault| fault.within("structure"))?;
+            let modes = system.modes(count).map_err(in_structure)?;
+            Some((modes.omega_rad_s().to_vec(), modes.length_m(), Box::new(move |x| modes.shapes_at(x))))
+        }
+        Structure::TautString(string) => {
+            let modes = string.to_taut_string().modes(count).map_err(in_structure)?;
+            Some((modes.omega_rad_s().to_vec(), string.length_m, Box::new(move |x| modes.shapes_at(x))))
+        }
+        _ => None,
+    })
+}
+
+fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
+    InvalidInput::from(fault).within("structure")
+}

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Builds docs/play.html, the page in which one can play with an impact: the library as WebAssembly inside one file.
+# Needs the target: rustup target add wasm32-unknown-unknown. Other arguments are passed to cargo.
+set -euo pipefail
+cd "$(dirname "$0")"
+cargo build --release --locked --target wasm32-unknown-unknown "$@"
+module="${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/release/vibroimpact_web.wasm"
+packed="$(gzip -9 -n -c "$module" | base64 -w 0)"
+{
+    sed -e '/@MODULE@/,$d' page.html
+    printf '<script type="application/octet-stream" id="module">%s</script>\n' "$packed"
+    sed -e '1,/@MODULE@/d' page.html
+} > ../docs/play.html
+ls -l ../docs/play.html
