@@ -1,4 +1,4 @@
-//! Collects the ```` ```rust ```` snippets of the book, one documented item each.
+//! Collects the ```` ```rust ```` snippets of the book and of the README, one documented item each.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,16 @@ fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed={}", book.display());
     let mut pages = Vec::new();
     collect(&book, &mut pages)?;
+    let readme = book.join("../README.md");
+    println!("cargo:rerun-if-changed={}", readme.display());
+    pages.push(readme);
     pages.sort();
     let mut items = String::new();
     for page in &pages {
         let name = page.strip_prefix(&book).unwrap_or(page).display().to_string();
         for (line, snippet) in snippets(&fs::read_to_string(page)?) {
-            let item: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+            let item: String =
+                name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
             let _ = writeln!(
                 items,
                 "/// `{name}`, line {line}\n///\n/// ```\n{snippet}/// ```\npub mod {item}_{line} {{}}"

@@ -41,6 +41,13 @@ def test_how_to(page, monkeypatch, capsys):
     assert capsys.readouterr().out == "".join(printed)
 
 
+def test_readme_of_the_workspace(capsys):
+    text = (REPOSITORY / "README.md").read_text()
+    (snippet,) = re.findall(r"^```python\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
+    exec(compile(snippet, "README.md", "exec"), {})
+    assert capsys.readouterr().out == "0.333 after 5 contacts\n"
+
+
 def test_notebook(monkeypatch):
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")

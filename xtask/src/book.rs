@@ -11,9 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use vibroimpact::Scene;
 
-/// Where the repository's files stand on the web: the built book has no others than its own.
-const REPOSITORY: &str = "https://github.com/vibroimpact/vibroimpact/tree/main/";
-
 /// What a page asks to be checked.
 #[derive(Debug, PartialEq)]
 enum Item {
@@ -42,7 +39,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
                 Item::Command { line, exit } => (0, execute(line, *exit, &program, workplace.path())),
                 Item::JsonScene(text) => (1, scene(Scene::from_json(text))),
                 Item::TomlScene(text) => (1, scene(Scene::from_toml(text))),
-                Item::Link(target) => (2, follow(root, page, target)),
+                Item::Link(target) => (2, follow(page, target)),
             };
             counts[kind] += 1;
             if let Err(fault) = result {
@@ -96,20 +93,15 @@ fn commands(text: &str) -> Vec<Item> {
 
 /// A link to a file of ours, without its anchor.
 fn link(target: &CowStr) -> Option<Item> {
-    let file = target.split('#').next().unwrap_or_default();
-    let ours = file.starts_with(REPOSITORY).then(|| Item::Link(file.to_owned()));
-    ours.or_else(|| relative(file))
+    relative(target.split('#').next().unwrap_or_default())
 }
 
 fn relative(file: &str) -> Option<Item> {
     (!file.is_empty() && !file.contains("://") && !file.starts_with("mailto:")).then(|| Item::Link(file.to_owned()))
 }
 
-fn follow(root: &Path, page: &Path, target: &str) -> Result<(), Failure> {
-    let place = match target.strip_prefix(REPOSITORY) {
-        Some(path) => root.join(path),
-        None => page.parent().unwrap_or(Path::new("")).join(target),
-    };
+fn follow(page: &Path, target: &str) -> Result<(), Failure> {
+    let place = page.parent().unwrap_or(Path::new("")).join(target);
     if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
 }
 

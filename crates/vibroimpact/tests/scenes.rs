@@ -52,13 +52,13 @@ fn what_is_written_is_read_back_the_same() {
 }
 
 #[test]
-fn the_readme_shows_a_scene_of_the_gallery_and_its_restitution() {
-    let readme = include_str!("../../../README.md");
-    let block = readme.split("```json").nth(1).unwrap().split("```").next().unwrap();
+fn the_book_shows_a_scene_of_the_gallery_and_its_restitution() {
+    let page = include_str!("../../../docs/how-to/commands.md");
+    let block = page.split("```json").nth(1).unwrap().split("```").next().unwrap();
     let gallery = Scene { description: None, ..named("pinned-beam-converged") };
     assert_eq!(Scene::from_json(block).unwrap(), gallery);
     let printed =
-        |line: &str| -> f64 { readme.split(line).nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap() };
+        |line: &str| -> f64 { page.split(line).nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap() };
     assert!((printed("  as modelled ") - restitution(&gallery)).abs() < 1e-7);
     // the headline holds no more digits than the whole uncertainty allows
     assert!((printed("  restitution ") - restitution(&gallery)).abs() < 1e-4);

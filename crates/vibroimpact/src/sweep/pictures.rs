@@ -269,7 +269,7 @@ impl<'a> Pictures<'a> {
         let names = axes.map(|(i, axis)| {
             let (label, unit) = label_and_unit(&axis.field);
             let value = axis.value(other[i]);
-            let value = value.as_f64().map_or_else(|| short(&value), |number| crate::report::significant(number, 4));
+            let value = value.as_f64().map_or_else(|| short(&value), |number| crate::text::significant(number, 4));
             format!("{label} {value} {unit}").trim_end().to_owned()
         });
         names.collect::<Vec<_>>().join(", ")

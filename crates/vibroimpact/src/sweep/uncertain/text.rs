@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::estimate::{Estimate, RestitutionDistribution};
-use crate::report::significant;
+use crate::text::significant;
 
 /// Characters before the figures.
 const NAMES: usize = 22;
