@@ -62,7 +62,7 @@ impl Resolved {
     ) -> Result<Option<Deflection>, InvalidInput> {
         let kept: Vec<f64> =
             self.impact.structure.modes[..self.impact.kept_modes()].iter().map(|mode| mode.omega_rad_s).collect();
-        let Some((location_m, shapes)) = shapes_along(scene, &kept, pieces.max(1))? else { return Ok(None) };
+        let Some(Shapes { location_m, shapes }) = shapes_along(scene, &kept, pieces.max(1))? else { return Ok(None) };
         let intervals = intervals.max(1);
         let time_s: Vec<f64> = (0..=intervals).map(|i| until_s * i as f64 / intervals as f64).collect();
         let samples: Vec<_> = time_s.iter().map(|time_s| self.history.at(*time_s)).collect();
@@ -84,13 +84,26 @@ impl Resolved {
 /// Frequencies that differ by less than this part are those of one mode.
 const SAME: f64 = 1e-9;
 
+/// Places along a structure (m), and for each the shapes there.
+struct Shapes {
+    location_m: Vec<f64>,
+    shapes: Vec<Vec<f64>>,
+}
+
+/// Modes of a beam or string: frequencies (rad/s), its length (m), and the shapes at any place.
+struct Line {
+    omega_rad_s: Vec<f64>,
+    length_m: f64,
+    shapes_at: Box<dyn Fn(f64) -> Result<Vec<f64>, beam_modes::InvalidInput>>,
+}
+
 /// Places along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
 /// Modes that the place of impact does not excite may have been left out between them.
-fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<(Vec<f64>, Vec<Vec<f64>>)>, InvalidInput> {
+fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<Shapes>, InvalidInput> {
     let highest = kept.last().copied().unwrap_or(0.0) * (1.0 - SAME);
     let mut count = kept.len();
     loop {
-        let Some((omega, length_m, shapes_at)) = modes(scene, count)? else { return Ok(None) };
+        let Some(Line { omega_rad_s: omega, length_m, shapes_at }) = modes(scene, count)? else { return Ok(None) };
         if omega.last().is_some_and(|last| *last < highest) && count < MOST_MODES {
             count = (2 * count).min(MOST_MODES);
             continue;
@@ -98,29 +111,35 @@ fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<(Ve
         let mut numbers = 0..omega.len();
         let number = |kept: &f64| numbers.find(|&k| omega[k] >= kept * (1.0 - SAME));
         let numbers: Vec<usize> = kept.iter().filter_map(number).collect();
-        let places: Vec<f64> = (0..=pieces).map(|i| length_m * i as f64 / pieces as f64).collect();
+        let location_m: Vec<f64> = (0..=pieces).map(|i| length_m * i as f64 / pieces as f64).collect();
         let at = |x: &f64| -> Result<Vec<f64>, InvalidInput> {
             let all = shapes_at(*x).map_err(in_structure)?;
             Ok(numbers.iter().map(|&k| all[k]).collect())
         };
-        let shapes = places.iter().map(at).collect::<Result<_, _>>()?;
-        return Ok(Some((places, shapes)));
+        let shapes = location_m.iter().map(at).collect::<Result<_, _>>()?;
+        return Ok(Some(Shapes { location_m, shapes }));
     }
 }
 
-type ShapesAt = Box<dyn Fn(f64) -> Result<Vec<f64>, beam_modes::InvalidInput>>;
-
-/// The first `count` modes of a beam or string: frequencies, its length (m), and the shapes at any place.
-fn modes(scene: &Scene, count: usize) -> Result<Option<(Vec<f64>, f64, ShapesAt)>, InvalidInput> {
+/// The first `count` modes of a beam or string; `None` for other structures.
+fn modes(scene: &Scene, count: usize) -> Result<Option<Line>, InvalidInput> {
     Ok(match &scene.structure {
         Structure::Beam(beam) => {
             let system = beam.to_system().map_err(|fault| fault.within("structure"))?;
             let modes = system.modes(count).map_err(in_structure)?;
-            Some((modes.omega_rad_s().to_vec(), modes.length_m(), Box::new(move |x| modes.shapes_at(x))))
+            Some(Line {
+                omega_rad_s: modes.omega_rad_s().to_vec(),
+                length_m: modes.length_m(),
+                shapes_at: Box::new(move |x| modes.shapes_at(x)),
+            })
         }
         Structure::TautString(string) => {
             let modes = string.to_taut_string().modes(count).map_err(in_structure)?;
-            Some((modes.omega_rad_s().to_vec(), string.length_m, Box::new(move |x| modes.shapes_at(x))))
+            Some(Line {
+                omega_rad_s: modes.omega_rad_s().to_vec(),
+                length_m: string.length_m,
+                shapes_at: Box::new(move |x| modes.shapes_at(x)),
+            })
         }
         _ => None,
     })
