@@ -69,6 +69,20 @@ fn frequencies_change_as_theory_says() {
     }
 }
 
+/// In the middle of a beam the restitution is largest or smallest, so that its derivative is zero, and known to be so.
+#[test]
+fn errors_of_the_modes_are_part_of_the_uncertainty() {
+    let mut tree: Value = serde_json::from_str(&fs::read_to_string(gallery("timoshenko-beam.json")).unwrap()).unwrap();
+    let length = tree["structure"]["segments"][0]["length_m"].as_f64().unwrap();
+    tree["location_m"] = json!(0.5 * length);
+    tree["modes"] = json!(40);
+    let field = "location_m".to_owned();
+    let found = Scene::from_value(&tree).unwrap().sensitivity(std::slice::from_ref(&field)).unwrap();
+    let derivative = found.of("restitution", &field).unwrap();
+    assert!(derivative.value.abs() <= derivative.uncertainty.unwrap(), "{derivative:?}");
+    assert!(derivative.uncertainty.unwrap() < 1e-3, "{derivative:?}");
+}
+
 #[test]
 fn a_damping_of_zero_has_neighbours_on_one_side() {
     let mut tree: Value = serde_json::from_str(&fs::read_to_string(gallery("piano-hammer.json")).unwrap()).unwrap();

@@ -120,8 +120,9 @@ impl Scene {
 
 fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<Sensitivity, InvalidInput> {
     let at_rest = Start::at_rest(base.structure.modes.len());
-    let mut parameters = Vec::with_capacity(around.len());
-    for Neighbours { offsets, impacts, .. } in &around {
+    let mut parameters = Vec::with_capacity(around.len() + 1);
+    let with_errors = Neighbours::with_errors(base);
+    for Neighbours { offsets, impacts, .. } in around.iter().chain([&with_errors]) {
         let changes_law = impacts.iter().any(|impact| impact.law != base.law);
         let neighbours = impacts.each_ref().map(|impact| posing(impact, &at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
@@ -137,10 +138,15 @@ fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<
         return Err(InvalidInput::new("scene", format!("an impact whose outcome is \"{outcome}\""), allowed));
     };
     let mut table: BTreeMap<String, BTreeMap<String, OfField>> = BTreeMap::new();
+    let by_errors = derivatives.last().map(outputs).unwrap_or_default();
     for (neighbours, derivatives) in around.iter().zip(derivatives) {
-        for (output, derivative) in outputs(derivatives).into_iter().chain(neighbours.of_modes(base)) {
-            let of_field = OfField { value: derivative.value, uncertainty: derivative.uncertainty };
-            table.entry(output).or_default().insert(neighbours.field.clone(), of_field);
+        let of_impact =
+            outputs(derivatives).into_iter().zip(&by_errors).map(|((output, derivative), (_, by_errors))| {
+                let of_modes = neighbours.error(by_errors.value);
+                (output, Derivative { uncertainty: derivative.uncertainty.map(|own| own + of_modes), ..derivative })
+            });
+        for (output, Derivative { value, uncertainty }) in of_impact.chain(neighbours.of_modes(base)) {
+            table.entry(output).or_default().insert(neighbours.field.clone(), OfField { value, uncertainty });
         }
     }
     Ok(Sensitivity {

@@ -2,9 +2,11 @@
 
 use super::*;
 
-/// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five
-/// of the sixteen digits that they have.
+/// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five of
+/// the digits that they have.
 const STEP: f64 = 1e-5;
+/// To this part frequencies and shapes are known.
+const KNOWN: f64 = 2e-13;
 /// The same where the value is zero, in its unit.
 const STEP_AT_ZERO: f64 = 1e-6;
 /// Modes that change by more than this part between neighbours are not the same ones.
@@ -54,6 +56,32 @@ impl Neighbours {
         }
         let why = fault.map_or_else(String::new, |fault| format!(": {fault}"));
         Err(named(&number(value), format!("a field that can change by a little{why}")))
+    }
+
+    /// The impact with errors of its modes, each of the same size and of either sign; the size takes the place of a field.
+    pub fn with_errors(base: &Impact) -> Neighbours {
+        let offsets = [-2e-6, -1e-6, 1e-6, 2e-6];
+        let impacts = offsets.map(|size| {
+            let mut impact = base.clone();
+            // a linear congruential generator is random enough for signs
+            let mut random = 2019u64;
+            let mut error = || {
+                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                if random >> 63 == 0 { size } else { -size }
+            };
+            for mode in &mut impact.structure.modes {
+                mode.omega_rad_s *= 1.0 + error();
+                mode.shape *= 1.0 + error();
+            }
+            impact
+        });
+        Neighbours { field: String::new(), value: 0.0, offsets, impacts }
+    }
+
+    /// What the errors of the modes may make of a derivative, if errors of unit size change the output by this much.
+    pub fn error(&self, by_errors: f64) -> f64 {
+        let nearest = self.offsets.iter().fold(f64::INFINITY, |least, offset| least.min(offset.abs()));
+        KNOWN / nearest * by_errors.abs()
     }
 
     /// Frequencies and shapes of the lowest modes.
