@@ -5,7 +5,7 @@ use super::damping::Damping;
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
-use crate::panel::forcing::{Compliance, Terms, part};
+use crate::panel::forcing::{Compliance, Terms, gather, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::vector::{sum_over, vectorized};
 
@@ -97,6 +97,17 @@ impl Tables {
         }
     }
 
+    /// For a system that differs in the weights of all modes: what does not depend on them stays.
+    pub fn change_weights(&mut self) {
+        for level in &mut self.levels {
+            level.damping = None;
+            if let Some(expanded) = &mut level.expanded {
+                expanded.responses.iter_mut().for_each(|pair| *pair = None);
+            }
+        }
+        self.kernels.iter_mut().for_each(|kernel| *kernel = None);
+    }
+
     /// Makes sure that everything about level `j` is there for these contacts and these forces.
     pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
         self.rotation(system, j);
@@ -115,8 +126,16 @@ impl Tables {
             return;
         }
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
-        let (forced, found) = Forced::new(system, step_s(j), half, &weights);
-        let expanded = expanded.get_or_insert_with(|| Box::new(Expanded { forced, responses: Vec::new() }));
+        let (expanded, found) = match expanded {
+            Some(expanded) => {
+                let found = expanded.forced.responses(system, step_s(j), &weights);
+                (expanded, found)
+            }
+            None => {
+                let (forced, found) = Forced::new(system, step_s(j), half, &weights);
+                (expanded.insert(Box::new(Expanded { forced, responses: Vec::new() })), found)
+            }
+        };
         expanded.responses.resize_with(count * count, || None);
         for ((c, other), elastic) in pairs.into_iter().zip(found) {
             let whole = elastic.with_rigid(system.links[c].shared_rigid(&system.links[other]), step_s(j));
@@ -239,13 +258,33 @@ impl Forced {
                 }
             }
         }
-        let response = |(compliance, (end, end_rate)): (Compliance, (Nodal, Nodal))| Response {
-            nodes: compliance.at_nodes(h),
-            end,
-            end_rate,
-        };
-        let responses = compliances.into_iter().zip(ends).map(response).collect();
+        let responses = compliances.into_iter().zip(ends).map(|gathered| Response::of(gathered, h)).collect();
         (Forced { at_nodes, amplitude, rate }, responses)
+    }
+
+    /// Responses summed over the modes with other weights, of a panel of `h` again: to the last bit those of
+    /// [`Forced::new`].
+    fn responses(&self, system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<Response> {
+        let mut compliances: Vec<Compliance> = weights.iter().map(|_| Compliance::new()).collect();
+        let mut ends = vec![([0.0; Q], [0.0; Q]); weights.len()];
+        let mut of_mode = vec![0.0; weights.len()];
+        for body in &system.bodies {
+            let mut terms = Terms::default();
+            for k in body.clone() {
+                let mode = &system.modes[k];
+                for (weight, weights) in of_mode.iter_mut().zip(weights) {
+                    *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
+                }
+                gather(mode, &of_mode, h, &mut terms, &mut compliances);
+                for (weight, (end, end_rate)) in of_mode.iter().zip(&mut ends) {
+                    for n in 0..Q {
+                        end[n] -= weight * self.amplitude[n][k];
+                        end_rate[n] -= weight * self.rate[n][k];
+                    }
+                }
+            }
+        }
+        compliances.into_iter().zip(ends).map(|gathered| Response::of(gathered, h)).collect()
     }
 
     /// How far free motion moves `sum_k psi_k a_k` at the nodes.
@@ -299,6 +338,11 @@ impl Forced {
 }
 
 impl Response {
+    /// From what was gathered over all modes, on a panel of `h`.
+    fn of((compliance, (end, end_rate)): (Compliance, (Nodal, Nodal)), h: f64) -> Response {
+        Response { nodes: compliance.at_nodes(h), end, end_rate }
+    }
+
     /// With that of rigid modes of this inverse mass (1/kg), on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
         let Response { mut nodes, mut end, mut end_rate } = *self;

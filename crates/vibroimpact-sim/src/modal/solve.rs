@@ -116,9 +116,27 @@ impl Solver {
         Ok(Solver::unchecked(structure.modes.clone()))
     }
 
+    /// Turns to another place of the same structure, or to a structure of other modes. Tables that do not depend on the
+    /// shapes are kept where frequencies and damping are the same; results are those of a new solver, to the last bit.
+    ///
+    /// # Errors
+    /// As [`Solver::new`].
+    pub fn turn_to(&mut self, structure: &Structure) -> Result<(), InvalidInput> {
+        structure.check()?;
+        self.turn_to_modes(structure.modes.clone());
+        Ok(())
+    }
+
+    fn turn_to_modes(&mut self, modes: Vec<Mode>) {
+        if let Some(otherwise) = &mut self.otherwise {
+            otherwise.turn_to_modes(time_unit::modes(&modes));
+        }
+        self.moved = moved(&modes);
+        self.modes = modes;
+    }
+
     fn unchecked(modes: Vec<Mode>) -> Solver {
-        let moved = (0..modes.len()).filter(|&k| modes[k].is_excited()).collect();
-        Solver { modes, moved, kept: None, otherwise: None }
+        Solver { moved: moved(&modes), modes, kept: None, otherwise: None }
     }
 
     /// Solves one impact. `start` is the structure's motion when the clock starts; `None` means at rest and touching.
@@ -303,10 +321,12 @@ impl Solver {
     /// The system of an assembly, and its tables, of which all that concerns the structure is kept.
     fn tables(&mut self, posed: &Posed) -> (&System, &mut Tables) {
         let system = System::new(posed);
-        let same = self.kept.take().filter(|(last, _)| last.modes.len() == system.modes.len());
+        let same = self.kept.take().filter(|(last, _)| last.modes == system.modes);
         let tables = match same {
             Some((last, mut tables)) => {
-                if last.links[0].rigid != system.links[0].rigid {
+                if last.links[0].elastic != system.links[0].elastic {
+                    tables.change_weights();
+                } else if last.links[0].rigid != system.links[0].rigid {
                     tables.change_rigid_modes(&system);
                 }
                 tables
@@ -329,6 +349,11 @@ impl Solver {
         // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
     }
+}
+
+/// Those of the modes that move the contact.
+fn moved(modes: &[Mode]) -> Vec<usize> {
+    (0..modes.len()).filter(|&k| modes[k].is_excited()).collect()
 }
 
 fn stop_reason(reason: assembly::Reason, closed: bool) -> StopReason {

@@ -53,6 +53,20 @@ pub(crate) fn part(
     }
 }
 
+/// The compliance alone, added likewise: to the last bit what [`part`] adds. `terms` are those of the modes before.
+pub(crate) fn gather(mode: &BodyMode, weights: &[f64], h: f64, terms: &mut Terms, compliances: &mut [Compliance]) {
+    let gathered = weights.iter().copied().zip(&mut *compliances).filter(|(weight, _)| *weight != 0.0);
+    let turned = rate(mode) * h;
+    if turned <= SLOW {
+        terms.start = BASIS.terms::<SERIES>(turned, terms.start);
+        gather_slow(mode, h, terms, gathered);
+    } else if mode.damping_ratio < NEARLY_CRITICAL {
+        ByParts::new(mode, h).gather(gathered);
+    } else {
+        by_quadrature(mode, h, gathered);
+    }
+}
+
 /// `|lambda|`, of the faster root if there are two (rad/s).
 pub(crate) fn rate(mode: &BodyMode) -> f64 {
     mode.omega_rad_s * if mode.damping_ratio < NEARLY_CRITICAL { 1.0 } else { 2.0 * mode.damping_ratio }
@@ -121,18 +135,8 @@ fn slow<'c>(
     terms: &Terms,
     gathered: impl Iterator<Item = (f64, &'c mut Compliance)>,
 ) -> Part {
-    let angle = mode.omega_rad_s * h;
-    let (square, damping) = (angle * angle, 2.0 * mode.damping_ratio * angle);
-
-    // the impulse response from the start: S^(p)(0) h^p
-    for (w, compliance) in gathered {
-        compliance.terms = compliance.terms.max(terms.start);
-        let (mut here, mut next) = (0.0, h * w);
-        for value in &mut compliance.impulse[..terms.start] {
-            *value += here;
-            (here, next) = (next, -damping * next - square * here);
-        }
-    }
+    gather_slow(mode, h, terms, gathered);
+    let (square, damping) = square_and_damping(mode, h);
 
     // S^(p) h^p/p! in the middle, and the same of h S'
     let mut series = [(0.0, 0.0); HALF_SERIES];
@@ -164,6 +168,25 @@ fn slow<'c>(
     }
 }
 
+/// `(omega h)^2` and `2 zeta omega h`.
+fn square_and_damping(mode: &BodyMode, h: f64) -> (f64, f64) {
+    let angle = mode.omega_rad_s * h;
+    (angle * angle, 2.0 * mode.damping_ratio * angle)
+}
+
+/// The impulse response from the start: `S^(p)(0) h^p`.
+fn gather_slow<'c>(mode: &BodyMode, h: f64, terms: &Terms, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) {
+    let (square, damping) = square_and_damping(mode, h);
+    for (w, compliance) in gathered {
+        compliance.terms = compliance.terms.max(terms.start);
+        let (mut here, mut next) = (0.0, h * w);
+        for value in &mut compliance.impulse[..terms.start] {
+            *value += here;
+            (here, next) = (next, -damping * next - square * here);
+        }
+    }
+}
+
 /// Even or odd terms: of `S` at the nodes of the second half, of its integral from the middle to there, and of `S` and
 /// `h S'` integrated with the Legendre polynomials.
 fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
@@ -180,38 +203,63 @@ fn weighted_sums(series: &[(f64, f64)], parity: usize) -> [[f64; Q / 2]; 4] {
     [s_nodes, to_nodes, s_end, v_end]
 }
 
-/// By parts; below critical damping.
-fn fast<'c>(mode: &BodyMode, h: f64, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) -> Part {
-    let sigma = mode.damping_ratio * mode.omega_rad_s;
-    let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
-    let lambda = Complex64::new(-sigma, omega_d);
-    let (inverse, scale) = ((lambda * h).inv(), h / omega_d);
-    let (to_nodes, to_end) = exponentials(sigma * h, omega_d * h);
+/// A mode below critical damping, integrated by parts.
+struct ByParts {
+    sigma: f64,
+    omega_d: f64,
+    lambda: Complex64,
+    /// `1/z` and `h/omega_d`.
+    inverse: Complex64,
+    scale: f64,
+    to_nodes: (Nodal, Nodal),
+    to_end: Complex64,
+    /// Sums of `P_n^(k)/z^(k+1)` at the end and at the start of the step.
+    at_end: [Complex64; Q],
+    at_start: [Complex64; Q],
+}
 
-    // sums of P_n^(k)/z^(k+1) at the end and at the start of the step: both obey the recurrence of the spherical
-    // Bessel functions, in the direction in which it is stable
-    let (mut at_end, mut at_start) = ([inverse; Q], [inverse; Q]);
-    let twice = 2.0 * inverse * inverse;
-    (at_end[1], at_start[1]) = (twice + inverse, twice - inverse);
-    for n in 1..Q - 1 {
-        let factor = (4 * n + 2) as f64 * inverse;
-        at_end[n + 1] = at_end[n - 1] + factor * at_end[n];
-        at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
+impl ByParts {
+    fn new(mode: &BodyMode, h: f64) -> ByParts {
+        let sigma = mode.damping_ratio * mode.omega_rad_s;
+        let omega_d = mode.omega_rad_s * ((1.0 - mode.damping_ratio) * (1.0 + mode.damping_ratio)).sqrt();
+        let lambda = Complex64::new(-sigma, omega_d);
+        let (inverse, scale) = ((lambda * h).inv(), h / omega_d);
+        let (to_nodes, to_end) = exponentials(sigma * h, omega_d * h);
+        // both obey the recurrence of the spherical Bessel functions, in the direction in which it is stable
+        let (mut at_end, mut at_start) = ([inverse; Q], [inverse; Q]);
+        let twice = 2.0 * inverse * inverse;
+        (at_end[1], at_start[1]) = (twice + inverse, twice - inverse);
+        for n in 1..Q - 1 {
+            let factor = (4 * n + 2) as f64 * inverse;
+            at_end[n + 1] = at_end[n - 1] + factor * at_end[n];
+            at_start[n + 1] = at_start[n - 1] + factor * at_start[n];
+        }
+        ByParts { sigma, omega_d, lambda, inverse, scale, to_nodes, to_end, at_end, at_start }
     }
 
-    for (w, compliance) in gathered {
-        let mut power = inverse;
-        for value in &mut compliance.by_parts {
-            *value += w * scale * power.im;
-            power *= inverse;
-        }
-        for (column, start) in compliance.legendre.iter_mut().zip(&at_start) {
-            let (re, im) = (w * scale * start.re, w * scale * start.im);
-            for i in 0..Q {
-                column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
+    fn gather<'c>(&self, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) {
+        let ByParts { inverse, scale, to_nodes, at_start, .. } = self;
+        for (w, compliance) in gathered {
+            let mut power = *inverse;
+            for value in &mut compliance.by_parts {
+                *value += w * scale * power.im;
+                power *= inverse;
+            }
+            for (column, start) in compliance.legendre.iter_mut().zip(at_start) {
+                let (re, im) = (w * scale * start.re, w * scale * start.im);
+                for i in 0..Q {
+                    column[i] -= re * to_nodes.1[i] + im * to_nodes.0[i];
+                }
             }
         }
     }
+}
+
+/// By parts; below critical damping.
+fn fast<'c>(mode: &BodyMode, h: f64, gathered: impl Iterator<Item = (f64, &'c mut Compliance)>) -> Part {
+    let sums = ByParts::new(mode, h);
+    sums.gather(gathered);
+    let ByParts { sigma, omega_d, lambda, scale, to_nodes, to_end, at_end, at_start, .. } = sums;
     let moments: [Complex64; Q] = array::from_fn(|n| to_end * at_start[n] - at_end[n]);
     let sine = to_nodes.1.map(|im| im / omega_d);
     Part {

@@ -34,15 +34,41 @@ const MOST_MODES: usize = 2000;
 pub struct Kept {
     pub(crate) modes: KnownModes,
     solvers: VecDeque<(Structure, Solver)>,
+    /// Whether places of impact hardly ever come again.
+    passing: bool,
 }
 
+/// Solvers that are kept where places hardly ever come again: a group of draws for indices has two places.
+const PASSING: usize = 2;
+
 impl Kept {
+    /// For scenes of one beam whose places hardly ever come again: few tables are kept, and turned from place to place.
+    pub(crate) fn passing() -> Kept {
+        Kept { passing: true, ..Kept::default() }
+    }
+
+    /// Forgets all that is kept.
+    pub(crate) fn clear(&mut self) {
+        *self = Kept { passing: self.passing, ..Kept::default() };
+    }
+
     /// A solver for a structure, with the tables that it has from before.
     pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&mut Solver, InvalidInput> {
         let known = self.solvers.iter().position(|(kept, _)| kept == structure);
         let last = match known.and_then(|place| self.solvers.remove(place)) {
             Some(known) => known,
-            None => (structure.clone(), Solver::new(structure).map_err(in_scene)?),
+            None => {
+                let turns = self.passing && self.solvers.len() >= PASSING;
+                let last = if turns { self.solvers.pop_back() } else { None };
+                let solver = match last {
+                    Some((_, mut solver)) => {
+                        solver.turn_to(structure).map_err(in_scene)?;
+                        solver
+                    }
+                    None => Solver::new(structure).map_err(in_scene)?,
+                };
+                (structure.clone(), solver)
+            }
         };
         let mut modes = last.0.modes.len();
         self.solvers.push_front(last);

@@ -48,7 +48,7 @@ pub(super) fn evaluate(
     });
     if cells.is_err() {
         // what a solver that failed has left may be anything
-        *kept = Kept::default();
+        kept.clear();
     }
     cells.transpose()
 }

@@ -21,7 +21,6 @@ use super::row;
 use super::tally::Tally;
 use super::threads::{BETWEEN_WRITES, Sink};
 use super::{Status, run as run_on_threads};
-use crate::model::Kept;
 
 /// How long rank 0 rests when no message is there. Waiting inside MPI would take a whole core.
 const REST: Duration = Duration::from_micros(200);
@@ -91,7 +90,7 @@ fn work(world: &SimpleCommunicator, stop: &AtomicBool) {
     let Some(sweep) = tree.and_then(|tree| Sweep::from_value(&tree).ok()) else { return };
     let lead = world.process_at_rank(0);
     // a message is a chunk's number and its rows; the first is too short for a number, that after a stop has END as its
-    let (mut message, mut kept) = (vec![0], Kept::default());
+    let (mut message, mut kept) = (vec![0], sweep.results().kept());
     loop {
         lead.send(&message[..]);
         let (chunk, _) = lead.receive::<u64>();

@@ -2,7 +2,7 @@
 
 use super::table::Kind;
 use crate::assembly::{AnyScene, Simulation, Summary};
-use crate::model::{Answer, Draw};
+use crate::model::{Answer, Draw, Kept};
 use crate::scene::json::number;
 
 /// The columns of an impact.
@@ -106,6 +106,15 @@ impl Results {
             AnyScene::Bodies(scene) => {
                 Results::Run(scene.contacts.iter().flat_map(|contact| contact.names()).collect())
             }
+        }
+    }
+
+    /// What one point leaves for the next.
+    pub(super) fn kept(&self) -> Kept {
+        match self {
+            // each has a place of its own, if the place is uncertain
+            Results::Draw => Kept::passing(),
+            _ => Kept::default(),
         }
     }
 

@@ -12,7 +12,6 @@ use super::definition::Sweep;
 use super::error::SweepError;
 use super::folder::Part;
 use super::row;
-use crate::model::Kept;
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
 pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
@@ -71,7 +70,7 @@ pub(super) fn compute(
 }
 
 fn work(sweep: &Sweep, desk: &Desk, give_up: impl Fn() -> bool) {
-    let mut kept = Kept::default();
+    let mut kept = sweep.results().kept();
     while !give_up() {
         let order = desk.assembly().hand_out();
         match order {
