@@ -25,7 +25,7 @@ pub struct Deflection {
     pub structure_m: Vec<Vec<f64>>,
     /// Displacement of the striker (m).
     pub striker_m: Vec<f64>,
-    /// Contact force (N).
+    /// Contact force at these times (N), between which whole contacts may lie.
     pub force_n: Vec<f64>,
 }
 

@@ -170,6 +170,39 @@ fn fields_are_set_on_the_command_line() {
     }
 }
 
+/// The ball moves as its history says, and what cannot be shown is refused.
+#[test]
+fn an_impact_is_shown_moving() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = stdout(&run(folder.path(), &["demo", "--animate", "moving.svg"]));
+    assert!(told.contains("wrote moving.svg"), "{told}");
+    let svg = fs::read_to_string(folder.path().join("moving.svg")).unwrap();
+    assert!(
+        svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>") && svg.len() < 250_000,
+        "{} bytes",
+        svg.len()
+    );
+    let values = |attribute: &str| -> Vec<String> {
+        let part = svg.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
+        part.split("values=\"").nth(1).unwrap().split('"').next().unwrap().split(';').map(str::to_owned).collect()
+    };
+    let (beam, ball) = (values("d"), values("cy"));
+    assert_eq!((beam.len(), ball.len()), (241, 241));
+    // the largest force is that of the result, though it lasts for less than a picture does
+    assert!(told.contains("2.133 kN") && svg.contains(">2.133 kN<"), "{told}");
+    // upwards is towards smaller numbers: the ball falls with the beam first, and leaves upwards
+    let heights: Vec<f64> = ball.iter().map(|y| y.parse().unwrap()).collect();
+    assert!(heights[10] > heights[0] && heights[240] < heights[230]);
+    let bodies = first_scene(folder.path(), "bodies");
+    let plate = first_scene(folder.path(), "plate");
+    for text in [bodies, plate] {
+        let message = refused(&fed(folder.path(), &["simulate", "-", "--animate", "other.svg"], &text));
+        assert!(message.contains("--animate = other.svg is not allowed: left out for this scene"), "{message}");
+    }
+    assert!(refused(&run(folder.path(), &["demo", "--animate", "a.gif"])).contains("ends in .svg"));
+    assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));
+}
+
 /// The picture of the README is what the program draws.
 #[test]
 fn the_readme_shows_the_demo() {

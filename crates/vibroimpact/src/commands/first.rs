@@ -14,6 +14,7 @@ use super::source::Changes;
 pub const DEMO_EXAMPLES: &str = "Examples:
   vibroimpact demo                               the impact, to read
   vibroimpact demo --plot demo.svg               and as a picture
+  vibroimpact demo --animate demo.svg            beam and ball moving, in slow motion, in a browser
   vibroimpact demo --report demo.html            and as a page with pictures and tables
   vibroimpact demo --set location_m=0.5          the same with another place of impact
   vibroimpact init                               write this scene into a file, to change it
@@ -33,6 +34,8 @@ The file is complete, and each of its fields is explained in it. Change a line, 
 pub struct DemoArguments {
     #[command(flatten)]
     changes: Changes,
+    #[command(flatten)]
+    extent: simulate::Extent,
     #[command(flatten)]
     products: Products,
 }
@@ -82,11 +85,12 @@ fn toml_file(name: &str) -> Result<PathBuf, String> {
 }
 
 /// Carries `demo` out and returns what is to be printed.
-pub fn demo(DemoArguments { changes, products }: DemoArguments) -> Result<String, Failure> {
+pub fn demo(DemoArguments { changes, extent, products }: DemoArguments) -> Result<String, Failure> {
     products.require_room()?;
+    extent.require_room(&products)?;
     let scene = changes.apply(Draft::from_text(Kind::Beam.scene())?)?.any()?;
     let json = products.json;
-    let printed = simulate::answer(scene, simulate::Extent::default(), &products)?;
+    let printed = simulate::answer(scene, extent, &products)?;
     Ok(if json { printed } else { printed + NEXT })
 }
 

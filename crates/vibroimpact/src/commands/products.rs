@@ -92,6 +92,11 @@ fn page_file(name: &str) -> Result<PathBuf, String> {
 }
 
 impl Products {
+    /// Whether files that exist may be replaced.
+    pub fn may_replace(&self) -> bool {
+        self.force
+    }
+
     /// Refuses to replace what is there already, before anything is solved.
     pub fn require_room(&self) -> Result<(), InvalidInput> {
         if let Some(folder) = &self.out

@@ -1,9 +1,12 @@
 //! The command `simulate`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
 use vibroimpact::export::{Failure, Files};
 use vibroimpact::model::{self, Answer};
+use vibroimpact::scene::Location;
 use vibroimpact::simulate::{Resolved, Simulation};
 use vibroimpact::trust::Check;
 use vibroimpact::{InvalidInput, Scene, pictures, report, text, trust};
@@ -12,7 +15,7 @@ use super::bodies;
 use super::headline;
 use super::heartbeat::watched;
 use super::infinite_beam;
-use super::products::Products;
+use super::products::{Products, require_free, write_single};
 use super::source::SceneSource;
 use super::voice::signature;
 
@@ -21,6 +24,7 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact simulate ball.json --json          one JSON object for programs
   vibroimpact simulate ball.json --out ball/     CSV histories, the picture impact.svg, result.json
   vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
+  vibroimpact simulate ball.json --animate a.svg a picture that moves: beam and ball in slow motion, in a browser
   vibroimpact simulate ball.json --out ball/ --until 0.5
                                                  histories until half a second after the clock has started
   vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
@@ -52,12 +56,35 @@ pub struct Extent {
     /// How far histories and pictures go, from the start of the clock; a little past the last contact when left out
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
+    /// Show beam and ball moving, in slow motion, in this file, .svg
+    #[arg(long, value_name = "FILE", value_parser = svg_file)]
+    animate: Option<PathBuf>,
 }
 
-impl Default for Extent {
-    fn default() -> Extent {
-        Extent { intervals: MOST_INTERVALS, until: None }
+impl Extent {
+    /// Refuses to replace a file, before anything is solved.
+    pub fn require_room(&self, products: &Products) -> Result<(), InvalidInput> {
+        require_free("--animate", self.animate.as_deref(), products.may_replace())
     }
+
+    /// What moves but cannot be shown.
+    fn require_still(&self) -> Result<(), InvalidInput> {
+        match &self.animate {
+            None => Ok(()),
+            Some(path) => Err(InvalidInput {
+                field: "--animate".to_owned(),
+                value: Some(path.display().to_string()),
+                allowed: "left out for this scene: a beam or a string is shown, struck once and resolved in time"
+                    .to_owned(),
+            }),
+        }
+    }
+}
+
+fn svg_file(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    if is_svg { Ok(path) } else { Err("allowed is a file name that ends in .svg".to_owned()) }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -69,12 +96,16 @@ fn seconds(text: &str) -> Result<f64, String> {
 pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, Failure> {
     let scene = scene.any()?;
     products.require_room()?;
+    extent.require_room(&products)?;
     answer(scene, extent, &products)
 }
 
 /// Solves a scene and returns what is to be printed of it.
 pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<String, Failure> {
-    let Extent { intervals, until } = extent;
+    let (intervals, until) = (extent.intervals, extent.until);
+    if matches!(&scene, AnyScene::Bodies(_)) {
+        extent.require_still()?;
+    }
     let scene = match (scene, until) {
         (AnyScene::Impact(scene), _) => *scene,
         // it tells by itself how far it has come
@@ -88,11 +119,15 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
     let scene = found.scene(&scene);
     let trust = scene.trust(&found)?;
     match &found {
-        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, until, products),
+        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, &extent, products),
         Simulation::Infinite { groups, solution } => {
+            extent.require_still()?;
             infinite_beam::of_scene(&scene, (groups, solution), &trust, until, found.json(&scene)?, products)
         }
-        Simulation::Net(answer) => without_course(&scene, found.json(&scene)?, &trust, answer, products),
+        Simulation::Net(answer) => extent
+            .require_still()
+            .map_err(Failure::from)
+            .and_then(|()| without_course(&scene, found.json(&scene)?, &trust, answer, products)),
     }
 }
 
@@ -101,7 +136,7 @@ fn in_modes(
     json: String,
     trust: &[Check],
     resolved: &Resolved,
-    until: Option<f64>,
+    extent: &Extent,
     products: &Products,
 ) -> Result<String, Failure> {
     let Resolved { impact, summary, .. } = resolved;
@@ -113,15 +148,43 @@ fn in_modes(
     };
     let reason = summary.choice.as_ref().map_or("", |choice| &choice.reason);
     let modelled = report::modelled(scene, impact, reason);
-    let until_s = resolved.until_s(until);
+    let until_s = resolved.until_s(extent.until);
+    let animation = animation(scene, &headline, resolved, extent, until_s)?;
     let figure = || pictures::impact(&headline, resolved, until_s);
     let told = products.write(
         figure,
         |figure| report::of_impact(&headline, scene, &modelled, trust, resolved, figure),
         || Files::new(json, resolved, until_s, &figure()),
     )?;
-    Ok(printed + &told)
+    let shown = match (&extent.animate, animation) {
+        (Some(path), Some(animation)) => write_single(path, animation.as_bytes(), products.json)?,
+        _ => String::new(),
+    };
+    Ok(printed + &told + &shown)
 }
+
+/// The moving picture, if it is asked for.
+fn animation(
+    scene: &Scene,
+    headline: &str,
+    resolved: &Resolved,
+    extent: &Extent,
+    until_s: f64,
+) -> Result<Option<String>, Failure> {
+    if extent.animate.is_none() {
+        return Ok(None);
+    }
+    let (Some(Location::Along(location_m)), Some(deflection)) =
+        (scene.location_m, resolved.deflection(scene, until_s, FRAMES)?)
+    else {
+        extent.require_still()?;
+        return Ok(None);
+    };
+    Ok(Some(pictures::animation(headline, location_m, &deflection, &resolved.history)))
+}
+
+/// Pieces of the length, and of the time, in a moving picture.
+const FRAMES: [usize; 2] = [48, 240];
 
 /// A model that has no course in time.
 fn without_course(

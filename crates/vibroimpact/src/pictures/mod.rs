@@ -1,13 +1,15 @@
 //! The pictures of the commands: an impact ([`impact`], and [`crate::infinite::picture`] for infinite structures), the
-//! modes of a structure ([`modes`]), results of several models beside each other ([`comparison`],
+//! modes of a structure ([`modes`]), its motion ([`animation`]), results of several models beside each other ([`comparison`],
 //! [`of_comparison`]).
 //!
 //! Axes are in SI units with prefixes, whatever the scale of the impact.
 
+mod animation;
 mod comparison;
 mod impact;
 mod modes;
 
+pub use animation::animation;
 pub use comparison::{comparison, of_answer, of_comparison};
 pub use impact::impact;
 pub use modes::modes;
