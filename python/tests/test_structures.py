@@ -14,23 +14,24 @@ POINTS = {"tip": 0.5, "middle": 0.25}
 UP = (0, 0, 1)
 
 
-def own_beam(location_m):
-    """The cantilever of the files, by Timoshenko's theory."""
+def own_beam(location_m, theory="euler-bernoulli"):
+    """The cantilever of the files."""
     return {
         "structure": {
-            "kind": "beam", "ends": ["clamped", "free"], "theory": "timoshenko",
+            "kind": "beam", "ends": ["clamped", "free"], "theory": theory,
             "segments": [{"length_m": 0.5, "youngs_modulus_pa": 2.1e11, "poissons_ratio": 0.3, "density_kg_m3": 7850,
                           "width_m": 0.02, "thickness_m": 0.01}],
         },
         "striker": {"mass_kg": 0.05, "radius_m": 0.0115, "speed_m_s": 1},
-        "contact": {"law": "hertz", "stiffness_n_m1_5": 1.2e10},
+        # soft, so that the contact lasts longer than the highest listed modes take
+        "contact": {"law": "hertz", "stiffness_n_m1_5": 1e7},
         "location_m": location_m,
     }
 
 
-def own_modes(location_m, count):
-    found = vibroimpact.modes({**own_beam(location_m), "modes": count}, count)
-    return np.asarray(found["omega_rad_s"]), np.asarray(found["shape"])
+def own_modes(location_m, theory, count=3):
+    found = vibroimpact.modes({**own_beam(location_m, theory), "modes": count}, count)
+    return np.asarray(found["omega_rad_s"]), np.asarray(found["shape_at_location"])
 
 
 def calculix():
@@ -63,21 +64,25 @@ def universal():
     return structures.from_universal(FILES / "universal" / "cantilever.uff", {"tip": (2, 3), "middle": (1, 3)}, "tip", 3)
 
 
-# the largest relative errors of frequencies, of shapes beside the largest shape, and of compliances: those of a mesh of
-# solids with a clamp that holds every node, of bars with lumped masses, of Euler-Bernoulli's beam, of noise
+# the theory by which our beam bends, and the largest relative errors of three frequencies, of shapes beside the largest, and
+# of compliances: solids bend by Timoshenko's theory, and their clamp also keeps the section from widening; MYSTRAN's bars have their mass in the
+# nodes, twenty of them; Hermite's elements are exact to what they are wide; the responses are noisy
 @pytest.mark.parametrize(
-    ("reader", "errors", "keeps"),
-    [(calculix, (0.01, 0.02, 0.02), 0.03), (nastran, (0.01, 0.02, 0.002), 0.03), (matrices, (0.004, 0.01, 0.002), 0.02),
-     (universal, (0.004, 0.01, 0.002), 0.03)],
+    ("reader", "theory", "errors"),
+    [
+        (calculix, "timoshenko", (0.01, 0.02, 0.02)),
+        (nastran, "euler-bernoulli", (0.01, 0.02, 0.001)),
+        (matrices, "euler-bernoulli", (1e-5, 1e-4, 1e-6)),
+        (universal, "euler-bernoulli", (1e-4, 0.002, 0.002)),
+    ],
 )
-def test_readers_agree_with_our_own_beam(reader, errors, keeps, tmp_path):
+def test_readers_agree_with_our_own_beam(reader, theory, errors, tmp_path):
     structure = reader()
-    bends = [k for k in range(len(structure.omega_rad_s)) if abs(structure.shapes["tip"][k]) > 1e-6][:5]
+    signs = np.sign(structure.shapes["tip"][:3]) * np.sign(own_modes(0.5, theory)[1])
     for name, place in POINTS.items():
-        omega, shape = own_modes(place, len(bends))
-        found = structure.shapes[name][bends] * np.sign(structure.shapes["tip"][bends]) * np.sign(own_modes(0.5, len(bends))[1])
-        assert np.abs(structure.omega_rad_s[bends] / omega - 1).max() < errors[0]
-        assert np.abs(found - shape).max() < errors[1] * 2.26
+        omega, shape = own_modes(place, theory)
+        assert np.abs(structure.omega_rad_s[:3] / omega - 1).max() < errors[0]
+        assert np.abs(structure.shapes[name][:3] * signs - shape).max() < errors[1] * 2.26
     bending, length = 2.1e11 * 0.02 * 0.01**3 / 12, 0.5
     exact = {"tip": length**3 / (3 * bending), "middle": (length / 2) ** 3 / (3 * bending)}
     for name, compliance in structure.static_compliances_m_n.items():
@@ -90,9 +95,9 @@ def test_readers_agree_with_our_own_beam(reader, errors, keeps, tmp_path):
     scene["residual_compliance"] = True
     (tmp_path / "scene.json").write_text(json.dumps(scene))
     read = vibroimpact.simulate(tmp_path / "scene.json")
-    ours = vibroimpact.simulate(own_beam(0.5) | {"tolerance": 1e-4})
+    ours = vibroimpact.simulate(own_beam(0.5, theory) | {"tolerance": 1e-4})
     assert read["remainder_modes"] > 0
-    assert read["restitution"] == pytest.approx(ours["restitution"], abs=keeps)
+    assert read["restitution"] == pytest.approx(ours["restitution"], abs=0.005)
     # the same numbers within the scene
     inside = vibroimpact.simulate(scene | {"structure": structure.modal()})
     assert inside["restitution"] == read["restitution"]
