@@ -19,7 +19,7 @@ use std::time::Duration;
 use chapters::{BadInput, Failure, Part, RandomScenes};
 use clap::{Parser, Subcommand};
 
-/// Keeps the house, and reproduces the chapters of the thesis.
+/// Development tasks: checks, benchmarks, chapters of the thesis.
 #[derive(Parser)]
 struct Cli {
     #[command(subcommand)]
