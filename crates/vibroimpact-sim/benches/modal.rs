@@ -1,4 +1,4 @@
-//! One impact on the beam of thesis chapter 3: with the structure's tables at hand, and built anew.
+//! One impact on the beam of thesis chapter 3: with the structure's tables at hand, and built anew; and its derivatives.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -6,7 +6,7 @@ mod common;
 use common::{GOLDEN, ball, hertz, pinned, settings};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use vibroimpact_sim::modal::{Settings, Solver};
+use vibroimpact_sim::modal::{Parameter, Posing, Settings, Solver, Start};
 
 /// Tolerances that leave an error of 1e-6 and of 1e-9 in the restitution at N = 40, and their names.
 const ACCURACIES: [(f64, &str); 2] = [(5e-7, "1e-6"), (7e-10, "1e-9")];
@@ -30,5 +30,35 @@ fn impacts(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, impacts);
+/// Ten parameters that all change frequencies, dampings or shapes, beside the impact with its uncertainty.
+fn derivatives(criterion: &mut Criterion) {
+    let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
+    for modes in [5, 40, 200] {
+        let structure = pinned(modes, 0.02, GOLDEN);
+        let (law, striker, start) = (hertz(), ball(), Start::at_rest(modes));
+        let by_damping = offsets.map(|by| pinned(modes, 0.02 + by, GOLDEN));
+        let by_place = offsets.map(|by| pinned(modes, 0.02, GOLDEN + by));
+        let mut parameters = Vec::new();
+        for near in [&by_damping, &by_place].into_iter().cycle().take(10) {
+            let neighbours =
+                near.each_ref().map(|structure| Posing { structure, striker: &striker, law: &law, start: &start });
+            parameters.push(Parameter { offsets, neighbours, changes_law: false });
+        }
+        let settings = Settings::default();
+        criterion.bench_function(&format!("impact/N={modes}/with its uncertainty, anew"), |bencher| {
+            bencher.iter(|| {
+                let mut solver = Solver::new(black_box(&structure)).unwrap();
+                solver.solve(&striker, &law, None, &settings).unwrap().restitution_uncertainty
+            })
+        });
+        criterion.bench_function(&format!("derivatives/N={modes}/ten parameters, anew"), |bencher| {
+            bencher.iter(|| {
+                let mut solver = Solver::new(black_box(&structure)).unwrap();
+                solver.differentiate(&striker, &law, None, &settings, &parameters).unwrap().nearest_graze
+            })
+        });
+    }
+}
+
+criterion_group!(benches, impacts, derivatives);
 criterion_main!(benches);

@@ -1,7 +1,7 @@
 //! From the fields of a scene to the terms of the solver, and back again in its errors.
 
 use contact_models::Law;
-use vibroimpact_sim::modal::{History, Mode, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::model::{self, Kept};
 use crate::scene::{self, InvalidInput, Scene, require_elastic};
@@ -51,6 +51,52 @@ impl Impact {
     pub fn record(&self) -> Result<(Solution, History<Law>), InvalidInput> {
         let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
         solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
+    }
+}
+
+/// Modes that change by more than this part from an impact to a neighbour of it are not the same ones.
+const SAME: f64 = 1e-2;
+
+impl Impact {
+    /// As a neighbour of another impact is posed; `at_rest` stands in where the structure does not move.
+    pub(crate) fn posing<'a>(&'a self, at_rest: &'a Start) -> Posing<'a> {
+        let Impact { structure, striker, law, start, .. } = self;
+        Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
+    }
+
+    /// Gives the modes the signs and the order of those of an impact nearby: they may come with another sign, and two of them in
+    /// another order where their frequencies cross. `false` if they are not the same modes.
+    pub(crate) fn take_modes_of(&mut self, base: &Impact) -> bool {
+        let modes = &base.structure.modes;
+        if self.structure.modes.len() != modes.len() {
+            return false;
+        }
+        let largest = modes.iter().fold(f64::MIN_POSITIVE, |most, mode| most.max(mode.shape.abs()));
+        let distance = |one: &Mode, other: &Mode| {
+            let by_shape = (one.shape.abs() - other.shape.abs()).abs() / largest;
+            by_shape.max((one.omega_rad_s - other.omega_rad_s).abs() / one.omega_rad_s.max(f64::MIN_POSITIVE))
+        };
+        for (k, mode) in modes.iter().enumerate() {
+            let from = |i: usize| distance(mode, &self.structure.modes[i]);
+            let later = (k + 1..modes.len().min(k + 3)).filter(|i| from(*i) < from(k));
+            let i = later.min_by(|i, j| from(*i).total_cmp(&from(*j))).unwrap_or(k);
+            self.structure.modes.swap(k, i);
+            let own = &mut self.structure.modes[k];
+            let turned = (own.shape + mode.shape).abs() < (own.shape - mode.shape).abs();
+            if turned {
+                own.shape = -own.shape;
+            }
+            if distance(mode, own) > SAME {
+                return false;
+            }
+            if let Some(start) = &mut self.start {
+                for values in [&mut start.amplitude, &mut start.rate] {
+                    values.swap(k, i);
+                    values[k] *= if turned { -1.0 } else { 1.0 };
+                }
+            }
+        }
+        true
     }
 }
 

@@ -1,7 +1,7 @@
 //! Predictions of the impact of a row, and their derivatives in the free fields.
 
 use fitting::Parameter;
-use vibroimpact_sim::modal::{self as solver, Mode, Posing, Start};
+use vibroimpact_sim::modal::{self as solver, Start};
 
 use super::data::Row;
 use super::forward::{Course, Model};
@@ -12,8 +12,6 @@ use crate::model::Kept;
 /// Step of the differences in the transformed coordinate. With impacts resolved to 1e-10 and differences of the fourth order,
 /// rounding leaves about 1e-6 of the derivative, and truncation less.
 const STEP: f64 = 1e-4;
-/// Modes that change by more than this part over a step are not the same ones.
-const SAME: f64 = 1e-2;
 
 /// What a row predicts.
 pub(super) struct Prediction {
@@ -98,15 +96,14 @@ fn tangent(
         let near = |steps| model.impact(row, &shifted(coordinates, parameters, j, steps), kept).ok();
         neighbours.push(STEPS.into_iter().map(near).collect::<Option<_>>()?);
     }
-    if !neighbours.iter().flatten().all(|near| has_the_modes_of(near, &here)) {
+    if !neighbours.iter_mut().flatten().all(|near| near.take_modes_of(&here)) {
         return None;
     }
-    let posing = |impact| posing(impact, &at_rest);
     let by: Vec<solver::Parameter> = neighbours
         .iter()
         .map(|near| solver::Parameter {
             offsets: STEPS.map(|steps| steps * STEP),
-            neighbours: std::array::from_fn(|k| posing(&near[k])),
+            neighbours: std::array::from_fn(|k| near[k].posing(&at_rest)),
             changes_law: near.iter().any(|impact| impact.law != here.law),
         })
         .collect();
@@ -118,23 +115,6 @@ fn tangent(
         changes.iter().map(|change| quantity.change(&found.solution, change)).collect::<Option<Vec<f64>>>()
     };
     Some(row.measured.iter().map(columns).collect::<Option<Vec<_>>>()?.concat())
-}
-
-/// Whether the modes change by no more than a step explains: they may come with another sign or order, which differences of impacts
-/// do not mind, and the tangent does.
-fn has_the_modes_of(near: &Impact, here: &Impact) -> bool {
-    let (near, here) = (&near.structure.modes, &here.structure.modes);
-    let largest = here.iter().fold(f64::MIN_POSITIVE, |most, mode| most.max(mode.shape.abs()));
-    let alike = |(near, here): (&Mode, &Mode)| {
-        (near.shape - here.shape).abs() <= SAME * largest
-            && (near.omega_rad_s - here.omega_rad_s).abs() <= SAME * here.omega_rad_s
-    };
-    near.len() == here.len() && near.iter().zip(here).all(alike)
-}
-
-fn posing<'a>(impact: &'a Impact, at_rest: &'a Start) -> Posing<'a> {
-    let Impact { structure, striker, law, start, .. } = impact;
-    Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
 }
 
 /// Central differences of the fourth order.

@@ -12,7 +12,7 @@ mod text;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use vibroimpact_sim::modal::{Derivative, Derivatives, Mode, Parameter, Posing, Settings, Solver, Start};
+use vibroimpact_sim::modal::{Derivative, Derivatives, Mode, Parameter, Settings, Solver, Start};
 
 use crate::impact::{Impact, in_scene};
 use crate::scene::json::{number, quote};
@@ -124,7 +124,7 @@ fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<
     let with_errors = Neighbours::with_errors(base);
     for Neighbours { offsets, impacts, .. } in around.iter().chain([&with_errors]) {
         let changes_law = impacts.iter().any(|impact| impact.law != base.law);
-        let neighbours = impacts.each_ref().map(|impact| posing(impact, &at_rest));
+        let neighbours = impacts.each_ref().map(|impact| impact.posing(&at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
     }
     let mut solver = Solver::new(&base.structure).map_err(in_scene)?;
@@ -161,11 +161,6 @@ fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<
         scene: tree,
         version: env!("CARGO_PKG_VERSION"),
     })
-}
-
-fn posing<'a>(impact: &'a Impact, at_rest: &'a Start) -> Posing<'a> {
-    let Impact { structure, striker, law, start, .. } = impact;
-    Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
 }
 
 /// The outputs of an impact by their names in a result.

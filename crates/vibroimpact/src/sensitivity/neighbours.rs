@@ -9,8 +9,6 @@ const STEP: f64 = 1e-5;
 const KNOWN: f64 = 2e-13;
 /// The same where the value is zero, in its unit.
 const STEP_AT_ZERO: f64 = 1e-6;
-/// Modes that change by more than this part between neighbours are not the same ones.
-const SAME: f64 = 1e-2;
 
 /// The impact at four neighbouring values of a field.
 pub(super) struct Neighbours {
@@ -45,7 +43,7 @@ impl Neighbours {
                 }
             }
             if let Ok(mut impacts) = <[Impact; 4]>::try_from(impacts) {
-                if !impacts.iter_mut().all(|impact| modes_are_continuous(base, impact)) {
+                if !impacts.iter_mut().all(|impact| impact.take_modes_of(base)) {
                     let allowed = "a field with which the modes change smoothly: here two of them change places";
                     return Err(named(&number(value), allowed.to_owned()));
                 }
@@ -125,45 +123,6 @@ fn posed(tree: &Value, path: &FieldPath, value: f64) -> Result<Impact, InvalidIn
     // the field is there: it was read from the same tree
     path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.to_string(), number(value), why))?;
     Scene::from_value(&tree)?.impact()
-}
-
-/// Whether a neighbour's modes are those of the scene. They may come with another sign, and two of them in another order
-/// where their frequencies cross; both are undone.
-fn modes_are_continuous(base: &Impact, near: &mut Impact) -> bool {
-    let modes = &base.structure.modes;
-    if near.structure.modes.len() != modes.len() {
-        return false;
-    }
-    let largest = modes.iter().fold(f64::MIN_POSITIVE, |most, mode| most.max(mode.shape.abs()));
-    let distance = |one: &Mode, other: &Mode| {
-        let by_shape = (one.shape.abs() - other.shape.abs()).abs() / largest;
-        by_shape.max((one.omega_rad_s - other.omega_rad_s).abs() / one.omega_rad_s.max(f64::MIN_POSITIVE))
-    };
-    for (k, mode) in modes.iter().enumerate() {
-        let later = (k + 1..modes.len().min(k + 3))
-            .filter(|i| distance(mode, &near.structure.modes[*i]) < distance(mode, &near.structure.modes[k]));
-        let nearest = later.min_by(|i, j| {
-            let from = |i: &usize| distance(mode, &near.structure.modes[*i]);
-            from(i).total_cmp(&from(j))
-        });
-        let i = nearest.unwrap_or(k);
-        near.structure.modes.swap(k, i);
-        let other = &mut near.structure.modes[k];
-        let turned = (other.shape + mode.shape).abs() < (other.shape - mode.shape).abs();
-        if turned {
-            other.shape = -other.shape;
-        }
-        if distance(mode, other) > SAME {
-            return false;
-        }
-        if let Some(start) = &mut near.start {
-            for values in [&mut start.amplitude, &mut start.rate] {
-                values.swap(k, i);
-                values[k] *= if turned { -1.0 } else { 1.0 };
-            }
-        }
-    }
-    true
 }
 
 /// Every number of a scene that can change by a little, lists of numbers apart.
