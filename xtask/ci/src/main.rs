@@ -1,7 +1,7 @@
 //! Everything that must hold before a change goes in, in the order in which it fails soonest.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
@@ -49,13 +49,6 @@ const STEPS: [Step; 5] = [
     Step { name: "tests", arguments: &["test", "--workspace", "--locked", "FEATURES"], rustdocflags: "" },
 ];
 
-/// The tasks, which reproduce the chapters.
-const TASKS: Step = Step {
-    name: "tasks",
-    arguments: &["build", "--workspace", "--bin", "xtask", "--locked", "FEATURES"],
-    rustdocflags: "",
-};
-
 fn main() -> ExitCode {
     match run() {
         Ok(()) => ExitCode::SUCCESS,
@@ -67,21 +60,14 @@ fn main() -> ExitCode {
 }
 
 /// Runs format, clippy, docs (warnings denied), packaging, tests with doc tests (sweeps over MPI among them where it is
-/// installed), and at last the chapters in their quick form, by a program of the libraries that the tests have built.
+/// installed); one of the tests reproduces all chapters in their quick form.
 fn run() -> Result<(), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).ok_or("no workspace above xtask/ci")?;
     let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
     if !mpi {
         eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
     }
-    STEPS.iter().try_for_each(|step| timed(step.name, || carry_out(step, root, mpi)))?;
-    timed("chapters, quick form", || {
-        carry_out(&TASKS, root, mpi)?;
-        let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
-        let mut chapters = Command::new(root.join(target).join("debug/xtask"));
-        chapters.current_dir(root).args(["reproduce-chapter", "all", "--quick", "--output", "out/ci"]);
-        require_success(&mut chapters)
-    })
+    STEPS.iter().try_for_each(|step| timed(step.name, || carry_out(step, root, mpi)))
 }
 
 /// What the `mpi` feature is built and tested with; clang stands for its library.
@@ -106,10 +92,6 @@ fn carry_out(step: &Step, root: &Path, mpi: bool) -> Result<(), Failure> {
     if !step.rustdocflags.is_empty() {
         command.env("RUSTDOCFLAGS", step.rustdocflags);
     }
-    require_success(&mut command)
-}
-
-fn require_success(command: &mut Command) -> Result<(), Failure> {
     let status = command.status()?;
     if status.success() { Ok(()) } else { Err(format!("{command:?} failed").into()) }
 }
