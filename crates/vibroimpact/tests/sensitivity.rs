@@ -128,6 +128,7 @@ fn what_cannot_be_differentiated_is_named() {
         ("pinned-beam.json", &["--by", "modes"], "can change by a little"),
         ("pinned-beam.json", &["--by", ".."], "the path of a field"),
         ("pinned-beam.json", &["--of", "restitutions"], "an output of this impact"),
+        ("pinned-beam.json", &["--set", "model=rigid"], "derivatives go along the motion"),
         ("infinite-beam.json", &["--of", "restitution"], "a structure with modes"),
     ] {
         let message = refused(scene, more);

@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use vibroimpact_sim::modal::{Derivative, Derivatives, Mode, Parameter, Settings, Solver, Start};
 
 use crate::impact::{Impact, in_scene};
+use crate::model::Model;
 use crate::scene::json::{number, quote};
 use crate::scene::{FieldPath, InvalidInput, Scene};
 use neighbours::Neighbours;
@@ -104,6 +105,10 @@ impl Scene {
         if self.is_infinite() {
             let allowed = "a structure with modes: derivatives go along the motion of modes";
             return Err(InvalidInput::new("structure", "an infinite one", allowed));
+        }
+        if !matches!(self.model, Model::Auto | Model::Modal) {
+            let allowed = "\"auto\" or \"modal\": derivatives go along the motion of modes";
+            return Err(InvalidInput::new("model", quote(&self.model.as_str().into()), allowed));
         }
         let scene = self.settled()?;
         let tree = scene.tree();

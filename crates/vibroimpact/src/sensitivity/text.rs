@@ -23,14 +23,17 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
         "restitution {restitution}, {} {contacts}, {} modes and {} remainder modes\n\nderivatives of {output}\n",
         found.sub_impact_count, found.modes, found.remainder_modes
     );
-    let _ =
-        writeln!(text, "  {:wide$}  {:>12}  {:>14}  {:>9}  {:>14}", "field", "value", "derivative", "±", "by 1 % more");
+    let _ = writeln!(
+        text,
+        "  {:wide$}  {:>WIDTH$}  {:>14}  {:>9}  {:>14}",
+        "field", "value", "derivative", "±", "by 1 % more"
+    );
     for row in &rows {
         let uncertainty = row.derivative.uncertainty.map_or_else(|| "?".to_owned(), |by| format!("{by:.0e}"));
         let by_part = if row.value == 0.0 { "-".to_owned() } else { format!("{:+.3e}", row.by_part()) };
         let _ = writeln!(
             text,
-            "  {:wide$}  {:>12}  {:>+14.6e}  {uncertainty:>9}  {by_part:>14}",
+            "  {:wide$}  {:>WIDTH$}  {:>+14.6e}  {uncertainty:>9}  {by_part:>14}",
             row.path,
             short(row.value),
             row.derivative.value
@@ -68,9 +71,14 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
     Ok(text)
 }
 
-/// A value as a scene might state it.
+/// Characters of the column of values.
+const WIDTH: usize = 12;
+
+/// A value as a scene might state it, as far as the column holds it.
 fn short(value: f64) -> String {
-    if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) { format!("{value:e}") } else { value.to_string() }
+    let whole =
+        if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) { format!("{value:e}") } else { value.to_string() };
+    if whole.len() <= WIDTH { whole } else { format!("{value:.6e}") }
 }
 
 /// A change of the restitution beyond which its derivatives do not hold.
