@@ -55,7 +55,7 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
             intervals: MOST_INTERVALS,
             reliability: true,
             course: history,
-            folder: None,
+            take: None,
             stop: &stop,
             tell: &mut |_| stop.store(signals.look(), Ordering::Relaxed),
         };
