@@ -18,4 +18,4 @@ maturin develop --quiet --locked --manifest-path python/Cargo.toml
 cd python
 VIBROIMPACT=$target/debug/vibroimpact python -m pytest --quiet tests
 python -m mypy --strict --cache-dir "$target/mypy" vibroimpact
-MYPY_CACHE_DIR=$target/mypy python -m mypy.stubtest vibroimpact
+MYPY_CACHE_DIR=$target/mypy python -m mypy.stubtest vibroimpact --mypy-config-file pyproject.toml
