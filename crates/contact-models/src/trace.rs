@@ -20,6 +20,10 @@ pub struct TracePoint {
     pub stored_energy_j: f64,
 }
 
+/// Changes of branch followed between two neighbouring times. A law offers few branches at one place; the bound only
+/// excludes a law that never settles.
+pub(crate) const MOST_EVENTS: usize = 32;
+
 /// A contact on its way.
 #[derive(Clone, Copy)]
 pub(crate) enum State {
@@ -102,8 +106,7 @@ pub fn trace(
         InvalidInput::require("compression_m", xi, xi.is_finite(), "a motion with finite compression")?;
         InvalidInput::require("rate_m_s", rate, rate.is_finite(), "a motion with finite rate")?;
         let mut start = previous.unwrap_or(end);
-        // A law offers few branches at one place; the bound only excludes a law that never settles.
-        for _ in 0..32 {
+        for _ in 0..MOST_EVENTS {
             let met = first_met(&state.boundaries(law), start, end, &motion);
             let stop = met.map_or(end, |(time, _)| time);
             work_j += between_events(start, stop, |t| {

@@ -1,6 +1,8 @@
 //! Laws that break their contract, each in one way, and what is told of them.
 
-use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory, Promise, Stage, check_contract};
+use contact_models::{
+    After, Boundary, Branch, ContactLaw, Force, LinearSpring, Memory, Promise, Stage, check_contract,
+};
 
 /// A linear spring with one fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,4 +97,14 @@ fn each_fault_is_named() {
     assert_eq!(told(Broken::NotANumber), Err(Promise::Finite));
     let message = check_contract(&Broken::HidesItsRate, 1e-5, 1.0).unwrap_err().to_string();
     assert!(message.contains("depends on the rate") && message.contains("Loading"), "{message}");
+}
+
+/// Whatever sizes are asked for, the answer comes: a spring keeps its promises on all of them.
+#[test]
+fn any_size_is_answered() {
+    let spring = LinearSpring::new(STIFFNESS).unwrap();
+    for size in [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e-300, 1e300] {
+        assert_eq!(check_contract(&spring, size, 1.0), Ok(()), "{size}");
+        assert_eq!(check_contract(&spring, 1e-5, size), Ok(()), "{size}");
+    }
 }

@@ -110,6 +110,8 @@ pub(crate) struct March<'a> {
     reach: f64,
     /// Number of committed panels at which rest is looked for again.
     ask_rest_at: u64,
+    /// Number of committed panels at which the laws are tried, once.
+    try_laws_at: u64,
     /// Length of the last panel of flight (s).
     flown: f64,
     intervals: u64,
@@ -170,6 +172,7 @@ impl<'a> March<'a> {
             landing: f64::INFINITY,
             reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
             ask_rest_at: REST,
+            try_laws_at: TRY_LAWS,
             flown: 0.0,
             intervals: 0,
             last_event_s: -1.0,
@@ -260,7 +263,9 @@ impl<'a> March<'a> {
     fn limit(&mut self) -> Option<Reason> {
         let reason = self.reached_limit();
         let in_contact = matches!(reason, Some(Reason::FinestStep | Reason::LawRange | Reason::Chatter));
-        if in_contact || reason.is_none() && self.counts.contact_steps == TRY_LAWS {
+        let long = reason.is_none() && self.counts.contact_steps >= self.try_laws_at;
+        if in_contact || long {
+            self.try_laws_at = u64::MAX;
             let broken = |(state, law): (&State, &&dyn ContactLaw)| {
                 state.scales().is_some_and(|(xi, speed)| check_contract(*law, xi, speed).is_err())
             };
