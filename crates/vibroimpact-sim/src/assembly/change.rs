@@ -8,20 +8,29 @@ use super::problem::Posed;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
-/// Four neighbouring values of a parameter, and what they say about the slope at the value between them or beside them.
+/// Neighbouring values of a parameter, and what they say about the slope at the value between them or beside them: that of
+/// the polynomial through them.
+///
+/// ```
+/// use vibroimpact_sim::modal::Stencil;
+///
+/// // at a bound, exact for polynomials of third degree
+/// let slope = Stencil::new([0.1, 0.2, 0.3, 0.4]).slope([0.1, 0.2, 0.3, 0.4].map(|x: f64| 2.0 * x + x.powi(3)));
+/// assert!((slope - 2.0).abs() < 1e-13);
+/// ```
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Stencil {
-    /// Distances from the value.
-    pub offsets: [f64; 4],
-    weights: [f64; 4],
+pub struct Stencil<const N: usize> {
+    /// Distances from the value, in its unit.
+    pub offsets: [f64; N],
+    weights: [f64; N],
 }
 
-impl Stencil {
-    /// Distances that differ from each other.
-    pub fn new(offsets: [f64; 4]) -> Stencil {
+impl<const N: usize> Stencil<N> {
+    /// From distances that differ from each other; zero, the value itself, may be among them.
+    pub fn new(offsets: [f64; N]) -> Stencil<N> {
         // derivative at zero of Lagrange's polynomials
         let weight = |i: usize| {
-            let others = || (0..4).filter(|j| *j != i);
+            let others = || (0..N).filter(|j| *j != i);
             let scale: f64 = others().map(|j| offsets[i] - offsets[j]).product();
             let without = |skip: usize| others().filter(|j| *j != skip).map(|j| -offsets[j]).product::<f64>();
             others().map(without).sum::<f64>() / scale
@@ -29,13 +38,15 @@ impl Stencil {
         Stencil { offsets, weights: std::array::from_fn(weight) }
     }
 
-    pub fn central(step: f64) -> Stencil {
-        Stencil::new([-2.0 * step, -step, step, 2.0 * step])
+    /// Slope from the values there (their unit over that of the distances): exactly zero where they are all the same.
+    pub fn slope(&self, values: [f64; N]) -> f64 {
+        (1..N).map(|i| self.weights[i] * (values[i] - values[0])).sum()
     }
+}
 
-    /// Slope from the values there: exactly zero where they are all the same.
-    pub fn slope(&self, values: [f64; 4]) -> f64 {
-        (1..4).map(|i| self.weights[i] * (values[i] - values[0])).sum()
+impl Stencil<4> {
+    pub(crate) fn central(step: f64) -> Stencil<4> {
+        Stencil::new([-2.0 * step, -step, step, 2.0 * step])
     }
 }
 
@@ -52,12 +63,14 @@ pub(crate) struct Change<'a> {
     pub stretch: Vec<f64>,
     /// The law of each contact at the neighbours, where it changes.
     pub laws: Option<Vec<[&'a dyn ContactLaw; 4]>>,
-    pub stencil: Stencil,
+    pub stencil: Stencil<4>,
+    /// Whether frequencies or dampings change.
+    pub moves_modes: bool,
 }
 
 impl<'a> Change<'a> {
     /// From the assembly at the neighbours, whose modes are those of the system in the same order of their bodies.
-    pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, stencil: Stencil) -> Change<'a> {
+    pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, stencil: Stencil<4>) -> Change<'a> {
         let n = system.modes.len();
         let mut change = Change {
             amplitude: vec![0.0; n],
@@ -68,6 +81,7 @@ impl<'a> Change<'a> {
             stretch: vec![0.0; n],
             laws: laws_change.then(|| (0..system.links.len()).map(|c| posed.map(|posed| posed.laws[c])).collect()),
             stencil,
+            moves_modes: false,
         };
         for (body, places) in system.place.iter().enumerate() {
             let bodies = posed.map(|posed| &posed.bodies[body]);
@@ -89,16 +103,12 @@ impl<'a> Change<'a> {
             let links = posed.map(|posed| system.link(posed.sides[c]));
             change.psi.push(difference(link, &links, &stencil));
         }
+        change.moves_modes = change.fade.iter().chain(&change.stretch).any(|value| *value != 0.0);
         change
-    }
-
-    /// Whether the frequencies or dampings change.
-    pub fn moves_modes(&self) -> bool {
-        self.fade.iter().chain(&self.stretch).any(|value| *value != 0.0)
     }
 }
 
-fn difference(link: &Link, neighbours: &[Link; 4], stencil: &Stencil) -> Vec<Span> {
+fn difference(link: &Link, neighbours: &[Link; 4], stencil: &Stencil<4>) -> Vec<Span> {
     let of = |(i, span): (usize, &Span)| {
         let psi = |k| stencil.slope(neighbours.each_ref().map(|link| link.spans[i].psi[k]));
         Span { modes: span.modes.clone(), psi: (0..span.psi.len()).map(psi).collect() }

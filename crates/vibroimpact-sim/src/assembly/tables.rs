@@ -7,6 +7,7 @@ use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
 use crate::panel::forcing::{Compliance, Terms, gather, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
+use crate::panel::oscillator::BodyMode;
 use crate::panel::vector::{sum_over, vectorized};
 
 /// Response of one contact's overlap to the force of another.
@@ -20,6 +21,7 @@ pub(crate) struct Response {
 }
 
 /// Free motion and forced responses of all modes on a panel.
+#[derive(Default)]
 pub(crate) struct Forced {
     /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
     at_nodes: Vec<(Nodal, Nodal)>,
@@ -234,57 +236,38 @@ impl Forced {
         let n = system.modes.len();
         let mut at_nodes = Vec::with_capacity(n);
         let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
-        let mut compliances: Vec<Compliance> = weights.iter().map(|_| Compliance::new()).collect();
-        let mut ends = vec![([0.0; Q], [0.0; Q]); weights.len()];
-        let mut of_mode = vec![0.0; weights.len()];
+        let mut sums = Sums::new(weights);
         for body in &system.bodies {
             let mut terms = Terms::default();
             for k in body.clone() {
                 let mode = &system.modes[k];
-                for (weight, weights) in of_mode.iter_mut().zip(weights) {
-                    *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
-                }
-                let part = part(mode, &of_mode, h, &half.of(k), &mut terms, &mut compliances);
+                sums.turn_to(mode, k);
+                let part = part(mode, &sums.of_mode, h, &half.of(k), &mut terms, &mut sums.compliances);
                 at_nodes.push(part.at_nodes);
                 for n in 0..Q {
                     amplitude[n][k] = part.end.0[n];
                     rate[n][k] = part.end.1[n];
                 }
-                for (weight, (end, end_rate)) in of_mode.iter().zip(&mut ends) {
-                    for n in 0..Q {
-                        end[n] -= weight * part.end.0[n];
-                        end_rate[n] -= weight * part.end.1[n];
-                    }
-                }
+                sums.add_end(&part.end);
             }
         }
-        let responses = compliances.into_iter().zip(ends).map(|gathered| Response::of(gathered, h)).collect();
-        (Forced { at_nodes, amplitude, rate }, responses)
+        (Forced { at_nodes, amplitude, rate }, sums.responses(h))
     }
 
     /// Responses summed over the modes with other weights, of a panel of `h` again: to the last bit those of
     /// [`Forced::new`].
     fn responses(&self, system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<Response> {
-        let mut compliances: Vec<Compliance> = weights.iter().map(|_| Compliance::new()).collect();
-        let mut ends = vec![([0.0; Q], [0.0; Q]); weights.len()];
-        let mut of_mode = vec![0.0; weights.len()];
+        let mut sums = Sums::new(weights);
         for body in &system.bodies {
             let mut terms = Terms::default();
             for k in body.clone() {
                 let mode = &system.modes[k];
-                for (weight, weights) in of_mode.iter_mut().zip(weights) {
-                    *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
-                }
-                gather(mode, &of_mode, h, &mut terms, &mut compliances);
-                for (weight, (end, end_rate)) in of_mode.iter().zip(&mut ends) {
-                    for n in 0..Q {
-                        end[n] -= weight * self.amplitude[n][k];
-                        end_rate[n] -= weight * self.rate[n][k];
-                    }
-                }
+                sums.turn_to(mode, k);
+                gather(mode, &sums.of_mode, h, &mut terms, &mut sums.compliances);
+                sums.add_end(&(self.amplitude.each_ref().map(|row| row[k]), self.rate.each_ref().map(|row| row[k])));
             }
         }
-        compliances.into_iter().zip(ends).map(|gathered| Response::of(gathered, h)).collect()
+        sums.responses(h)
     }
 
     /// How far free motion moves `sum_k psi_k a_k` at the nodes.
@@ -337,12 +320,50 @@ impl Forced {
     }
 }
 
-impl Response {
-    /// From what was gathered over all modes, on a panel of `h`.
-    fn of((compliance, (end, end_rate)): (Compliance, (Nodal, Nodal)), h: f64) -> Response {
-        Response { nodes: compliance.at_nodes(h), end, end_rate }
+/// Responses as they are summed, mode by mode, for each list of weights.
+struct Sums<'a> {
+    weights: &'a [Vec<f64>],
+    of_mode: Vec<f64>,
+    compliances: Vec<Compliance>,
+    ends: Vec<(Nodal, Nodal)>,
+}
+
+impl Sums<'_> {
+    fn new(weights: &[Vec<f64>]) -> Sums<'_> {
+        let count = weights.len();
+        let compliances = weights.iter().map(|_| Compliance::new()).collect();
+        Sums { weights, of_mode: vec![0.0; count], compliances, ends: vec![([0.0; Q], [0.0; Q]); count] }
     }
 
+    /// Turns to a mode; rigid ones take no part.
+    fn turn_to(&mut self, mode: &BodyMode, k: usize) {
+        for (weight, weights) in self.of_mode.iter_mut().zip(self.weights) {
+            *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
+        }
+    }
+
+    /// Adds what the mode does at the end.
+    fn add_end(&mut self, (amplitude, rate): &(Nodal, Nodal)) {
+        for (weight, (end, end_rate)) in self.of_mode.iter().zip(&mut self.ends) {
+            for n in 0..Q {
+                end[n] -= weight * amplitude[n];
+                end_rate[n] -= weight * rate[n];
+            }
+        }
+    }
+
+    fn responses(self, h: f64) -> Vec<Response> {
+        let response = |(compliance, (end, end_rate)): (Compliance, (Nodal, Nodal))| Response {
+            nodes: compliance.at_nodes(h),
+            end,
+            end_rate,
+        };
+        self.compliances.into_iter().zip(self.ends).map(response).collect()
+    }
+}
+
+impl Response {
+    /// From what was gathered over all modes, on a panel of `h`.
     /// With that of rigid modes of this inverse mass (1/kg), on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
         let Response { mut nodes, mut end, mut end_rate } = *self;

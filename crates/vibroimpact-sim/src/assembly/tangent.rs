@@ -119,16 +119,27 @@ pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
 struct Solved {
     contact: usize,
     branch: Branch,
-    /// Force by coefficients, `t F` and `t F'` likewise, and `F'` at the nodes.
+    /// Force by coefficients; at the nodes the force, `F'`, `t F` and `t F'`.
     force: Nodal,
+    nodal: Nodal,
+    force_rate: Nodal,
     timed: Nodal,
     timed_rate: Nodal,
-    force_rate: Nodal,
     /// Compression and its rate at the nodes, with the law there.
     start: f64,
     compression: Nodal,
     rate: Nodal,
     law: [Force; Q],
+}
+
+/// A panel of the record, from one stretch to the next, with what all changes need of it.
+struct Passage<'a> {
+    from: &'a Stretch,
+    to: &'a Stretch,
+    expansion: &'a Expansion,
+    solved: &'a [Solved],
+    /// Accelerations of all modes at its start and at its end.
+    bends: [Vec<f64>; 2],
 }
 
 /// What one change does on one panel.
@@ -182,6 +193,11 @@ pub(crate) fn tangents(
     let [slowest, fastest] = walk.touches;
     let nearest_graze = if fastest > 0.0 { slowest / fastest } else { 1.0 };
     walk.tangents.iter().all(finite).then_some(Tangents { tangents: walk.tangents, nearest_graze })
+}
+
+/// The event that fixes where the panel before a stretch ends: the first of those at its start.
+fn ending(next: &Stretch) -> Option<(usize, Event)> {
+    next.events.first().copied().filter(|(_, event)| *event != Event::Touch { overlaps: true })
 }
 
 fn scaled(link: &Link, factors: &[f64]) -> Vec<Span> {
@@ -263,9 +279,9 @@ impl<'a> Walk<'a> {
             overlap: Vec::new(),
         });
         let moved = moved.collect();
-        let bend = self.acceleration(first, &[]);
+        let bend = self.acceleration(first, &[], 0.0);
         let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
-        self.arrive(0.0, &[], moved, slide, first)
+        self.arrive(0.0, &[], moved, Some(&slide), first)
     }
 
     /// From the start of a stretch to that of the next one.
@@ -281,15 +297,18 @@ impl<'a> Walk<'a> {
             let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q].nodes);
             self.blocks.factor(&values, &response, h);
         }
-        let moved = (0..self.changes.len()).map(|d| self.moved(d, stretch, next, &expansion, &solved)).collect();
-        let slide = self.slide(h, next, &expansion, &solved);
+        let bends = [self.acceleration(stretch, &solved, 0.0), self.acceleration(next, &solved, 1.0)];
+        let passage = Passage { from: stretch, to: next, expansion: &expansion, solved: &solved, bends };
+        let moved = (0..self.changes.len()).map(|d| self.moved(d, &passage)).collect();
+        // only a panel that ends at an event can change its length
+        let slide = ending(next).map(|_| self.slide(&passage));
         for solved in &solved {
             let followed = &mut self.contacts[solved.contact];
             let moved = next.amplitude.iter().zip(&stretch.amplitude).map(|(after, before)| after - before);
             followed.overlap += self.system.links[solved.contact].sum(&moved.collect::<Vec<f64>>());
             followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
         }
-        self.arrive(h, &solved, moved, slide, next)
+        self.arrive(h, &solved, moved, slide.as_ref(), next)
     }
 
     fn expansion(&mut self, h: f64, closed: &[usize]) -> Rc<Expansion> {
@@ -298,7 +317,7 @@ impl<'a> Walk<'a> {
             return kept.clone();
         }
         let system = self.system;
-        let (rotation, half) = (Rotation::new(&system.modes, h), Rotation::new(&system.modes, 0.5 * h));
+        let rotation = Rotation::new(&system.modes, h);
         let n = closed.len();
         // all weights in one list, so that each mode is expanded once
         let mut weights: Vec<Vec<f64>> = Vec::new();
@@ -309,7 +328,7 @@ impl<'a> Walk<'a> {
         }
         let mut places = Vec::new();
         for change in self.changes {
-            let modes_move = change.moves_modes();
+            let modes_move = change.moves_modes;
             for pair in 0..n * n {
                 let [with, by] = [closed[pair / n], closed[pair % n]];
                 let product = &weights[pair];
@@ -345,7 +364,9 @@ impl<'a> Walk<'a> {
                 places.push(place);
             }
         }
-        let (forced, elastic) = Forced::new(system, h, &half, &weights);
+        // a flight needs nothing but free motion
+        let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
+        let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
         let whole: Vec<Response> = elastic
             .iter()
             .zip(&weights)
@@ -387,6 +408,7 @@ impl<'a> Walk<'a> {
                 force: *force,
                 timed: times(&place, &nodal),
                 timed_rate: times(&place, &force_rate),
+                nodal,
                 force_rate,
                 start: followed.overlap,
                 law: array::from_fn(|i| law.force(&branch, compression[i], rate[i])),
@@ -397,14 +419,14 @@ impl<'a> Walk<'a> {
         stretch.forces.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Acceleration of all modes at the end of a panel, where these forces act.
-    fn acceleration(&self, at: &Stretch, solved: &[Solved]) -> Vec<f64> {
+    /// Acceleration of all modes in a state, under these forces at a place of their panel.
+    fn acceleration(&self, at: &Stretch, solved: &[Solved], place: f64) -> Vec<f64> {
         let system = self.system;
         let mut bend: Vec<f64> = (0..system.modes.len())
             .map(|k| -system.drag[k] * at.rate[k] - system.square[k] * at.amplitude[k])
             .collect();
         for solved in solved {
-            let force = evaluate(&solved.force, 1.0);
+            let force = evaluate(&solved.force, place);
             for span in &system.links[solved.contact].spans {
                 span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
             }
@@ -413,27 +435,19 @@ impl<'a> Walk<'a> {
     }
 
     /// A panel of unchanged length.
-    fn moved(&self, d: usize, stretch: &Stretch, next: &Stretch, expansion: &Expansion, solved: &[Solved]) -> Moved {
+    fn moved(&self, d: usize, passage: &Passage) -> Moved {
         let (system, change, tangent) = (self.system, &self.changes[d], &self.tangents[d]);
-        let (h, n) = (stretch.length_s, solved.len());
-        let (a, b) = (stretch.amplitude.as_slice(), stretch.rate.as_slice());
-        let modes_move = change.moves_modes();
+        let Passage { from, expansion, solved, .. } = passage;
+        let (h, n) = (from.length_s, solved.len());
+        let (a, b) = (from.amplitude.as_slice(), from.rate.as_slice());
+        let modes_move = change.moves_modes;
         let (fade, stretches) = (&change.fade, &change.stretch);
         // y and y' at the start
         let mut amplitude = tangent.amplitude.clone();
         let mut rate = tangent.rate.clone();
-        // a'' of each mode at the start, where its motion times the time is wanted
-        let mut bend = Vec::new();
         if modes_move {
             for k in 0..a.len() {
                 rate[k] += fade[k] * a[k] - stretches[k] * b[k];
-            }
-            bend = (0..a.len()).map(|k| -system.drag[k] * b[k] - system.square[k] * a[k]).collect();
-            for solved in solved {
-                let force = evaluate(&solved.force, 0.0);
-                for span in &system.links[solved.contact].spans {
-                    span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
-                }
             }
         }
         let (mut force, mut overlap) = (Vec::with_capacity(n), Vec::with_capacity(n));
@@ -454,20 +468,19 @@ impl<'a> Walk<'a> {
                 from_b.fill(0.0);
                 weigh(faded, (a, b), (&mut from_a, &mut from_b));
                 from_a.iter_mut().chain(&mut from_b).for_each(|value| *value = -*value);
-                weigh(stretched, (b, &bend), (&mut from_a, &mut from_b));
+                weigh(stretched, (b, &passage.bends[0]), (&mut from_a, &mut from_b));
                 timed = expansion.forced.sum_at_nodes(&from_a, &from_b);
                 let at_start = sum(stretched, b) - sum(faded, a);
                 timed.iter_mut().for_each(|value| *value += at_start);
             }
             for (q, other) in solved.iter().enumerate() {
                 let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
-                let nodal = BASIS.nodes.map(|s| evaluate(&other.force, s));
                 if let Some(response) = of_force {
-                    add(&mut found, 1.0, &apply(&response.nodes, &nodal));
+                    add(&mut found, 1.0, &apply(&response.nodes, &other.nodal));
                 }
                 if let Some(response) = of_timed {
                     add(&mut found, 1.0, &apply(&response.nodes, &other.timed));
-                    add(&mut timed, -1.0, &apply(&response.nodes, &nodal));
+                    add(&mut timed, -1.0, &apply(&response.nodes, &other.nodal));
                 }
                 if let Some(response) = of_timed_rate {
                     add(&mut found, -1.0, &apply(&response.nodes, &other.timed_rate));
@@ -502,17 +515,15 @@ impl<'a> Walk<'a> {
                 expansion.forced.push(spans, &force, &mut amplitude, &mut rate);
             };
             push(&link.spans, force, 1.0);
-            let nodal = BASIS.nodes.map(|s| evaluate(&own.force, s));
-            push(&change.psi[c], &nodal, 1.0);
+            push(&change.psi[c], &own.nodal, 1.0);
             if modes_move {
                 push(&self.faded[d][c], &own.timed, 1.0);
-                let driven: Nodal = array::from_fn(|i| own.timed_rate[i] + 2.0 * nodal[i]);
+                let driven: Nodal = array::from_fn(|i| own.timed_rate[i] + 2.0 * own.nodal[i]);
                 push(&self.stretched[d][c], &driven, -1.0);
             }
         }
         if modes_move {
-            let (a, b) = (&next.amplitude, &next.rate);
-            let bend = self.acceleration(next, solved);
+            let (a, b, bend) = (&passage.to.amplitude, &passage.to.rate, &passage.bends[1]);
             for k in 0..a.len() {
                 let moving = stretches[k] * b[k] - fade[k] * a[k];
                 amplitude[k] += h * moving;
@@ -524,9 +535,10 @@ impl<'a> Walk<'a> {
 
     /// What a panel longer by a second would change at its end. The nodes move along with the end: forces there are those
     /// of the law, of which the polynomial's own slope may miss a little.
-    fn slide(&self, h: f64, next: &Stretch, expansion: &Expansion, solved: &[Solved]) -> Moved {
-        let (mut amplitude, mut rate) = (vec![0.0; next.amplitude.len()], vec![0.0; next.rate.len()]);
-        let n = solved.len();
+    fn slide(&self, passage: &Passage) -> Moved {
+        let Passage { from, to, expansion, solved, bends } = passage;
+        let (h, n) = (from.length_s, solved.len());
+        let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to.amplitude.len()]);
         let mut force: Vec<Nodal> = solved
             .iter()
             .map(|own| {
@@ -549,10 +561,9 @@ impl<'a> Walk<'a> {
             let spans = &self.system.links[solved[p].contact].spans;
             expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
         }
-        let bend = self.acceleration(next, solved);
         for k in 0..amplitude.len() {
-            amplitude[k] += next.rate[k];
-            rate[k] += bend[k];
+            amplitude[k] += to.rate[k];
+            rate[k] += bends[1][k];
         }
         Moved { amplitude, rate, force, overlap }
     }
@@ -583,7 +594,14 @@ impl<'a> Walk<'a> {
     // ---- the end of a panel ----
 
     /// The end of a panel: how far it moves, what is booked, and the events there.
-    fn arrive(&mut self, h: f64, solved: &[Solved], moved: Vec<Moved>, slide: Moved, next: &Stretch) -> Option<()> {
+    fn arrive(
+        &mut self,
+        h: f64,
+        solved: &[Solved],
+        moved: Vec<Moved>,
+        slide: Option<&Moved>,
+        next: &Stretch,
+    ) -> Option<()> {
         let state = (next.amplitude.as_slice(), next.rate.as_slice());
         let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
             .map(|c| {
@@ -599,12 +617,10 @@ impl<'a> Walk<'a> {
             followed.rate = *rate;
             followed.sizes[1] = followed.sizes[1].max(rate.abs());
         }
-        // the first event fixes where the panel ends
-        let ends = next.events.first().filter(|(_, event)| *event != Event::Touch { overlaps: true });
         let peaks = self.peaks(solved);
         for (d, mut moved) in moved.into_iter().enumerate() {
             let mut longer = 0.0;
-            if let Some(&(c, event)) = ends {
+            if let Some(((c, event), slide)) = ending(next).zip(slide) {
                 let change = self.overlap(d, c, state, (&moved.amplitude, &moved.rate));
                 let speed = [&slide.amplitude, &slide.rate].map(|values| self.system.links[c].sum(values));
                 let (changes, slope) = self.event_function(d, c, event, overlaps[c], change, speed);
@@ -618,8 +634,10 @@ impl<'a> Walk<'a> {
                 }
             }
             for (p, own) in solved.iter().enumerate() {
-                add(&mut moved.force[p], longer, &slide.force[p]);
-                add(&mut moved.overlap[p], longer, &slide.overlap[p]);
+                if let Some(slide) = slide {
+                    add(&mut moved.force[p], longer, &slide.force[p]);
+                    add(&mut moved.overlap[p], longer, &slide.overlap[p]);
+                }
                 let interval = self.contacts[own.contact].interval;
                 let force = BASIS.coefficients(&moved.force[p]);
                 let overlap = BASIS.coefficients(&moved.overlap[p]);
@@ -722,7 +740,7 @@ impl<'a> Walk<'a> {
             After::Release(_) => None,
         };
         // a law that takes another course nearby has no derivative here
-        let difference = |found: [After; 4], stencil: &Stencil, which: usize| {
+        let difference = |found: [After; 4], stencil: &Stencil<4>, which: usize| {
             let same = found.iter().all(|found| kind(found) == kind(&after));
             same.then(|| stencil.slope(found.each_ref().map(|found| number(found, which))))
         };

@@ -5,7 +5,8 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
 use super::solve::{AMPLIFIED, Impact, Keep, LEAST, LOOSEST, Run, Solver};
 use crate::InvalidInput;
-use crate::assembly::change::{Change, Stencil};
+use crate::assembly::change::Change;
+pub use crate::assembly::change::Stencil;
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -160,26 +161,20 @@ impl Solver {
         }
         let moved = self.moved_by(parameters);
         let mut other = (moved != self.moved()).then(|| self.moving(moved));
-        other.as_mut().unwrap_or(self).along_all(striker, law, start, settings, parameters)
+        let at_rest = Start::at_rest(count);
+        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
+        other.as_mut().unwrap_or(self).along_all(&impact, parameters)
     }
 
     /// The impact at its tolerance and at two coarser ones, differentiated along each.
-    fn along_all(
-        &mut self,
-        striker: &Striker,
-        law: &dyn ContactLaw,
-        start: Option<&Start>,
-        settings: &Settings,
-        parameters: &[Parameter],
-    ) -> Result<Differentiated, InvalidInput> {
+    fn along_all(&mut self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
+        let Impact { striker, law, start, settings } = *impact;
         let once = Settings { estimate_uncertainty: false, ..*settings };
-        let (mut solution, fine) = self.solve_into(striker, law, start, &once, Keep::Motion)?;
-        let at_rest = Start::at_rest(self.modes().len());
-        let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
+        let (mut solution, fine) = self.solve_into(striker, law, Some(start), &once, Keep::Motion)?;
         let tolerance = settings.tolerance.min(LOOSEST);
-        let coarse = COARSER.map(|factor| self.run(&impact, factor * tolerance, Keep::Motion));
+        let coarse = COARSER.map(|factor| self.run(impact, factor * tolerance, Keep::Motion));
         if let (Some(value), true) = (solution.restitution, settings.estimate_uncertainty) {
-            let error = |run: &Run| self.restitution(run, striker, impact.start).map(|other| (other - value).abs());
+            let error = |run: &Run| self.restitution(run, striker, start).map(|other| (other - value).abs());
             let spread = coarse.iter().map(error).try_fold(0.0, |most: f64, error| error.map(|error| most.max(error)));
             let uncertainty = spread.map_or(1.0, |spread| LEAST * settings.tolerance + AMPLIFIED * spread);
             solution.restitution_uncertainty = Some(uncertainty);
@@ -190,7 +185,7 @@ impl Solver {
         }
         let (modes, moved) = (self.modes(), self.moved());
         let pose = |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, moved, striker, start);
-        let assembly = pose(modes, striker, impact.start);
+        let assembly = pose(modes, striker, start);
         let posed = assembly.with_laws(vec![law]);
         let system = System::new(&posed);
         let near = |at: &Posing| pose(&at.structure.modes, at.striker, at.start);
@@ -235,7 +230,7 @@ impl Solver {
 struct Along<'a> {
     modes: &'a [Mode],
     moved: &'a [usize],
-    impact: Impact<'a>,
+    impact: &'a Impact<'a>,
     parameters: &'a [Parameter<'a>],
     posed: &'a Posed<'a>,
     system: &'a System,
@@ -264,7 +259,7 @@ impl Along<'_> {
             let by_mass = Stencil::new(parameter.offsets).slope(sides.each_ref().map(|side| velocity_of(side, end)));
             let velocity = [velocity_of(striker, end), velocity_of(striker, &tangent.rate) + by_mass];
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
-            let restitution = restitution_change(self.modes, &self.impact, parameter, velocity, [&pick(end), &rate]);
+            let restitution = restitution_change(self.modes, self.impact, parameter, velocity, [&pick(end), &rate]);
             let numbers = [restitution, tangent.time_s, velocity[1]];
             Changes { numbers, intervals: tangent.intervals, amplitude, rate }
         };
