@@ -124,22 +124,21 @@ impl Scene {
         let kept = impact.kept_modes();
         let fastest = impact.structure.modes[..kept].last().map_or(0.0, |mode| mode.omega_rad_s);
         // slow modes that are hardly excited were left out of those
-        let mut count = kept;
-        while count < MOST_MODES {
-            let known = scene.mode_shapes(2 * count.max(8))?;
+        let mut asked = (2 * kept.max(8)).min(MOST_MODES);
+        let count = loop {
+            let known = scene.mode_shapes(asked)?;
             let found = known.iter().take_while(|mode| mode.omega_rad_s <= fastest).count();
-            count = found.max(kept);
-            if found < known.len() || known.len() < 2 * kept.max(8) {
-                break;
+            if found < asked || asked == MOST_MODES {
+                break found.max(kept);
             }
-            count = known.len();
-        }
+            asked = (2 * asked).min(MOST_MODES);
+        };
         if let Structure::Beam(beam) = &mut scene.structure {
             beam.as_the_thesis();
         }
         Ok(Scene {
             model: Model::Auto,
-            modes: Modes::Count(count.min(MOST_MODES)),
+            modes: Modes::Count(count),
             residual_compliance: Some(impact.remainder_modes > 0),
             tolerance: None,
             ..scene

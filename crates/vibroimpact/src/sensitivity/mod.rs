@@ -12,12 +12,12 @@ mod text;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use vibroimpact_sim::modal::{Derivative, Derivatives, Mode, Parameter, Settings, Solver, Start};
+use vibroimpact_sim::modal::{Derivative, Derivatives, Parameter, Settings, Solver, Start};
 
 use crate::impact::{Impact, in_scene};
 use crate::model::Model;
-use crate::scene::json::{number, quote};
-use crate::scene::{FieldPath, InvalidInput, Scene};
+use crate::scene::json::quote;
+use crate::scene::{InvalidInput, Scene};
 use neighbours::Neighbours;
 
 pub use picture::figure;

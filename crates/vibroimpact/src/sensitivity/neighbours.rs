@@ -1,6 +1,12 @@
 //! A scene at neighbouring values of one of its numbers.
 
-use super::*;
+use serde_json::Value;
+use vibroimpact_sim::modal::{Derivative, Mode, Stencil};
+
+use super::MODES;
+use crate::impact::Impact;
+use crate::scene::json::{number, quote};
+use crate::scene::{FieldPath, InvalidInput, Scene};
 
 /// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five of
 /// the digits that they have.
@@ -99,23 +105,19 @@ impl Neighbours {
     /// Slope of the polynomial through the value and its neighbours, and how much it differs from that through the
     /// neighbours nearest to it.
     fn slope(&self, value: f64, at: [f64; 4]) -> Derivative {
-        let places: Vec<f64> = std::iter::once(0.0).chain(self.offsets).collect();
-        let values: Vec<f64> = std::iter::once(value).chain(at).collect();
-        let through = |chosen: &[usize]| -> f64 {
-            let slope_of = |i: &usize| {
-                let others = || chosen.iter().filter(|j| *j != i);
-                let scale: f64 = others().map(|j| places[*i] - places[*j]).product();
-                let without = |skip| others().filter(|j| *j != skip).map(|j| -places[*j]).product::<f64>();
-                (values[*i] - value) * others().map(without).sum::<f64>() / scale
-            };
-            chosen.iter().map(slope_of).sum()
-        };
-        let mut nearest: Vec<usize> = (1..5).collect();
-        nearest.sort_by(|i, j| places[*i].abs().total_cmp(&places[*j].abs()));
-        let (all, few) = (through(&[0, 1, 2, 3, 4]), through(&[0, nearest[0], nearest[1]]));
-        let rounding = 4.0 * f64::EPSILON * value.abs() / places[nearest[0]].abs();
+        let mut around: [(f64, f64); 4] = std::array::from_fn(|i| (self.offsets[i], at[i]));
+        around.sort_by(|one, other| one.0.abs().total_cmp(&other.0.abs()));
+        let [one, two, three, four] = around;
+        let here = (0.0, value);
+        let (all, few) = (slope([here, one, two, three, four]), slope([here, one, two]));
+        let rounding = 4.0 * f64::EPSILON * value.abs() / one.0.abs();
         Derivative { value: all, uncertainty: Some((all - few).abs() + rounding) }
     }
+}
+
+/// Slope of the polynomial through these places and values.
+fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
+    Stencil::new(points.map(|point| point.0)).slope(points.map(|point| point.1))
 }
 
 fn posed(tree: &Value, path: &FieldPath, value: f64) -> Result<Impact, InvalidInput> {
