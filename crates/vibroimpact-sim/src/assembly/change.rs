@@ -4,6 +4,7 @@
 //! parameter is known by posing it at four neighbouring values: the slope of the polynomial through them. Unlike the
 //! motion, what poses it is smooth and exact to rounding, so that little is lost.
 
+use super::load_change::LoadChange;
 use super::problem::Posed;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
@@ -52,7 +53,7 @@ impl Stencil<4> {
 
 /// What a unit of a parameter changes, by modes in the order of [`System`].
 pub(crate) struct Change<'a> {
-    /// Where the modes start, and how fast (per unit of the parameter, as everything here).
+    /// Where what is carried of the modes starts, and how fast (per unit of the parameter, as everything here).
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     /// Of each contact: its gap, and its weights `psi`.
@@ -63,6 +64,8 @@ pub(crate) struct Change<'a> {
     pub stretch: Vec<f64>,
     /// The law of each contact at the neighbours, where it changes.
     pub laws: Option<Vec<[&'a dyn ContactLaw; 4]>>,
+    /// The loads there; `None` where there are none.
+    pub loads: Option<LoadChange>,
     pub stencil: Stencil<4>,
     /// Whether frequencies or dampings change.
     pub moves_modes: bool,
@@ -80,6 +83,7 @@ impl<'a> Change<'a> {
             fade: vec![0.0; n],
             stretch: vec![0.0; n],
             laws: laws_change.then(|| (0..system.links.len()).map(|c| posed.map(|posed| posed.laws[c])).collect()),
+            loads: LoadChange::new(posed, stencil),
             stencil,
             moves_modes: false,
         };
@@ -98,6 +102,11 @@ impl<'a> Change<'a> {
                     change.stretch[place] = by_omega - zeta * by_zeta;
                 }
             }
+        }
+        if let Some(loads) = &change.loads {
+            let (amplitude, rate) = loads.steady(system, 0.0);
+            change.amplitude.iter_mut().zip(&amplitude).for_each(|(change, steady)| *change -= steady);
+            change.rate.iter_mut().zip(&rate).for_each(|(change, steady)| *change -= steady);
         }
         for (c, link) in system.links.iter().enumerate() {
             let links = posed.map(|posed| system.link(posed.sides[c]));

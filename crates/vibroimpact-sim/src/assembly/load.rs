@@ -14,6 +14,7 @@ use crate::panel::legendre::TAYLOR;
 use num_complex::Complex64;
 
 /// Loads of one frequency.
+#[derive(Clone)]
 pub(crate) struct Harmonic {
     pub omega_rad_s: f64,
     /// The steady motion `G` of each mode (m kg^1/2), and of the overlap of each contact (m).
@@ -40,12 +41,14 @@ struct Line {
 }
 
 /// One load in the order of the modes.
+#[derive(Clone)]
 struct Source {
     span: Span,
     force: Force,
 }
 
 /// All loads.
+#[derive(Clone)]
 pub(crate) struct Loads {
     pub harmonics: Vec<Harmonic>,
     lines: Vec<Source>,
@@ -176,6 +179,11 @@ impl Loads {
         self.breaks.get(self.next).copied().unwrap_or(f64::INFINITY)
     }
 
+    /// How many breaks these loads have passed that others, of the same system, have not.
+    pub fn breaks_since(&self, others: &Loads) -> usize {
+        self.next - others.next
+    }
+
     /// Passes the break that has been reached: the whole motion goes on, what is carried of the elastic modes jumps.
     pub fn pass_break(&mut self, system: &System, time_s: f64, amplitude: &mut [f64], rate: &mut [f64]) {
         self.next += 1;
@@ -202,6 +210,14 @@ impl Loads {
                 amplitude[k] += sign * moved.re;
                 rate[k] -= sign * harmonic.omega_rad_s * moved.im;
             }
+        }
+    }
+
+    /// Acceleration of the steady motion, relative to which the modes are carried.
+    pub fn add_accelerations(&self, time_s: f64, factor: f64, rate: &mut [f64]) {
+        for harmonic in &self.harmonics {
+            let turn = -factor * harmonic.omega_rad_s * harmonic.omega_rad_s * harmonic.turn(time_s);
+            rate.iter_mut().zip(&harmonic.modes).for_each(|(rate, gain)| *rate += (gain * turn).re);
         }
     }
 
@@ -233,16 +249,42 @@ impl Loads {
         (side.sum(&amplitude), side.sum(&rate))
     }
 
-    /// By how much the straight lines move the overlap of a contact within `h` seconds from `time_s` on.
-    pub fn moved_by_lines(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+    /// By how much the loads move the overlap of a contact within `h` seconds from `time_s` on, and what they add to its rate
+    /// then, beyond what the modes carry at `time_s`.
+    pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
+        if self.is_empty() {
+            return (0.0, 0.0);
+        }
         let line = &self.contacts[contact];
-        h * (line.shift_rate + h * (0.5 * self.acceleration(contact, time_s) + h * line.jerk / 6.0))
+        let acceleration = self.acceleration(contact, time_s);
+        let mut moved = h * (line.shift_rate + h * (0.5 * acceleration + h * line.jerk / 6.0));
+        let mut rate = line.shift_rate + h * (acceleration + 0.5 * h * line.jerk);
+        for harmonic in &self.harmonics {
+            let now = harmonic.contacts[contact] * harmonic.turn(time_s);
+            let swept = now * swept(harmonic.omega_rad_s * h);
+            moved += swept.re;
+            rate -= harmonic.omega_rad_s * (now + swept).im;
+        }
+        (moved, rate)
     }
 
-    /// What the straight lines add to the rate of the overlap within `h` seconds, beyond what the modes carry now.
-    pub fn rate_by_lines(&self, contact: usize, time_s: f64, h: f64) -> f64 {
-        let line = &self.contacts[contact];
-        line.shift_rate + h * (self.acceleration(contact, time_s) + 0.5 * h * line.jerk)
+    /// By how much more [`Loads::moved`] moves the overlap within `h` seconds, for each second that they begin later.
+    pub fn moved_later(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+        let mut moved = 0.5 * h * h * self.contacts[contact].jerk;
+        for harmonic in &self.harmonics {
+            let now = harmonic.contacts[contact] * harmonic.turn(time_s);
+            moved -= harmonic.omega_rad_s * (now * swept(harmonic.omega_rad_s * h)).im;
+        }
+        moved
+    }
+
+    /// Acceleration of the overlap that the harmonic loads alone make (m/s^2).
+    pub fn bend(&self, contact: usize, time_s: f64) -> f64 {
+        let of = |harmonic: &Harmonic| {
+            let moved = harmonic.contacts[contact] * harmonic.turn(time_s);
+            -harmonic.omega_rad_s * harmonic.omega_rad_s * moved.re
+        };
+        self.harmonics.iter().map(of).sum()
     }
 
     /// Acceleration of the overlap by the rigid modes' straight-line loads (m/s^2).
@@ -279,6 +321,12 @@ impl Loads {
     pub fn fastest_rad_s(&self) -> f64 {
         self.harmonics.iter().map(|harmonic| harmonic.omega_rad_s).fold(0.0, f64::max)
     }
+}
+
+/// `e^{ix} - 1` without cancellation.
+fn swept(angle: f64) -> Complex64 {
+    let half = (0.5 * angle).sin_cos();
+    Complex64::new(-2.0 * half.0 * half.0, 2.0 * half.0 * half.1)
 }
 
 /// Value and slope of a constant or sampled load just after `time_s`.

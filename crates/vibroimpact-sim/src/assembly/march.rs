@@ -818,7 +818,7 @@ impl<'a> March<'a> {
         for (i, &c) in contacts.iter().enumerate() {
             let nodal = &mut overlap[i];
             let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
-            let (by_loads, rate_of_loads) = self.moved_by_loads(c, h);
+            let (by_loads, rate_of_loads) = self.loads.moved(c, self.time_s, h);
             let mut forced = 0.0;
             for (j, solved) in solved.iter().enumerate() {
                 if let Some(response) = response(i, j) {
@@ -847,26 +847,7 @@ impl<'a> March<'a> {
         let h = step_s(level);
         let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
         let overlap = self.states[c].overlap;
-        std::array::from_fn(|i| overlap + (moved[i] + self.moved_by_loads(c, BASIS.nodes[i] * h).0))
-    }
-
-    /// By how much the loads move the overlap of a contact within `h`, and what they add to its rate then, beyond what
-    /// the modes carry now.
-    fn moved_by_loads(&self, c: usize, h: f64) -> (f64, f64) {
-        if self.loads.is_empty() {
-            return (0.0, 0.0);
-        }
-        let mut moved = self.loads.moved_by_lines(c, self.time_s, h);
-        let mut rate = self.loads.rate_by_lines(c, self.time_s, h);
-        for harmonic in &self.loads.harmonics {
-            let now = harmonic.contacts[c] * harmonic.turn(self.time_s);
-            // e^{ix} - 1 without cancellation
-            let half = (0.5 * harmonic.omega_rad_s * h).sin_cos();
-            let turned = num_complex::Complex64::new(-2.0 * half.0 * half.0, 2.0 * half.0 * half.1);
-            moved += (now * turned).re;
-            rate -= harmonic.omega_rad_s * (now + now * turned).im;
-        }
-        (moved, rate)
+        std::array::from_fn(|i| overlap + (moved[i] + self.loads.moved(c, self.time_s, BASIS.nodes[i] * h).0))
     }
 
     /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
@@ -1269,6 +1250,12 @@ impl<'a> March<'a> {
             contacts: self.states.iter().map(seen).collect(),
             forces: contacts.iter().copied().zip(force.iter().copied()).collect(),
         }
+    }
+
+    /// Where the record ends, as a stretch of no length.
+    pub fn last(&mut self) -> Stretch {
+        let events = std::mem::take(&mut self.pending);
+        Stretch { events, ..self.stretch(0.0, &[], &[]) }
     }
 
     /// The record, with the endless flight that follows where bodies have parted for good, or have never been otherwise.

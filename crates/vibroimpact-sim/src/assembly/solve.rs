@@ -42,9 +42,9 @@ pub fn run<L: ContactLaw>(
 
 /// Solves an assembly, more than once if asked: its tables are built as they are needed and kept.
 pub struct Solver<'a> {
-    posed: Posed<'a>,
-    system: System,
-    tables: Tables,
+    pub(crate) posed: Posed<'a>,
+    pub(crate) system: System,
+    pub(crate) tables: Tables,
 }
 
 impl<'a> Solver<'a> {
@@ -92,7 +92,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// One run, and all stretches of its motion if they are wanted; after bodies have parted for good the last one is endless.
+/// One run, and all stretches of its motion if they are wanted; after bodies have parted for good the last one is endless,
+/// otherwise one of no length ends it.
 pub(crate) fn follow(
     posed: &Posed,
     (system, tables): (&System, &mut Tables),
@@ -103,7 +104,10 @@ pub(crate) fn follow(
     let mut march = March::new(posed, system, tables, *settings, observer);
     march.record = record.then(Vec::new);
     let outcome = march.follow();
-    let stretches = march.recorded(outcome == Outcome::Parted);
+    let mut stretches = march.recorded(outcome == Outcome::Parted);
+    if record && stretches.last().is_some_and(|last| last.length_s.is_finite()) {
+        stretches.push(march.last());
+    }
     let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
     let work_j = contacts.iter().map(|contact| contact.statistics.work_j).sum();
     let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), work_j));

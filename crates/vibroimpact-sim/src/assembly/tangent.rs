@@ -25,6 +25,11 @@
 //! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
 //! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces.
 //!
+//! # The loads
+//! Modes are carried relative to their steady motion under the loads, which is known in closed form and with it its change.
+//! What is carried moves freely, so that all of the above holds for it. A break of a load lies at a fixed time: the panel
+//! before it is shorter by as much as its start is later.
+//!
 //! # The events
 //! A panel that ends at an event changes its length by `dh = -dG/G'`, so that the event function `G` stays zero, and what
 //! follows begins at the shifted time: every change is that at the event, wherever it has moved. Touches so stay
@@ -34,6 +39,8 @@
 use super::change::{Change, Stencil};
 use super::collocate::Blocks;
 use super::dense::{Event, Stretch};
+use super::load::Loads;
+use super::load_change::LoadChange;
 use super::problem::Posed;
 use super::system::{Link, Span, System};
 use super::tables::{Forced, Response};
@@ -46,21 +53,26 @@ use std::rc::Rc;
 
 /// Step, relative to the size of a variable, with which a law's own functions are differenced.
 const LAW_STEP: f64 = 1e-6;
+/// Two events stay together if their times shift by the same to this part.
+const TOGETHER: f64 = 1e-6;
 
 /// How an interval of contact changes.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct IntervalChange {
+    pub contact: usize,
     pub start_s: f64,
     pub end_s: f64,
     pub impulse_n_s: f64,
     pub peak_force_n: f64,
     pub peak_compression_m: f64,
+    pub approach_speed_m_s: f64,
+    pub separation_speed_m_s: f64,
 }
 
 /// The change of a motion with one parameter.
 #[derive(Clone)]
 pub(crate) struct Tangent {
-    /// Of the modes when the record ends, in the order of [`System`], and of that time.
+    /// Of the modes when the record ends, in the order of [`System`], and of that time; before, of what is carried of them.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     pub time_s: f64,
@@ -96,6 +108,9 @@ struct Followed {
 /// All tangents of a record, and how the events met.
 pub(crate) struct Tangents {
     pub tangents: Vec<Tangent>,
+    /// The motion itself at the end.
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
     /// The slowest touch, in parts of the fastest: the derivatives do not exist where it is zero.
     pub nearest_graze: f64,
 }
@@ -135,11 +150,25 @@ struct Solved {
 /// A panel of the record, from one stretch to the next, with what all changes need of it.
 struct Passage<'a> {
     from: &'a Stretch,
-    to: &'a Stretch,
+    /// Amplitudes and rates at its end.
+    to: [&'a [f64]; 2],
     expansion: &'a Expansion,
     solved: &'a [Solved],
     /// Accelerations of all modes at its start and at its end.
     bends: [Vec<f64>; 2],
+}
+
+/// What fixes where a panel ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ending {
+    /// Its length.
+    Length,
+    /// An event of this contact.
+    Event(usize, Event),
+    /// A break of the loads.
+    Break,
+    /// The end of the time asked for.
+    Run,
 }
 
 /// What one change does on one panel.
@@ -158,6 +187,9 @@ struct Walk<'a> {
     /// `c_1 psi` and `c_2 psi` of each change and contact.
     faded: Vec<Vec<Vec<Span>>>,
     stretched: Vec<Vec<Vec<Span>>>,
+    /// The loads on the panel at hand, and how they change.
+    loads: Loads,
+    load_changes: Vec<Option<LoadChange>>,
     expansions: &'a mut Expansions,
     blocks: Blocks,
     contacts: Vec<Followed>,
@@ -167,13 +199,14 @@ struct Walk<'a> {
     touches: [f64; 2],
 }
 
-/// The tangents of a recorded motion without loads. `None` where one does not exist: at a graze, where a law's own course
-/// forks, and for the damping of a mode that is damped critically.
+/// The tangents of a recorded motion. A record that ends at a fixed time ends with a stretch of no length, and `end_s` has how
+/// that time changes with each parameter. `None` where there is no tangent: at a graze, where a law's own course forks, and for
+/// the damping of a mode that is damped critically.
 pub(crate) fn tangents(
     posed: &Posed,
     system: &System,
     stretches: &[Stretch],
-    changes: &[Change],
+    (changes, end_s): (&[Change], Option<&[f64]>),
     expansions: &mut Expansions,
 ) -> Option<Tangents> {
     let mut walk = Walk::new(posed, system, changes, expansions);
@@ -183,21 +216,18 @@ pub(crate) fn tangents(
             walk.begin(stretch)?;
         }
         if let Some(next) = stretches.get(i + 1) {
-            walk.advance(stretch, next)?;
+            let is_last = i + 2 == stretches.len();
+            walk.advance(stretch, next, end_s.filter(|_| is_last))?;
         }
     }
+    let (amplitude, rate) = walk.end(stretches.last()?);
     let finite = |tangent: &Tangent| {
         let motion = tangent.amplitude.iter().chain(&tangent.rate);
         motion.sum::<f64>().is_finite() && tangent.time_s.is_finite()
     };
     let [slowest, fastest] = walk.touches;
     let nearest_graze = if fastest > 0.0 { slowest / fastest } else { 1.0 };
-    walk.tangents.iter().all(finite).then_some(Tangents { tangents: walk.tangents, nearest_graze })
-}
-
-/// The event that fixes where the panel before a stretch ends: the first of those at its start.
-fn ending(next: &Stretch) -> Option<(usize, Event)> {
-    next.events.first().copied().filter(|(_, event)| *event != Event::Touch { overlaps: true })
+    walk.tangents.iter().all(finite).then_some(Tangents { tangents: walk.tangents, amplitude, rate, nearest_graze })
 }
 
 fn scaled(link: &Link, factors: &[f64]) -> Vec<Span> {
@@ -253,6 +283,8 @@ impl<'a> Walk<'a> {
             changes,
             faded: weighted(|change| &change.fade),
             stretched: weighted(|change| &change.stretch),
+            loads: Loads::new(posed.loads, system),
+            load_changes: changes.iter().map(|change| change.loads.clone()).collect(),
             expansions,
             blocks: Blocks::default(),
             contacts: posed.gaps_m.iter().map(followed).collect(),
@@ -262,11 +294,37 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Change of an overlap and its rate, for a state and its change.
-    fn overlap(&self, d: usize, c: usize, state: (&[f64], &[f64]), change: (&[f64], &[f64])) -> [f64; 2] {
+    /// Change of an overlap and its rate at a time, for a state and its change.
+    fn overlap(&self, d: usize, c: usize, time_s: f64, state: [&[f64]; 2], change: [&[f64]; 2]) -> [f64; 2] {
         let (link, psi) = (&self.system.links[c], &self.changes[d].psi[c]);
         let reference = self.tangents[d].contacts[c].reference;
-        [sum(psi, state.0) + link.sum(change.0) + reference, sum(psi, state.1) + link.sum(change.1)]
+        let mut found =
+            [sum(psi, state[0]) + link.sum(change[0]) + reference, sum(psi, state[1]) + link.sum(change[1])];
+        if let Some(loads) = &self.load_changes[d] {
+            let by_loads = loads.overlap(c, time_s);
+            let later = self.tangents[d].time_s;
+            found[0] += by_loads[0] + later * self.loads.overlap(c, time_s).1;
+            found[1] += by_loads[1] + later * self.loads.bend(c, time_s);
+        }
+        found
+    }
+
+    /// From what is carried to the whole motion at the end of the record.
+    fn end(&mut self, last: &Stretch) -> (Vec<f64>, Vec<f64>) {
+        let (time_s, loads) = (last.start_s, &self.loads);
+        let (mut amplitude, mut rate) = (last.amplitude.clone(), last.rate.clone());
+        loads.shift_modes(self.system, time_s, 1.0, &mut amplitude, &mut rate);
+        for (tangent, changed) in self.tangents.iter_mut().zip(&self.load_changes) {
+            let Some(changed) = changed else { continue };
+            let later = tangent.time_s;
+            let (steady, steady_rate) = changed.steady(self.system, time_s);
+            for k in 0..amplitude.len() {
+                tangent.amplitude[k] += steady[k] + later * (rate[k] - last.rate[k]);
+                tangent.rate[k] += steady_rate[k];
+            }
+            loads.add_accelerations(time_s, later, &mut tangent.rate);
+        }
+        (amplitude, rate)
     }
 
     // ---- one panel ----
@@ -279,14 +337,34 @@ impl<'a> Walk<'a> {
             overlap: Vec::new(),
         });
         let moved = moved.collect();
-        let bend = self.acceleration(first, &[], 0.0);
+        let state = [first.amplitude.as_slice(), &first.rate];
+        let bend = self.acceleration(first.start_s, state, &[], 0.0);
         let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
-        self.arrive(0.0, &[], moved, Some(&slide), first)
+        let end = Arrival { length_s: 0.0, ending: ending(first), state, end_s: None, next: first };
+        self.arrive(&end, &[], moved, Some(&slide))
     }
 
-    /// From the start of a stretch to that of the next one.
-    fn advance(&mut self, stretch: &Stretch, next: &Stretch) -> Option<()> {
+    /// From the start of a stretch to that of the next one; `end_s` has the changes of that time if the record ends there.
+    fn advance(&mut self, stretch: &Stretch, next: &Stretch, end_s: Option<&[f64]>) -> Option<()> {
         let h = stretch.length_s;
+        // what is carried jumps at a break
+        let mut after = None;
+        let (mut end_a, mut end_b) = (next.amplitude.clone(), next.rate.clone());
+        while next.start_s >= after.as_ref().unwrap_or(&self.loads).next_break_s() {
+            let loads = after.get_or_insert_with(|| self.loads.clone());
+            let [mut jump, mut jump_rate] = [(); 2].map(|()| vec![0.0; end_a.len()]);
+            loads.pass_break(self.system, next.start_s, &mut jump, &mut jump_rate);
+            end_a.iter_mut().zip(&jump).for_each(|(end, jump)| *end -= jump);
+            end_b.iter_mut().zip(&jump_rate).for_each(|(end, jump)| *end -= jump);
+        }
+        let state = [end_a.as_slice(), &end_b];
+        let ending = match (ending(next), end_s) {
+            // an event just at a break has no place of its own
+            (Ending::Event(..), _) if after.is_some() => return None,
+            (Ending::Length, _) if after.is_some() => Ending::Break,
+            (Ending::Length, Some(_)) => Ending::Run,
+            (ending, _) => ending,
+        };
         let closed: Vec<usize> = stretch.forces.iter().map(|(c, _)| *c).collect();
         let expansion = self.expansion(h, &closed);
         let solved = self.solved(stretch, &expansion);
@@ -297,18 +375,39 @@ impl<'a> Walk<'a> {
             let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q].nodes);
             self.blocks.factor(&values, &response, h);
         }
-        let bends = [self.acceleration(stretch, &solved, 0.0), self.acceleration(next, &solved, 1.0)];
-        let passage = Passage { from: stretch, to: next, expansion: &expansion, solved: &solved, bends };
+        let from = [stretch.amplitude.as_slice(), &stretch.rate];
+        let bends = [
+            self.acceleration(stretch.start_s, from, &solved, 0.0),
+            self.acceleration(stretch.start_s + h, state, &solved, 1.0),
+        ];
+        let passage = Passage { from: stretch, to: state, expansion: &expansion, solved: &solved, bends };
         let moved = (0..self.changes.len()).map(|d| self.moved(d, &passage)).collect();
-        // only a panel that ends at an event can change its length
-        let slide = ending(next).map(|_| self.slide(&passage));
+        let slide = (ending != Ending::Length).then(|| self.slide(&passage));
         for solved in &solved {
-            let followed = &mut self.contacts[solved.contact];
-            let moved = next.amplitude.iter().zip(&stretch.amplitude).map(|(after, before)| after - before);
-            followed.overlap += self.system.links[solved.contact].sum(&moved.collect::<Vec<f64>>());
+            let (c, followed) = (solved.contact, &mut self.contacts[solved.contact]);
+            let moved = state[0].iter().zip(&stretch.amplitude).map(|(after, before)| after - before);
+            followed.overlap += self.system.links[c].sum(&moved.collect::<Vec<f64>>());
+            followed.overlap += self.loads.overlap(c, next.start_s).0 - self.loads.overlap(c, stretch.start_s).0;
             followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
         }
-        self.arrive(h, &solved, moved, slide.as_ref(), next)
+        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, moved, slide.as_ref())?;
+        if let Some(after) = after {
+            self.pass_breaks(after);
+        }
+        Some(())
+    }
+
+    /// To the loads after a break, or several at once.
+    fn pass_breaks(&mut self, after: Loads) {
+        for (tangent, loads) in self.tangents.iter_mut().zip(&mut self.load_changes) {
+            let Some(loads) = loads else { continue };
+            for _ in 0..after.breaks_since(&self.loads) {
+                let (jump, jump_rate) = loads.pass_break(self.system);
+                tangent.amplitude.iter_mut().zip(&jump).for_each(|(change, jump)| *change += jump);
+                tangent.rate.iter_mut().zip(&jump_rate).for_each(|(change, jump)| *change += jump);
+            }
+        }
+        self.loads = after;
     }
 
     fn expansion(&mut self, h: f64, closed: &[usize]) -> Rc<Expansion> {
@@ -392,7 +491,8 @@ impl<'a> Walk<'a> {
             let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
             let branch = stretch.contacts[*c].branch?;
             let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
-            compression.iter_mut().for_each(|value| *value += followed.overlap);
+            let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
+            compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
             for (q, (_, other)) in stretch.forces.iter().enumerate() {
                 let nodal = BASIS.nodes.map(|s| evaluate(other, s));
                 add(&mut compression, 1.0, &apply(&expansion.own[p * n + q].nodes, &nodal));
@@ -419,12 +519,12 @@ impl<'a> Walk<'a> {
         stretch.forces.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Acceleration of all modes in a state, under these forces at a place of their panel.
-    fn acceleration(&self, at: &Stretch, solved: &[Solved], place: f64) -> Vec<f64> {
+    /// Acceleration of what is carried of all modes in a state, under these forces at a place of their panel.
+    fn acceleration(&self, time_s: f64, [a, b]: [&[f64]; 2], solved: &[Solved], place: f64) -> Vec<f64> {
         let system = self.system;
-        let mut bend: Vec<f64> = (0..system.modes.len())
-            .map(|k| -system.drag[k] * at.rate[k] - system.square[k] * at.amplitude[k])
-            .collect();
+        let mut bend: Vec<f64> =
+            (0..system.modes.len()).map(|k| -system.drag[k] * b[k] - system.square[k] * a[k]).collect();
+        self.loads.rigid.iter().for_each(|&k| bend[k] += self.loads.line(k, time_s).0);
         for solved in solved {
             let force = evaluate(&solved.force, place);
             for span in &system.links[solved.contact].spans {
@@ -454,7 +554,7 @@ impl<'a> Walk<'a> {
         for (p, own) in solved.iter().enumerate() {
             let c = own.contact;
             let link = &system.links[c];
-            let [start, _] = self.overlap(d, c, (a, b), (&tangent.amplitude, &tangent.rate));
+            let [start, _] = self.overlap(d, c, from.start_s, [a, b], [&tangent.amplitude, &tangent.rate]);
             let (mut from_a, mut from_b) = (vec![0.0; a.len()], vec![0.0; a.len()]);
             weigh(&link.spans, (&amplitude, &rate), (&mut from_a, &mut from_b));
             weigh(&change.psi[c], (a, b), (&mut from_a, &mut from_b));
@@ -490,6 +590,12 @@ impl<'a> Walk<'a> {
             for i in 0..Q {
                 found[i] += BASIS.nodes[i] * h * timed[i];
             }
+            if let Some(loads) = &self.load_changes[d] {
+                for (found, s) in found.iter_mut().zip(BASIS.nodes) {
+                    let later = tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
+                    *found += loads.moved(c, from.start_s, s * h) + later;
+                }
+            }
             let slope = slopes(start, &found, h);
             let by_law = self.force_change(d, own);
             force.push(array::from_fn(|i| {
@@ -522,8 +628,16 @@ impl<'a> Walk<'a> {
                 push(&self.stretched[d][c], &driven, -1.0);
             }
         }
+        if let Some(loads) = &self.load_changes[d] {
+            for k in (0..a.len()).filter(|&k| system.modes[k].is_rigid()) {
+                let (push, slope) = loads.line(k, system, from.start_s);
+                let push = push + tangent.time_s * self.loads.line(k, from.start_s).1;
+                amplitude[k] += h * h * (0.5 * push + h * slope / 6.0);
+                rate[k] += h * (push + 0.5 * h * slope);
+            }
+        }
         if modes_move {
-            let (a, b, bend) = (&passage.to.amplitude, &passage.to.rate, &passage.bends[1]);
+            let ([a, b], bend) = (passage.to, &passage.bends[1]);
             for k in 0..a.len() {
                 let moving = stretches[k] * b[k] - fade[k] * a[k];
                 amplitude[k] += h * moving;
@@ -538,7 +652,7 @@ impl<'a> Walk<'a> {
     fn slide(&self, passage: &Passage) -> Moved {
         let Passage { from, to, expansion, solved, bends } = passage;
         let (h, n) = (from.length_s, solved.len());
-        let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to.amplitude.len()]);
+        let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to[0].len()]);
         let mut force: Vec<Nodal> = solved
             .iter()
             .map(|own| {
@@ -562,7 +676,7 @@ impl<'a> Walk<'a> {
             expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
         }
         for k in 0..amplitude.len() {
-            amplitude[k] += to.rate[k];
+            amplitude[k] += to[1][k];
             rate[k] += bends[1][k];
         }
         Moved { amplitude, rate, force, overlap }
@@ -594,23 +708,18 @@ impl<'a> Walk<'a> {
     // ---- the end of a panel ----
 
     /// The end of a panel: how far it moves, what is booked, and the events there.
-    fn arrive(
-        &mut self,
-        h: f64,
-        solved: &[Solved],
-        moved: Vec<Moved>,
-        slide: Option<&Moved>,
-        next: &Stretch,
-    ) -> Option<()> {
-        let state = (next.amplitude.as_slice(), next.rate.as_slice());
+    fn arrive(&mut self, end: &Arrival, solved: &[Solved], moved: Vec<Moved>, slide: Option<&Moved>) -> Option<()> {
+        let Arrival { length_s: h, ending, state, end_s, next } = *end;
+        let time_s = next.start_s;
         let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
             .map(|c| {
                 let (link, followed) = (&self.system.links[c], &self.contacts[c]);
+                let (shift, shift_rate) = self.loads.overlap(c, time_s);
                 let overlap = match followed.branch {
                     Some(_) => followed.overlap,
-                    None => next.contacts[c].reference + link.sum(state.0),
+                    None => next.contacts[c].reference + link.sum(state[0]) + shift,
                 };
-                [overlap, link.sum(state.1)]
+                [overlap, link.sum(state[1]) + shift_rate]
             })
             .collect();
         for (followed, [_, rate]) in self.contacts.iter_mut().zip(&overlaps) {
@@ -620,11 +729,21 @@ impl<'a> Walk<'a> {
         let peaks = self.peaks(solved);
         for (d, mut moved) in moved.into_iter().enumerate() {
             let mut longer = 0.0;
-            if let Some(((c, event), slide)) = ending(next).zip(slide) {
-                let change = self.overlap(d, c, state, (&moved.amplitude, &moved.rate));
-                let speed = [&slide.amplitude, &slide.rate].map(|values| self.system.links[c].sum(values));
-                let (changes, slope) = self.event_function(d, c, event, overlaps[c], change, speed);
-                longer = -changes / slope;
+            if let Some(slide) = slide {
+                longer = match ending {
+                    Ending::Length => 0.0,
+                    Ending::Event(c, event) => {
+                        let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate]);
+                        let (changes, slope) =
+                            self.event_function(d, c, event, overlaps[c], change, self.speed(c, time_s, slide));
+                        -changes / slope
+                    }
+                    Ending::Break => {
+                        let later = self.load_changes[d].as_ref().map_or(0.0, LoadChange::next_break_s);
+                        later - self.tangents[d].time_s
+                    }
+                    Ending::Run => end_s.map_or(0.0, |changes| changes[d]) - self.tangents[d].time_s,
+                };
                 if !longer.is_finite() {
                     return None;
                 }
@@ -656,13 +775,60 @@ impl<'a> Walk<'a> {
             (tangent.amplitude, tangent.rate) = (moved.amplitude, moved.rate);
             tangent.time_s += longer;
         }
-        for (c, event) in &next.events {
-            self.transition(*c, *event, state, overlaps[*c])?;
+        for (i, (c, event)) in next.events.iter().enumerate() {
+            let apart = match slide {
+                Some(slide) if i > 0 => self.apart(*c, *event, (time_s, state), overlaps[*c], slide)?,
+                _ => vec![0.0; self.changes.len()],
+            };
+            self.transition((*c, *event), (time_s, state), overlaps[*c], &apart)?;
         }
         for (followed, seen) in self.contacts.iter_mut().zip(&next.contacts) {
             followed.branch = seen.branch;
         }
         Some(())
+    }
+
+    /// Rate of an overlap, and the rate of that, at the end of a panel that becomes longer.
+    fn speed(&self, c: usize, time_s: f64, slide: &Moved) -> [f64; 2] {
+        let link = &self.system.links[c];
+        let (_, by_loads) = self.loads.overlap(c, time_s);
+        [link.sum(&slide.amplitude) + by_loads, link.sum(&slide.rate) + self.loads.bend(c, time_s)]
+    }
+
+    /// By how much later than the event that ended the panel another event at the same time comes after a change. A contact
+    /// whose force jumps at first touch then has no tangent here.
+    fn apart(
+        &self,
+        c: usize,
+        event: Event,
+        (time_s, state): (f64, [&[f64]; 2]),
+        overlap: [f64; 2],
+        slide: &Moved,
+    ) -> Option<Vec<f64>> {
+        let speed = self.speed(c, time_s, slide);
+        let jumps = match event {
+            Event::Touch { .. } => {
+                let law = self.posed.laws[c];
+                let branch = law.touch(&self.contacts[c].memory, overlap[1].max(0.0));
+                law.force(&branch, overlap[0], overlap[1]).force_n != 0.0
+            }
+            Event::Cross(_) => false,
+        };
+        let of = |(d, tangent): (usize, &Tangent)| {
+            let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
+            let (changes, slope) = self.event_function(d, c, event, overlap, change, speed);
+            let later = -changes / slope;
+            // what cancels where both shift alike
+            let parts =
+                sum(&self.changes[d].psi[c], state[0]).abs() + self.system.links[c].sum(&tangent.amplitude).abs();
+            let known = TOGETHER * (parts / slope).abs().max(tangent.time_s.abs());
+            match later {
+                _ if !later.is_finite() => None,
+                _ if later.abs() <= known => Some(0.0),
+                _ => (!jumps).then_some(later),
+            }
+        };
+        self.tangents.iter().enumerate().map(of).collect()
     }
 
     /// Change of an event function at the end of an unchanged panel, and its rate of change with the length.
@@ -699,7 +865,13 @@ impl<'a> Walk<'a> {
     }
 
     /// The law's own transition.
-    fn transition(&mut self, c: usize, event: Event, state: (&[f64], &[f64]), [overlap, rate]: [f64; 2]) -> Option<()> {
+    fn transition(
+        &mut self,
+        (c, event): (usize, Event),
+        (at_s, state): (f64, [&[f64]; 2]),
+        [overlap, rate]: [f64; 2],
+        apart: &[f64],
+    ) -> Option<()> {
         let law = self.posed.laws[c];
         let followed = self.contacts[c];
         let sizes = followed.sizes;
@@ -758,7 +930,7 @@ impl<'a> Walk<'a> {
         for d in 0..self.changes.len() {
             let tangent = &self.tangents[d];
             let carried = tangent.contacts[c];
-            let [by_overlap, by_rate] = self.overlap(d, c, state, (&tangent.amplitude, &tangent.rate));
+            let [by_overlap, by_rate] = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
             let changes: Given = match event {
                 Event::Cross(_) => [carried.branch[0], carried.branch[1], by_overlap, by_rate],
                 Event::Touch { .. } => [carried.memory[0], carried.memory[1], by_rate, 0.0],
@@ -776,18 +948,19 @@ impl<'a> Walk<'a> {
                     *made_change += difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil, which)?;
                 }
             }
-            let time_s = self.tangents[d].time_s;
             let tangent = &mut self.tangents[d];
+            let time_s = tangent.time_s + apart[d];
             match (event, &after) {
                 (Event::Touch { .. }, _) => {
-                    tangent.intervals.push(IntervalChange { start_s: time_s, end_s: time_s, ..Default::default() });
+                    let start = IntervalChange { contact: c, start_s: time_s, end_s: time_s, ..Default::default() };
+                    tangent.intervals.push(IntervalChange { approach_speed_m_s: by_rate, ..start });
                     tangent.contacts[c].branch = made_change;
                 }
                 (_, After::Continue(_)) => tangent.contacts[c].branch = made_change,
                 (_, After::Release(_)) => {
                     tangent.contacts[c].memory = made_change;
                     if let Some(interval) = tangent.intervals.get_mut(followed.interval) {
-                        interval.end_s = time_s;
+                        (interval.end_s, interval.separation_speed_m_s) = (time_s, -by_rate);
                     }
                 }
             }
@@ -822,6 +995,26 @@ impl<'a> Walk<'a> {
             })
         };
         solved.iter().map(of).collect()
+    }
+}
+
+/// Where a panel ends.
+struct Arrival<'a> {
+    length_s: f64,
+    ending: Ending,
+    /// What is carried of the modes there.
+    state: [&'a [f64]; 2],
+    /// How the time of the end changes, where that is what fixes it.
+    end_s: Option<&'a [f64]>,
+    /// What follows.
+    next: &'a Stretch,
+}
+
+/// What fixes where the panel before a stretch ends, loads apart: the first event at its start.
+fn ending(next: &Stretch) -> Ending {
+    match next.events.first() {
+        Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,
+        Some((c, event)) => Ending::Event(*c, *event),
     }
 }
 

@@ -5,8 +5,10 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
 use super::solve::{AMPLIFIED, Impact, Keep, LEAST, LOOSEST, Run, Solver};
 use crate::InvalidInput;
+pub use crate::assembly::Derivative;
 use crate::assembly::change::Change;
 pub use crate::assembly::change::Stencil;
+use crate::assembly::differentiate::{COARSER, beside};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -37,16 +39,6 @@ pub struct Parameter<'a> {
     pub neighbours: [Posing<'a>; 4],
     /// Whether the law of contact depends on the parameter.
     pub changes_law: bool,
-}
-
-/// A derivative, per unit of the parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Derivative {
-    /// The derivative.
-    pub value: f64,
-    /// By how much it may be off, from the derivatives along two coarser solutions; `None` where one of these went another way, so
-    /// that no digit of the derivative is certain.
-    pub uncertainty: Option<f64>,
 }
 
 /// How one interval of contact changes.
@@ -101,13 +93,6 @@ struct Changes {
     amplitude: Vec<f64>,
     rate: Vec<f64>,
 }
-
-/// How much more coarsely the two motions are solved whose derivatives tell the uncertainty: two may agree by accident.
-const COARSER: [f64; 2] = [32.0, 6.0];
-/// The uncertainty in differences to them.
-const TIMES: f64 = 10.0;
-/// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
-const ROUNDING: f64 = 1e-10;
 
 impl Solver {
     /// Solves one impact, and how all of it changes with some parameters: the tangent of the motion, not differences of
@@ -245,7 +230,7 @@ impl Along<'_> {
         if run.outcome != Outcome::Rebound {
             return None;
         }
-        let found = tangents(self.posed, self.system, &run.stretches, &self.changes, expansions)?;
+        let found = tangents(self.posed, self.system, &run.stretches, (&self.changes, None), expansions)?;
         let end = run.stretches.last()?.rate.as_slice();
         let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
         let striker = &self.system.links[0].sides[0];
@@ -292,12 +277,7 @@ fn restitution_change(
 impl Changes {
     /// As derivatives, with those along coarser motions.
     fn beside(&self, coarse: Option<&[Changes; 2]>) -> Derivatives {
-        let with = |of: &dyn Fn(&Changes) -> f64| {
-            let value = of(self);
-            let spread =
-                |coarse: &[Changes; 2]| coarse.iter().map(|coarse| (of(coarse) - value).abs()).fold(0.0, f64::max);
-            Derivative { value, uncertainty: coarse.map(|coarse| TIMES * spread(coarse) + ROUNDING * value.abs()) }
-        };
+        let with = |of: &dyn Fn(&Changes) -> f64| beside(of(self), coarse.map(|coarse| coarse.each_ref().map(of)));
         let number = |i: usize| with(&|changes| changes.numbers[i]);
         let interval = |i: usize| {
             let of = |get: fn(&IntervalChange) -> f64| with(&|changes| get(&changes.intervals[i]));

@@ -1,0 +1,313 @@
+//! How a run of an assembly changes with the numbers that pose it.
+
+use super::change::{Change, Stencil};
+use super::problem::{Assembly, Point, Posed, Settings};
+use super::solution::{Interval, Observer, Outcome, Run};
+use super::solve::{Solver, follow};
+use super::system::System;
+use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
+use crate::InvalidInput;
+use contact_models::ContactLaw;
+use std::array;
+
+/// A parameter, by what the assembly becomes at four neighbouring values of it. They must lie so near that everything which
+/// poses the assembly is smooth between them, and keep the number and the order of bodies, modes, contacts and loads.
+pub struct Parameter<'a, L> {
+    /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
+    /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.
+    pub offsets: [f64; 4],
+    /// The assembly at these values.
+    pub neighbours: [&'a Assembly<L>; 4],
+    /// The end of the run there (s).
+    pub end_s: [f64; 4],
+    /// Whether a law of contact depends on the parameter.
+    pub changes_laws: bool,
+}
+
+/// A derivative, per unit of the parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivative {
+    /// The derivative.
+    pub value: f64,
+    /// By how much it may be off, from the derivatives along two coarser solutions; `None` where one of these went another way, so
+    /// that no digit of the derivative is certain.
+    pub uncertainty: Option<f64>,
+}
+
+/// How one interval of contact changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IntervalDerivatives {
+    /// Of first touch (s).
+    pub start_s: Derivative,
+    /// Of the release (s); `None` for a contact under way at the end.
+    pub end_s: Option<Derivative>,
+    /// Of the impulse (N s).
+    pub impulse_n_s: Derivative,
+    /// Of the largest force (N).
+    pub peak_force_n: Derivative,
+    /// Of the largest compression (m).
+    pub peak_compression_m: Derivative,
+    /// Of the rate of compression at first touch (m/s).
+    pub approach_speed_m_s: Derivative,
+    /// Of the rate of opening at the release (m/s).
+    pub separation_speed_m_s: Option<Derivative>,
+}
+
+/// How a contact changes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactDerivatives {
+    /// Its intervals.
+    pub intervals: Vec<IntervalDerivatives>,
+    /// Displacement of either side at the end (m).
+    pub displacement_m: [Derivative; 2],
+    /// Velocity of either side at the end (m/s).
+    pub velocity_m_s: [Derivative; 2],
+}
+
+/// How a run changes with one parameter, per unit of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Derivatives {
+    /// Of the end of the run (s): that of the time asked for, and zero where the run ended at rest.
+    pub end_s: f64,
+    /// By contact.
+    pub contacts: Vec<ContactDerivatives>,
+}
+
+/// A run with its derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Differentiated {
+    /// The run.
+    pub run: Run,
+    /// Its intervals, contact by contact.
+    pub intervals: Vec<Vec<Interval>>,
+    /// By parameter, in the order given; `None` where there are none: the run stopped before its end, a contact only
+    /// grazes, contacts whose force jumps touch at the same time, or a mode whose damping changes is damped critically.
+    pub derivatives: Option<Vec<Derivatives>>,
+    /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
+    pub nearest_graze: f64,
+}
+
+/// How much more coarsely the two motions are solved whose derivatives tell the uncertainty: two may agree by accident.
+pub(crate) const COARSER: [f64; 2] = [32.0, 6.0];
+/// The uncertainty in differences to them.
+const TIMES: f64 = 10.0;
+/// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
+const ROUNDING: f64 = 1e-10;
+
+/// A derivative, with those along the two coarser motions.
+pub(crate) fn beside(value: f64, coarse: Option<[f64; 2]>) -> Derivative {
+    let spread = |coarse: [f64; 2]| coarse.iter().map(|coarse| (coarse - value).abs()).fold(0.0, f64::max);
+    Derivative { value, uncertainty: coarse.map(|coarse| TIMES * spread(coarse) + ROUNDING * value.abs()) }
+}
+
+/// The changes along one run with one parameter: by contact the intervals, and displacement and velocity of both sides.
+struct Changes {
+    intervals: Vec<Vec<IntervalChange>>,
+    sides: Vec<[[f64; 2]; 2]>,
+}
+
+/// Gathers the intervals.
+struct Intervals(Vec<Vec<Interval>>);
+
+impl Observer for Intervals {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.0[contact].push(*interval);
+    }
+}
+
+impl Solver<'_> {
+    /// Follows the assembly as [`Solver::run`] does, and finds how the run changes with some parameters: the tangent of the
+    /// motion, not differences of it. The whole run is kept meanwhile.
+    ///
+    /// ```
+    /// use contact_models::Hertz;
+    /// use vibroimpact_sim::assembly::{Assembly, Body, Contact, Parameter, Point, Settings, Solver};
+    ///
+    /// // a ball flies towards the ground, 1 cm away
+    /// let posed = |speed: f64| {
+    ///     let side = Point::OfBody { body: 0, shape: vec![0.1f64.sqrt().recip()] };
+    ///     let contact = Contact { sides: [side, Point::Ground], gap_m: 0.0, law: Hertz::new(1e9).unwrap() };
+    ///     Assembly { bodies: vec![Body::mass(0.1, 0.01, -speed)], contacts: vec![contact], loads: Vec::new() }
+    /// };
+    /// let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
+    /// let around = offsets.map(|more| posed(1.0 + more));
+    /// let speed =
+    ///     Parameter { offsets, neighbours: around.each_ref(), end_s: [0.02; 4], changes_laws: false };
+    /// let assembly = posed(1.0);
+    /// let found = Solver::new(&assembly)?.differentiate(&Settings::until(0.02), &[speed])?;
+    /// let contact = &found.derivatives.unwrap()[0].contacts[0];
+    /// // it arrives at 0.01 m/v, and its impulse is 2 m v
+    /// assert!((contact.intervals[0].start_s.value + 0.01).abs() < 1e-9);
+    /// assert!((contact.intervals[0].impulse_n_s.value - 0.2).abs() < 1e-8);
+    /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Solver::run`], and for neighbours that are no such assemblies.
+    pub fn differentiate<L: ContactLaw>(
+        &mut self,
+        settings: &Settings,
+        parameters: &[Parameter<L>],
+    ) -> Result<Differentiated, InvalidInput> {
+        settings.check()?;
+        let around: Vec<[Posed; 4]> = parameters
+            .iter()
+            .enumerate()
+            .map(|(i, parameter)| self.neighbours(i, parameter))
+            .collect::<Result<_, _>>()?;
+        let changes: Vec<Change> = around
+            .iter()
+            .zip(parameters)
+            .map(|(posed, by)| Change::new(&self.system, posed.each_ref(), by.changes_laws, Stencil::new(by.offsets)))
+            .collect();
+        let mut expansions = Expansions::default();
+        let (run, intervals, fine, nearest_graze) =
+            self.along(settings, (parameters, &around, &changes), &mut expansions);
+        let none = |run, intervals| Differentiated { run, intervals, derivatives: None, nearest_graze: 1.0 };
+        let Some(fine) = fine else {
+            return Ok(none(run, intervals));
+        };
+        // the coarser runs end where this one did
+        let stop_at_rest = false;
+        let coarse = COARSER.map(|factor| {
+            let tolerance = (factor * settings.tolerance).min(0.1);
+            let end_s = if run.outcome == Outcome::Rest { run.end_s } else { settings.end_s };
+            let coarser = Settings { tolerance, end_s, stop_at_rest, ..*settings };
+            self.along(&coarser, (parameters, &around, &changes), &mut expansions).2
+        });
+        let derivatives = parameters.iter().zip(&fine).enumerate().map(|(i, (by, changes))| {
+            let at_end = run.outcome == Outcome::End;
+            let end_s = if at_end { Stencil::new(by.offsets).slope(by.end_s) } else { 0.0 };
+            let [one, other] = coarse.each_ref().map(|coarse| coarse.as_ref().map(|changes| &changes[i]));
+            let coarse = one.zip(other).map(|(one, other)| [one, other]);
+            Derivatives { end_s, contacts: changes.beside(&intervals, coarse) }
+        });
+        let derivatives = Some(derivatives.collect());
+        Ok(Differentiated { run, intervals, derivatives, nearest_graze })
+    }
+
+    /// The assemblies at the neighbouring values of a parameter, found to be such.
+    fn neighbours<'n, L: ContactLaw>(
+        &self,
+        i: usize,
+        parameter: &Parameter<'n, L>,
+    ) -> Result<[Posed<'n>; 4], InvalidInput> {
+        let offsets = &parameter.offsets;
+        let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
+        let field = || format!("parameters[{i}].offsets");
+        InvalidInput::unless(different, field(), format!("{offsets:?}"), "four different finite numbers")?;
+        let ends = &parameter.end_s;
+        let field = || format!("parameters[{i}].end_s");
+        InvalidInput::unless(ends.iter().all(|end| *end > 0.0), field(), format!("{ends:?}"), "four positive times")?;
+        for (k, neighbour) in parameter.neighbours.iter().enumerate() {
+            neighbour.check()?;
+            let own = &self.posed;
+            let bodies = neighbour.bodies.len() == own.bodies.len()
+                && neighbour.bodies.iter().zip(own.bodies).all(|(one, other)| one.modes.len() == other.modes.len());
+            let body_of = |point: &Point| match point {
+                Point::Ground => None,
+                Point::OfBody { body, .. } => Some(*body),
+            };
+            let sides =
+                |one: &[Point; 2], other: &[Point; 2]| one.each_ref().map(body_of) == other.each_ref().map(body_of);
+            let contacts = neighbour.contacts.len() == own.sides.len()
+                && neighbour.contacts.iter().zip(&own.sides).all(|(one, other)| sides(&one.sides, other));
+            let field = || format!("parameters[{i}].neighbours[{k}]");
+            let allowed = "the bodies, modes and contacts of the assembly";
+            InvalidInput::unless(bodies && contacts, field(), "another assembly", allowed)?;
+        }
+        Ok(parameter.neighbours.map(Assembly::posed))
+    }
+
+    /// One run with its changes, and how nearly it grazes.
+    fn along<L>(
+        &mut self,
+        settings: &Settings,
+        (parameters, around, changes): (&[Parameter<L>], &[[Posed; 4]], &[Change]),
+        expansions: &mut Expansions,
+    ) -> (Run, Vec<Vec<Interval>>, Option<Vec<Changes>>, f64) {
+        let Solver { posed, system, tables } = self;
+        let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
+        let (run, stretches) = follow(posed, (system, tables), settings, &mut watch, true);
+        let ends: Vec<f64> = match run.outcome {
+            Outcome::End => parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect(),
+            _ => vec![0.0; parameters.len()],
+        };
+        let fixed = (run.outcome != Outcome::Parted).then_some(ends.as_slice());
+        let stopped = matches!(run.outcome, Outcome::Stopped(_));
+        let found = if stopped { None } else { tangents(posed, system, &stretches, (changes, fixed), expansions) };
+        let nearest_graze = found.as_ref().map_or(1.0, |found| found.nearest_graze);
+        let changes = found.map(|found| {
+            let state = [found.amplitude.as_slice(), &found.rate];
+            let of = |((tangent, posed), change): ((Tangent, &[Posed; 4]), &Change)| {
+                let sides = (0..system.links.len()).map(|c| sides(system, c, state, &tangent, posed, change));
+                let sides = sides.collect();
+                let mut intervals = vec![Vec::new(); system.links.len()];
+                tangent.intervals.into_iter().for_each(|interval| intervals[interval.contact].push(interval));
+                Changes { intervals, sides }
+            };
+            found.tangents.into_iter().zip(around).zip(changes).map(of).collect()
+        });
+        (run, watch.0, changes, nearest_graze)
+    }
+}
+
+/// The changes of displacement and velocity of both sides of a contact at the end.
+fn sides(
+    system: &System,
+    c: usize,
+    state: [&[f64]; 2],
+    tangent: &Tangent,
+    posed: &[Posed; 4],
+    change: &Change,
+) -> [[f64; 2]; 2] {
+    array::from_fn(|i| {
+        let Some(side) = &system.links[c].sides[i] else { return [0.0; 2] };
+        let spans = posed.each_ref().map(|posed| match &posed.sides[c][i] {
+            Point::Ground => None,
+            Point::OfBody { body, shape } => Some(system.span(*body, shape)),
+        });
+        let by_shape = |values: &[f64]| {
+            change.stencil.slope(spans.each_ref().map(|span| span.as_ref().map_or(0.0, |span| span.sum(values))))
+        };
+        let changes = [&tangent.amplitude, &tangent.rate];
+        array::from_fn(|order| by_shape(state[order]) + side.sum(changes[order]))
+    })
+}
+
+impl Changes {
+    fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<[&Changes; 2]>) -> Vec<ContactDerivatives> {
+        let contact = |(c, own): (usize, &Vec<IntervalChange>)| {
+            let interval = |(j, change): (usize, &IntervalChange)| {
+                let with = |get: fn(&IntervalChange) -> f64| {
+                    let there = |coarse: &Changes| coarse.intervals[c].get(j).map(get);
+                    let [one, other] = coarse.map_or([None; 2], |coarse| coarse.map(there));
+                    beside(get(change), one.zip(other).map(|(one, other)| [one, other]))
+                };
+                let over = intervals[c].get(j).is_some_and(|interval| interval.end_s.is_some());
+                IntervalDerivatives {
+                    start_s: with(|change| change.start_s),
+                    end_s: over.then(|| with(|change| change.end_s)),
+                    impulse_n_s: with(|change| change.impulse_n_s),
+                    peak_force_n: with(|change| change.peak_force_n),
+                    peak_compression_m: with(|change| change.peak_compression_m),
+                    approach_speed_m_s: with(|change| change.approach_speed_m_s),
+                    separation_speed_m_s: over.then(|| with(|change| change.separation_speed_m_s)),
+                }
+            };
+            let same = coarse.filter(|coarse| {
+                let counts = |changes: &Changes| changes.intervals.iter().map(Vec::len).collect::<Vec<_>>();
+                coarse.iter().all(|coarse| counts(coarse) == counts(self))
+            });
+            let side = |i: usize, order: usize| {
+                beside(self.sides[c][i][order], same.map(|coarse| coarse.map(|coarse| coarse.sides[c][i][order])))
+            };
+            ContactDerivatives {
+                intervals: own.iter().enumerate().map(interval).collect(),
+                displacement_m: [side(0, 0), side(1, 0)],
+                velocity_m_s: [side(0, 1), side(1, 1)],
+            }
+        };
+        self.intervals.iter().enumerate().map(contact).collect()
+    }
+}

@@ -1,0 +1,96 @@
+//! How what the loads do changes with a parameter.
+//!
+//! Loads move modes and contacts in closed form ([`super::load`]), so that the slope through four neighbouring values of
+//! the parameter gives the change at a fixed time. Where the time itself is shifted, the rate of that motion times the shift
+//! comes on top of it; that part belongs to whoever knows the shift.
+
+use super::change::Stencil;
+use super::load::Loads;
+use super::problem::Posed;
+use super::system::System;
+use std::array;
+
+/// The loads at four neighbouring values of a parameter.
+#[derive(Clone)]
+pub(crate) struct LoadChange {
+    neighbours: [(System, Loads); 4],
+    stencil: Stencil<4>,
+}
+
+impl LoadChange {
+    /// `None` if there are no loads, and if they change at other times than those of the neighbours.
+    pub fn new(posed: [&Posed; 4], stencil: Stencil<4>) -> Option<LoadChange> {
+        if posed.iter().all(|posed| posed.loads.is_empty()) {
+            return None;
+        }
+        let neighbours = posed.map(|posed| {
+            let system = System::new(posed);
+            let loads = Loads::new(posed.loads, &system);
+            (system, loads)
+        });
+        Some(LoadChange { neighbours, stencil })
+    }
+
+    fn slope(&self, of: impl Fn(&System, &Loads) -> f64) -> f64 {
+        self.stencil.slope(self.neighbours.each_ref().map(|(system, loads)| of(system, loads)))
+    }
+
+    /// The changes of motions of all modes, in the order of a system with the same modes.
+    fn of_modes(&self, system: &System, motions: &[(Vec<f64>, Vec<f64>); 4]) -> (Vec<f64>, Vec<f64>) {
+        let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);
+        for (body, places) in system.place.iter().enumerate() {
+            for (k, &place) in places.iter().enumerate() {
+                let own: [usize; 4] = array::from_fn(|i| self.neighbours[i].0.place[body][k]);
+                amplitude[place] = self.stencil.slope(array::from_fn(|i| motions[i].0[own[i]]));
+                rate[place] = self.stencil.slope(array::from_fn(|i| motions[i].1[own[i]]));
+            }
+        }
+        (amplitude, rate)
+    }
+
+    /// Of the steady motion, relative to which modes are carried.
+    pub fn steady(&self, system: &System, time_s: f64) -> (Vec<f64>, Vec<f64>) {
+        let motions = self.neighbours.each_ref().map(|(system, loads)| {
+            let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);
+            loads.shift_modes(system, time_s, 1.0, &mut amplitude, &mut rate);
+            (amplitude, rate)
+        });
+        self.of_modes(system, &motions)
+    }
+
+    /// Of [`Loads::overlap`].
+    pub fn overlap(&self, contact: usize, time_s: f64) -> [f64; 2] {
+        let of = |part: fn((f64, f64)) -> f64| self.slope(|_, loads| part(loads.overlap(contact, time_s)));
+        [of(|pair| pair.0), of(|pair| pair.1)]
+    }
+
+    /// Of the first number of [`Loads::moved`].
+    pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+        self.slope(|_, loads| loads.moved(contact, time_s, h).0)
+    }
+
+    /// Of the straight-line force on a rigid mode at `time_s`, and of its slope.
+    pub fn line(&self, k: usize, system: &System, time_s: f64) -> (f64, f64) {
+        let body = system.bodies.iter().position(|modes| modes.contains(&k)).unwrap_or_default();
+        let number = system.place[body].iter().position(|place| *place == k).unwrap_or_default();
+        let of = |part: fn((f64, f64)) -> f64| {
+            self.slope(|system, loads| part(loads.line(system.place[body][number], time_s)))
+        };
+        (of(|pair| pair.0), of(|pair| pair.1))
+    }
+
+    /// Of the time at which the straight lines end.
+    pub fn next_break_s(&self) -> f64 {
+        self.slope(|_, loads| loads.next_break_s())
+    }
+
+    /// Passes the break: the change of the jump of what is carried.
+    pub fn pass_break(&mut self, system: &System) -> (Vec<f64>, Vec<f64>) {
+        let motions = self.neighbours.each_mut().map(|(system, loads)| {
+            let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);
+            loads.pass_break(system, loads.next_break_s(), &mut amplitude, &mut rate);
+            (amplitude, rate)
+        });
+        self.of_modes(system, &motions)
+    }
+}

@@ -1,0 +1,285 @@
+//! Derivatives of runs of assemblies against differences of runs at a tolerance of 1e-13.
+
+mod common;
+
+use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring};
+use vibroimpact_sim::assembly::{
+    Assembly, Body, BodyMode, Contact, Derivative, Differentiated, Force, Interval, Load, Observer, Outcome, Parameter,
+    Point, Run, Settings, Solver, run,
+};
+
+/// An assembly and the end of its run as functions of some numbers.
+struct Case {
+    pose: fn(&[f64]) -> (Assembly<Law>, f64),
+    numbers: Vec<f64>,
+}
+
+#[derive(Default)]
+struct Intervals(Vec<(usize, Interval)>);
+
+impl Observer for Intervals {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.0.push((contact, *interval));
+    }
+}
+
+const STEPS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+
+impl Case {
+    /// With one number changed.
+    fn with(&self, which: usize, by: f64) -> (Assembly<Law>, f64) {
+        let mut numbers = self.numbers.clone();
+        numbers[which] += by;
+        (self.pose)(&numbers)
+    }
+
+    fn size(&self, which: usize) -> f64 {
+        self.numbers[which].abs().max(1e-3)
+    }
+
+    fn differentiate(&self, tolerance: f64) -> Differentiated {
+        let (assembly, end_s) = (self.pose)(&self.numbers);
+        let offsets = |which: usize| STEPS.map(|place| place * 1e-5 * self.size(which));
+        let near: Vec<[(Assembly<Law>, f64); 4]> =
+            (0..self.numbers.len()).map(|which| offsets(which).map(|offset| self.with(which, offset))).collect();
+        let mut parameters = Vec::new();
+        for (which, near) in near.iter().enumerate() {
+            let laws =
+                |assembly: &Assembly<Law>| assembly.contacts.iter().map(|contact| contact.law).collect::<Vec<_>>();
+            parameters.push(Parameter {
+                offsets: offsets(which),
+                neighbours: near.each_ref().map(|near| &near.0),
+                end_s: near.each_ref().map(|near| near.1),
+                changes_laws: laws(&near[0].0) != laws(&assembly),
+            });
+        }
+        let settings = Settings { tolerance, ..Settings::until(end_s) };
+        Solver::new(&assembly).unwrap().differentiate(&settings, &parameters).unwrap()
+    }
+
+    fn run(&self, which: usize, by: f64) -> (Run, Vec<(usize, Interval)>) {
+        let (assembly, end_s) = self.with(which, by);
+        let mut intervals = Intervals::default();
+        let settings = Settings { tolerance: 1e-13, ..Settings::until(end_s) };
+        (run(&assembly, &settings, &mut intervals).unwrap(), intervals.0)
+    }
+
+    /// Differences of fourth order of everything a derivative is stated of, with steps that differ by a factor of four.
+    fn differences(&self, which: usize) -> Vec<(f64, f64)> {
+        let by = |part: f64| {
+            let step = part * self.size(which);
+            let [a, b, c, d] = STEPS.map(|place| outputs(&self.run(which, place * step)));
+            let slope = |i: usize| (8.0 * (c[i] - b[i]) - (d[i] - a[i])) / (12.0 * step);
+            (0..a.len()).map(slope).collect::<Vec<f64>>()
+        };
+        let (fine, coarse) = (by(3e-5), by(1.2e-4));
+        fine.iter().zip(&coarse).map(|(fine, coarse)| (*fine, (fine - coarse).abs())).collect()
+    }
+
+    /// Every derivative against its difference: how many, and how many lie within what is stated.
+    fn check(&self, part: f64) -> (usize, usize) {
+        let found = self.differentiate(1e-10);
+        let nominal = outputs(&(found.run.clone(), in_time(&found.intervals)));
+        let derivatives = found.derivatives.as_ref().unwrap();
+        let (mut compared, mut covered) = (0, 0);
+        for (which, derivatives) in derivatives.iter().enumerate() {
+            let own = own_outputs(&found, derivatives);
+            let references = self.differences(which);
+            assert_eq!(own.len(), references.len());
+            for (i, ((name, own), (reference, known))) in own.iter().zip(references).enumerate() {
+                // a run is known to some 1e-13 of its outputs, a peak to nine digits
+                let digits = if name.starts_with("peak") { 1e-9 } else { 1e-13 };
+                let rounding = 10.0 * digits * nominal[i].abs() / (3e-5 * self.size(which));
+                let error = (own.value - reference).abs();
+                let allowed = part * reference.abs() + 3.0 * known + rounding;
+                assert!(error <= allowed, "{name} by {which}: {} {reference} ± {known}, {rounding}", own.value);
+                compared += 1;
+                covered += usize::from(own.uncertainty.is_some_and(|by| error <= by + 3.0 * known + rounding));
+            }
+        }
+        (compared, covered)
+    }
+}
+
+fn in_time(intervals: &[Vec<Interval>]) -> Vec<(usize, Interval)> {
+    intervals.iter().enumerate().flat_map(|(c, own)| own.iter().map(move |interval| (c, *interval))).collect()
+}
+
+/// What derivatives are stated of, contact by contact.
+fn outputs((run, intervals): &(Run, Vec<(usize, Interval)>)) -> Vec<f64> {
+    let mut found = Vec::new();
+    for (c, end) in run.contacts.iter().enumerate() {
+        for (_, interval) in intervals.iter().filter(|(of, _)| *of == c) {
+            found.extend([interval.start_s, interval.impulse_n_s, interval.peak_force_n, interval.peak_compression_m]);
+            found.push(interval.approach_speed_m_s);
+            found.extend(interval.end_s.into_iter().chain(interval.separation_speed_m_s));
+        }
+        found.extend(end.displacement_m.iter().chain(&end.velocity_m_s));
+    }
+    found
+}
+
+fn own_outputs(
+    found: &Differentiated,
+    derivatives: &vibroimpact_sim::assembly::Derivatives,
+) -> Vec<(&'static str, Derivative)> {
+    let mut own = Vec::new();
+    assert_eq!(found.intervals.len(), derivatives.contacts.len());
+    for contact in &derivatives.contacts {
+        for by in &contact.intervals {
+            own.extend([("start", by.start_s), ("impulse", by.impulse_n_s), ("peak force", by.peak_force_n)]);
+            own.extend([("peak compression", by.peak_compression_m), ("approach", by.approach_speed_m_s)]);
+            own.extend(by.end_s.map(|end| ("end", end)));
+            own.extend(by.separation_speed_m_s.map(|speed| ("separation", speed)));
+        }
+        own.extend(contact.displacement_m.map(|by| ("displacement", by)));
+        own.extend(contact.velocity_m_s.map(|by| ("velocity", by)));
+    }
+    own
+}
+
+fn point(body: usize, shape: &[f64]) -> Point {
+    Point::OfBody { body, shape: shape.to_vec() }
+}
+
+fn of_mass(body: usize, mass_kg: f64) -> Point {
+    point(body, &[mass_kg.sqrt().recip()])
+}
+
+/// A ball dropped on a floor that bounces thrice: everything is known in closed form but the contact.
+#[test]
+fn a_dropped_ball_changes_with_everything() {
+    let case = Case {
+        pose: |n| {
+            let [mass, height, speed, stiffness, gravity, gap, end_s] = n.try_into().unwrap();
+            let sides = [of_mass(0, mass), Point::Ground];
+            let law = HuntCrossley::new(stiffness, 1.5, 0.05).unwrap().into();
+            let shape = vec![mass.sqrt()];
+            let weight = Load { body: 0, shape, force: Force::Constant { force_n: -gravity } };
+            let contacts = vec![Contact { sides, gap_m: gap, law }];
+            (Assembly { bodies: vec![Body::mass(mass, height, speed)], contacts, loads: vec![weight] }, end_s)
+        },
+        numbers: vec![0.1, 0.01, -0.1, 1e8, 9.81, 1e-3, 0.25],
+    };
+    let (compared, covered) = case.check(1e-6);
+    assert_eq!((compared, covered), (7 * (3 * 7 + 4), 7 * (3 * 7 + 4)));
+    // the first touch, at the foot of a parabola
+    let derivatives = case.differentiate(1e-10).derivatives.unwrap();
+    let by_height = derivatives[1].contacts[0].intervals[0].start_s.value;
+    let speed = (0.1f64 * 0.1 + 2.0 * 9.81 * 0.011).sqrt();
+    assert!((by_height - speed.recip()).abs() < 1e-8 / speed, "{by_height}");
+}
+
+fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {
+    numbers.iter().map(|&omega_rad_s| BodyMode { omega_rad_s, damping_ratio }).collect()
+}
+
+/// Two elastic bodies and a ball, three contacts with laws of their own, loads of every kind.
+fn everything(n: &[f64]) -> (Assembly<Law>, f64) {
+    let [omega, zeta, shape, mass, gap, stiffness, force, hertz, phase, pulse, begin, gravity, end_s] =
+        n.try_into().unwrap();
+    let shape_of = |first: f64| [first * shape, -0.8 * first, 0.6 * first];
+    let one = Body::at_rest(modes(&[omega, 2.3 * omega, 4.1 * omega], zeta));
+    let other =
+        Body { rate: vec![0.02, 0.0, 0.01], ..Body::at_rest(modes(&[0.7 * omega, 2.9 * omega, 5.3 * omega], 0.01)) };
+    let ball = Body::mass(mass, 2e-4, -0.4);
+    let (a, b) = (shape_of(2.0), shape_of(1.5));
+    let contacts = vec![
+        Contact { sides: [of_mass(2, mass), point(0, &a)], gap_m: 0.0, law: Hertz::new(stiffness).unwrap().into() },
+        Contact { sides: [point(0, &a), point(1, &b)], gap_m: gap, law: KelvinVoigt::new(1e6, 15.0).unwrap().into() },
+        Contact { sides: [point(1, &b), Point::Ground], gap_m: gap, law: LinearSpring::new(2e6).unwrap().into() },
+    ];
+    let omega_rad_s = std::f64::consts::TAU * hertz;
+    let loads = vec![
+        Load { body: 0, shape: a.to_vec(), force: Force::Harmonic { force_n: force, omega_rad_s, phase_rad: phase } },
+        Load {
+            body: 1,
+            shape: b.to_vec(),
+            force: Force::Sampled { times_s: vec![begin, begin + 2e-3, 0.011], forces_n: vec![0.0, pulse, -3.0] },
+        },
+        Load { body: 2, shape: vec![mass.sqrt()], force: Force::Constant { force_n: -gravity } },
+        Load {
+            body: 2,
+            shape: vec![mass.sqrt().recip()],
+            force: Force::Sampled { times_s: vec![0.0, begin, 0.02], forces_n: vec![0.3, pulse * 0.01, 0.0] },
+        },
+    ];
+    (Assembly { bodies: vec![one, other, ball], contacts, loads }, end_s)
+}
+
+fn numbers() -> Vec<f64> {
+    vec![420.0, 0.03, 1.1, 0.06, 2e-4, 4e8, 6.0, 70.0, 0.4, -29.0, 4e-3, 9.81, 0.016]
+}
+
+#[test]
+fn bodies_contacts_and_loads_of_every_kind_have_derivatives() {
+    let case = Case { pose: everything, numbers: numbers() };
+    let found = case.differentiate(1e-10);
+    assert_eq!(found.run.outcome, Outcome::End);
+    let counts: Vec<usize> = found.intervals.iter().map(Vec::len).collect();
+    assert!(counts.iter().all(|count| *count > 0), "{counts:?}");
+    let (compared, covered) = case.check(2e-6);
+    assert!(covered as f64 >= 0.99 * compared as f64, "{covered} of {compared}");
+}
+
+/// Two balls that meet a wall each at the same time.
+fn pair(law: Law) -> impl Fn(f64, f64) -> Assembly<Law> {
+    move |speed, gap| {
+        let wall = |body, gap_m| Contact { sides: [of_mass(body, 0.1), Point::Ground], gap_m, law };
+        let ball = Body::mass(0.1, 0.01, -speed);
+        Assembly { bodies: vec![ball.clone(), ball], contacts: vec![wall(0, 0.0), wall(1, gap)], loads: Vec::new() }
+    }
+}
+
+fn by_speed_and_gap(law: Law) -> [Differentiated; 2] {
+    let pose = pair(law);
+    let assembly = pose(1.0, 0.0);
+    let offsets = STEPS.map(|place| 1e-6 * place);
+    [offsets.map(|by| pose(1.0 + by, 0.0)), offsets.map(|by| pose(1.0, by))].map(|near| {
+        let neighbours = near.each_ref();
+        let parameter = Parameter { offsets, neighbours, end_s: [0.02; 4], changes_laws: false };
+        Solver::new(&assembly).unwrap().differentiate(&Settings::until(0.02), &[parameter]).unwrap()
+    })
+}
+
+#[test]
+fn contacts_that_touch_together_keep_their_own_times() {
+    let [speed, gap] = by_speed_and_gap(Hertz::new(1e9).unwrap().into());
+    let starts = |found: &Differentiated| {
+        let derivatives = &found.derivatives.as_ref().unwrap()[0];
+        derivatives.contacts.iter().map(|contact| contact.intervals[0].start_s.value).collect::<Vec<_>>()
+    };
+    // it arrives at (0.01 + gap)/speed
+    assert!(starts(&speed).iter().all(|by| (by + 0.01).abs() < 1e-8), "{:?}", starts(&speed));
+    assert!(starts(&gap)[0].abs() < 1e-8 && (starts(&gap)[1] - 1.0).abs() < 1e-8, "{:?}", starts(&gap));
+    let ends = |found: &Differentiated| {
+        let derivatives = &found.derivatives.as_ref().unwrap()[0];
+        [0, 1].map(|c| derivatives.contacts[c].displacement_m[0])
+    };
+    // a wall that stands further away sends the ball back from there, later: it comes less far by twice as much
+    let [first, second] = ends(&gap);
+    assert!(first.value.abs() < 1e-8, "{first:?}");
+    // a force that begins at its own time is no smooth change of one that begins with the panel
+    assert!((second.value + 2.0).abs() < 1e-5f64.min(second.uncertainty.unwrap()), "{second:?}");
+}
+
+/// The force of a dashpot jumps at first touch: which of two comes first then matters at once.
+#[test]
+fn forces_that_jump_together_have_a_derivative_only_if_they_stay_together() {
+    let [speed, gap] = by_speed_and_gap(KelvinVoigt::new(1e6, 30.0).unwrap().into());
+    assert!(speed.derivatives.is_some() && gap.derivatives.is_none());
+}
+
+#[test]
+fn bad_parameters_are_named() {
+    let pose = pair(Hertz::new(1e9).unwrap().into());
+    let assembly = pose(1.0, 0.0);
+    let other = Assembly { contacts: assembly.contacts[..1].to_vec(), ..assembly.clone() };
+    let field = |offsets: [f64; 4], of: &Assembly<Law>, end_s: f64| {
+        let parameter = Parameter { offsets, neighbours: [of; 4], end_s: [end_s; 4], changes_laws: false };
+        Solver::new(&assembly).unwrap().differentiate(&Settings::until(0.02), &[parameter]).unwrap_err().field
+    };
+    assert_eq!(field([1.0, 1.0, 2.0, 3.0], &assembly, 1.0), "parameters[0].offsets");
+    assert_eq!(field([1.0, 2.0, 3.0, 4.0], &assembly, f64::NAN), "parameters[0].end_s");
+    assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other, 1.0), "parameters[0].neighbours[0]");
+}
