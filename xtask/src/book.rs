@@ -1,8 +1,9 @@
 //! The book's own check: every link leads somewhere, every command in a `sh` fence runs and exits as the page says,
-//! every scene in a `json scene` or `toml scene` fence is one.
+//! every scene in a `json scene` or `toml scene` fence is one, every formula is closed.
 //!
 //! Commands run in a folder of their own that holds a copy of `datasets`, so that a page may write files. A line may
-//! end in `# exits with 2`. (Rust snippets are documentation tests of the package `book-snippets`.)
+//! end in `# exits with 2`. (Rust snippets are documentation tests of the package `book-snippets`.) Formulas are fences named
+//! `math` and code between dollar signs, which GitHub and `docs/theme/math.js` typeset.
 
 use crate::chapters::Failure;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, Options, Parser, Tag, TagEnd};
@@ -18,6 +19,7 @@ enum Item {
     JsonScene(String),
     TomlScene(String),
     Link(String),
+    Formula(String),
 }
 
 /// Checks all pages under `docs`, the README and those of the crates.
@@ -31,7 +33,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
     copy(&root.join("datasets"), &workplace.path().join("datasets"))?;
     let program = program(root)?;
     let mut faults = Vec::new();
-    let mut counts = [0; 3];
+    let mut counts = [0; 4];
     for page in &pages {
         let name = page.strip_prefix(root).unwrap_or(page).display().to_string();
         for item in items(&fs::read_to_string(page)?) {
@@ -40,6 +42,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
                 Item::JsonScene(text) => (1, scene(Scene::from_json(text))),
                 Item::TomlScene(text) => (1, scene(Scene::from_toml(text))),
                 Item::Link(target) => (2, follow(page, target)),
+                Item::Formula(text) => (3, formula(text)),
             };
             counts[kind] += 1;
             if let Err(fault) = result {
@@ -47,8 +50,11 @@ pub fn run(root: &Path) -> Result<(), Failure> {
             }
         }
     }
-    let [commands, scenes, links] = counts;
-    eprintln!("{} pages: {commands} commands run, {scenes} scenes read, {links} links followed", pages.len());
+    let [commands, scenes, links, formulas] = counts;
+    eprintln!(
+        "{} pages: {commands} commands run, {scenes} scenes read, {links} links followed, {formulas} formulas read",
+        pages.len()
+    );
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
 }
 
@@ -56,8 +62,12 @@ pub fn run(root: &Path) -> Result<(), Failure> {
 fn items(page: &str) -> Vec<Item> {
     let mut found = Vec::new();
     let mut fence: Option<(String, String)> = None;
+    // whether the text before a code span ends in a dollar sign
+    let mut dollar = false;
     for event in Parser::new_ext(page, Options::ENABLE_TABLES) {
+        let opened = std::mem::replace(&mut dollar, matches!(&event, Event::Text(text) if text.ends_with('$')));
         match event {
+            Event::Code(text) if opened => found.push(Item::Formula(text.into_string())),
             Event::Start(Tag::CodeBlock(CodeBlockKind::Fenced(kind))) => {
                 fence = Some((kind.to_string(), String::new()))
             }
@@ -70,6 +80,7 @@ fn items(page: &str) -> Vec<Item> {
                 Some((kind, text)) if kind == "sh" => found.extend(commands(&text)),
                 Some((kind, text)) if kind == "json scene" => found.push(Item::JsonScene(text)),
                 Some((kind, text)) if kind == "toml scene" => found.push(Item::TomlScene(text)),
+                Some((kind, text)) if kind == "math" => found.push(Item::Formula(text)),
                 _ => {}
             },
             Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) => found.extend(link(&dest_url)),
@@ -103,6 +114,28 @@ fn relative(file: &str) -> Option<Item> {
 fn follow(page: &Path, target: &str) -> Result<(), Failure> {
     let place = page.parent().unwrap_or(Path::new("")).join(target);
     if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
+}
+
+/// Braces, environments and stretched brackets close as they open.
+fn formula(text: &str) -> Result<(), Failure> {
+    let (mut depth, mut least) = (0, 0);
+    let mut characters = text.chars();
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => drop(characters.next()),
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        least = depth.min(least);
+    }
+    let alike = |a: &str, b: &str| text.matches(a).count() == text.matches(b).count();
+    if depth == 0 && least == 0 && alike("\\begin{", "\\end{") && alike("\\Bigl", "\\Bigr") && alike("\\bigl", "\\bigr")
+    {
+        Ok(())
+    } else {
+        Err(format!("the formula {text} is not closed").into())
+    }
 }
 
 fn scene(read: Result<Scene, vibroimpact::SceneError>) -> Result<(), Failure> {
@@ -172,12 +205,13 @@ mod tests {
 
     #[test]
     fn a_page_is_taken_apart() {
-        let page = "[a](b.md#c) [d](https://e.f)\n\n```sh\n# said only\nvibroimpact --help\nvibroimpact x \\\n  --y  # exits with 2\n```\n\n```json scene\n{}\n```\n";
+        let page = "[a](b.md#c) [d](https://e.f) $`x` and `y`$\n\n```sh\n# said only\nvibroimpact --help\nvibroimpact x \\\n  --y  # exits with 2\n```\n\n```json scene\n{}\n```\n";
         let command = |line: &str, exit| Item::Command { line: line.to_owned(), exit };
         assert_eq!(
             items(page),
             [
                 Item::Link("b.md".to_owned()),
+                Item::Formula("x".to_owned()),
                 command("vibroimpact --help", 0),
                 command("vibroimpact x    --y", 2),
                 Item::JsonScene("{}\n".to_owned())
@@ -248,5 +282,9 @@ mod tests {
         let page = here.path().join("page.md");
         assert!(follow(&page, "absent.md").is_err());
         assert!(scene(Scene::from_json("{}")).is_err());
+        assert!(formula(r"\frac{1}{\{x\}} \Bigl[ y \Bigr]").is_ok());
+        for open in [r"\frac{1}{2", "x}{", r"\begin{aligned} x", r"\Bigl[ y"] {
+            assert!(formula(open).is_err(), "{open}");
+        }
     }
 }
