@@ -1,6 +1,7 @@
-//! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps.
+//! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps, plates
+//! by Ritz's method.
 
-use beam_modes::{Beam, BeamSystem, End, Segment, ShearSection};
+use beam_modes::{Beam, BeamSystem, Edge, End, Plate, Segment, ShearSection};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -35,6 +36,16 @@ fn modes(c: &mut Criterion) {
     for count in [40, 500] {
         let name = format!("stepped, Timoshenko, {count} modes");
         c.bench_function(&name, |b| b.iter(|| black_box(&timoshenko).modes(black_box(count))));
+    }
+    let (clamped, free, pinned) = (Edge::Clamped, Edge::Free, Edge::Pinned);
+    for (symmetry, edges) in [
+        ("without symmetry", [clamped, free, free, pinned]),
+        ("one line of symmetry", [clamped, free, free, free]),
+        ("two lines of symmetry", [free, free, free, free]),
+    ] {
+        let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, edges);
+        let name = format!("plate {symmetry}, 400 modes");
+        c.bench_function(&name, |b| b.iter(|| black_box(&plate).modes(black_box(400))));
     }
     let found = uniform.modes(40).unwrap();
     c.bench_function("40 shapes at one place", |b| b.iter(|| found.shapes_at(black_box(0.4))));

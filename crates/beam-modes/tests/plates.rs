@@ -67,6 +67,21 @@ fn ritz_agrees_with_lines_of_symmetry() {
     }
 }
 
+/// The largest change that is stated of the first modes bounds what many more polynomials do to them, also where a clamped edge
+/// meets a free one.
+#[test]
+fn the_stated_change_bounds_the_error() {
+    for edges in [[C, F, F, P], [C, F, F, F], [C, F, C, F], [F, F, F, F]] {
+        let plate = unit(0.75, 0.3, edges);
+        let (few, many) = (plate.modes(20).unwrap(), plate.modes(150).unwrap());
+        let elastic = few.rigid_body_count()..20;
+        let error = |k: usize| few.omega_rad_s()[k] / many.omega_rad_s()[k] - 1.0;
+        let largest = elastic.clone().map(error).fold(0.0, f64::max);
+        let stated = elastic.clone().map(|k| few.change()[k]).fold(0.0, f64::max);
+        assert!(elastic.clone().all(|k| error(k) > -1e-11) && largest < stated, "{edges:?}: {largest:e} {stated:e}");
+    }
+}
+
 /// Wide edges, mirrored edges, and length and width exchanged: the same plate.
 #[test]
 fn one_plate_seen_in_four_ways() {

@@ -1,5 +1,8 @@
 //! Rectangular plates.
 
+mod band;
+mod block;
+mod lanczos;
 mod levy;
 mod line;
 mod modes;

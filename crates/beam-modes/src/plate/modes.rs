@@ -78,7 +78,7 @@ impl PlateModes {
     }
 
     /// By what share each frequency would rise, at most, if the polynomials' degree were two less in both directions: a
-    /// measure of what a higher degree could still change. Zero where modes have a closed form.
+    /// measure of what a higher degree could still change; at least 1e-11, for rounding. Zero where modes have a closed form.
     pub fn change(&self) -> &[f64] {
         &self.change
     }
