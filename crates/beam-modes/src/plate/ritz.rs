@@ -57,7 +57,7 @@ impl<'a> Ritz<'a> {
     }
 
     /// Degrees for the static deflection of a square, in one ratio.
-    pub const STATIC_DEGREES: [usize; 3] = [16, 24, 36];
+    pub const STATIC_DEGREES: [usize; 3] = [24, 36, 54];
 
     /// Degrees for the static deflection: more along the longer side, as far as matrices stay small.
     pub fn static_degrees(plate: &Plate, of_square: usize) -> [usize; 2] {
