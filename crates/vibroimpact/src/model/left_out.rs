@@ -4,15 +4,18 @@
 //! change and `d_2` the one before,
 //!
 //! ```text
-//! u = max( 2 d_1, d_2, 10 E_r / E, d_s ).
+//! u = max( 2 d_1, d_2, 10 E_r / E, d_s ) + d_c.
 //! ```
 //!
 //! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact: they answer slow forces as
 //! the tail does, and where they were set vibrating the force was too fast for that. It is known from one impact alone, and
 //! catches most accidents. `d_s`, for lists, is what changes with a single remainder mode in the place of several: the
-//! shape of their tail is an assumption.
+//! shape of their tail is an assumption. `d_c` is what changes where the static compliance, which all of them share, is greater by
+//! as much as it may be off; zero where that has a closed form.
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
+
+use crate::impact::compliance;
 
 /// The uncertainty from modes left out in terms of the larger of two changes, weighted below, and of the energy of the
 /// remainder modes.
@@ -99,6 +102,20 @@ pub(super) fn with_one_remainder_mode(structure: &Structure, remainder: usize) -
     Structure { modes }
 }
 
+/// The structure with remainder modes whose static compliance is greater by so much (m/N).
+pub(super) fn with_softer_remainder(structure: &Structure, remainder: usize, by_m_n: f64) -> Structure {
+    let mut modes = structure.modes.clone();
+    let from = modes.len() - remainder;
+    let answered_m_n = compliance(&modes[from..]);
+    if answered_m_n > 0.0 {
+        let factor = (1.0 + by_m_n / answered_m_n).sqrt();
+        modes[from..].iter_mut().for_each(|mode| mode.shape *= factor);
+    } else if let Some(last) = modes.last().copied() {
+        modes.push(Mode { shape: last.omega_rad_s * by_m_n.sqrt(), ..last });
+    }
+    Structure { modes }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,6 +127,18 @@ mod tests {
         // a third contact that changes nothing in the end
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
         assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_softer_remainder_has_the_compliance_asked_for() {
+        let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.01, shape };
+        let structure = Structure { modes: vec![mode(100.0, 1.0), mode(300.0, -2.0), mode(900.0, 4.0)] };
+        for remainder in [0, 1, 2] {
+            let softer = with_softer_remainder(&structure, remainder, 1e-6);
+            let more = compliance(&softer.modes) - compliance(&structure.modes);
+            assert!((more / 1e-6 - 1.0).abs() < 1e-9, "{remainder}: {more:e}");
+        }
+        assert!(with_softer_remainder(&Structure::default(), 0, 1e-6).modes.is_empty());
     }
 
     #[test]

@@ -103,7 +103,14 @@ pub(super) enum Source<'a> {
     /// A beam: as many modes as are asked for.
     Beam { beam: &'a scene::Beam, location_m: f64, whole_m_n: f64, modes: Vec<Mode> },
     /// A string or plate, likewise.
-    Computed { structure: &'a scene::Structure, place: Place<'a>, whole_m_n: f64, modes: Vec<Mode> },
+    Computed {
+        structure: &'a scene::Structure,
+        place: Place<'a>,
+        whole_m_n: f64,
+        /// By how much the static compliance may be off.
+        uncertain_m_n: f64,
+        modes: Vec<Mode>,
+    },
     /// A structure given by its modes, and perhaps its whole static compliance.
     Listed { modes: Vec<Mode>, whole_m_n: Option<f64> },
 }
@@ -143,8 +150,8 @@ impl<'a> Pose<'a> {
             }
             structure if structure.is_computed() => {
                 structure.modes(scene.place(), Some(0))?;
-                let whole_m_n = structure.static_compliance_m_n(scene.place())?;
-                Source::Computed { structure, place: scene.place(), whole_m_n, modes: Vec::new() }
+                let (whole_m_n, uncertain_m_n) = structure.static_compliance_with_uncertainty_m_n(scene.place())?;
+                Source::Computed { structure, place: scene.place(), whole_m_n, uncertain_m_n, modes: Vec::new() }
             }
             listed => {
                 let modes = listed.modes(scene.place(), scene.modes.count())?;
@@ -235,6 +242,14 @@ impl Source<'_> {
             Source::Beam { .. } => super::guess::MOST_MODES,
             Source::Computed { structure, .. } => structure.most_modes(),
             Source::Listed { modes, .. } => modes.len(),
+        }
+    }
+
+    /// By how much the static compliance of a structure whose modes are computed may be off (m/N).
+    pub fn uncertain_m_n(&self) -> f64 {
+        match self {
+            Source::Computed { uncertain_m_n, .. } => *uncertain_m_n,
+            Source::Beam { .. } | Source::Listed { .. } => 0.0,
         }
     }
 

@@ -17,7 +17,7 @@ use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
 use super::guess::{fewer, guess, more};
-use super::left_out::{Change, energy_of_remainder, with_one_remainder_mode};
+use super::left_out::{Change, energy_of_remainder, with_one_remainder_mode, with_softer_remainder};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::Known;
@@ -62,25 +62,34 @@ struct Rung {
     solution: Solution,
     /// What the shape of the tail may change that is not seen by other numbers of modes.
     tail: f64,
+    /// What a static compliance that is off may change.
+    compliance: f64,
 }
 
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
+        let (striker, law, kept) = (pose.striker, pose.law, &mut *pose.kept);
         let mut solve = |structure: &Structure| {
-            let solver = pose.kept.solver(structure)?;
-            let solution = solver.solve(&pose.striker, &pose.law, None, &settings).map_err(in_scene)?;
+            let solver = kept.solver(structure)?;
+            let solution = solver.solve(&striker, &law, None, &settings).map_err(in_scene)?;
             cost.add(&solution.counts, structure.modes.len());
             Ok::<_, InvalidInput>(solution)
         };
         let solution = solve(&structure)?;
         let mut tail = energy_of_remainder(&structure, remainder_modes, &solution, &pose.striker);
+        let momentum_n_s = pose.striker.mass_kg * pose.striker.speed_m_s;
         if matches!(pose.source, Source::Listed { .. }) && remainder_modes > 1 {
             // of a list the shape of the tail is assumed: another one tells what that matters
             let other = solve(&with_one_remainder_mode(&structure, remainder_modes))?;
-            tail = tail.max(Change::between(&other, &solution, pose.striker.mass_kg * pose.striker.speed_m_s).size());
+            tail = tail.max(Change::between(&other, &solution, momentum_n_s).size());
         }
-        Ok(Rung { count, structure, remainder_modes, settings, solution, tail })
+        let mut compliance = 0.0;
+        if pose.scene.residual_compliance != Some(false) && pose.source.uncertain_m_n() > 0.0 {
+            let other = solve(&with_softer_remainder(&structure, remainder_modes, pose.source.uncertain_m_n()))?;
+            compliance = Change::between(&other, &solution, momentum_n_s).size();
+        }
+        Ok(Rung { count, structure, remainder_modes, settings, solution, tail, compliance })
     }
 }
 
@@ -127,7 +136,7 @@ impl Rungs {
         match changes.next() {
             _ if self.is_complete() => 0.0,
             None => 1.0,
-            Some(latest) => latest.left_out(changes.next()).max(self.last.tail),
+            Some(latest) => latest.left_out(changes.next()).max(self.last.tail) + self.last.compliance,
         }
     }
 

@@ -5,16 +5,16 @@
 //! for two numbers of modes,
 //!
 //! ```text
-//! u = |e - e_M| + caution |e_M - e_(M/1.4)|,
+//! u = |e - e_M| + caution |e_M - e_(M/1.4)| + d_c,
 //! ```
 //!
-//! `M` as many as a loose tolerance is expected to need, but not so many that this would cost more than the impact.
+//! `d_c` what changes where the static compliance is greater by as much as it may be off, `M` as many as a loose tolerance is expected to need, but not so many that this would cost more than the impact.
 
 use vibroimpact_sim::modal::{Settings, Solution};
 
 use super::choose::Choice;
 use super::guess::{RAISE, fewer, resolving};
-use super::left_out::Change;
+use super::left_out::{Change, with_softer_remainder};
 use super::pose::{Pose, chooses_modes, modal_only};
 use super::settle::Conclusion;
 use super::uncertainty::Known;
@@ -114,6 +114,21 @@ fn left_out(
             return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
         };
         Change::between(&less, &richer, momentum_n_s).left_out(None)
+    };
+    let (_, uncertain_m_n) = match &scene.structure {
+        Structure::Plate(_) if !nothing_left => {
+            scene.structure.static_compliance_with_uncertainty_m_n(scene.place())?
+        }
+        _ => (0.0, 0.0),
+    };
+    let rest = if uncertain_m_n > 0.0 {
+        let other = posed(&with_modes(scene, count, more), kept)?;
+        let structure = with_softer_remainder(&other.structure, other.remainder_modes, uncertain_m_n);
+        let settings = Settings { tolerance: SOLVER, estimate_uncertainty: false, ..impact.settings };
+        let softer = solve(&Impact { structure, settings, ..other }, kept, cost)?;
+        rest + Change::between(&softer, &richer, momentum_n_s).size()
+    } else {
+        rest
     };
     Ok(Ok((Change::between(solution, &richer, momentum_n_s).restitution + rest).min(1.0)))
 }

@@ -143,10 +143,13 @@ impl Plate {
         Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
     }
 
-    /// Static compliance at a place (m/N).
-    pub(super) fn static_compliance_m_n(&self, [x_m, y_m]: [f64; 2]) -> Result<f64, InvalidInput> {
+    /// Static compliance at a place, and by how much it may be off (m/N).
+    pub(super) fn static_compliance_with_uncertainty_m_n(
+        &self,
+        [x_m, y_m]: [f64; 2],
+    ) -> Result<(f64, f64), InvalidInput> {
         let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
-        plate.static_compliance(x_m, y_m).map_err(in_structure)
+        plate.static_compliance_with_uncertainty(x_m, y_m).map_err(in_structure)
     }
 
     /// Frequency of mode `n` by Weyl's law (rad/s), and what `n` modes add to the inverse mass of a place inside, on

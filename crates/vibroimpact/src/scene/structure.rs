@@ -255,6 +255,14 @@ impl Structure {
         }
     }
 
+    /// [`Structure::static_compliance_m_n`], and by how much it may be off (m/N): 0 where it has a closed form, or is stated.
+    pub(crate) fn static_compliance_with_uncertainty_m_n(&self, place: Place) -> Result<(f64, f64), InvalidInput> {
+        match self {
+            Structure::Plate(plate) => plate.static_compliance_with_uncertainty_m_n(place.on_structure()?.on()?),
+            _ => Ok((self.static_compliance_m_n(place)?, 0.0)),
+        }
+    }
+
     /// Static compliance at a place (m/N) of the whole elastic structure.
     pub(crate) fn static_compliance_m_n(&self, place: Place) -> Result<f64, InvalidInput> {
         match self {
@@ -263,7 +271,7 @@ impl Structure {
                 .and_then(|beam| Ok(beam.static_compliance(place.on_structure()?.along()?)?))
                 .map_err(|fault| if fault.field == "location_m" { fault } else { fault.within("structure") }),
             Structure::TautString(string) => string.static_compliance_m_n(place.on_structure()?.along()?),
-            Structure::Plate(plate) => plate.static_compliance_m_n(place.on_structure()?.on()?),
+            Structure::Plate(_) => Ok(self.static_compliance_with_uncertainty_m_n(place)?.0),
             Structure::Modal(listed) => listed.static_compliance_m_n(place.location),
             Structure::DroppedRod(rod) => rod.static_compliance_m_n().map_err(|fault| fault.within("structure")),
             Structure::InfiniteBeam(_) | Structure::InfinitePlate(_) | Structure::ModesFile(_) => Err(self.no_modes()),
