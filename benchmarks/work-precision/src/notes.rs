@@ -4,41 +4,47 @@ use crate::{impact, infinite};
 
 /// What the page shows.
 pub const INTRODUCTION: &str = "\
-Every solver of the workspace and its peers on a fixed library of problems: error against time and against a \
-deterministic cost, over a sweep of tolerances. Times are the least of repeated runs after a warm-up. A run that fails or \
-takes too long is listed under its figure; tighter settings are then not tried. `work-precision.csv` has every number, in \
-every norm.
+This page shows how much time each solver of the workspace and its peers need for a given error, on a fixed \
+library of problems: error against time and against a deterministic cost, over a sweep of tolerances. Times are \
+the least of repeated runs after a warm-up. A run that fails or takes too long is listed under its figure, and \
+tighter settings are then not tried. `work-precision.csv` has every number, in every norm.
 
-Peers. DOP853: Hairer's explicit pair of order 8 (crate `ivp`), events by repeated steps. diffsol: variable-order BDF and \
-ESDIRK of order 4, analytic Jacobian, its own root finding. All of them integrate phase by phase, restart at every change \
-of contact, use absolute tolerances scaled to each component, and are told when the impact ends, which they cannot know. \
-*+ exact flight*: between contacts the modes are propagated in closed form and the next contact is found by a certified \
-search, so that the solver integrates contacts alone. Ours is measured with all tables built anew for every impact, and \
-with the tables kept, as for many impacts on one beam.";
+The peers are DOP853, Hairer's explicit pair of order 8 (crate `ivp`), with events by repeated steps, and diffsol, \
+with BDF of variable order and ESDIRK of order 4, an analytic Jacobian and its own root finding. All of them \
+integrate phase by phase, restart at every change of contact, and use absolute tolerances scaled to each \
+component. They are told when the impact ends, which they cannot know. *+ exact flight* means that between \
+contacts the modes are propagated in closed form and a certified search finds the next contact, so that the solver \
+integrates contacts alone. Ours is measured with all tables built anew for every impact, and with the tables kept, \
+as for many impacts on one beam.";
 
 /// What the first table shows.
 pub const TARGETS: &str = "\
-Times at an error of 1e-6 in the restitution, between two measured points on a straight line of the logarithms.";
+The times are for an error of 1e-6 in the restitution, interpolated between two measured points on a straight line \
+of the logarithms.";
 
 /// What the second table shows.
 pub const EVERY_ERROR: &str = "\
-At other errors: time of the fastest peer over the time of the fastest solver of the workspace. *alone*: no peer reaches \
-the error; *nobody*: it is below what any solver or the reference reaches in double precision. For the infinite beam and \
-the fractional equations the peers are the general methods of `fracdiff`, which are solvers of this workspace too.";
+The next table is for other errors. It has the time of the fastest peer over the time of the fastest solver of the \
+workspace. *alone* means that no peer reaches the error, *nobody* that it is below what any solver or the \
+reference reaches in double precision. For the infinite beam and the fractional equations the peers are the \
+general methods of `fracdiff`, which are solvers of this workspace too.";
 
 /// Why the workspace is not ahead where it is not.
 pub const WHY: &str = "\
-Why the ratios are what they are. A general solver on the whole system spends most of its steps on the fastest mode in \
-free flight, where nothing happens; that is the first ratio. Given exact flight it integrates contacts alone, some tens of \
-explicit steps each, and what is left is the price of a step; a single impact then pays for our tables of the structure as \
-well, which cost half as much as the impact itself and are repaid by the second impact on the same beam. Fifty times less \
-than the whole system by the best explicit solver would be the price of our steps in contact at the floor that \
-[their operations](performance.md) set, with nothing for flights, landings and control: where the ratio is lower, that is \
-what limits it. The implicit solvers, and those that thesis and textbooks use, are slower than that by far (figures below). At errors above 1e-4 \
-every solver takes the fewest steps that it can, so that the ratio there is that of the least cost of a contact. Among the \
-Volterra methods the second-order rules are cheap at two or three digits, with as few steps as are measured here; nothing \
-but a second run tells how many that are (*to a tolerance, with its error* makes both of its runs). With eight nodes and \
-a long first panel, collocation reaches six digits more for the same time.";
+A general solver on the whole system spends most of its steps in free flight, on the fastest mode, where nothing \
+happens. This explains the first ratio. Given exact flight, it integrates contacts alone, with some tens of \
+explicit steps each, and the ratio is that of the cost of a step. A single impact then also pays for our tables of \
+the structure. They cost half as much as the impact itself, and the second impact on the same beam repays them.
+
+A ratio of fifty to the best explicit solver on the whole system would need steps in contact at the floor that \
+[their operations](performance.md) set, and no cost for flights, terminal steps and control. Where the ratio is \
+lower, this is the limit. The implicit solvers, and those of the thesis and of textbooks, are far slower (figures \
+below). At errors above 1e-4 every solver takes the fewest steps that it can, so the ratio there is that of the \
+least cost of a contact.
+
+Among the Volterra methods the second-order rules are cheap at two or three digits, with as few steps as are \
+measured here. Only a second run tells how many steps that takes (*to a tolerance, with its error* makes both of \
+its runs). With eight nodes and a long first panel, collocation reaches six more digits in the same time.";
 
 /// What a problem is, what is measured, and what the reference is.
 pub fn about(problem: &str) -> String {
@@ -58,9 +64,9 @@ pub fn about(problem: &str) -> String {
         "beam-S15-story" => {
             let floor = infinite::story_floor().unwrap_or(f64::NAN);
             format!(
-                "A ball on an infinite beam, S = 15, until contact lasts for ever: worst relative error of the eight \
-                 times of separation and touch, and the number of separations. The two spectral methods share no code \
-                 and are each other's reference; at their tightest they differ by {floor:.0e}."
+                "A ball on an infinite beam, S = 15, until contact is sustained: worst relative error of the eight times \
+                 of separation and touch, and the number of separations. The two spectral methods share no code, and \
+                 each is the reference of the other; at their tightest they differ by {floor:.0e}."
             )
         }
         name if name.starts_with("beam-S") => format!(
