@@ -10,7 +10,7 @@ venv=$target/python-venv
 # shellcheck disable=SC1091
 source "$venv/bin/activate"
 python -m pip install --quiet --disable-pip-version-check 'maturin>=1.7,<2' numpy pytest mypy matplotlib nbclient ipykernel \
-  scipy pyNastran pyuff
+  pandas scipy 'pyNastran>=1.4' pyuff
 cargo fmt --check --manifest-path python/Cargo.toml
 cargo clippy --quiet --locked --manifest-path python/Cargo.toml -- -D warnings
 cargo build --quiet --locked --package vibroimpact

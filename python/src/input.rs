@@ -6,6 +6,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
 use vibroimpact::assembly::{AnyScene, AssemblyScene};
+use vibroimpact::identify::Data;
 use vibroimpact::sweep::Sweep;
 use vibroimpact::{Scene, SceneError};
 
@@ -31,6 +32,48 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Source {
             let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
             PyTypeError::new_err(format!("expected a mapping or the path of a file{kind}"))
         })
+    }
+}
+
+/// Columns, as a table of comma-separated values, or the name of a file.
+pub enum Columns {
+    /// The table.
+    Text(String),
+    /// A file.
+    File(PathBuf),
+}
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Columns {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Columns> {
+        // a mapping, or what has columns as pandas does
+        if given.hasattr("keys")? {
+            let convert = given.py().import("vibroimpact._convert")?;
+            return Ok(Columns::Text(convert.call_method1("to_csv", (given,))?.extract()?));
+        }
+        given.extract().map(Columns::File).map_err(|_| {
+            let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
+            PyTypeError::new_err(format!("expected a mapping of columns or the path of a file{kind}"))
+        })
+    }
+}
+
+impl Columns {
+    /// Measured impacts. Force histories that the table names stand beside its file, or in the current folder.
+    pub fn measured(&self) -> Result<Data, SceneError> {
+        match self {
+            Columns::Text(table) => Data::from_table(table.as_bytes(), Path::new("")),
+            Columns::File(path) => Data::read(path),
+        }
+    }
+
+    /// Experiments that could be made.
+    pub fn candidates(&self) -> Result<Data, SceneError> {
+        match self {
+            Columns::Text(table) => Data::parse_candidates(table.as_bytes()),
+            Columns::File(path) => Data::read_candidates(path),
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 mod bodies;
 mod emoc;
 mod errors;
+mod identify;
 mod impact;
 mod input;
 mod output;
@@ -20,6 +21,8 @@ mod _vibroimpact {
     use super::bodies::orbit;
     #[pymodule_export]
     use super::emoc::{emoc, emoc_restitution, fit};
+    #[pymodule_export]
+    use super::identify::identify;
     #[pymodule_export]
     use super::impact::{compare, infinite_beam, modes, plan, sensitivity, simulate, turning_points};
     #[pymodule_export]

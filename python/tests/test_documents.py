@@ -16,19 +16,20 @@ def test_readme():
 HOW_TO = REPOSITORY / "docs" / "how-to"
 # pages with snippets, and what they need beside numpy
 PAGES = {
-    "python.md": None,
-    "structures-calculix.md": None,
-    "structures-matrices.md": "scipy",
-    "structures-nastran.md": "pyNastran",
-    "structures-test.md": None,
-    "structures-universal.md": "pyuff",
+    "python.md": ["matplotlib", "pandas"],
+    "structures-calculix.md": [],
+    "structures-matrices.md": ["scipy"],
+    "structures-nastran.md": ["pyNastran"],
+    "structures-test.md": [],
+    "structures-universal.md": ["pyuff"],
 }
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_how_to(page, monkeypatch, capsys):
-    if PAGES[page] is not None:
-        pytest.importorskip(PAGES[page])
+    for module in PAGES[page]:
+        pytest.importorskip(module)
+    monkeypatch.setenv("MPLBACKEND", "agg")
     monkeypatch.chdir(REPOSITORY)
     text = (HOW_TO / page).read_text()
     snippets = re.findall(r"^```python\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
@@ -48,12 +49,18 @@ def test_readme_of_the_workspace(capsys):
     assert capsys.readouterr().out == "0.333 after 5 contacts\n"
 
 
-def test_notebook(monkeypatch):
+# notebooks, the pictures that they draw, and the tables that they show
+NOTEBOOKS = {"thesis.ipynb": (6, 0), "identification.ipynb": (3, 3)}
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_notebook(name, monkeypatch):
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")
     monkeypatch.setenv("VIBROIMPACT_QUICK", "1")
-    notebook = nbformat.read(REPOSITORY / "python" / "notebooks" / "thesis.ipynb", as_version=4)
+    notebook = nbformat.read(REPOSITORY / "python" / "notebooks" / name, as_version=4)
     environment = os.environ | {"JUPYTER_PLATFORM_DIRS": "1"}
     nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3").execute(env=environment)
-    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
-    assert sum("image/png" in output.get("data", {}) for output in outputs) == 6
+    shown = [output.get("data", {}) for cell in notebook.cells for output in cell.get("outputs", [])]
+    drawn = sum("image/png" in data for data in shown)
+    assert (drawn, sum("text/html" in data for data in shown)) == NOTEBOOKS[name]

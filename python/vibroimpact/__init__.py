@@ -1,17 +1,20 @@
 """What happens when a compact body strikes a slender vibrating one, and when many bodies strike each other.
 
-A scene is a mapping, or the path of a JSON or TOML file, as the command line takes it; every quantity is in SI units,
-and its name says which. Results are dictionaries with the keys that the command line prints with ``--json``; histories
-and tables are numpy arrays. All functions release the interpreter's lock while they compute.
+A scene of one impact is a :class:`Scene`; it may also be a mapping, or the path of a JSON or TOML file, as the command line takes
+it. Every quantity is in SI units, and its name says which. Results are dictionaries with the keys that the command line prints
+with ``--json``; histories and tables are numpy arrays, of which ``pandas.DataFrame`` makes a data frame. All functions release
+the interpreter's lock while they compute.
 """
 
 from ._errors import InvalidInput
+from ._result import Identification, Impact, Motion, Result
 from ._vibroimpact import (
     __version__,
     compare,
     emoc,
     emoc_restitution,
     fit,
+    identify,
     infinite_beam,
     modes,
     orbit,
@@ -21,14 +24,79 @@ from ._vibroimpact import (
     sweep,
     turning_points,
 )
+from .parts import (
+    Attachment,
+    Beam,
+    Contact,
+    DroppedRod,
+    Elastoplastic,
+    Felt,
+    Flores,
+    Hertz,
+    HuntCrossley,
+    Hysteretic,
+    InfiniteBeam,
+    InfinitePlate,
+    KelvinVoigt,
+    LankaraniNikravesh,
+    LinearSpring,
+    Modal,
+    ModesFile,
+    MovingMode,
+    Plate,
+    Point,
+    Power,
+    Scene,
+    Segment,
+    Start,
+    Striker,
+    String,
+    Structure,
+    Support,
+    Viscous,
+)
 
 __all__ = [
+    "Attachment",
+    "Beam",
+    "Contact",
+    "DroppedRod",
+    "Elastoplastic",
+    "Felt",
+    "Flores",
+    "Hertz",
+    "HuntCrossley",
+    "Hysteretic",
+    "Identification",
+    "Impact",
+    "InfiniteBeam",
+    "InfinitePlate",
     "InvalidInput",
+    "KelvinVoigt",
+    "LankaraniNikravesh",
+    "LinearSpring",
+    "Modal",
+    "ModesFile",
+    "Motion",
+    "MovingMode",
+    "Plate",
+    "Point",
+    "Power",
+    "Result",
+    "Scene",
+    "Segment",
+    "Start",
+    "Striker",
+    "String",
+    "Structure",
+    "Support",
+    "Viscous",
     "__version__",
     "compare",
     "emoc",
     "emoc_restitution",
     "fit",
+    "identify",
     "infinite_beam",
     "modes",
     "orbit",

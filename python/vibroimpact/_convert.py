@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ._errors import InvalidInput
+from ._result import Identification, Impact, Motion, Result
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsKeysAndGetItem
 
 # lists of objects that become structured arrays: their fields, by the name of the list
 _TABLES: dict[str, list[list[str]]] = {
@@ -60,10 +67,56 @@ def _plain(value: object) -> object:
     raise TypeError(f"a scene cannot hold a {type(value).__name__}")
 
 
-def from_json(text: str) -> dict[str, Any]:
+def to_csv(table: SupportsKeysAndGetItem[str, Any]) -> str:
+    """Columns as a table of comma-separated values; a number that is not there (NaN) becomes an empty cell."""
+    cells = {str(name): [_cell(value) for value in table[name]] for name in table.keys()}
+    lengths = {name: len(column) for name, column in cells.items()}
+    for name, length in lengths.items():
+        longest = max(lengths.values())
+        if length != longest:
+            allowed = f"as many as in the longest column, {longest}"
+            message = f"column {name} = {length} values is not allowed: {allowed}"
+            raise InvalidInput(message, f"column {name}", f"{length} values", allowed)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(cells)
+    writer.writerows(zip(*cells.values()))
+    return text.getvalue()
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, (float, np.floating)):
+        return "" if np.isnan(value) else repr(float(value))
+    return "" if value is None else str(value)
+
+
+def to_free(free: Mapping[str, Any] | Iterable[str]) -> list[str]:
+    """Free fields as the command line has them: by their names, or ``field=low..high``."""
+    if isinstance(free, str):
+        raise TypeError("free must be a list of fields, or a mapping from fields to limits of the search, not one text")
+    if not isinstance(free, Mapping):
+        return list(free)
+    return [field if limits is None else f"{field}={limits[0]}..{limits[1]}" for field, limits in free.items()]
+
+
+def from_json(text: str) -> Result:
     """A result, with its tables as arrays."""
-    result: dict[str, Any] = json.loads(text, object_hook=_with_arrays)
-    return result
+    return Result(json.loads(text, object_hook=_with_arrays))
+
+
+def impact(text: str) -> Impact:
+    """The result of one impact."""
+    return Impact(json.loads(text, object_hook=_with_arrays))
+
+
+def motion(text: str) -> Motion:
+    """The result of a scene of bodies."""
+    return Motion(json.loads(text, object_hook=_with_arrays))
+
+
+def identification(text: str) -> Identification:
+    """The result of an identification, whose intervals may be open."""
+    return Identification(json.loads(text))
 
 
 def columns(table: str) -> dict[str, Any]:

@@ -1,9 +1,13 @@
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
+from _typeshed import SupportsKeysAndGetItem
 from numpy.typing import ArrayLike, NDArray
+
+from ._result import Identification, Impact, Motion, Result
+from .parts import Scene
 
 __all__ = [
     "__version__",
@@ -11,6 +15,7 @@ __all__ = [
     "emoc",
     "emoc_restitution",
     "fit",
+    "identify",
     "infinite_beam",
     "modes",
     "orbit",
@@ -23,10 +28,13 @@ __all__ = [
 
 __version__: str
 
-def simulate(scene: Mapping[str, Any] | str | PathLike[str], *, history: bool = False) -> dict[str, Any]: ...
-def plan(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
-def compare(scene: Mapping[str, Any] | str | PathLike[str]) -> dict[str, Any]: ...
-def sensitivity(scene: Mapping[str, Any] | str | PathLike[str], by: list[str] = ...) -> dict[str, Any]: ...
+@overload
+def simulate(scene: Scene, *, history: bool = False) -> Impact: ...
+@overload
+def simulate(scene: Mapping[str, Any] | str | PathLike[str], *, history: bool = False) -> Impact | Motion: ...
+def plan(scene: Mapping[str, Any] | str | PathLike[str]) -> Result: ...
+def compare(scene: Mapping[str, Any] | str | PathLike[str]) -> Result: ...
+def sensitivity(scene: Mapping[str, Any] | str | PathLike[str], by: list[str] = ...) -> Result: ...
 def modes(scene: Mapping[str, Any] | str | PathLike[str], count: int) -> dict[str, NDArray[np.float64]]: ...
 def orbit(
     scene: Mapping[str, Any] | str | PathLike[str],
@@ -37,9 +45,9 @@ def orbit(
     from_: float | None = None,
     to: float | None = None,
     step: float = 0.02,
-) -> dict[str, Any]: ...
-def infinite_beam(s: float, *, history: bool = False) -> dict[str, Any]: ...
-def turning_points(count: int) -> dict[str, Any]: ...
+) -> Result: ...
+def infinite_beam(s: float, *, history: bool = False) -> Result: ...
+def turning_points(count: int) -> Result: ...
 def emoc(
     scene: Mapping[str, Any] | str | PathLike[str],
     *,
@@ -47,7 +55,7 @@ def emoc(
     alpha0: float = 1.0,
     alpha1: float = 1.0,
     modes: int | None = None,
-) -> dict[str, Any]: ...
+) -> Result: ...
 def emoc_restitution(
     mass_kg: ArrayLike,
     shapes: ArrayLike,
@@ -63,7 +71,16 @@ def fit(
     restitution: ArrayLike,
     *,
     modes: int = 50,
-) -> dict[str, Any]: ...
+) -> Result: ...
+def identify(
+    scene: Mapping[str, Any] | str | PathLike[str],
+    data: SupportsKeysAndGetItem[str, Any] | str | PathLike[str],
+    free: Mapping[str, tuple[float, float] | None] | Iterable[str],
+    *,
+    level: float = 0.95,
+    starts: int = 4,
+    candidates: SupportsKeysAndGetItem[str, Any] | str | PathLike[str] | None = None,
+) -> Identification: ...
 def sweep(
     definition: Mapping[str, Any] | str | PathLike[str], *, threads: int | None = None
 ) -> dict[str, NDArray[Any]]: ...

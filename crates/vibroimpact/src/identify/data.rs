@@ -51,8 +51,15 @@ impl Data {
     /// # Errors
     /// A file that cannot be read; a column or a cell that cannot be used, by line and name.
     pub fn read(path: &Path) -> Result<Data, SceneError> {
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        Data::parse(&read_bytes(path)?, &|name| read_bytes(&folder.join(name)))
+        Data::from_table(&read_bytes(path)?, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Reads the table from the bytes of a file, and the force histories that it names from `folder` or below.
+    ///
+    /// # Errors
+    /// As [`Data::read`].
+    pub fn from_table(bytes: &[u8], folder: &Path) -> Result<Data, SceneError> {
+        Data::parse(bytes, &|name| read_bytes(&folder.join(name)))
     }
 
     /// Reads the table from the bytes of a file; `open` gives those of a force history.
@@ -99,7 +106,15 @@ impl Data {
     /// # Errors
     /// A file that cannot be read; a column of measured values, or a cell that cannot be used.
     pub fn read_candidates(path: &Path) -> Result<Data, SceneError> {
-        let table = Table::parse(&read_bytes(path)?, NEEDED)?;
+        Data::parse_candidates(&read_bytes(path)?)
+    }
+
+    /// Reads such a table from the bytes of a file.
+    ///
+    /// # Errors
+    /// As [`Data::read_candidates`], the file aside.
+    pub fn parse_candidates(bytes: &[u8]) -> Result<Data, SceneError> {
+        let table = Table::parse(bytes, NEEDED)?;
         let columns = Columns::of(&table)?;
         let too_much = columns.measured.first().map(|(quantity, ..)| quantity.name());
         if let Some(name) = too_much.or(columns.force.map(|_| FORCE_FILE)) {

@@ -125,7 +125,7 @@ pub struct Scene {
     /// Motion of the structure before the impact; at rest and touched by the striker when left out.
     pub start: Option<Start>,
     /// Accuracy aimed at in the restitution. When left out: 1e-3, truncation included, where the program chooses the
-    /// modes; that of [`vibroimpact_sim::modal::Settings`] where the modes are given.
+    /// modes; 1e-9, that of the solver alone, where the modes are given.
     pub tolerance: Option<f64>,
     /// Yield strength of the softer body (Pa), against which the pressure in the contact is judged; it changes no result.
     pub yield_strength_pa: Option<f64>,
