@@ -5,6 +5,9 @@ use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
+#[cfg(test)]
+mod workflows;
+
 type Failure = Box<dyn Error>;
 
 /// One call of cargo: its arguments, and the flags for rustdoc.
