@@ -64,7 +64,7 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
         Ok((json, found.posed.contacts, found.course))
     });
     let (json, names, course) = signals.unless(found)?;
-    let result = output::motion(py, &json)?;
+    let result = output::result(py, &json)?;
     if let Some(course) = course {
         result.set_item("history", output::columns(py, assembly::history(&names, &course.rows))?)?;
         let section = course.period_s.map(|_| output::columns(py, assembly::history(&names, &course.section)));

@@ -51,5 +51,5 @@ pub fn identify(
         let found = identification::identify(&scene, &data.measured()?, &free, &Request { level, starts, candidates })?;
         Ok::<_, Fault>(export::json(&found)?)
     })?;
-    output::identification(py, &json)
+    output::result(py, &json)
 }

@@ -42,7 +42,7 @@ fn one_impact<'py>(py: Python<'py>, scene: &Scene, history: bool) -> PyResult<Bo
         let (course, energies) = if history { (found.history(None), found.modal_energies(None)) } else { (None, None) };
         Ok::<_, Fault>((found.json(scene)?, course, energies))
     })?;
-    let result = output::impact(py, &json)?;
+    let result = output::result(py, &json)?;
     if history {
         result.set_item("history", course.map(|table| output::columns(py, table)).transpose()?)?;
         result.set_item("modal_energies", energies.map(|table| output::modal_energies(py, table)).transpose()?)?;

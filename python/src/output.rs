@@ -7,26 +7,7 @@ use vibroimpact::export::Table;
 
 /// A result that the command line prints as JSON, with its tables as arrays.
 pub fn result<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyDict>> {
-    converted(py, "from_json", json)
-}
-
-/// The same of one impact.
-pub fn impact<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyDict>> {
-    converted(py, "impact", json)
-}
-
-/// The same of a scene of bodies.
-pub fn motion<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyDict>> {
-    converted(py, "motion", json)
-}
-
-/// The same of an identification.
-pub fn identification<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, PyDict>> {
-    converted(py, "identification", json)
-}
-
-fn converted<'py>(py: Python<'py>, by: &str, json: &str) -> PyResult<Bound<'py, PyDict>> {
-    Ok(py.import("vibroimpact._convert")?.call_method1(by, (json,))?.cast_into::<PyDict>()?)
+    Ok(py.import("vibroimpact._convert")?.call_method1("from_json", (json,))?.cast_into::<PyDict>()?)
 }
 
 /// Columns under their names.

@@ -48,6 +48,8 @@ _INTERVALS = [
         "separation_speed_m_s",
     ]
 ]
+# results that know more than their entries, by an entry that no other has
+_KINDS: dict[str, type[Result]] = {"striker_velocity_m_s": Impact, "steady_motion": Motion, "profiles": Identification}
 _WHOLE = ("n", "side", "intervals_per_period")
 _ARRAYS = ("modes_j", "intervals")
 
@@ -100,23 +102,10 @@ def to_free(free: Mapping[str, Any] | Iterable[str]) -> list[str]:
 
 
 def from_json(text: str) -> Result:
-    """A result, with its tables as arrays."""
-    return Result(json.loads(text, object_hook=_with_arrays))
-
-
-def impact(text: str) -> Impact:
-    """The result of one impact."""
-    return Impact(json.loads(text, object_hook=_with_arrays))
-
-
-def motion(text: str) -> Motion:
-    """The result of a scene of bodies."""
-    return Motion(json.loads(text, object_hook=_with_arrays))
-
-
-def identification(text: str) -> Identification:
-    """The result of an identification, whose intervals may be open."""
-    return Identification(json.loads(text))
+    """A result, with its tables as arrays, as what it is of."""
+    tree = json.loads(text, object_hook=_with_arrays)
+    kind = next((kind for entry, kind in _KINDS.items() if entry in tree), Result)
+    return kind(tree)
 
 
 def columns(table: str) -> dict[str, Any]:
