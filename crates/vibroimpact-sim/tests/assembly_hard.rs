@@ -5,7 +5,7 @@ mod common;
 
 use beam_modes::{Beam, End, Modes, Rod, RodEnd, RodSegment, Segment};
 use common::Intervals;
-use contact_models::{Hertz, Law, LinearSpring, Viscous};
+use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Outcome, Point, Run, Settings, run,
 };
@@ -194,4 +194,29 @@ fn a_stack_that_sways_into_a_stop_is_not_at_rest() {
     farther.contacts[2].gap_m = high + 0.2;
     let found = run(&farther, &Settings::until(1.0), &mut Intervals::default()).unwrap();
     assert_eq!(found.outcome, Outcome::Rest);
+}
+
+/// The finest tolerance, a dashpot and a load: near the deepest compression the rounding of the overlap, as the slopes of
+/// short panels magnify it, must not pass for truncation.
+#[test]
+fn a_dashpot_under_loads_is_solved_to_the_finest_tolerance() {
+    let law = Law::from(KelvinVoigt::new(1e8, 1363.0).unwrap());
+    let root = 0.1f64.sqrt();
+    let load = |force| Load { body: 0, shape: vec![root], force };
+    let solved = |tolerance: f64| {
+        let sides = [Point::OfBody { body: 0, shape: vec![root.recip()] }, Point::Ground];
+        let weight = load(Force::Constant { force_n: -9.81 });
+        let shaking = load(Force::Harmonic { force_n: 11.7, omega_rad_s: 125.66, phase_rad: 0.5 });
+        let assembly = Assembly {
+            bodies: vec![Body::mass(0.1, 0.0, 0.163)],
+            contacts: vec![Contact { sides, gap_m: 0.0, law }],
+            loads: vec![weight, shaking],
+        };
+        run(&assembly, &Settings { tolerance, ..Settings::until(0.1) }, &mut ()).unwrap()
+    };
+    let [coarse, fine] = [1e-10, 1e-13].map(solved);
+    assert_eq!(fine.outcome, Outcome::End);
+    assert!(fine.counts.steps() < 200, "{:?}", fine.counts);
+    let impulse = |run: &Run| run.contacts[0].statistics.impulse_n_s;
+    assert!((impulse(&coarse) - impulse(&fine)).abs() < 1e-10 * impulse(&fine));
 }

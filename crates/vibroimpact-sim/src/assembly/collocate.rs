@@ -20,7 +20,8 @@ pub(crate) struct Unknown<'a> {
     pub branch: Branch,
     /// Compression at the start of the panel (m).
     pub start: f64,
-    /// Compression at the nodes if no contact had a force (m).
+    /// By how much it would have grown at the nodes if no contact had a force (m): without the start, whose rounding the
+    /// slopes would magnify on short panels.
     pub free: Nodal,
     /// Whether the rate is asked for, by the law or by an end of its branch.
     pub needs_rate: bool,
@@ -66,18 +67,19 @@ pub(crate) fn collocate<'r>(
     for _ in 0..ITERATIONS_MAX {
         counts.newton_iterations += 1;
         for (c, unknown) in unknowns.iter().enumerate() {
-            let mut compression = unknown.free;
+            let mut moved = unknown.free;
             for other in 0..n {
                 if let Some(response) = response(c, other) {
-                    let moved = apply(response, &found[other].force);
+                    let forced = apply(response, &found[other].force);
                     for i in 0..Q {
-                        compression[i] += moved[i];
+                        moved[i] += forced[i];
                     }
                 }
             }
-            if unknown.law.depends_on_rate() {
-                found[c].rate = slopes(unknown.start, &compression, h);
+            if unknown.needs_rate {
+                found[c].rate = slopes(0.0, &moved, h);
             }
+            let compression = moved.map(|moved| unknown.start + moved);
             found[c].compression = compression;
             values[c] = std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
             counts.law_evaluations += Q as u64;
@@ -107,11 +109,6 @@ pub(crate) fn collocate<'r>(
         // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
         let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
         if converged || ratio * excess <= 1.0 {
-            for (unknown, found) in unknowns.iter().zip(found.iter_mut()) {
-                if unknown.needs_rate && !unknown.law.depends_on_rate() {
-                    found.rate = slopes(unknown.start, &found.compression, h);
-                }
-            }
             return true;
         }
         if ratio > SLOW && last.is_some() {

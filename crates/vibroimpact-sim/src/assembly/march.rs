@@ -807,6 +807,9 @@ impl<'a> March<'a> {
         overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c)));
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
+        for (&c, overlap) in contacts[closed..].iter().zip(&mut overlap[closed..]) {
+            overlap.iter_mut().for_each(|moved| *moved += self.states[c].overlap);
+        }
         let tables = &*self.tables;
         let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
         if !collocate(unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, (newton, solved), &mut self.counts) {
@@ -842,12 +845,11 @@ impl<'a> March<'a> {
         true
     }
 
-    /// Overlap of a contact at the nodes if there were no contact force.
+    /// By how much the overlap of a contact would have grown at the nodes if there were no contact force.
     fn free_at_nodes(&self, level: i32, c: usize) -> Nodal {
         let h = step_s(level);
         let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
-        let overlap = self.states[c].overlap;
-        std::array::from_fn(|i| overlap + (moved[i] + self.loads.moved(c, self.time_s, BASIS.nodes[i] * h).0))
+        std::array::from_fn(|i| moved[i] + self.loads.moved(c, self.time_s, BASIS.nodes[i] * h).0)
     }
 
     /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.

@@ -69,8 +69,10 @@ impl Window {
     /// Solves the panel of this length.
     pub fn attempt(&self, length: f64, unknowns: &mut [Unknown], counts: &mut Counts) -> Option<Landed> {
         let (free, responses) = (self.free_at_nodes(length), self.responses(length));
-        for (unknown, free) in unknowns.iter_mut().zip(&free) {
-            unknown.free = *free;
+        for (unknown, series) in unknowns.iter_mut().zip(&self.free) {
+            let mut moved = *series;
+            moved[0] = 0.0;
+            unknown.free = values(&moved, length);
         }
         let mut solved = Vec::new();
         let response = |c: usize, other: usize| responses[c * self.closed + other].as_ref();
