@@ -68,14 +68,20 @@ pub fn compare(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
     output::result(py, &json)
 }
 
-/// Differentiate an impact by fields of its scene, such as `"striker.mass_kg"`; by every number of it where none is named.
+/// Differentiate a scene, of one impact or of bodies, by its fields, such as `"striker.mass_kg"`; by every number of it where
+/// none is named.
 ///
 /// Returns what `vibroimpact sensitivity --json` prints: `derivatives[output][field]` has a `value` and its `uncertainty`,
 /// in the unit of the output over that of the field.
 #[pyfunction]
 #[pyo3(signature = (scene, by = Vec::new()))]
 pub fn sensitivity(py: Python<'_>, scene: Source, by: Vec<String>) -> PyResult<Bound<'_, PyDict>> {
-    let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.sensitivity(&by)?)?))?;
+    let json = py.detach(|| {
+        Ok::<_, Fault>(match scene.any_scene()? {
+            AnyScene::Impact(scene) => export::json(&scene.sensitivity(&by)?)?,
+            AnyScene::Bodies(scene) => export::json(&scene.sensitivity(&by)?)?,
+        })
+    })?;
     output::result(py, &json)
 }
 

@@ -98,9 +98,14 @@ def test_plan_and_compare(name, command_line):
     assert plain(vibroimpact.compare(path)) == command_line("compare", path)
 
 
-def test_sensitivity(command_line):
-    path = SCENES / "dropped-rod.json"
-    by = ["structure.length_m", "striker.speed_m_s"]
+@pytest.mark.parametrize(
+    ("path", "by"),
+    [
+        (SCENES / "dropped-rod.json", ["structure.length_m", "striker.speed_m_s"]),
+        (ASSEMBLIES / "shaken-table.json", ["gravity_m_s2"]),
+    ],
+)
+def test_sensitivity(command_line, path, by):
     assert plain(vibroimpact.sensitivity(path, by)) == command_line("sensitivity", path, "--by", ",".join(by))
 
 

@@ -83,15 +83,18 @@ fn every_key_of_every_command_is_documented() {
     documented(folder, "`law`", &wanted, &[]);
     documented(folder, "`infinite-beam`", &["infinite-beam", &dataset("scenes/infinite-beam.json")], &[]);
     documented(folder, "`infinite-beam`", &["infinite-beam", "turning-points", "--count", "1"], &[]);
-    let speed = ["sensitivity", &beam, "--by", "striker.speed_m_s"];
-    let found = documented(folder, "`sensitivity`", &speed, &["scene", "derivatives"]);
+    let bodies = dataset("assemblies/sdnl104.json");
     let text = section(&page("outputs"), "`sensitivity`");
-    for output in found["derivatives"].as_object().unwrap().keys() {
-        // the page names the first contact and the first mode
-        let first = output
-            .split_once('[')
-            .map_or(output.clone(), |(list, rest)| format!("{list}[0]{}", rest.split_once(']').unwrap().1));
-        assert!(names(&text, &first), "{first}");
+    for command in [["sensitivity", &beam, "--by", "striker.speed_m_s"], ["sensitivity", &bodies, "--by", "end_s"]] {
+        let found = documented(folder, "`sensitivity`", &command, &["scene", "derivatives"]);
+        for output in found["derivatives"].as_object().unwrap().keys() {
+            // the page names the first contact and the first mode
+            let mut general = output.replace(".stop.", ".NAME.").replace(".beam.", ".NAME.");
+            if let Some((list, rest)) = general.clone().split_once('[') {
+                general = format!("{list}[0]{}", rest.split_once(']').unwrap().1);
+            }
+            assert!(names(&text, &general), "{general}");
+        }
     }
 }
 

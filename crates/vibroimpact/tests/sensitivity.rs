@@ -8,6 +8,8 @@ use std::path::PathBuf;
 use program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
+use vibroimpact::assembly::{AssemblyScene, Summary};
+use vibroimpact::sensitivity::OfField;
 
 fn gallery(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../datasets/scenes").join(name)
@@ -127,11 +129,103 @@ fn what_cannot_be_differentiated_is_named() {
         ("pinned-beam.json", &["--by", "structure.kind"], "the path of a number"),
         ("pinned-beam.json", &["--by", "modes"], "can change by a little"),
         ("pinned-beam.json", &["--by", ".."], "the path of a field"),
-        ("pinned-beam.json", &["--of", "restitutions"], "an output of this impact"),
-        ("pinned-beam.json", &["--set", "model=rigid"], "derivatives go along the motion"),
+        ("pinned-beam.json", &["--of", "restitutions"], "an output of this scene"),
+        ("pinned-beam.json", &["--set", "model=infinite-beam"], "rigid"),
+        ("../assemblies/shaken-table.json", &["--by", "bodies.ball.mass"], "bodies.ball.mass_kg"),
+        ("../assemblies/shaken-table.json", &["--of", "restitution"], "an output of this scene"),
+        ("../assemblies/shaken-table.json", &["--by=end_s", "--set=end_s=1e5"], "panels"),
         ("infinite-beam.json", &["--of", "restitution"], "a structure with modes"),
     ] {
         let message = refused(scene, more);
         assert!(message.contains(told), "{more:?}: {message}");
     }
+}
+
+/// The contacts of a scene of bodies with a number changed, solved to 1e-13.
+fn contacts(tree: &Value, pointer: &str, value: f64) -> Value {
+    let mut tree = tree.clone();
+    *tree.pointer_mut(pointer).unwrap() = json!(value);
+    tree["tolerance"] = json!(1e-13);
+    let simulation = AssemblyScene::from_value(&tree).unwrap().simulate().unwrap();
+    serde_json::to_value(Summary::new(&simulation).contacts).unwrap()
+}
+
+#[test]
+fn derivatives_of_scenes_of_bodies_meet_differences() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../datasets/assemblies");
+    let outputs = ["intervals/1/impulse_n_s", "intervals/1/start_s", "intervals/0/separation_speed_m_s"];
+    for (name, end_s, contact, pointers) in [
+        ("shaken-table", 0.2, "table", ["/ground_motion/frequency_hz", "/bodies/ball/mass_kg", "/gravity_m_s2"]),
+        (
+            "settling-chain",
+            0.2,
+            "block-1",
+            ["/contacts/0/damping_n_s_m", "/bodies/block-1/position_m", "/gravity_m_s2"],
+        ),
+        (
+            "dropped-ball",
+            0.5,
+            "contact",
+            ["/bodies/beam/segments/0/length_m", "/bodies/ball/position_m", "/gravity_m_s2"],
+        ),
+        (
+            "sdnl104",
+            0.2,
+            "stop",
+            ["/loads/0/force_n", "/bodies/beam/segments/0/youngs_modulus_pa", "/contacts/0/gap_m"],
+        ),
+    ] {
+        let mut tree: Value =
+            serde_json::from_str(&fs::read_to_string(folder.join(format!("{name}.json"))).unwrap()).unwrap();
+        tree["end_s"] = json!(end_s);
+        let scene = AssemblyScene::from_value(&tree).unwrap();
+        let field = |pointer: &&str| pointer[1..].replace("/0/", "[0].").replace('/', ".");
+        let fields: Vec<String> = pointers.iter().map(field).collect();
+        let found = scene.sensitivity(&fields).unwrap();
+        for (pointer, field) in pointers.iter().zip(&fields) {
+            let value = tree.pointer(pointer).unwrap().as_f64().unwrap();
+            let step = 1e-5 * value;
+            let near = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|place| contacts(&tree, pointer, value + place * step));
+            for output in outputs {
+                let at = |found: &Value| found.pointer(&format!("/{contact}/{output}")).unwrap().as_f64().unwrap();
+                let [a, b, here, c, d] = near.each_ref().map(at);
+                let reference = (8.0 * (c - b) - (d - a)) / (12.0 * step);
+                let path = format!("contacts.{contact}.{}", output.replace("/0/", "[0].").replace("/1/", "[1]."));
+                let OfField { value: derivative, uncertainty } = found.table.of(&path, field).unwrap();
+                let error = (derivative - reference).abs();
+                // runs are known to some 1e-13
+                let known = 3e-13 * here.abs() / step.abs();
+                let allowed = known + uncertainty.unwrap().min(1e-5 * reference.abs());
+                assert!(error <= allowed, "{name} {path} by {field}: {derivative:e} {uncertainty:?}, {reference:e}");
+            }
+        }
+    }
+}
+
+/// The thesis's law of three parameters is a rational function of `Z`.
+#[test]
+fn net_laws_have_derivatives_too() {
+    let scene = Scene::read(&gallery("pinned-beam.json")).unwrap();
+    let field = "striker.radius_m".to_owned();
+    let found = scene.sensitivity(std::slice::from_ref(&field)).unwrap();
+    let by_law = found.of("emoc_restitution", &field).unwrap();
+    let at = |radius: f64| {
+        let mut tree: Value = found.scene.clone();
+        tree["striker"]["radius_m"] = json!(radius);
+        let law = vibroimpact::emoc::Parameters::default();
+        Scene::from_value(&tree).unwrap().emoc(&law, None).unwrap().restitution
+    };
+    let radius = found.scene["striker"]["radius_m"].as_f64().unwrap();
+    let reference = (at(radius + 1e-6) - at(radius - 1e-6)) / 2e-6;
+    assert!((by_law.value - reference).abs() < 1e-6 * reference.abs(), "{by_law:?} {reference}");
+    let net = Scene { model: vibroimpact::model::Model::Emoc, ..scene };
+    let of_net = net.sensitivity(std::slice::from_ref(&field)).unwrap();
+    let derivative = of_net.of("restitution", &field).unwrap();
+    let at = |radius: f64| {
+        let mut tree: Value = of_net.scene.clone();
+        tree["striker"]["radius_m"] = json!(radius);
+        Scene::from_value(&tree).unwrap().answer().unwrap().restitution.unwrap()
+    };
+    let reference = (at(radius + 1e-6) - at(radius - 1e-6)) / 2e-6;
+    assert!((derivative.value - reference).abs() < 1e-6 * reference.abs(), "{derivative:?} {reference}");
 }

@@ -1,6 +1,7 @@
 //! The command `sensitivity`.
 
 use clap::Args;
+use vibroimpact::assembly::{self, AnyScene};
 use vibroimpact::export::{self, Failure};
 use vibroimpact::sensitivity;
 
@@ -15,6 +16,8 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact sensitivity ball.json --of sub_impacts[0].peak_force_n --plot peak.svg
                                                     the first peak of the force, as a table and as a tornado picture
   vibroimpact sensitivity ball.json --json          all outputs by all fields
+  vibroimpact sensitivity rattle.json --by contacts[0].gap_m --of points[0].velocity_m_s
+                                                    a scene of bodies: how fast a point is at the end
 
 A derivative is exact: it goes along the motion, and no second impact is compared. It holds for small changes; an impact
 with several contacts may lose or gain one soon after. How near its slowest contact is to that is told.";
@@ -27,9 +30,10 @@ pub struct Arguments {
     /// Fields of the scene, by their paths and separated by commas; every number of the scene where left out
     #[arg(long, value_name = "FIELDS", value_delimiter = ',')]
     by: Vec<String>,
-    /// The output that the table and the picture are of
-    #[arg(long, value_name = "OUTPUT", default_value = "restitution")]
-    of: String,
+    /// The output that the table and the picture are of; the restitution where left out, or the first impulse of a scene of
+    /// bodies
+    #[arg(long, value_name = "OUTPUT")]
+    of: Option<String>,
     /// Print one JSON object with all outputs in place of the table
     #[arg(long)]
     json: bool,
@@ -39,10 +43,23 @@ pub struct Arguments {
 
 /// Carries the command out and returns what is to be printed.
 pub fn run(Arguments { scene, by, of, json, picture }: Arguments) -> Result<String, Failure> {
-    let scene = scene.impact()?;
     picture.require_room()?;
-    let found = scene.sensitivity(&by)?;
-    let table = sensitivity::text(&found, &of)?;
-    let printed = if json { export::json(&found)? } else { format!("{}\n\n{table}", headline(&scene)?) };
-    Ok(printed + &picture.draw(json, || Ok(sensitivity::figure(&found, &of)?))?)
+    let (printed, figure) = match scene.any()? {
+        AnyScene::Impact(scene) => {
+            let found = scene.sensitivity(&by)?;
+            let of = of.as_deref().unwrap_or("restitution");
+            let text = sensitivity::text(&found, of)?;
+            let printed = if json { export::json(&found)? } else { format!("{}\n\n{text}", headline(&scene)?) };
+            (printed, sensitivity::figure(&found.table, of)?)
+        }
+        AnyScene::Bodies(scene) => {
+            let found = scene.sensitivity(&by)?;
+            let of = of.as_deref().unwrap_or_else(|| found.first_output());
+            let text = sensitivity::text_of_bodies(&found, of)?;
+            let headline = assembly::headline(&scene, &scene.pose()?);
+            let printed = if json { export::json(&found)? } else { format!("{headline}\n\n{text}") };
+            (printed, sensitivity::figure(&found.table, of)?)
+        }
+    };
+    Ok(printed + &picture.draw(json, || Ok(figure))?)
 }

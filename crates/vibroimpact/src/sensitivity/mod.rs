@@ -1,17 +1,20 @@
 //! How an impact changes with the numbers of its scene.
 //!
-//! The motion is differentiated along itself ([`vibroimpact_sim::modal::Solver::differentiate`]). What a field does to the
-//! modes, the masses and the law is known by posing the scene at four neighbouring values of the field, so that every
-//! number of a scene can be asked for, and no impact is solved but the one that is differentiated. The model is chosen
-//! once, for the scene itself, and kept.
+//! The motion is differentiated along itself ([`vibroimpact_sim::modal::Solver::differentiate`] and, for scenes of bodies,
+//! [`vibroimpact_sim::assembly::Solver::differentiate`]). What a field does to the modes, the masses, the loads and the law is
+//! known by posing the scene at four neighbouring values of the field, so that every number of a scene can be asked for,
+//! and no motion is solved but the one that is differentiated. The model is chosen once, for the scene itself, and kept.
+//! Answers in closed form, those of a wall and of the net laws, are differentiated by their own values there.
 
+mod bodies;
+mod closed_form;
 mod neighbours;
 mod picture;
+mod table;
 mod text;
 
 use serde::Serialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use vibroimpact_sim::modal::{Derivative, Derivatives, Parameter, Settings, Solver, Start};
 
 use crate::impact::{Impact, in_scene};
@@ -20,29 +23,13 @@ use crate::scene::json::quote;
 use crate::scene::{InvalidInput, Scene};
 use neighbours::Neighbours;
 
+pub use bodies::BodiesSensitivity;
 pub use picture::figure;
-pub use text::text;
+pub use table::{Field, OfField, Table};
+pub use text::{text, text_of_bodies};
 
 /// The modes whose frequencies and shapes are differentiated too, from the lowest.
 const MODES: usize = 10;
-
-/// A derivative of an output by a field, in the unit of the output over that of the field.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct OfField {
-    /// The derivative.
-    pub value: f64,
-    /// By how much it may be off; null where no digit of it is certain.
-    pub uncertainty: Option<f64>,
-}
-
-/// A field by which outputs were differentiated.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Field {
-    /// Its path, such as `striker.mass_kg`.
-    pub path: String,
-    /// Its value in the scene.
-    pub value: f64,
-}
 
 /// An impact, with the derivatives of its outputs by fields of its scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,11 +47,11 @@ pub struct Sensitivity {
     /// Speed of the slowest touch in parts of the fastest. Where it comes near zero a contact only grazes, and the
     /// derivatives grow beyond all bounds.
     pub nearest_graze: f64,
-    /// The fields, in the order asked for.
-    pub fields: Vec<Field>,
-    /// By output, then by field: `restitution`, `end_s`, `striker_velocity_m_s`, `sub_impacts[0].impulse_n_s` and the
-    /// like, `omega_rad_s[0]`, `shape[0]` and so on for the lowest modes.
-    pub derivatives: BTreeMap<String, BTreeMap<String, OfField>>,
+    /// The fields and the derivatives: outputs are `restitution`, `end_s`, `striker_velocity_m_s`,
+    /// `sub_impacts[0].impulse_n_s` and the like, `omega_rad_s[0]`, `shape[0]` and so on for the lowest modes, and
+    /// `emoc_restitution`, by the three-parameter law, where that holds.
+    #[serde(flatten)]
+    pub table: Table,
     /// The scene with the model and the modes that were kept.
     pub scene: Value,
     /// Version of the program.
@@ -74,7 +61,7 @@ pub struct Sensitivity {
 impl Sensitivity {
     /// The derivative of an output by a field, if there is such a one.
     pub fn of(&self, output: &str, field: &str) -> Option<OfField> {
-        self.derivatives.get(output)?.get(field).copied()
+        self.table.of(output, field)
     }
 }
 
@@ -106,30 +93,37 @@ impl Scene {
             let allowed = "a structure with modes: derivatives go along the motion of modes";
             return Err(InvalidInput::new("structure", "an infinite one", allowed));
         }
-        if !matches!(self.model, Model::Auto | Model::Modal) {
-            let allowed = "\"auto\" or \"modal\": derivatives go along the motion of modes";
-            return Err(InvalidInput::new("model", quote(&self.model.as_str().into()), allowed));
+        match self.model {
+            Model::Auto | Model::Modal => {}
+            Model::Rigid | Model::Emoc => return closed_form::sensitivity(self, fields),
+            Model::InfiniteBeam => {
+                let allowed = "\"auto\", \"modal\", \"rigid\" or \"emoc\"";
+                return Err(InvalidInput::new("model", quote(&self.model.as_str().into()), allowed));
+            }
         }
         let scene = self.settled()?;
         let tree = scene.tree();
-        let fields = match fields {
-            [] => neighbours::all_numbers(&tree),
-            named => named.to_vec(),
-        };
         let base = scene.impact()?;
-        let around: Vec<Neighbours> =
-            fields.iter().map(|field| Neighbours::of(&tree, field, &base)).collect::<Result<_, _>>()?;
-        differentiate(&base, around, tree)
+        let (around, left_out) =
+            neighbours::around((&tree, fields), &|tree| Scene::from_value(tree)?.impact(), &|impact: &mut Impact| {
+                impact.take_modes_of(&base)
+            })?;
+        differentiate(&scene, &base, (&around, left_out), tree)
     }
 }
 
-fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<Sensitivity, InvalidInput> {
+fn differentiate(
+    scene: &Scene,
+    base: &Impact,
+    (around, left_out): (&[Neighbours<Impact>], Vec<String>),
+    tree: Value,
+) -> Result<Sensitivity, InvalidInput> {
     let at_rest = Start::at_rest(base.structure.modes.len());
     let mut parameters = Vec::with_capacity(around.len() + 1);
-    let with_errors = Neighbours::with_errors(base);
-    for Neighbours { offsets, impacts, .. } in around.iter().chain([&with_errors]) {
-        let changes_law = impacts.iter().any(|impact| impact.law != base.law);
-        let neighbours = impacts.each_ref().map(|impact| impact.posing(&at_rest));
+    let with_errors = Neighbours::with_errors_of(base);
+    for Neighbours { offsets, at, .. } in around.iter().chain([&with_errors]) {
+        let changes_law = at.iter().any(|impact| impact.law != base.law);
+        let neighbours = at.each_ref().map(|impact| impact.posing(&at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
     }
     let mut solver = Solver::new(&base.structure).map_err(in_scene)?;
@@ -142,18 +136,17 @@ fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<
         let outcome = solution.outcome.as_str();
         return Err(InvalidInput::new("scene", format!("an impact whose outcome is \"{outcome}\""), allowed));
     };
-    let mut table: BTreeMap<String, BTreeMap<String, OfField>> = BTreeMap::new();
+    let mut table = Table::new(around, left_out);
     let by_errors = derivatives.last().map(outputs).unwrap_or_default();
     for (neighbours, derivatives) in around.iter().zip(derivatives) {
-        let of_impact =
-            outputs(derivatives).into_iter().zip(&by_errors).map(|((output, derivative), (_, by_errors))| {
-                let of_modes = neighbours.error(by_errors.value);
-                (output, Derivative { uncertainty: derivative.uncertainty.map(|own| own + of_modes), ..derivative })
-            });
-        for (output, Derivative { value, uncertainty }) in of_impact.chain(neighbours.of_modes(base)) {
-            table.entry(output).or_default().insert(neighbours.field.clone(), OfField { value, uncertainty });
+        for ((output, derivative), (_, by_errors)) in outputs(derivatives).into_iter().zip(&by_errors) {
+            table.insert(&output, &neighbours.field, neighbours.widened(derivative, *by_errors));
+        }
+        for (output, derivative) in neighbours.of_modes(base) {
+            table.insert(&output, &neighbours.field, derivative);
         }
     }
+    closed_form::add_emoc(&mut table, scene, &tree);
     Ok(Sensitivity {
         restitution,
         restitution_uncertainty: solution.restitution_uncertainty,
@@ -161,8 +154,7 @@ fn differentiate(base: &Impact, around: Vec<Neighbours>, tree: Value) -> Result<
         modes: base.kept_modes(),
         remainder_modes: base.remainder_modes,
         nearest_graze: found.nearest_graze,
-        fields: around.iter().map(|at| Field { path: at.field.clone(), value: at.value }).collect(),
-        derivatives: table,
+        table,
         scene: tree,
         version: env!("CARGO_PKG_VERSION"),
     })

@@ -6,7 +6,7 @@ use vibroimpact_sim::modal::{Derivative, Mode, Stencil};
 use super::MODES;
 use crate::impact::Impact;
 use crate::scene::json::{number, quote};
-use crate::scene::{FieldPath, InvalidInput, Scene};
+use crate::scene::{FieldPath, InvalidInput};
 
 /// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five of
 /// the digits that they have.
@@ -16,16 +16,22 @@ const KNOWN: f64 = 2e-13;
 /// The same where the value is zero, in its unit.
 const STEP_AT_ZERO: f64 = 1e-6;
 
-/// The impact at four neighbouring values of a field.
-pub(super) struct Neighbours {
+/// What a scene poses at four neighbouring values of a field.
+pub(super) struct Neighbours<T> {
     pub field: String,
     pub value: f64,
     pub offsets: [f64; 4],
-    pub impacts: [Impact; 4],
+    pub at: [T; 4],
 }
 
-impl Neighbours {
-    pub fn of(tree: &Value, field: &str, base: &Impact) -> Result<Neighbours, InvalidInput> {
+impl<T> Neighbours<T> {
+    /// By what a scene poses, and whether that is the same but for a little; its modes may be put in order for that.
+    pub fn of(
+        tree: &Value,
+        field: &str,
+        pose: &dyn Fn(&Value) -> Result<T, InvalidInput>,
+        is_near: &dyn Fn(&mut T) -> bool,
+    ) -> Result<Neighbours<T>, InvalidInput> {
         let named = |value: &str, allowed: String| InvalidInput::new("--by", format!("{value} of {field}"), allowed);
         let path = FieldPath::parse(field).ok_or_else(|| {
             InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
@@ -38,68 +44,54 @@ impl Neighbours {
         // on both sides, or beside a bound
         for places in [[-2.0, -1.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [-4.0, -3.0, -2.0, -1.0]] {
             let offsets = places.map(|place| place * step);
-            let mut impacts = Vec::with_capacity(4);
+            let mut posed = Vec::with_capacity(4);
             for offset in offsets {
-                match posed(tree, &path, value + offset) {
-                    Ok(impact) => impacts.push(impact),
+                match changed(tree, &path, value + offset).and_then(|tree| pose(&tree)) {
+                    Ok(near) => posed.push(near),
                     Err(refused) => {
                         fault.get_or_insert(refused);
                         break;
                     }
                 }
             }
-            if let Ok(mut impacts) = <[Impact; 4]>::try_from(impacts) {
-                if !impacts.iter_mut().all(|impact| impact.take_modes_of(base)) {
+            if let Ok(mut at) = <[T; 4]>::try_from(posed) {
+                if !at.iter_mut().all(is_near) {
                     let allowed = "a field with which the modes change smoothly: here two of them change places";
                     return Err(named(&number(value), allowed.to_owned()));
                 }
                 // the value itself is what a number of a file can hold, and so are its neighbours
                 let offsets = places.map(|place| (value + place * step) - value);
-                return Ok(Neighbours { field: field.to_owned(), value, offsets, impacts });
+                return Ok(Neighbours { field: field.to_owned(), value, offsets, at });
             }
         }
         let why = fault.map_or_else(String::new, |fault| format!(": {fault}"));
         Err(named(&number(value), format!("a field that can change by a little{why}")))
     }
 
-    /// The impact with errors of its modes, each of the same size and of either sign; the size takes the place of a field.
-    pub fn with_errors(base: &Impact) -> Neighbours {
+    /// What errors of modes make of it, each of the same size and of either sign; the size takes the place of a field.
+    pub fn with_errors(with: impl Fn(&mut dyn FnMut() -> f64) -> T) -> Neighbours<T> {
         let offsets = [-2e-6, -1e-6, 1e-6, 2e-6];
-        let impacts = offsets.map(|size| {
-            let mut impact = base.clone();
+        let at = offsets.map(|size| {
             // a linear congruential generator is random enough for signs
             let mut random = 2019u64;
-            let mut error = || {
+            with(&mut || {
                 random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                if random >> 63 == 0 { size } else { -size }
-            };
-            for mode in &mut impact.structure.modes {
-                mode.omega_rad_s *= 1.0 + error();
-                mode.shape *= 1.0 + error();
-            }
-            impact
+                1.0 + if random >> 63 == 0 { size } else { -size }
+            })
         });
-        Neighbours { field: String::new(), value: 0.0, offsets, impacts }
+        Neighbours { field: String::new(), value: 0.0, offsets, at }
     }
 
-    /// What the errors of the modes may make of a derivative, if errors of unit size change the output by this much.
-    pub fn error(&self, by_errors: f64) -> f64 {
+    /// A derivative with what the errors of the modes may make of it, if errors of unit size change the output by this much.
+    pub fn widened(&self, derivative: Derivative, by_errors: Derivative) -> Derivative {
         let nearest = self.offsets.iter().fold(f64::INFINITY, |least, offset| least.min(offset.abs()));
-        KNOWN / nearest * by_errors.abs()
+        let of_modes = KNOWN / nearest * by_errors.value.abs();
+        Derivative { uncertainty: derivative.uncertainty.map(|own| own + of_modes), ..derivative }
     }
 
-    /// Frequencies and shapes of the lowest modes.
-    pub fn of_modes(&self, base: &Impact) -> Vec<(String, Derivative)> {
-        let mut found = Vec::new();
-        for k in 0..base.kept_modes().min(MODES) {
-            let of = |quantity: fn(&Mode) -> f64| {
-                let at = |impact: &Impact| quantity(&impact.structure.modes[k]);
-                self.slope(at(base), self.impacts.each_ref().map(at))
-            };
-            found.push((format!("omega_rad_s[{k}]"), of(|mode| mode.omega_rad_s)));
-            found.push((format!("shape[{k}]"), of(|mode| mode.shape)));
-        }
-        found
+    /// How a smooth function of what is posed changes, one that is `value` here.
+    pub fn derivative(&self, value: f64, of: impl Fn(&T) -> f64) -> Derivative {
+        self.slope(value, self.at.each_ref().map(of))
     }
 
     /// Slope of the polynomial through the value and its neighbours, and how much it differs from that through the
@@ -115,20 +107,69 @@ impl Neighbours {
     }
 }
 
+impl Neighbours<Impact> {
+    /// The impact with errors of its modes.
+    pub fn with_errors_of(base: &Impact) -> Neighbours<Impact> {
+        Neighbours::with_errors(|error| {
+            let mut impact = base.clone();
+            for mode in &mut impact.structure.modes {
+                mode.omega_rad_s *= error();
+                mode.shape *= error();
+            }
+            impact
+        })
+    }
+
+    /// Frequencies and shapes of the lowest modes.
+    pub fn of_modes(&self, base: &Impact) -> Vec<(String, Derivative)> {
+        let mut found = Vec::new();
+        for k in 0..base.kept_modes().min(MODES) {
+            let of = |quantity: fn(&Mode) -> f64| {
+                let at = |impact: &Impact| quantity(&impact.structure.modes[k]);
+                self.derivative(at(base), at)
+            };
+            found.push((format!("omega_rad_s[{k}]"), of(|mode| mode.omega_rad_s)));
+            found.push((format!("shape[{k}]"), of(|mode| mode.shape)));
+        }
+        found
+    }
+}
+
 /// Slope of the polynomial through these places and values.
 fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
     Stencil::new(points.map(|point| point.0)).slope(points.map(|point| point.1))
 }
 
-fn posed(tree: &Value, path: &FieldPath, value: f64) -> Result<Impact, InvalidInput> {
+fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidInput> {
     let mut tree = tree.clone();
     // the field is there: it was read from the same tree
     path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.to_string(), number(value), why))?;
-    Scene::from_value(&tree)?.impact()
+    Ok(tree)
+}
+
+/// What a scene poses around the values of these fields; or, if none is named, of all numbers that it states, with those that
+/// cannot change by a little left out.
+pub(super) fn around<T>(
+    (tree, fields): (&Value, &[String]),
+    pose: &dyn Fn(&Value) -> Result<T, InvalidInput>,
+    is_near: &dyn Fn(&mut T) -> bool,
+) -> Result<(Vec<Neighbours<T>>, Vec<String>), InvalidInput> {
+    let of = |field: &String| Neighbours::of(tree, field, pose, is_near);
+    if !fields.is_empty() {
+        return Ok((fields.iter().map(of).collect::<Result<_, _>>()?, Vec::new()));
+    }
+    let (mut around, mut left_out) = (Vec::new(), Vec::new());
+    for field in all_numbers(tree) {
+        match of(&field) {
+            Ok(near) => around.push(near),
+            Err(_) => left_out.push(field),
+        }
+    }
+    Ok((around, left_out))
 }
 
 /// Every number of a scene that can change by a little, lists of numbers apart.
-pub(super) fn all_numbers(tree: &Value) -> Vec<String> {
+fn all_numbers(tree: &Value) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![(String::new(), tree)];
     while let Some((path, value)) = open.pop() {

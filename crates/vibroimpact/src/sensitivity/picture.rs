@@ -1,6 +1,6 @@
 //! The tornado picture of a sensitivity.
 
-use super::Sensitivity;
+use super::table::{Row, Table};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use crate::scene::InvalidInput;
 
@@ -11,7 +11,7 @@ const MOST: usize = 20;
 ///
 /// # Errors
 /// An output that the impact does not have.
-pub fn figure(found: &Sensitivity, output: &str) -> Result<Figure, InvalidInput> {
+pub fn figure(found: &Table, output: &str) -> Result<Figure, InvalidInput> {
     let rows: Vec<_> = found.rows(output)?.into_iter().filter(|row| row.value != 0.0).take(MOST).collect();
     let count = rows.len();
     let line = |i: usize| (count - i) as f64;
@@ -26,10 +26,10 @@ pub fn figure(found: &Sensitivity, output: &str) -> Result<Figure, InvalidInput>
             panel = panel.with(if i == 0 { bar.label(label) } else { bar });
         }
     }
-    let ends: Vec<f64> = rows.iter().map(super::text::Row::by_part).collect();
+    let ends: Vec<f64> = rows.iter().map(Row::by_part).collect();
     let half: Vec<f64> =
         rows.iter().map(|row| 0.01 * row.value.abs() * row.derivative.uncertainty.unwrap_or(0.0)).collect();
     let levels: Vec<f64> = (0..count).map(line).collect();
     let panel = panel.with(Series::level_error_bars(&ends, &levels, &half, Marker::Dot).colour(Colour::Black));
-    Ok(Figure::new(format!("What changes the {output} of this impact")).row([panel.with(Series::vertical_rule(0.0))]))
+    Ok(Figure::new(format!("What changes {output}")).row([panel.with(Series::vertical_rule(0.0))]))
 }

@@ -1,6 +1,7 @@
 //! The table of a sensitivity.
 
-use super::{OfField, Sensitivity};
+use super::table::{Row, Table};
+use super::{BodiesSensitivity, Sensitivity};
 use crate::scene::InvalidInput;
 use std::fmt::Write;
 
@@ -13,16 +14,44 @@ const NEAR: f64 = 1e-2;
 /// # Errors
 /// An output that the impact does not have.
 pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
-    let rows = found.rows(output)?;
-    let wide = rows.iter().map(|row| row.path.len()).max().unwrap_or(0).max(5);
-    let mut text = String::new();
+    let rows = found.table.rows(output)?;
     let contacts = if found.sub_impact_count == 1 { "sub-impact" } else { "sub-impacts" };
     let restitution = crate::text::restitution(found.restitution, found.restitution_uncertainty);
-    let _ = writeln!(
-        text,
-        "restitution {restitution}, {} {contacts}, {} modes and {} remainder modes\n\nderivatives of {output}\n",
+    let mut text = format!(
+        "restitution {restitution}, {} {contacts}, {} modes and {} remainder modes\n\n",
         found.sub_impact_count, found.modes, found.remainder_modes
     );
+    text += &table(&found.table, output)?;
+    let largest = rows.iter().map(|row| row.by_part().abs()).fold(0.0, f64::max);
+    if output == "restitution" && largest > LINEAR {
+        let part = 1e-2 * LINEAR / largest;
+        let _ = writeln!(
+            text,
+            "One per cent is far beyond where the derivatives hold: a change of {} of the first field already changes the\n\
+             restitution by {LINEAR}.",
+            crate::model::small(part)
+        );
+    }
+    text += &cautions(found.nearest_graze, found.sub_impact_count, &rows);
+    Ok(text)
+}
+
+/// The derivatives of one output of a scene of bodies, likewise.
+///
+/// # Errors
+/// An output that the run does not have.
+pub fn text_of_bodies(found: &BodiesSensitivity, output: &str) -> Result<String, InvalidInput> {
+    let (count, outcome) = (found.interval_count, found.outcome);
+    let intervals = if count == 1 { "interval of contact" } else { "intervals of contact" };
+    let text = format!("{outcome} at {:.6e} s, {count} {intervals}\n\n", found.end_s);
+    let rows = found.table.rows(output)?;
+    Ok(text + &table(&found.table, output)? + &cautions(found.nearest_graze, count, &rows))
+}
+
+fn table(found: &Table, output: &str) -> Result<String, InvalidInput> {
+    let rows = found.rows(output)?;
+    let wide = rows.iter().map(|row| row.path.len()).max().unwrap_or(0).max(5);
+    let mut text = format!("derivatives of {output}\n\n");
     let _ = writeln!(
         text,
         "  {:wide$}  {:>WIDTH$}  {:>14}  {:>9}  {:>14}",
@@ -39,22 +68,17 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
             row.derivative.value
         );
     }
-    let _ = writeln!(
-        text,
-        "\nDerivatives are per SI unit of the field; \"by 1 % more\" is what one per cent more of it changes."
-    );
-    let largest = rows.iter().map(|row| row.by_part().abs()).fold(0.0, f64::max);
-    if output == "restitution" && largest > LINEAR {
-        let part = 1e-2 * LINEAR / largest;
-        let _ = writeln!(
-            text,
-            "One per cent is far beyond where the derivatives hold: a change of {} of the first field already changes the\n\
-             restitution by {LINEAR}.",
-            crate::model::small(part)
-        );
+    text += "\nDerivatives are per SI unit of the field; \"by 1 % more\" is what one per cent more of it changes.\n";
+    if !found.left_out.is_empty() {
+        let _ = writeln!(text, "Left out, since they cannot change by a little: {}.", found.left_out.join(", "));
     }
-    let graze = found.nearest_graze;
-    if found.sub_impact_count > 1 {
+    Ok(text)
+}
+
+/// How near the next graze is, and which derivatives are not known.
+fn cautions(graze: f64, contacts: usize, rows: &[Row]) -> String {
+    let mut text = String::new();
+    if contacts > 1 {
         let _ = writeln!(
             text,
             "The slowest of the contacts began with {:.2} % of the speed of the fastest.",
@@ -68,7 +92,7 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
     if rows.iter().any(|row| row.derivative.uncertainty.is_none()) {
         text += "No digit is certain where ± is ?: a coarser solution took another course.\n";
     }
-    Ok(text)
+    text
 }
 
 /// Characters of the column of values.
@@ -83,35 +107,3 @@ fn short(value: f64) -> String {
 
 /// A change of the restitution beyond which its derivatives do not hold.
 const LINEAR: f64 = 0.1;
-
-/// A field with the derivative of an output by it.
-pub(super) struct Row<'a> {
-    pub path: &'a str,
-    pub value: f64,
-    pub derivative: OfField,
-}
-
-impl Row<'_> {
-    /// What one per cent more of the field changes.
-    pub fn by_part(&self) -> f64 {
-        0.01 * self.value * self.derivative.value
-    }
-}
-
-impl Sensitivity {
-    /// The fields by how much a part of them changes an output.
-    pub(super) fn rows(&self, output: &str) -> Result<Vec<Row<'_>>, InvalidInput> {
-        let by_field = self.derivatives.get(output).ok_or_else(|| {
-            let known = self.derivatives.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            InvalidInput::new("--of", output, format!("an output of this impact: {known}"))
-        })?;
-        let mut rows: Vec<Row> = Vec::new();
-        for field in &self.fields {
-            if let Some(&derivative) = by_field.get(&field.path) {
-                rows.push(Row { path: &field.path, value: field.value, derivative });
-            }
-        }
-        rows.sort_by(|a, b| b.by_part().abs().total_cmp(&a.by_part().abs()));
-        Ok(rows)
-    }
-}
