@@ -93,8 +93,8 @@ class Segment(Part):
     ``shear_coefficient``: Shear coefficient ``kappa`` of Timoshenko's theory. When left out: ``5(1+nu)/(6+5nu)`` for a
         rectangle, ``6(1+nu)^2/(7+12nu+4nu^2)`` for a circle, which follow elasticity better than Cowper's.
     ``shear_rigidity_n``: Shear rigidity ``kappa G A`` (N), beside the flexural rigidity.
-    ``thickness_m``: Thickness of a rectangular section, along the direction of the blow (m).
-    ``width_m``: Width of a rectangular section, across the direction of the blow (m).
+    ``thickness_m``: Thickness of a rectangular section, in the direction of the impact (m).
+    ``width_m``: Width of a rectangular section, across the direction of the impact (m).
     ``youngs_modulus_pa``: Young's modulus (Pa).
     """
 
@@ -128,7 +128,7 @@ class Point(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class MovingMode(Part):
-    """The motion of one mode, told at a place where it can be seen.
+    """The motion of one mode, told at a location where it can be seen.
 
     ``mode``: Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
     ``displacement_m``: Displacement there (m); 0 when left out.
@@ -151,7 +151,7 @@ class Start(Part):
 
     ``amplitude_m_kg0_5``: Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
     ``gap_m``: Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
-    ``moving_modes``: Modes given by how they move at a place.
+    ``moving_modes``: Modes given by how they move at a location.
     ``rate_m_kg0_5_s``: Their rates (m kg^1/2 / s); those of the rest are 0.
     """
 
@@ -245,7 +245,7 @@ class Plate(Part):
 
     ``length_m``: Length, along x (m).
     ``width_m``: Width, along y (m).
-    ``thickness_m``: Thickness, along the direction of the blow (m).
+    ``thickness_m``: Thickness, in the direction of the impact (m).
     ``edges``: How the edges at x = 0, x = length, y = 0 and y = width are held.
     ``damping_ratio``: Damping ratio of every mode; 0 when left out.
     ``density_kg_m3``: Density (kg/m^3).
@@ -324,8 +324,8 @@ class InfiniteBeam(Part):
     ``shear_coefficient``: Shear coefficient of Timoshenko's theory; that of the section when left out, as for a
         ``Segment``.
     ``shear_rigidity_n``: Shear rigidity ``kappa G A`` (N), beside the flexural rigidity.
-    ``thickness_m``: Thickness of a rectangular section, along the direction of the blow (m).
-    ``width_m``: Width of a rectangular section, across the direction of the blow (m).
+    ``thickness_m``: Thickness of a rectangular section, in the direction of the impact (m).
+    ``width_m``: Width of a rectangular section, across the direction of the impact (m).
     ``youngs_modulus_pa``: Young's modulus (Pa).
     """
 
@@ -372,8 +372,8 @@ class DroppedRod(Part):
     ``length_m``: Length (m).
     ``diameter_m``: Diameter (m); the ends are hemispheres of half of it in radius.
     ``inclination_deg``: Angle between rod and floor (degrees): 0 lies, 90 stands upright.
-    ``axial_modes``: Axial modes kept; 20 when left out.
-    ``bending_modes``: Bending modes kept; 40 when left out.
+    ``axial_modes``: Axial modes; 20 when left out.
+    ``bending_modes``: Bending modes; 40 when left out.
     ``damping_ratio``: Damping ratio of the elastic modes; 0 when left out.
     ``density_kg_m3``: Density (kg/m^3).
     ``material``: Material, in place of its numbers; a number beside it takes precedence
@@ -690,8 +690,9 @@ class Scene(Part):
     ``location_m``: Place of the impact (m): from the left end of a beam or string; on a plate two numbers, ``[x, y]`` from
         a corner. Required for these; other structures have none.
     ``model``: Which model answers; the program's choice when left out.
-    ``modes``: Modes kept, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
-    ``residual_compliance``: Whether remainder modes answer for the modes left out, so that the restitution converges in the
+    ``modes``: Modes retained, from the lowest: a number (0 is an immovable structure), or the program's choice when left
+        out.
+    ``residual_compliance``: Whether remainder modes represent the truncated modes, so that the restitution converges in the
         number of modes. When left out: ``true`` where the program chooses the modes (and knows the static compliance),
         ``false`` where their number is given.
     ``start``: Motion of the structure before the impact; at rest and touched by the striker when left out.

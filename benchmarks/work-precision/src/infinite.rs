@@ -1,8 +1,8 @@
 //! A ball on an infinite beam: the solver made for it, the general Volterra methods, and the semi-analytical solution.
 //!
 //! First contacts are compared with 25-digit solutions by one global panel (`crates/vibroimpact-sim/tests/data`). The
-//! whole story at `S = 15`, four separations and then contact for ever, has no such reference: the two spectral methods,
-//! which share no code, are each other's.
+//! whole contact history at `S = 15`, four separations and then sustained contact, has no such reference: the two
+//! spectral methods share no code, and each is the reference of the other.
 
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use fracdiff::{Collocation, Convolution, Direction, Event, GalerkinStates, Method, SumOfExponentials, Term, Volterra};
@@ -11,7 +11,7 @@ use vibroimpact_sim::infinite::{FirstContact, Settings, Solution, Structure, sol
 
 const FIRST_CONTACTS: &str = include_str!("../../../crates/vibroimpact-sim/tests/data/infinite_first_contact.csv");
 
-/// Until when the whole story at `S = 15` is followed by methods that have to be told.
+/// Until when the whole contact history at `S = 15` is followed by methods that have to be told.
 const STORY_END: f64 = 200.0;
 
 /// Duration and rebound ratio of the first contact, from the finer of the table's two resolutions.
@@ -100,7 +100,7 @@ fn general_methods(effort: &Effort) -> Vec<General> {
     ]
 }
 
-/// How far the two spectral methods differ over the whole story at `S = 15`: the floor of its errors.
+/// How far the two spectral methods differ over the whole contact history at `S = 15`: the floor of its errors.
 ///
 /// # Errors
 /// If either cannot solve it.
@@ -125,7 +125,7 @@ fn story_by_both(tolerance: f64) -> Result<Story, String> {
     Ok((own, general.events.iter().map(|hit| hit.t).collect()))
 }
 
-/// First contacts at `S = 1, 15, 1000` and the whole story at `S = 15`.
+/// First contacts at `S = 1, 15, 1000` and the whole contact history at `S = 15`.
 ///
 /// # Errors
 /// If a reference is missing.

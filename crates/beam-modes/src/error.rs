@@ -31,7 +31,7 @@ impl InvalidInput {
         if x_m >= 0.0 && x_m <= length_m {
             Ok(x_m)
         } else {
-            Err(Self::new(field, x_m, "a place on the structure, from 0 to its length"))
+            Err(Self::new(field, x_m, "a location on the structure, from 0 to its length"))
         }
     }
 }

@@ -4,8 +4,8 @@
 //! other) and its rate (m/s) into the normal force `F` (N). Laws with memory (hysteresis,
 //! plasticity, damping that depends on the speed of approach) are made of smooth *branches*:
 //! within a [`Branch`] the force is a smooth function of `(xi, xi_dot)`, and the branch is valid
-//! inside an intersection of half planes ([`Boundary`]). An integrator follows one branch until
-//! a boundary is met, lands on it, and asks the law what comes [`next`](ContactLaw::cross): another
+//! inside an intersection of half planes ([`Boundary`]). An integrator follows one branch until it
+//! meets a boundary, locates it, and asks the law what comes [`next`](ContactLaw::cross): another
 //! branch, or the release of the contact. No law has a kink inside a branch, so a high-order
 //! integrator keeps its order.
 //!
@@ -45,14 +45,14 @@
 //! force is continuous on the way in and out. [`Law`] holds any of them; it also gives the
 //! restitution of a rigid striker at a wall, [`Law::wall_restitution`], for any law. Between the
 //! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
-//! has dissipated. [`trace`] drives a law with a prescribed motion, and [`check_contract`] tries what a law of one's own
-//! promises to an integrator.
+//! has dissipated. [`trace`] drives a law with a prescribed motion, and [`check_contract`] tests whether a law of one's own
+//! keeps what laws promise to an integrator.
 //!
-//! The other way round, [`Wanted`] gives the parameters of a law for a wanted restitution, exactly and not by the papers'
-//! approximations, and [`stepped_restitution`] what an engine with a fixed step makes of them.
+//! Conversely, [`Wanted`] gives the parameters of a law for a wanted restitution, exactly and not by the papers'
+//! approximations, and [`stepped_restitution`] the restitution of these parameters in an engine with a fixed step.
 //!
-//! The laws give the normal force of one contact. There is no friction, no adhesion (no law pulls), and no wave in the
-//! bodies: those belong to the structure.
+//! The laws give the normal force of one contact, without friction and without adhesion (no law pulls). Waves in the
+//! bodies belong to the structure.
 //!
 //! Parameters are checked by each law's `new`. Fields are public; after changing one,
 //! `validated` checks again. Checked laws give finite numbers for every finite compression and

@@ -2,16 +2,16 @@
 #![forbid(unsafe_code)]
 //! Net restitution without time integration: **e**nergy **m**inimisation under **o**utward **c**onstraints.
 //!
-//! A compact body of mass `m` strikes a vibrating structure at rest with speed `u = -v_i`. What follows, a row of
-//! sub-impacts within one macroscopic impact, is not resolved in time. Instead the velocity `v_f` after it and
-//! the modal speeds `a_k'` are those of the least kinetic energy
+//! A compact body of mass `m` strikes a vibrating structure at rest with speed `u = -v_i`. The sequence of sub-impacts
+//! that follows is not resolved in time. Instead the velocity `v_f` after it and the modal speeds `a_k'` minimise the
+//! kinetic energy
 //!
 //! ```text
 //! (m v_f^2 + sum a_k'^2) / 2                                   (6.4)
 //! ```
 //!
-//! that the impact can leave behind, given that the impulse `m (v_f + u)` bounds what each mode can have taken up,
-//! and that the bodies part:
+//! under the conditions that the impulse `m (v_f + u)` bounds what each mode can have taken up, and that the bodies
+//! separate:
 //!
 //! ```text
 //! |a_k'| <= phi_k m (v_f + u)                                  (6.5, fundamental)
@@ -68,7 +68,7 @@
 //! - [`MovingImpact::rebound`]: the same for a structure that moves already, in two nested bisections, without
 //!   allocation.
 //! - `ScatteredLaw` (feature `scatter`): the distribution of the restitution about the law, and draws from it by a uniform random
-//!   number, as an engine wants them.
+//!   number, for physics engines.
 //! - [`newton_restitution`]: a constant coefficient at the contact points, for comparison.
 //! - `Problem` and `lcp` (feature `alloc`): several contacts at once; the linear complementarity baseline.
 //! - `Solver` (feature `qp`): energy minimisation under outward constraints for several contacts, a structure that
@@ -81,10 +81,11 @@
 //!
 //! # Limits
 //!
-//! The closed form is for one contact and a structure at rest; [`MovingImpact`] for one contact and any motion. The contact's law, the speed and the frequencies do not
-//! enter, so that the number of modes stands for the duration of the contact: they should reach somewhat beyond the
-//! frequencies that it excites. With three parameters for a structure the law follows averages over place and mass; on
-//! the beams of the thesis it misses resolved impacts by 0.05 to 0.08 (rms), single ones by up to 0.3.
+//! The closed form is for one contact and a structure at rest; [`MovingImpact`] for one contact and any motion. Contact
+//! law, speed and frequencies do not enter, so the number of modes takes the role of the duration of the contact: they
+//! should reach somewhat beyond the frequencies that it excites. With three parameters for a structure the law follows
+//! averages over location and mass. On the beams of the thesis its error against resolved impacts is 0.05 to 0.08 (rms),
+//! and up to 0.3 for single ones.
 //!
 //! # Several contacts
 //!
@@ -100,7 +101,7 @@
 //! ```
 //!
 //! For one striker and a structure at rest this is P_1. With a structure that vibrates, or bodies that touch each
-//! other in several places, the demands on the right can ask for more than is there. Then all demands are lowered
+//! other in several places, the demands on the right can exceed the available energy. Then all demands are lowered
 //! by a common share `s`, `(1-s)` times what the least-energy impact attains plus `s` times what was demanded, with
 //! the largest `s` (to 1e-6) at which the energy does not grow. At `s = 0` that impact itself is feasible,
 //! so that there always is such an `s`.

@@ -4,7 +4,7 @@ use crate::closed_form::sum_of_squares;
 use crate::error::{require_fraction, require_non_negative, require_positive};
 use crate::{Coefficients, InvalidInput, Real, Rebound};
 
-/// What the model needs to know of a place on a structure: three numbers out of its mode shapes there.
+/// What the model needs to know of a location on a structure: three numbers out of its mode shapes there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site<T = f64> {
     /// `sum_k phi_k(b)^2` over the active modes (1/kg).

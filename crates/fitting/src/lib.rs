@@ -9,7 +9,7 @@
 //!
 //! # How
 //!
-//! - **Ranges by transformation.** A parameter is sought in a coordinate `u` that knows no bounds: `p = u`, `p = exp u`
+//! - **Ranges by transformation.** A parameter is sought in a coordinate `u` without bounds: `p = u`, `p = exp u`
 //!   or `p = low + (high - low)/(1 + exp(-u))` ([`Range`]). Derivatives are multiplied by `dp/du`.
 //! - **Several starts.** The parameters' own starting point, then Halton's sequence over their search intervals in
 //!   `u`: even cover, no random numbers. What each start leads to is part of the [`Fit`].
@@ -20,9 +20,9 @@
 //!   goes on from the best point ([`Method::Both`], the default).
 //! - **Intervals.** `C = s^2 (J^T J)^-1`, `s^2 = S/(m - n)`, in `u`, with Student's quantile ([`Fit::intervals`]; its
 //!   assumptions are stated there), or by resampling with a seed ([`bootstrap`]).
-//! - **What is determined.** [`Information`] tells covariance, directions that the residuals leave open, and what
-//!   further ones would add; [`profile`] follows the sum of squares where the covariance is too simple; and
-//!   [`chi_square_tail`] and [`fisher_tail`] tell whether the misfit is one of noise.
+//! - **What is determined.** [`Information`] gives the covariance, the directions that the residuals leave open, and what
+//!   further residuals would add; [`profile`] follows the sum of squares where the covariance is too simple; and
+//!   [`chi_square_tail`] and [`fisher_tail`] test whether noise explains the misfit.
 //! - **Prediction.** [`cross_validate`] leaves out random folds ([`k_folds`]) or groups that belong together.
 //!
 //! The same input gives the same bits: one thread, sums in order, random numbers from a seed only.

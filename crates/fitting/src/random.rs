@@ -1,6 +1,6 @@
 //! Points that fill a box evenly, and seeded random numbers.
 
-/// SplitMix64 (Steele, Lea and Flood 2014), written out so that a seed means the same numbers for ever.
+/// SplitMix64 (Steele, Lea and Flood 2014), written out so that a seed always means the same numbers.
 pub(crate) struct Random(u64);
 
 impl Random {

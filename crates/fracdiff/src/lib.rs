@@ -53,13 +53,13 @@
 //!
 //! *Fading states*: `t^(a-1) ~ t^m sum_l w_l exp(-r_l t)` turns the past into states that obey ordinary differential
 //! equations. The sum is a quadrature of the Laplace integral of the kernel ([`ExponentialSum`]), accurate beyond one
-//! step, or the Galerkin projection of Das and Chatterjee ([`DasChatterjee`]), which stands for the kernel everywhere.
+//! step, or the Galerkin projection of Das and Chatterjee ([`DasChatterjee`]), which approximates the kernel everywhere.
 //!
 //! *Collocation*: on a panel of `x = (t - t0)^(1/q)`, `t0` the last break, the density is a polynomial through
 //! Gauss-Legendre nodes. Kernels are integrated by Gauss-Jacobi rules that carry the singularity exactly:
 //! `t_i - s = (x_i - x) Q(x_i, x)` with a positive, smooth `Q`. Past panels are Gauss sums, on dyadic pieces where they
-//! are near. Panels are halved until the last Legendre coefficients are negligible, so that a kink of the density
-//! inside (the end of a contact) is closed in on.
+//! are near. Panels are halved until the last Legendre coefficients are negligible, so that they enclose a kink
+//! of the density (the end of a contact) ever more closely.
 //!
 //! # Limits
 //!

@@ -6,7 +6,7 @@
 //! w(x, t) = sum_k phi_k(x) q_k(t)                                                      (1)
 //! ```
 //!
-//! Remainder modes stand for the local response of all others at the place of impact. They have no shape elsewhere and
+//! Remainder modes stand for the local response of all others at the location of impact. They have no shape elsewhere and
 //! are left out, so that at that place (1) lacks a part of the displacement there, which is small beside the whole.
 
 use serde::Serialize;
@@ -98,7 +98,7 @@ struct Line {
 }
 
 /// Places along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
-/// Modes that the place of impact does not excite may have been left out between them.
+/// Modes that the location of impact does not excite may have been left out between them.
 fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<Shapes>, InvalidInput> {
     let highest = kept.last().copied().unwrap_or(0.0) * (1.0 - SAME);
     let mut count = kept.len();

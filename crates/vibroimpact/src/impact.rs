@@ -11,7 +11,7 @@ use crate::scene::{self, InvalidInput, Scene, require_elastic};
 pub struct Impact {
     /// The modes of the structure at the point of impact, remainder modes last.
     pub structure: Structure,
-    /// How many of them, at the end, are remainder modes: they stand for all modes left out
+    /// How many of them, at the end, are remainder modes: they represent all modes left out
     /// ([`beam_modes::remainder_modes`]).
     pub remainder_modes: usize,
     /// Mass and speed.

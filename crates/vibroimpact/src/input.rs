@@ -6,7 +6,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use crate::scene::told::shorten;
+use crate::scene::told::{counted, shorten};
 use crate::scene::{InvalidInput, SceneError};
 
 /// Largest file that is read (bytes).
@@ -62,7 +62,11 @@ impl Table {
         let rows: Vec<Row> = table.records().map(row).collect::<Result<_, InvalidInput>>()?;
         if let Some(row) = rows.iter().find(|row| row.cells.len() != header.len()) {
             let allowed = format!("as many as the line of names has, which is {}", header.len());
-            return Err(InvalidInput::new(format!("line {}", row.line), format!("{} cells", row.cells.len()), allowed));
+            return Err(InvalidInput::new(
+                format!("line {}", row.line),
+                counted(row.cells.len() as u64, "cell", "cells"),
+                allowed,
+            ));
         }
         Ok(Table { header, rows })
     }

@@ -1,7 +1,7 @@
 //! From a scene file to the rebound: a compact body strikes a slender vibrating one.
 //!
-//! A [`Scene`] poses an impact as a user does: a beam of segments (or a structure known by its modes), a striker, a
-//! law of contact, a place. [`Scene::impact`] turns it into the terms of the solver, and [`Impact::solve`] resolves
+//! A [`Scene`] describes an impact: a beam of segments (or a structure given by its modes), a striker, a law of contact,
+//! a location. [`Scene::impact`] turns it into the terms of the solver, and [`Impact::solve`] resolves
 //! every contact until it is certain that the bodies never meet again.
 //!
 //! ```
@@ -27,13 +27,13 @@
 //! |---|---|
 //! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
 //! | [`scene::schema`] | its JSON Schema |
-//! | [`draft`] | a scene file whose fields are still to be changed |
+//! | [`draft`] | a scene file whose fields can still be changed |
 //! | [`deflection`] | how a beam or a string deflects along its length during an impact |
 //! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
 //! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`trust`] | how far the theories behind a result can be trusted |
-//! | [`net`] | the net restitution without its course in time, and the parameters of that law from data |
+//! | [`net`] | the net restitution without integration in time, and the parameters of that law from data |
 //! | [`identify`] | fields of a scene from measurements, by resolved impacts |
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
@@ -50,8 +50,8 @@
 //!
 //! # Limits
 //!
-//! Linear structures, one point of contact, a striker that moves along one line without rotation; no gravity and no
-//! friction during the impact. The mathematics, with its symbols, is in the crates that solve.
+//! For a single impact structures are linear, the contact is one point, and the striker moves along one line without
+//! rotation. Gravity and friction are left out during the impact. The mathematics, with its symbols, is in the crates that solve.
 
 // without files some helpers of sweeps and pictures have no user
 #![cfg_attr(not(feature = "files"), allow(dead_code))]

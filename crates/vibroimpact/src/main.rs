@@ -51,10 +51,10 @@ vibroimpact COMMAND --help shows examples of a command, vibroimpact schema the w
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Say nothing but results and errors: no progress, no names of files written
+    /// Print nothing but results and errors: no progress, no names of files
     #[arg(long, short, global = true, conflicts_with = "verbose", help_heading = "Everywhere")]
     quiet: bool,
-    /// Say on the standard error what is done, and how long it takes
+    /// Print on the standard error what is done, and how long it takes
     #[arg(long, short, global = true, help_heading = "Everywhere")]
     verbose: bool,
 }
@@ -70,7 +70,7 @@ enum Command {
     /// Resolve one impact: every contact, the rebound, where the energy went
     #[command(after_help = simulate::EXAMPLES)]
     Simulate(simulate::Arguments),
-    /// Say which model would be used and why, and what each would cost
+    /// State which model would be used and why, and what each would cost
     #[command(after_help = choice::PLAN_EXAMPLES)]
     Plan(choice::PlanArguments),
     /// Answer a scene by every model, side by side

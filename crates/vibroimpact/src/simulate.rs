@@ -151,7 +151,7 @@ impl Simulation {
 
 impl Resolved {
     /// How far tables and pictures go (s), where a reader asks for `wanted` or leaves it open. After bodies have parted
-    /// for ever their motion is free and known for ever; after a computation that stopped, or in sustained contact,
+    /// for good their motion is free and known for all times; after a computation that stopped, or in sustained contact,
     /// it is not.
     pub fn until_s(&self, wanted: Option<f64>) -> f64 {
         let known_s = self.history.duration_s();

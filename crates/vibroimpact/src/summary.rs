@@ -32,7 +32,7 @@ pub struct Summary {
     pub end_s: f64,
     /// Number of modes kept.
     pub modes: usize,
-    /// Number of remainder modes that stand for all others; they come last in lists of modes.
+    /// Number of remainder modes that represent all others; they come last in lists of modes.
     pub remainder_modes: usize,
     /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,

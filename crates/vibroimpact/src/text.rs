@@ -7,7 +7,7 @@ use vibroimpact_sim::modal::{Mode, Striker};
 
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
-pub use crate::scene::told::{printable, shorten};
+pub use crate::scene::told::{counted, printable, shorten};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
 

@@ -151,7 +151,7 @@ fn a_scene_that_does_not_settle_is_a_result_that_says_so() {
     assert_eq!(choice["settled"], false);
     assert!(choice["spread"].as_f64().unwrap() > 1e-5);
     let text = folder.printed("simulate", &[]);
-    assert!(text.contains("NOT SETTLED") && text.contains("nothing damps"), "{text}");
+    assert!(text.contains("NOT CONVERGED") && text.contains("nothing damps"), "{text}");
 }
 
 #[test]

@@ -197,7 +197,7 @@ fn an_impact_is_shown_moving() {
     let plate = first_scene(folder.path(), "plate");
     for text in [bodies, plate] {
         let message = refused(&fed(folder.path(), &["simulate", "-", "--animate", "other.svg"], &text));
-        assert!(message.contains("--animate = other.svg is not allowed: left out for this scene"), "{message}");
+        assert!(message.contains("--animate = other.svg must be left out for this scene"), "{message}");
     }
     assert!(refused(&run(folder.path(), &["demo", "--animate", "a.gif"])).contains("ends in .svg"));
     assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));

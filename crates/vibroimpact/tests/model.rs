@@ -136,7 +136,7 @@ fn what_does_not_settle_is_said_to() {
     assert!(!found.settled && found.spread.is_some_and(|spread| spread > 1e-10), "{found:?}");
     assert!(found.restitution_uncertainty >= found.spread, "{found:?}");
     assert!(
-        found.reason.contains("before the restitution settles") && found.reason.contains("nothing damps"),
+        found.reason.contains("before the restitution converges") && found.reason.contains("nothing damps"),
         "{}",
         found.reason
     );

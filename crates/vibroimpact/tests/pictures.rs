@@ -87,7 +87,7 @@ fn modes_are_drawn_along_a_beam_and_as_stems() {
     let folder = tempfile::tempdir().unwrap();
     let draw = |name: &str, count: &str| drawn_modes(folder.path(), name, count);
     let beam = draw("stepped-cantilever", "12");
-    assert!(beam.contains("place along the beam (m)") && beam.contains("frequency (kHz)"));
+    assert!(beam.contains("location along the beam (m)") && beam.contains("frequency (kHz)"));
     assert!(!draw("measured-modes", "2").contains("along the beam"));
     // each is drawn, as long as they are told apart
     let named = |svg: &str, number: usize| svg.contains(&format!("\n{number}: "));
@@ -101,7 +101,7 @@ fn modes_are_drawn_along_a_string_and_over_a_plate() {
     let folder = tempfile::tempdir().unwrap();
     let draw = |name: &str, count: &str| drawn_modes(folder.path(), name, count);
     let string = draw("piano-hammer", "5");
-    assert!(string.contains("place along the string (m)") && string.contains("\n5: "));
+    assert!(string.contains("location along the string (m)") && string.contains("\n5: "));
     for name in ["cantilever-plate", "simply-supported-plate"] {
         let plate = draw(name, "14");
         assert!((1..=12).all(|number| plate.contains(&format!("\n{number}: "))) && !plate.contains("\n13: "), "{name}");

@@ -7,25 +7,26 @@ use std::fmt::Write;
 /// `docs/benchmarks.md`.
 pub fn page(record: &Record, history: &[Row]) -> String {
     let mut text = format!(
-        "# What the solvers cost, and how far off they are
+        "# Costs over time
 
-A fixed list of problems is solved; steps, iterations, evaluations and instructions are counted, and results are compared
-with references. No clock is read, so that the figures are the same on a busy machine and on an idle one.
-`cargo xtask bench-check`, which the workflow runs, fails if
+This page records what the solvers cost and how accurate they are, so that a change for the worse is noticed. A fixed list of
+problems is solved. Steps, iterations, evaluations and instructions are counted, and results are compared with references.
+No clock is read, so the figures are the same on a busy machine and on an idle one. `cargo xtask bench-check`, which the
+workflow runs, fails if
 
 - a count has grown by more than {cost:.0} % and by more than {counts},
 - instructions have grown by more than {instructions:.0} % (compared where compiler, target, profile and valgrind are those
   of the record),
 - an error has grown to more than {factor} times the recorded one, or {factor} times rounding if that is more,
-- a problem has come or gone, or this page does not show the record.
+- a problem was added or removed, or this page does not show the record.
 
-After a change that is meant, `cargo xtask bench-record` writes the record (`benchmarks/record.json`), adds the values that
-changed to `benchmarks/history.csv`, and makes this page and its figure. Times, which differ from machine to machine, are
-measured by criterion (`cargo bench`) and compared for every pull request as information.
+After an intended change, `cargo xtask bench-record` writes the record (`benchmarks/record.json`), adds the values that
+changed to `benchmarks/history.csv`, and makes this page and its figure. Times differ from machine to machine. Criterion
+(`cargo bench`) measures them, and they are compared for every pull request as information.
 
-The error of a problem is the largest of its results', relative where the reference is above one in size and absolute
-below. References are closed forms, multiple precision, or tighter runs kept in `benchmarks/references.json`. An impact on
-modes stands for five impacts at speeds from 0.8 to 1.25 m/s, at the tolerance that ends its name.
+The error of a problem is the largest error of its results, relative if the reference is above one in size and absolute
+otherwise. References are closed forms, multiple precision, or runs with a tighter tolerance in `benchmarks/references.json`.
+A problem on modes consists of five impacts at speeds from 0.8 to 1.25 m/s, at the tolerance that ends its name.
 
 Instructions: {conditions}.
 

@@ -48,7 +48,7 @@ pub(super) struct Setup<'a> {
     pub law: Law,
     pub speed_m_s: f64,
     pub damping_ratio: f64,
-    /// Whether remainder modes answer for the modes left out.
+    /// Whether remainder modes represent the modes left out.
     pub residual: bool,
     pub modes: usize,
 }

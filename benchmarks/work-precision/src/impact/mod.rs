@@ -49,7 +49,7 @@ impl Outcome {
     /// The norms in which an outcome is compared with the reference, the chief one first.
     pub fn errors(&self, reference: &Outcome) -> Vec<(&'static str, f64)> {
         let end = reference.contact_times_s.last().copied().unwrap_or(1.0);
-        // where the number of contacts differs, so does the story: no time is right then
+        // where the number of contacts differs, so does the contact history: no time is right then
         let worst = |found: &[f64], wanted: &[f64], unit: f64| {
             if found.len() == wanted.len() {
                 found.iter().zip(wanted).map(|(a, b)| (a - b).abs() / unit).fold(0.0, f64::max)

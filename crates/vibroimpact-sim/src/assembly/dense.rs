@@ -47,7 +47,8 @@ pub(crate) struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// What is carried of the modes `h` seconds after its start: up to its length, or for ever where nothing is closed.
+    /// What is carried of the modes `h` seconds after its start: up to its length, or for all later times
+    /// where nothing is closed.
     fn carried(&self, h: f64) -> (Vec<f64>, Vec<f64>) {
         let stretch = self.stretch;
         let (mut amplitude, mut rate) = (stretch.amplitude.clone(), stretch.rate.clone());

@@ -26,7 +26,7 @@ static BOUNDS: LazyLock<Bounds> = LazyLock::new(|| {
     let mut points = vec![0.0];
     points.extend_from_slice(&BASIS.nodes);
     let n = points.len();
-    // derivatives of a product of linear factors at a place, by the product rule
+    // derivatives of a product of linear factors at a location, by the product rule
     let product = |place: f64, without: usize| {
         let mut derivatives = [1.0, 0.0, 0.0];
         for (m, point) in points.iter().enumerate().filter(|(m, _)| *m != without) {

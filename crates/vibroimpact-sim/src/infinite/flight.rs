@@ -69,7 +69,7 @@ impl Departure {
         (tau * (self.rate + tau * self.free.bend(tau)), self.rate + self.free.rate_gain(tau))
     }
 
-    /// The least compression of the flight, or minus infinity if the gap opens for ever.
+    /// The least compression of the flight, or minus infinity if the gap opens for good.
     pub fn least_compression(&self) -> f64 {
         if self.body <= 0.0 {
             return f64::NEG_INFINITY;

@@ -12,9 +12,9 @@ use crate::StopReason;
 /// How an impact ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// The body leaves for ever: after the last separation it does not move towards the structure.
+    /// The body leaves for good: after the last separation it does not move towards the structure.
     Rebound,
-    /// Contact lasts for ever. Decided once relative oscillations of the force about that of an
+    /// Contact does not end. Decided once relative oscillations of the force about that of an
     /// attached body ([`attached`](super::attached)) have shrunk below one half over two natural
     /// periods, at a time from which the beam's damping outweighs everything that makes them grow
     /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).

@@ -90,7 +90,7 @@ impl<L: ContactLaw> History<L> {
     }
 
     /// Up to this time (s) the motion is known; later ones are answered as this one. Infinite after a rebound, which free
-    /// motion follows for ever. A contact that lasts is followed at least up to [`Settings::until_s`](super::Settings).
+    /// motion follows without end. A contact that lasts is followed at least up to [`Settings::until_s`](super::Settings).
     pub fn known_until_s(&self) -> f64 {
         self.known_until_s
     }

@@ -90,7 +90,7 @@ pub struct Start {
     /// Their rates (m kg^1/2 / s); those of the rest are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rate_m_kg0_5_s: Vec<f64>,
-    /// Modes given by how they move at a place, which is named in each.
+    /// Modes given by how they move at a location, which is named in each.
     #[serde(default, deserialize_with = "crate::scene::json::objects", skip_serializing_if = "Vec::is_empty")]
     pub moving_modes: Vec<MovingMode>,
 }

@@ -15,8 +15,8 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("approach_speed_m_s", POSITIVE),
     ("body", "the name of one of the bodies"),
     ("gravity_m_s2", NOT_NEGATIVE),
-    ("loads", "a list of loads, each an object with body, its place, and a force"),
-    ("loads[]", "an object with body, its place, and a force"),
+    ("loads", "a list of loads, each an object with body, its location, and a force"),
+    ("loads[]", "an object with body, its location, and a force"),
     ("force_n", "a finite number"),
     ("frequency_hz", POSITIVE),
     ("phase_deg", "a finite number"),
@@ -41,7 +41,7 @@ pub(crate) const FIELDS: &[(&str, &str)] = &[
 ];
 
 /// The two sides of a contact.
-pub(crate) const BETWEEN: &str = "a list of two, each an object with body and its place, or \"ground\"; the first lies on \
+pub(crate) const BETWEEN: &str = "a list of two, each an object with body and its location, or \"ground\"; the first lies on \
                                   the side of greater x";
 
 /// The kinds of bodies.

@@ -73,7 +73,7 @@ impl<'a> Seen<'a> {
         InvalidInput { field, ..fault }.within(&self.path)
     }
 
-    /// Shapes of the modes at a place (kg^-1/2). A fault of the place has the field `location_m` or `location`, any other
+    /// Shapes of the modes at a location (kg^-1/2). A fault of the place has the field `location_m` or `location`, any other
     /// its whole path.
     pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
         let listed = self.modes_at(place)?.into_iter().map(|mode| mode.shape);
@@ -103,7 +103,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// The modes as seen from a place, remainder modes left out; faults as in [`Seen::shape`].
+    /// The modes as seen from a location, remainder modes left out; faults as in [`Seen::shape`].
     pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match self.body {
             Body::Mass(mass) => {
@@ -117,7 +117,7 @@ impl<'a> Seen<'a> {
     fn elastic(&mut self, body: &Elastic, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match &body.structure {
             Elastics::Rod(rod) => {
-                place.require_no_name("left out: the place on a rod is location_m")?;
+                place.require_no_name("left out: the location on a rod is location_m")?;
                 let needed = "a finite number from 0 to the length of the rod";
                 let location_m =
                     place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?.along()?;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::steady::SteadyMotion;
 use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
-use crate::text::quantity;
+use crate::text::{counted, quantity};
 
 /// Intervals of contact that are listed one by one; the rest are counted.
 const LISTED: usize = 20;
@@ -18,7 +18,7 @@ pub fn headline(scene: &AssemblyScene, posed: &Posed) -> String {
         _ => format!("{count} {what}s"),
     };
     let modes = posed.assembly.bodies.iter().map(|body| body.modes.len()).sum();
-    let bodies = if scene.bodies.len() == 1 { "1 body".to_owned() } else { format!("{} bodies", scene.bodies.len()) };
+    let bodies = counted(scene.bodies.len() as u64, "body", "bodies");
     let mut line = format!("{bodies} with {}, {}", count(modes, "mode"), count(posed.contacts.len(), "contact"));
     if !scene.loads.is_empty() {
         line += &format!(", {}", count(scene.loads.len(), "load"));

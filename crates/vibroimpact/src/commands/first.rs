@@ -16,7 +16,7 @@ pub const DEMO_EXAMPLES: &str = "Examples:
   vibroimpact demo --plot demo.svg               and as a picture
   vibroimpact demo --animate demo.svg            beam and ball moving, in slow motion, in a browser
   vibroimpact demo --report demo.html            and as a page with pictures and tables
-  vibroimpact demo --set location_m=0.5          the same with another place of impact
+  vibroimpact demo --set location_m=0.5          the same at another location
   vibroimpact init                               write this scene into a file, to change it
 
 The scene is a steel ball of 40 mm that strikes a steel bar on two supports at 1 m/s. Nothing is written unless a file

@@ -16,23 +16,23 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact identify measured.csv --scene beam.json --free contact.stiffness_n_m1_5,structure.damping_ratio
   vibroimpact identify measured.csv --scene beam.json --free structure.damping_ratio=0.001..0.1 --json
   vibroimpact identify measured.csv --scene beam.json --free contact.stiffness_n_m1_5 --candidates places.csv
-                                                 which of these experiments would tell most
+                                                 which of these experiments is the most informative
 
-The table is comma-separated, a row a measured impact. Its columns are fields of the scene, which take the place of the
-scene's own; what was measured; and, for each measured quantity or for none, its standard deviation:
+The table is comma-separated, with a row for each measured impact. Its columns are fields of the scene, which replace those
+of the scene; measured quantities; and, for each of these or for none, its standard deviation:
 
   location_m,striker.speed_m_s,restitution,restitution_sd,first_contact_s,first_contact_s_sd
   0.4,1.0,0.312,0.01,9.8e-5,1e-6
   0.6,1.0,0.145,0.01,,
 
-Measured can be restitution, striker_velocity_m_s, first_contact_s, first_impulse_n_s, first_peak_force_n,
+Measured quantities are restitution, striker_velocity_m_s, first_contact_s, first_impulse_n_s, first_peak_force_n,
 last_separation_s, impulse_n_s, peak_force_n, peak_compression_m; and the force over time, as a table time_s,force_n whose
-name stands in the column force_file (its noise in force_n_sd). The clock of the gauge may be off by any amount; a delay of
-its response is a parameter as well, --free gauge.time_constant_s=1e-6..1e-4. An empty cell was not measured.
+name is in the column force_file (its noise in force_n_sd). The clock of the gauge may be off by any amount; a delay of its
+response is a parameter as well, --free gauge.time_constant_s=1e-6..1e-4. An empty cell was not measured.
 
-A free field is a number of the scene, at which the search begins; it is sought within a factor of three, or between
-stated limits (field=low..high), which it may leave if they are positive. Without standard deviations, the noise is estimated from the
-misfit. Intervals are those of the likelihood profile.";
+The search for a free field begins at its value in the scene and extends over a factor of three to either side, or between
+stated limits (field=low..high), beyond which it may go if they are positive. Without standard deviations the noise is
+estimated from the misfit. Intervals are those of the likelihood profile.";
 
 /// The data, the scene, and what is free in it.
 #[derive(Args)]
@@ -44,7 +44,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Fields of the scene that the data are to tell, each alone or as field=low..high
+    /// Fields of the scene to be found, each alone or as field=low..high
     #[arg(long, value_name = "FIELD", value_delimiter = ',', required = true)]
     free: Vec<String>,
     /// Starting points of the search
@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Probability with which an interval holds its field
     #[arg(long, default_value_t = 0.95)]
     level: f64,
-    /// Experiments that could be made (CSV), of which the most telling is sought
+    /// Experiments that could be made (CSV), of which the most informative is found
     #[arg(long, value_name = "FILE")]
     candidates: Option<PathBuf>,
     /// Print one JSON object in place of the text

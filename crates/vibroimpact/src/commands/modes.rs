@@ -13,7 +13,7 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact modes ball.json --count 10         frequencies, and shapes at the point of impact
   vibroimpact modes ball.json --count 40 --json  the same as one JSON object of lists
   vibroimpact modes ball.json --count 6 --plot modes.svg
-                                                 shapes along the beam or over the plate, with the place of impact;
+                                                 shapes along the beam or over the plate, with the location of impact;
                                                  .svg or .png
 
 Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";

@@ -38,7 +38,7 @@ The table is comma-separated, its first line names the columns:
   0.0638,0.25,0.41
   0.0638,0.50,0.38
 
-Other columns are ignored. The scene gives the beam; masses and places come from the table. At least three lines are
+Other columns are ignored. The scene gives the beam; masses and locations come from the table. At least three lines are
 needed, and they should cover light and heavy strikers. The search starts from many points, because the sum of squares
 has several minima. Intervals hold each parameter with 95 % probability if the errors are independent, which those of
 a law with three parameters are not: take them as a lower bound on the uncertainty.";

@@ -9,16 +9,16 @@ use super::sweep::{Run, compute};
 
 pub const EXAMPLES: &str = r#"Examples:
   vibroimpact predictability beam.json --over location_m=0.05:0.95:91 --blur location_m=0.001 --out out/
-                                          the spread along the beam, where the place is known to 1 mm
+                                          the spread along the beam, if the location is known to 1 mm
   vibroimpact predictability beam.json --over location_m=0.05:0.95:46 --over striker.speed_m_s=0.1:10:31:log \
       --blur location_m=0.001 --blur striker.speed_m_s=1% --out out/
-                                          a map over place and speed, with 1 mm and 1 % of blur
+                                          a map over location and speed, with 1 mm and 1 % of blur
 
-A blur is the standard deviation of a field about its value on the map, or about the scene's own: a number in the unit of
+The blur is the standard deviation of a field about its value on the map, or about that of the scene: a number in the unit of
 the field (normally distributed), or a share of its value in per cent (its logarithm normally distributed). Every point of the
-map gets as many draws. The folder holds a picture of median and spread (report.html), distribution.csv with mean,
+map gets the same number of draws. The folder holds a picture of median and spread (report.html), distribution.csv with mean,
 standard deviation and quantiles at every point and their sampling errors, and every draw (results.csv). Ctrl-C stops; the
-same command goes on from there.
+same command continues from there.
 
 The exit code is 0 for a finished map, 130 for one that was stopped, 2 for a scene, field or number that cannot be used, 1 if
 reading or writing fails."#;

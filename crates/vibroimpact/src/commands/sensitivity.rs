@@ -19,8 +19,8 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact sensitivity rattle.json --by contacts[0].gap_m --of points[0].velocity_m_s
                                                     a scene of bodies: how fast a point is at the end
 
-A derivative is exact: it goes along the motion, and no second impact is compared. It holds for small changes; an impact
-with several contacts may lose or gain one soon after. How near its slowest contact is to that is told.";
+A derivative is exact: the motion itself is differentiated, and no second impact is compared. It holds for small changes;
+an impact with several contacts may lose or gain one soon after. The result states how near its slowest contact is to that.";
 
 /// Which derivatives.
 #[derive(Args)]

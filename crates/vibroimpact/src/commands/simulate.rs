@@ -74,7 +74,7 @@ impl Extent {
             Some(path) => Err(InvalidInput {
                 field: "--animate".to_owned(),
                 value: Some(path.display().to_string()),
-                allowed: "left out for this scene: a beam or a string is shown, struck once and resolved in time"
+                allowed: "left out for this scene: only an impact on a beam or a string that is resolved in time can be shown"
                     .to_owned(),
             }),
         }
@@ -111,7 +111,7 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
         // it tells by itself how far it has come
         (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, products),
         (AnyScene::Bodies(_), Some(until)) => {
-            let allowed = "left out for a scene of bodies, whose field end_s says how far it goes".to_owned();
+            let allowed = "left out for a scene of bodies, whose field end_s states the end".to_owned();
             return Err(InvalidInput { field: "--until".into(), value: Some(until.to_string()), allowed }.into());
         }
     };

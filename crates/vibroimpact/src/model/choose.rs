@@ -113,7 +113,7 @@ impl Scene {
 
 impl Scene {
     /// The scene with all that stated which the program would choose: the theory of bending and, in place of a tolerance
-    /// of the whole, as many modes as the restitution needs to settle, with remainder modes for the others.
+    /// of the whole, as many modes as the restitution needs to converge, with remainder modes for the others.
     pub(crate) fn settled(&self) -> Result<Scene, InvalidInput> {
         if !chooses_modes(self) {
             return Ok(Scene { model: Model::Auto, ..self.clone() });
@@ -159,7 +159,7 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     modal(pose, cost)
 }
 
-/// The modal problem with as many modes as the restitution needs to settle.
+/// The modal problem with as many modes as the restitution needs to converge.
 pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
     let kept = &mut Kept::default();
     let open = scene.with_theory(&mut Cost::default())?;

@@ -108,7 +108,7 @@ pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<
             None => computed = (computed + computed / 4 + 1).min(most),
         }
     };
-    // room for two further steps: a single change would not tell whether the restitution has settled
+    // room for two further steps: a single change would not tell whether the restitution has converged
     Ok(found.min(most.div_ceil(2)))
 }
 

@@ -22,7 +22,7 @@
 //!
 //! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the place moves away
 //! from it as on the infinite beam; afterwards it never comes back further than `W = sum phi_k^2 P/omega_k` beyond
-//! where it started, `P` the impulse. If the striker is then out of reach, it is so for ever.
+//! where it started, `P` the impulse. If the striker is then out of reach, it stays so.
 
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Outcome};
@@ -178,7 +178,7 @@ impl FirstReturn {
     }
 }
 
-/// How far the place of impact can come back towards the striker after an impulse (m).
+/// How far the location of impact can come back towards the striker after an impulse (m).
 fn reach(modes: &[Mode], impulse: f64, beam_mass: f64) -> f64 {
     let elastic = || modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
     let summed: f64 = elastic().map(|mode| mode.shape.powi(2) * impulse / mode.omega_rad_s).sum();
@@ -201,14 +201,14 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     // a first contact on an infinite beam lasts 0.9 to 1 times one at a wall
     let (hopeful, z) = beam.reflections(0.8 * pose.wall.duration_s);
     if hopeful > pose.tolerance {
-        return Ok(Err(format!("waves come back from an end within the contact (z = {})", small(z))));
+        return Ok(Err(format!("waves return from an end within the contact (z = {})", small(z))));
     }
     match solve(pose, &beam, cost)? {
         Ok((choice, Some(_))) if choice.answer.settled => Ok(Ok(choice)),
         Ok((_, Some(uncertainty))) => {
-            Ok(Err(format!("what comes back from the ends may change the restitution by {}", small(uncertainty))))
+            Ok(Err(format!("waves from the ends may change the restitution by {}", small(uncertainty))))
         }
-        Ok((_, None)) => Ok(Err("the place may come back and meet the striker again".to_owned())),
+        Ok((_, None)) => Ok(Err("the beam may spring back and meet the striker again".to_owned())),
         Err(reason) => Ok(Err(reason)),
     }
 }
@@ -274,19 +274,19 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     );
     let reason = match (ended, free) {
         (None, _) => format!(
-            "infinite-beam: the striker stays on an infinite beam (S = {}); a real one sends its waves back",
+            "infinite-beam: the striker would stay on an infinite beam (S = {}); on this one waves return from the ends",
             small(groups.s)
         ),
         (_, true) if bound.is_finite() => {
-            format!("infinite-beam: {evidence}; the striker is then out of reach for ever")
+            format!("infinite-beam: {evidence}; the beam cannot reach the striker afterwards")
         }
         (_, true) => format!(
-            "infinite-beam: {}: waves have come back from an end (z = {})",
+            "infinite-beam: {}: waves have returned from an end (z = {})",
             beam.first_return(duration_s, pose.tolerance).text(duration_s),
             small(z)
         ),
         (_, false) => format!(
-            "infinite-beam: {} (z = {}), and that the beam's ends cause no further contact is not certain",
+            "infinite-beam: {} (z = {}), and it is not certain that the ends of the beam cause no further contact",
             beam.first_return(duration_s, pose.tolerance).text(duration_s),
             small(z)
         ),

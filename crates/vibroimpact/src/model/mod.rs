@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`Model::Rigid`] | the place cannot move | a bound on the energy that the structure can take up says so |
 //! | [`Model::InfiniteBeam`] | no wave comes back from an end | the contact ends first, and the striker is never caught again |
-//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | everywhere else; raised until the restitution has settled |
+//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | everywhere else; raised until the restitution has converged |
 //! | [`Model::Emoc`] | no course in time at all | asked for, or the tolerance is as wide as the law's validated error |
 //!
 //! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] many scenes of one beam, faster), [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
@@ -94,7 +94,7 @@ impl Model {
 /// The scene field `"modes"`: `"auto"`, or how many modes the structure is stated to have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Modes {
-    /// As many as the restitution needs to settle.
+    /// As many as the restitution needs to converge.
     #[default]
     Auto,
     /// This many, from the lowest.
@@ -179,7 +179,7 @@ pub struct Answer {
     pub sub_impact_count: Option<usize>,
     /// Number of modes kept.
     pub modes: usize,
-    /// Number of remainder modes integrated beside them, which stand for all others; 0 where those were left out.
+    /// Number of remainder modes integrated beside them, which represent all others; 0 where those were left out.
     pub remainder_modes: usize,
     /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,

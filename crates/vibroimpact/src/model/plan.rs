@@ -1,7 +1,7 @@
 //! What would be modelled and why, before anything costly is solved.
 //!
-//! How much an impact costs is a matter of its story, of how many contacts there are and how fast the fastest mode that
-//! matters is, and no closed form knows the story. So the modal tier is tried once, loosely and with few modes: with `s` the
+//! The cost of an impact depends on its contact history: on the number of contacts and on the fastest mode that matters. No
+//! closed form gives this history. So the modal tier is tried once, at a loose tolerance and with few modes: with `s` the
 //! steps of this pilot impact and `N` the number of modes expected to do, the mode-steps of the answer lie between
 //!
 //! ```text
@@ -198,7 +198,7 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
     }
     let (first, second) = guess(pose, cost)?;
     let reason = format!(
-        "begins with {first} and {second} modes and raises their number until the restitution has settled within {}",
+        "begins with {first} and {second} modes and raises their number until the restitution converges within {}",
         small(pose.tolerance)
     );
     let (structure, _) = pose.structure((second / PILOT_PART).max(PILOT_FEWEST), cost)?;

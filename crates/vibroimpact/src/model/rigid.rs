@@ -73,7 +73,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     match bound(pose, cost)? {
         Ok(bound) if bound <= pose.tolerance => wall(pose, Some(bound), cost).map(Ok),
         Ok(bound) => {
-            Ok(Err(format!("the place moves: its compliance may change the restitution by up to {}", small(bound))))
+            Ok(Err(format!("the location moves: its compliance may change the restitution by up to {}", small(bound))))
         }
         Err(reason) => Ok(Err(reason)),
     }
@@ -96,10 +96,16 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
     cost.solves += 1;
     let reason = match bound {
         Some(bound) if bound <= pose.tolerance => {
-            format!("rigid: the place can change the restitution at a wall by {} at most", small(bound))
+            format!(
+                "rigid: the compliance of the location changes the restitution at a wall by at most {}",
+                small(bound)
+            )
         }
         Some(bound) => {
-            format!("rigid: asked for, though the place may change the restitution by up to {}", small(bound))
+            format!(
+                "rigid: asked for, although the compliance of the location may change the restitution by up to {}",
+                small(bound)
+            )
         }
         None => "rigid: asked for; how much the structure changes is not bounded".to_owned(),
     };

@@ -1,14 +1,13 @@
-//! Modes, as many as the restitution needs to settle.
+//! Modes, as many as the restitution needs to converge.
 //!
 //! The number of modes begins at a guess (`guess.rs`) and is raised by steps of a factor of about 1.4. Restitutions
 //! alone may agree by accident while the courses of two impacts do not, and then differ again at the next number; so
 //! the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
 //! number of modes is asked.
 //!
-//! Every contact amplifies what came before it, the solver's error too, and a solver too coarse for an impact may find the
-//! same wrong course with every number of modes. So where there are several contacts the solver is asked, from the third
-//! number on, for an accuracy that rises from one to the next: its errors are part of the differences, and restitutions agree
-//! when both have become small.
+//! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
+//! same wrong course with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
+//! from the third number on: its errors are part of the differences, and restitutions agree when both have become small.
 //!
 //! Only a difference between two *different* numbers of modes says anything of the modes left out. Where a list of modes
 //! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
@@ -166,7 +165,7 @@ impl Rungs {
     }
 }
 
-/// Raises the number of modes until the restitution has settled, or there are no more.
+/// Raises the number of modes until the restitution has converged, or there are no more.
 pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     let most = pose.source.most();
     let (first, mut count) = guess(pose, cost)?;
@@ -240,17 +239,16 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, spread: Option<(f64, usize)
             small(change.restitution),
             small(change.flights)
         ),
-        None => "nothing tells what further modes would change".to_owned(),
+        None => "what further modes would change is not known".to_owned(),
     };
     match spread {
-        _ if settled => format!("modal: with {counts} modes the restitution has settled; {changed}"),
+        _ if settled => format!("modal: the restitution has converged with {counts} modes; {changed}"),
         Some(_) if exhausted => format!(
-            "modal: the list of {reached} modes is at its end before the restitution settles within {wanted}{damping}; \
-             {changed}"
+            "modal: the list of {reached} modes ends before the restitution converges within {wanted}{damping}; {changed}"
         ),
         Some((spread, size)) => format!(
-            "modal: the restitution does not settle within {wanted} with {counts} modes{damping}; {changed}; over the \
-             last {size} tries it spreads by {}",
+            "modal: the restitution does not converge within {wanted} with {counts} modes{damping}; {changed}; its spread \
+             over the last {size} numbers of modes is {}",
             small(spread)
         ),
         None => format!("modal: the computation reached its limit of steps with {counts} modes"),

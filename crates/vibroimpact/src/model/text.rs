@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Answer, Comparison, Plan};
-use crate::text::{filled, quantity, restitution, stopped};
+use crate::text::{counted, filled, quantity, restitution, stopped};
 
 /// A number in passing: two significant digits.
 pub(crate) fn small(value: f64) -> String {
@@ -23,17 +23,17 @@ fn against_tolerance(answer: &Answer) -> String {
     let wanted = small(answer.tolerance);
     match (answer.uncertainty.of_model(), answer.settled) {
         (Some(u), true) if u <= answer.tolerance => {
-            format!("wanted within {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
+            format!("requested {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
         }
         (Some(u), true) => {
             let solver = answer.uncertainty.solver.unwrap_or(u);
-            format!("wanted within {wanted} for the modes as stated, whose motion is solved within {}", small(solver))
+            format!("requested {wanted} for the modes as stated, whose motion is solved within {}", small(solver))
         }
         (Some(u), false) => {
             let spread = answer.spread.map_or(String::new(), |s| format!(", spread {}", small(s)));
-            format!("wanted within {wanted}, known within {}; NOT SETTLED{spread}", small(u))
+            format!("requested {wanted}, known within {}; NOT CONVERGED{spread}", small(u))
         }
-        (None, _) => format!("wanted within {wanted}, known to no stated accuracy"),
+        (None, _) => format!("requested {wanted}, known to no stated accuracy"),
     }
 }
 
@@ -68,7 +68,8 @@ pub fn answer_text(answer: &Answer) -> String {
     text += &parts(answer);
     let _ = writeln!(text, "  {:<22}{}", "accuracy", wrapped(&against_tolerance(answer), 24));
     let cost = &answer.cost;
-    let _ = writeln!(text, "  {:<22}{} solves, {} mode-steps", "cost", cost.solves, cost.mode_steps);
+    let _ =
+        writeln!(text, "  {:<22}{}, {} mode-steps", "cost", counted(cost.solves, "solve", "solves"), cost.mode_steps);
     text
 }
 
@@ -147,7 +148,12 @@ pub fn comparison_text(comparison: &Comparison) -> String {
             text,
             "      {}",
             wrapped(
-                &format!("{}; {} solves, {} mode-steps", answer.reason, answer.cost.solves, answer.cost.mode_steps),
+                &format!(
+                    "{}; {}, {} mode-steps",
+                    answer.reason,
+                    counted(answer.cost.solves, "solve", "solves"),
+                    answer.cost.mode_steps
+                ),
                 6
             )
         );
@@ -156,7 +162,11 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         text,
         "\n  Differences are from {}, whose uncertainty is the smallest{}.",
         comparison.best.as_str(),
-        if comparison.best_leaves_modes_out() { " as far as it is known; what it leaves out is not" } else { "" }
+        if comparison.best_leaves_modes_out() {
+            " as far as it is known; what its truncated modes would change is not known"
+        } else {
+            ""
+        }
     );
     let _ = writeln!(
         text,

@@ -184,7 +184,7 @@ pub(super) fn why_not_judged(structure: &Structure) -> &'static str {
         }
         Structure::Beam(_) => {
             "Euler-Bernoulli theory leaves out shear and rotary inertia; with poissons_ratio in every segment Timoshenko's \
-             tells what they change"
+             theory shows their effect"
         }
         _ => {
             "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \

@@ -86,7 +86,7 @@ impl Scene {
     /// ```
     pub fn observations(&self, table: &[Datum], modes: usize) -> Result<Observations, InvalidInput> {
         let Structure::Beam(beam) = &self.structure else {
-            let allowed = "beam: the table's places need a structure with places";
+            let allowed = "beam: the table has locations along a beam";
             return Err(InvalidInput::new("structure.kind", self.structure.kind(), allowed));
         };
         let modes = beam.modes(modes)?;

@@ -119,7 +119,7 @@ pub struct FitSummary {
     /// Whether the search ended at a minimum that all three parameters have a part in, rather than at its limit or far
     /// out where the sum of squares no longer changes.
     pub converged: bool,
-    /// The names of the parameters that ran off so far (below 1e-6 or above 1e6) that the law no longer feels them: the
+    /// The names of the parameters that ended below 1e-6 or above 1e6, where the law no longer depends on them: the
     /// observations do not determine them, and their values mean "very small" or "very large".
     pub undetermined: Vec<&'static str>,
 }
@@ -139,7 +139,11 @@ impl FitSummary {
         let distinct = observations.distinct(needed);
         if distinct < needed {
             let allowed = format!("at least {needed}, one for each parameter; repeated lines count once");
-            return Err(InvalidInput::new("lines of data that differ in mass or place", distinct.to_string(), allowed));
+            return Err(InvalidInput::new(
+                "lines of data that differ in mass or location",
+                distinct.to_string(),
+                allowed,
+            ));
         }
         let fit = observations.fit().map_err(|error| fault(format!("such as can be fitted ({error})")))?;
         let [mu0, alpha0, alpha1] = [0, 1, 2].map(|k| fit.parameters.get(k).copied().unwrap_or(f64::NAN));

@@ -8,7 +8,7 @@ use crate::text::quantity;
 
 /// Modes whose shape along a beam or string is drawn.
 const DRAWN: usize = 30;
-/// Points along it, beside the place of impact.
+/// Points along it, beside the location of impact.
 const POINTS: usize = 400;
 /// Height of many shapes (px).
 const TALLEST_PX: f64 = 760.0;
@@ -24,7 +24,7 @@ const MAP_PX: f64 = 205.0;
 const HEIGHTS_PX: [f64; 2] = [40.0, 400.0];
 
 /// The shapes of the first thirty of `count` modes along a beam or string, or of the first twelve over a plate, each scaled to
-/// its largest displacement, with the place of impact; below, the mass-normalised shape at that place of all `count` modes
+/// its largest displacement, with the location of impact; below, the mass-normalised shape at that place of all `count` modes
 /// against frequency. Of a structure that is given by its modes only the latter is known.
 ///
 /// # Errors
@@ -46,7 +46,7 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
     let frequency: Vec<f64> = modes.iter().map(|mode| mode.omega_rad_s / TAU).collect();
     let shape: Vec<f64> = modes.iter().map(|mode| mode.shape).collect();
     let at_place = Panel::new(Axis::new("frequency").unit("Hz"), Axis::new("shape there").unit("1/√kg"))
-        .title("Mass-normalised shape at the place of impact")
+        .title("Mass-normalised shape at the location of impact")
         .height(130.0)
         .with(Series::horizontal_rule(0.0))
         .with(Series::stem(&frequency, &shape, Marker::Dot).colour(Colour::Vermilion).line_width(0.8));
@@ -66,8 +66,8 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
             let drawn = drawn(DRAWN_OVER_A_PLATE);
             let maps = over(plate, location_m, drawn)?;
             let title = match drawn.len() {
-                n if n < count => format!("{}, {n} of them drawn; the circle is the place of impact", figure.title),
-                _ => format!("{}; the circle is the place of impact", figure.title),
+                n if n < count => format!("{}, {n} of them drawn; the circle is the location of impact", figure.title),
+                _ => format!("{}; the circle is the location of impact", figure.title),
             };
             let figure = Figure { title, ..figure };
             maps.chunks(BESIDE).fold(figure, |figure, row| figure.row(row.to_vec())).row([at_place])
@@ -150,11 +150,11 @@ fn along(line: &Line, frequency_hz: &[f64], count: usize) -> Panel {
     let y = Axis::new("").ticks_at(names).limits(0.4, frequency_hz.len() as f64 + 0.6);
     let title = match frequency_hz.len() {
         drawn if drawn < count => {
-            format!("Shapes of the first {drawn} along the {name}; the rule is the place of impact")
+            format!("Shapes of the first {drawn} along the {name}; the rule is the location of impact")
         }
-        _ => format!("Shapes along the {name}; the rule is the place of impact"),
+        _ => format!("Shapes along the {name}; the rule is the location of impact"),
     };
-    let mut panel = Panel::new(Axis::new(format!("place along the {name}")).unit("m").limits(0.0, line.length_m), y)
+    let mut panel = Panel::new(Axis::new(format!("location along the {name}")).unit("m").limits(0.0, line.length_m), y)
         .title(title)
         .height((38.0 * frequency_hz.len() as f64).min(TALLEST_PX) + 20.0);
     for joint_m in &line.joints_m {

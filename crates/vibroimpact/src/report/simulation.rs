@@ -218,7 +218,7 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
         _ => "The structure by the modes that the scene gives.".to_owned(),
     };
     let residual = match impact.remainder_modes {
-        0 => "Modes beyond those kept do not answer at all.".to_owned(),
+        0 => "The truncated modes are left out altogether.".to_owned(),
         count => format!(
             "{count} remainder modes answer for the modes beyond those kept, with their static compliance of {}, so that \
              the result converges in the number of modes.",

@@ -181,7 +181,7 @@ impl Beam {
         }
     }
 
-    /// The first `count` modes, to be seen from any place.
+    /// The first `count` modes, to be seen from any location.
     pub(crate) fn modes(&self, count: usize) -> Result<BeamModes, InvalidInput> {
         require_count(count)?;
         let modes = || {
@@ -208,7 +208,7 @@ impl BeamModes {
         self.modes.participation_kg0_5()
     }
 
-    /// The modes as a striker at a place on the beam meets them.
+    /// The modes as a striker at a location on the beam meets them.
     pub(crate) fn seen_from(&self, location_m: f64) -> Result<Vec<modal::Mode>, InvalidInput> {
         let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.as_str() {
             "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },

@@ -16,7 +16,7 @@ use crate::impact::Impact;
 /// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
 /// speed of the fall at first touch; `location_m`, `modes`, `residual_compliance` and `start` are left out. In
 /// `contact`, a striker of another material is the floor; `{ "law": "hertz" }` with nothing beside it is the rod's own
-/// material on a rigid floor. Remainder modes always answer for the modes left out. The restitution is that of the
+/// material on a rigid floor. Remainder modes always represent the truncated modes. The restitution is that of the
 /// contact point's rigid-body motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -36,10 +36,10 @@ pub struct DroppedRod {
     /// Damping ratio of the elastic modes; 0 when left out.
     #[serde(default)]
     pub damping_ratio: f64,
-    /// Bending modes kept; 40 when left out.
+    /// Bending modes; 40 when left out.
     #[serde(default = "bending_modes")]
     pub bending_modes: usize,
-    /// Axial modes kept; 20 when left out.
+    /// Axial modes; 20 when left out.
     #[serde(default = "axial_modes")]
     pub axial_modes: usize,
 }
@@ -108,7 +108,7 @@ impl Scene {
     /// The fall of a rod in the terms of the solver.
     pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
         let left_out = |field: &str, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod has no use for it")),
+            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),
             None => Ok(()),
         };
         let Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;

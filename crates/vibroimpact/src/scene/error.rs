@@ -74,7 +74,11 @@ impl fmt::Display for InvalidInput {
         let field = if self.field.is_empty() { "the scene".to_owned() } else { shorten_path(&printable(&self.field)) };
         let allowed = printable(&self.allowed);
         match &self.value {
-            Some(value) => write!(f, "{field} = {} is not allowed: {allowed}", shorten(&printable(value))),
+            Some(value) => {
+                // a field that has to go is told so; of any other it is told what would be allowed
+                let verdict = if allowed.starts_with("left out") { "must be" } else { "is not allowed:" };
+                write!(f, "{field} = {} {verdict} {allowed}", shorten(&printable(value)))
+            }
             None => write!(f, "{field} is missing: {allowed}"),
         }
     }

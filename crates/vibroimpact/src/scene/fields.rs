@@ -12,7 +12,7 @@ pub(crate) const MOST_DAMPING: f64 = 1e6;
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
     ("", "a scene is an object with structure, striker and contact"),
-    ("$schema", "a text: where the schema of scenes stands"),
+    ("$schema", "a text: the address of the schema of scenes"),
     ("version", "a whole number, the version of the format: 1"),
     ("description", "a text"),
     (

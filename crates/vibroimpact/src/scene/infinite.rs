@@ -21,9 +21,9 @@ pub struct InfiniteBeam {
     pub youngs_modulus_pa: Option<f64>,
     /// Density (kg/m^3).
     pub density_kg_m3: Option<f64>,
-    /// Width of a rectangular section, across the direction of the blow (m).
+    /// Width of a rectangular section, across the direction of the impact (m).
     pub width_m: Option<f64>,
-    /// Thickness of a rectangular section, along the direction of the blow (m).
+    /// Thickness of a rectangular section, in the direction of the impact (m).
     pub thickness_m: Option<f64>,
     /// Diameter of a circular section (m).
     pub diameter_m: Option<f64>,
@@ -79,7 +79,7 @@ impl Scene {
     /// ```
     pub fn infinite_impact(&self) -> Result<infinite::Impact, InvalidInput> {
         let left_out = |field: &str, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure has no such thing")),
+            Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
             None => Ok(()),
         };
         self.require_yield_strength()?;

@@ -1,4 +1,4 @@
-//! A place on a structure, by its distance along it or by two coordinates.
+//! A location on a structure, by its distance along it or by two coordinates.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::error::InvalidInput;
 use super::json::number;
 
-/// A place on a structure (m): a distance from the left end of a beam or string, or the two coordinates of a place on a
+/// A location on a structure (m): a distance from the left end of a beam or string, or the two coordinates of a place on a
 /// plate, from a corner along length and width.
 ///
 /// ```

@@ -116,10 +116,10 @@ pub struct Scene {
     /// Which model answers, [`Scene::answer`]; the program's choice when left out.
     #[serde(default, skip_serializing_if = "Model::is_auto")]
     pub model: Model,
-    /// Modes kept, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
+    /// Modes retained, from the lowest: a number (0 is an immovable structure), or the program's choice when left out.
     #[serde(default, skip_serializing_if = "Modes::is_auto")]
     pub modes: Modes,
-    /// Whether remainder modes answer for the modes left out, so that the restitution converges in the number of modes. When left
+    /// Whether remainder modes represent the truncated modes, so that the restitution converges in the number of modes. When left
     /// out: `true` where the program chooses the modes (and knows the static compliance), `false` where their number is given.
     pub residual_compliance: Option<bool>,
     /// Motion of the structure before the impact; at rest and touched by the striker when left out.

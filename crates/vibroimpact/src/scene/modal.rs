@@ -13,7 +13,7 @@ use super::json::{named_objects, number, read};
 use super::told::did_you_mean;
 
 /// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
-/// either at the one place of the impact (`shape_at_location`), or at several `points` of which the scene's `location`
+/// either at the one location of the impact (`shape_at_location`), or at several `points` of which the scene's `location`
 /// names the one that is struck. All lists run over the same modes.
 ///
 /// ```
@@ -75,7 +75,7 @@ impl Modal {
         let modal: Modal = read(value)?;
         if modal.omega_rad_s.is_empty() {
             let allowed =
-                "a list of at least one frequency; a place that cannot move is a striker of \"immovable\": true";
+                "a list of at least one frequency; an immovable surface is a striker with \"immovable\": true";
             return Err(InvalidInput::new("omega_rad_s", "[]", allowed));
         }
         if modal.shape_at_location.is_empty() && value.get("points").is_none() {

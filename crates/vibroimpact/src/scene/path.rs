@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde_json::{Map, Value};
 
+use super::told::counted;
+
 /// The place of a field in a scene file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath(Vec<Step>);
@@ -62,8 +64,13 @@ impl FieldPath {
                 }
                 (Step::Index(index), Value::Array(list)) => {
                     let length = list.len();
-                    list.get_mut(*index)
-                        .ok_or_else(|| format!("{} has {length} entries, counted from 0", self.upto(depth - 1)))?
+                    list.get_mut(*index).ok_or_else(|| {
+                        format!(
+                            "{} has {}, counted from 0",
+                            self.upto(depth - 1),
+                            counted(length as u64, "entry", "entries")
+                        )
+                    })?
                 }
                 (Step::Key(_), _) if depth == 0 => return Err("the scene is not an object".to_owned()),
                 (Step::Key(_), _) => return Err(format!("{} is not an object", self.upto(depth - 1))),
@@ -148,7 +155,7 @@ mod tests {
         let mut set = |text: &str| FieldPath::parse(text).unwrap().set_or_insert(&mut tree, json!(7));
         assert_eq!(set("b.c.d"), Ok(()));
         assert_eq!(set("n.x"), Ok(()));
-        assert_eq!(set("a[1]").unwrap_err(), "a has 1 entries, counted from 0");
+        assert_eq!(set("a[1]").unwrap_err(), "a has 1 entry, counted from 0");
         assert_eq!(set("a.x").unwrap_err(), "a is not an object");
         assert_eq!(set("list[0]").unwrap_err(), "the scene has no list");
         assert_eq!(tree, json!({ "a": [1], "n": { "x": 7 }, "b": { "c": { "d": 7 } } }));

@@ -23,7 +23,7 @@ pub struct Plate {
     pub length_m: f64,
     /// Width, along y (m).
     pub width_m: f64,
-    /// Thickness, along the direction of the blow (m).
+    /// Thickness, in the direction of the impact (m).
     pub thickness_m: f64,
     /// Young's modulus (Pa).
     pub youngs_modulus_pa: f64,
@@ -126,14 +126,14 @@ impl Plate {
         Ok(plate)
     }
 
-    /// The first `count` modes, to be seen from any place.
+    /// The first `count` modes, to be seen from any location.
     pub(super) fn modes(&self, count: usize) -> Result<beam_modes::PlateModes, InvalidInput> {
         require_damping(self.damping_ratio)?;
         let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
         plate.modes(count).map_err(in_structure)
     }
 
-    /// The modes as a striker at a place meets them.
+    /// The modes as a striker at a location meets them.
     pub(super) fn seen_from(
         &self,
         modes: &beam_modes::PlateModes,
@@ -143,7 +143,7 @@ impl Plate {
         Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
     }
 
-    /// Static compliance at a place, and by how much it may be off (m/N).
+    /// Static compliance at a location, and by how much it may be off (m/N).
     pub(super) fn static_compliance_with_uncertainty_m_n(
         &self,
         [x_m, y_m]: [f64; 2],

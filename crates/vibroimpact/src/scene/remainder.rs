@@ -53,7 +53,7 @@ impl Structure {
         let answered = compliance(first);
         // where both are computed, less than nothing is rounding
         if !self.is_computed() && whole_m_n < answered * (1.0 - ROUNDING) {
-            let allowed = format!("not less than that of the modes kept, {answered:e}");
+            let allowed = format!("not less than that of the modes retained, {answered:e}");
             return Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole_m_n:e}"), allowed));
         }
         if !self.is_computed() && whole_m_n - answered <= COMPLETE * answered {

@@ -194,7 +194,7 @@ pub(crate) fn of<T: JsonSchema>(version: u64) -> Value {
 
 /// Adds the fields that every file may have.
 fn versioned(schema: &mut Value, version: u64) {
-    let address = json!({ "type": "string", "description": "Where this schema stands, for editors" });
+    let address = json!({ "type": "string", "description": "Address of this schema, for editors" });
     schema["properties"]["$schema"] = address;
     let described = "Version of the format; 1 when left out";
     schema["properties"]["version"] = json!({ "const": version, "description": described });

@@ -26,9 +26,9 @@ pub struct Segment {
     pub youngs_modulus_pa: Option<f64>,
     /// Density (kg/m^3).
     pub density_kg_m3: Option<f64>,
-    /// Width of a rectangular section, across the direction of the blow (m).
+    /// Width of a rectangular section, across the direction of the impact (m).
     pub width_m: Option<f64>,
-    /// Thickness of a rectangular section, along the direction of the blow (m).
+    /// Thickness of a rectangular section, in the direction of the impact (m).
     pub thickness_m: Option<f64>,
     /// Diameter of a circular section (m).
     pub diameter_m: Option<f64>,
@@ -70,7 +70,7 @@ enum Section {
 }
 
 impl Segment {
-    /// A piece of rectangular section: length, material, width and thickness (along the blow) in SI units.
+    /// A piece of rectangular section: length, material, width and thickness (in the direction of the impact) in SI units.
     pub fn rectangular(
         length_m: f64,
         youngs_modulus_pa: f64,
@@ -163,7 +163,9 @@ impl Segment {
                     Section::Direct => {
                         "left out beside flexural_rigidity_n_m2: shear is given by shear_rigidity_n and rotary_inertia_kg_m"
                     }
-                    _ => "left out beside a section: shear is given by poissons_ratio, and shear_coefficient if wanted",
+                    _ => {
+                        "left out beside a section: shear is given by poissons_ratio and, optionally, shear_coefficient"
+                    }
                 };
                 return Err(InvalidInput::new(field, number(value), allowed));
             }
@@ -224,7 +226,7 @@ impl Segment {
         }
     }
 
-    /// The extent along the blow, where the section has one, with its field.
+    /// The extent in the direction of the impact, if the section has one, with its field.
     pub(crate) fn thickness(&self) -> Option<(&'static str, f64)> {
         self.thickness_m.map(|h| ("thickness_m", h)).or(self.diameter_m.map(|d| ("diameter_m", d)))
     }

@@ -36,12 +36,12 @@ pub struct Start {
     /// Their rates (m kg^1/2 / s); those of the rest are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rate_m_kg0_5_s: Vec<f64>,
-    /// Modes given by how they move at a place.
+    /// Modes given by how they move at a location.
     #[serde(default, deserialize_with = "objects", skip_serializing_if = "Vec::is_empty")]
     pub moving_modes: Vec<MovingMode>,
 }
 
-/// The motion of one mode, told at a place where it can be seen.
+/// The motion of one mode, told at a location where it can be seen.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MovingMode {
@@ -135,7 +135,7 @@ impl MovingMode {
         if shape.abs() > NODE * most {
             Ok((k, shape))
         } else {
-            Err(fault("a mode that moves at the place; this one has a node there".to_owned()))
+            Err(fault("a mode that moves at the location; this one has a node there".to_owned()))
         }
     }
 }

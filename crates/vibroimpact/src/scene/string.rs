@@ -41,7 +41,7 @@ impl TautString {
         beam_modes::TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2 }
     }
 
-    /// The first `count` modes at a place.
+    /// The first `count` modes at a location.
     pub(super) fn modes(&self, location_m: f64, count: usize) -> Result<Vec<Mode>, InvalidInput> {
         require_damping(self.damping_ratio)?;
         let modes = self.to_taut_string().modes(count).map_err(in_structure)?;
@@ -54,7 +54,7 @@ impl TautString {
         Ok(self.to_taut_string().modes(count).map_err(in_structure)?.participation_kg0_5())
     }
 
-    /// Static compliance at a place (m/N).
+    /// Static compliance at a location (m/N).
     pub(super) fn static_compliance_m_n(&self, location_m: f64) -> Result<f64, InvalidInput> {
         self.to_taut_string().static_compliance(location_m).map_err(in_structure)
     }

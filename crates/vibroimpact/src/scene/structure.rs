@@ -71,7 +71,7 @@ impl Place<'_> {
 
     /// The place on a structure that has places of its own.
     fn on_structure(&self) -> Result<Location, InvalidInput> {
-        self.require_no_name("left out: the place on this structure is location_m")?;
+        self.require_no_name("left out: the location on this structure is location_m")?;
         let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
         self.location_m.ok_or_else(missing)
     }
@@ -134,7 +134,7 @@ impl Structure {
         InvalidInput::new("structure.kind", format!("\"{}\"", self.kind()), allowed)
     }
 
-    /// The first `count` modes as seen from a place (all that there are, for `None`).
+    /// The first `count` modes as seen from a location (all that there are, for `None`).
     pub(crate) fn modes(&self, place: Place, count: Option<usize>) -> Result<Vec<modal::Mode>, InvalidInput> {
         self.modes_with(place, count, &mut KnownModes::default())
     }
@@ -263,7 +263,7 @@ impl Structure {
         }
     }
 
-    /// Static compliance at a place (m/N) of the whole elastic structure.
+    /// Static compliance at a location (m/N) of the whole elastic structure.
     pub(crate) fn static_compliance_m_n(&self, place: Place) -> Result<f64, InvalidInput> {
         match self {
             Structure::Beam(beam) => beam

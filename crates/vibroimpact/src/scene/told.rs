@@ -11,6 +11,11 @@ const ALIKE: f64 = 0.75;
 /// A shorter piece of a name says too little to name the whole.
 const SHORTEST_PIECE: usize = 3;
 
+/// A number and what it counts: `1 entry`, `2 entries`.
+pub fn counted(count: u64, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
 /// A text cut to a length that fits a message. Cutting it again changes nothing.
 pub fn shorten(text: &str) -> String {
     cut(text, LONGEST_QUOTE)

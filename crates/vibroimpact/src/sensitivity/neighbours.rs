@@ -56,7 +56,7 @@ impl<T> Neighbours<T> {
             }
             if let Ok(mut at) = <[T; 4]>::try_from(posed) {
                 if !at.iter_mut().all(is_near) {
-                    let allowed = "a field with which the modes change smoothly: here two of them change places";
+                    let allowed = "a field with which the modes change smoothly: here two modes swap their order";
                     return Err(named(&number(value), allowed.to_owned()));
                 }
                 // the value itself is what a number of a file can hold, and so are its neighbours

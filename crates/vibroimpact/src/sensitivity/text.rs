@@ -3,6 +3,7 @@
 use super::table::{Row, Table};
 use super::{BodiesSensitivity, Sensitivity};
 use crate::scene::InvalidInput;
+use crate::text::counted;
 use std::fmt::Write;
 
 /// A touch slower than this part of the fastest is near a graze.
@@ -15,11 +16,11 @@ const NEAR: f64 = 1e-2;
 /// An output that the impact does not have.
 pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
     let rows = found.table.rows(output)?;
-    let contacts = if found.sub_impact_count == 1 { "sub-impact" } else { "sub-impacts" };
+    let contacts = counted(found.sub_impact_count as u64, "sub-impact", "sub-impacts");
     let restitution = crate::text::restitution(found.restitution, found.restitution_uncertainty);
     let mut text = format!(
-        "restitution {restitution}, {} {contacts}, {} modes and {} remainder modes\n\n",
-        found.sub_impact_count, found.modes, found.remainder_modes
+        "restitution {restitution}, {contacts}, {} modes and {} remainder modes\n\n",
+        found.modes, found.remainder_modes
     );
     text += &table(&found.table, output)?;
     let largest = rows.iter().map(|row| row.by_part().abs()).fold(0.0, f64::max);
@@ -42,8 +43,8 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
 /// An output that the run does not have.
 pub fn text_of_bodies(found: &BodiesSensitivity, output: &str) -> Result<String, InvalidInput> {
     let (count, outcome) = (found.interval_count, found.outcome);
-    let intervals = if count == 1 { "interval of contact" } else { "intervals of contact" };
-    let text = format!("{outcome} at {:.6e} s, {count} {intervals}\n\n", found.end_s);
+    let intervals = counted(count as u64, "interval of contact", "intervals of contact");
+    let text = format!("{outcome} at {:.6e} s, {intervals}\n\n", found.end_s);
     let rows = found.table.rows(output)?;
     Ok(text + &table(&found.table, output)? + &cautions(found.nearest_graze, count, &rows))
 }

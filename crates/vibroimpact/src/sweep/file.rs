@@ -27,7 +27,7 @@ const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[
     ("", "a sweep is an object with scene or scene_file, and vary, random or uncertain"),
-    ("$schema", "a text: where the schema of sweeps stands"),
+    ("$schema", "a text: the address of the schema of sweeps"),
     ("version", "a whole number, the version of the format: 1"),
     ("description", "a text"),
     ("scene", "a scene as an object, or scene_file in its place"),
@@ -252,7 +252,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         return Err(InvalidInput::missing("vary", "give vary, random or uncertain: something must change"));
     }
     if uncertain.is_some() && random.is_some() {
-        let allowed = "left out beside uncertain, which draws all that is to be drawn";
+        let allowed = "left out beside uncertain, which makes all draws";
         return Err(InvalidInput::new("random", "{...}", allowed));
     }
     if let Some(error) = uncertain.as_ref().and_then(|u| u.sampling.sampling_error).filter(|_| !axes.is_empty()) {

@@ -74,7 +74,7 @@ impl<'a> Row<'a> {
         if cells.len() != first + results.columns().len() || cells.get(0) != Some(&point.to_string()) {
             let found = cells.get(0).unwrap_or_default();
             return Err(SweepError::Refused(format!(
-                "the results are damaged: row {found:?} stands where {point} should"
+                "the results are damaged: row {found:?} is where {point} should be"
             )));
         }
         Ok(Row { cells, first, results })

@@ -21,7 +21,7 @@ pub struct Tally {
     pub outcomes: BTreeMap<String, u64>,
     /// Points by the model that was solved.
     pub models: BTreeMap<String, u64>,
-    /// Points whose restitution is not known as well as was asked.
+    /// Points whose restitution is not known to the requested tolerance.
     pub unsettled: u64,
     /// Points whose scene could not be solved.
     pub failures: u64,
@@ -158,7 +158,7 @@ impl Tally {
             }
         }
         if self.unsettled > 0 {
-            line("not settled", &format!("{} (column settled)", self.unsettled));
+            line("not converged", &format!("{} (column settled)", self.unsettled));
         }
         if self.failures > 0 {
             line("failed", &self.failures.to_string());

@@ -18,7 +18,7 @@ const INDENTATION: [f64; 2] = [0.2, 0.5];
 const EDGE: [f64; 2] = [1.0, 0.25];
 const BALL: [f64; 2] = [5.0, 2.0];
 const GRAVITY: [f64; 2] = [0.01, 0.1];
-/// `omega R / c_t` of the lowest mode of a ball that a blow excites.
+/// `omega R / c_t` of the lowest mode of a ball that an impact excites.
 const OBLONG: f64 = 2.64;
 /// Acceleration of gravity (m/s^2).
 const STANDARD_GRAVITY: f64 = 9.80665;
@@ -102,8 +102,8 @@ fn of_hertz(scene: &Scene, course: &Course, section: Option<&Section>, radius_m:
         if let Some(clearance_m) = section.clearance_m {
             let ratio = clearance_m / section.thickness_m;
             let says = format!(
-                "the place is {}, {} thicknesses, from the nearest end, edge, support or step; from one on the structure is \
-                 a half-space to the contact",
+                "the nearest end, edge, support or step is {}, {} thicknesses, away; beyond one thickness the contact sees a \
+                 half-space",
                 quantity(clearance_m, "m"),
                 small(ratio)
             );
@@ -127,12 +127,12 @@ fn ball(scene: &Scene, hardest: &Pulse) -> Option<Check> {
     periods.is_finite().then(|| Check::new("ball", periods, BALL, says))
 }
 
-/// What a ball that falls along the blow gains while it is at it.
+/// The speed that a ball which falls on the structure gains during the interaction.
 fn gravity(scene: &Scene, course: &Course) -> Option<Check> {
     let (time_s, speed) = (course.interaction_s?, scene.striker.speed_m_s);
     let share = STANDARD_GRAVITY * time_s / speed;
     let says = format!(
-        "in {} a body falls {} and gains {} % of the speed of impact, if the blow is along gravity, which is left out",
+        "in {} a body falls {} and gains {} % of the speed of impact, if it falls on the structure; gravity is left out",
         quantity(time_s, "s"),
         quantity(0.5 * STANDARD_GRAVITY * time_s * time_s, "m"),
         small(100.0 * share)

@@ -38,13 +38,13 @@
 //! *Edge.* What a theory of bending does not know of the stresses at an end decays as `e^(-4.2 x/h)` (P. F. Papkovich, 1940): to
 //! 1.5 % over one thickness, and to 35 % over a quarter.
 //!
-//! *Ball.* The lowest mode of a solid ball that a blow excites is the one that makes it oblong, `omega R / c_t = 2.64`
+//! *Ball.* The lowest mode of a solid ball that an impact excites is the one that makes it oblong, `omega R / c_t = 2.64`
 //! (H. Lamb, 1882; 2.64 to 2.65 for Poisson's ratios of 0.25 to 0.33), with `c_t = sqrt(G/rho)`.
 //!
 //! *Early response.* For a moment Timoshenko's beam answers with an impedance and not with the square root of time; how the
 //! first contact would end then is found from its mobility, Eqs. (3) and (4) in `early.rs`.
 //!
-//! *Gravity* is left out of an impact; between contacts a ball that falls along the blow gains `g t`.
+//! *Gravity* is left out of an impact; between contacts a ball that falls on the structure gains `g t`.
 
 mod checks;
 mod course;
@@ -115,7 +115,7 @@ impl Check {
 }
 
 impl Scene {
-    /// What the theories behind a simulation of this scene can bear, as far as the scene tells what that takes: the
+    /// Whether the theories behind a simulation of this scene hold, as far as the scene states what that needs: the
     /// thickness of the structure, the ball's radius and material, a yield strength.
     ///
     /// ```

@@ -1,4 +1,4 @@
-//! Waves in the structure at the place of impact: which wavelength a frequency has.
+//! Waves in the structure at the location of impact: which wavelength a frequency has.
 
 use std::f64::consts::PI;
 

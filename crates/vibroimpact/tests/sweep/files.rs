@@ -51,7 +51,9 @@ fn faults_of_the_text_speak_of_a_sweep_and_of_newer_files() {
     );
     assert!(told("{ \"version\": 2, \"grid\": [] }").contains("versions of the sweep format up to 1"));
     assert!(told("{ \"version\": \"1\" }").contains("version = \"1\" is not allowed: a whole number, the version"));
-    assert!(told("{ \"$schema\": 3 }").contains("$schema = 3 is not allowed: a text: where the schema of sweeps"));
+    assert!(
+        told("{ \"$schema\": 3 }").contains("$schema = 3 is not allowed: a text: the address of the schema of sweeps")
+    );
     assert!(told("[1]").contains("the sweep = [1] is not allowed: a sweep is an object"));
     assert!(told("{ \"vary\": [{ \"from\": NaN }] }").contains("vary[0].from = NaN is not allowed"));
     let located = Sweep::from_toml("version = 1\n[vary\n").unwrap_err().to_string();

@@ -106,7 +106,7 @@ fn it_ends_once_the_sampling_error_is_small_enough_whatever_happens_on_the_way()
     assert_same(&bench.path("out"), &bench.path("again"));
     // parts cannot know when the whole is enough
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "part", "--shard", "1/2"]);
-    assert!(told.contains("sampling.sampling_error = 0.004 is not allowed"), "{told}");
+    assert!(told.contains("sampling.sampling_error = 0.004 must be left out"), "{told}");
     assert!(!bench.path("part").exists());
 }
 
@@ -209,14 +209,14 @@ fn faults_name_field_value_and_what_is_allowed() {
             sweep["vary"] = json!([{ "field": "striker.speed_m_s", "values": [1, 2] }]);
             sweep["sampling"]["sampling_error"] = json!(0.1);
         },
-        "sampling.sampling_error = 0.1 is not allowed: left out beside vary",
+        "sampling.sampling_error = 0.1 must be left out beside vary",
     );
     refused(
         &|sweep| {
             let speeds = json!([{ "field": "striker.speed_m_s", "from": 1, "to": 2 }]);
             sweep["random"] = json!({ "seed": 1, "draws": 2, "fields": speeds });
         },
-        "random = {...} is not allowed: left out beside uncertain",
+        "random = {...} must be left out beside uncertain",
     );
 }
 

@@ -1,4 +1,4 @@
-//! Chapter 3: one beam, one ball, and what decides whether the restitution settles as modes are
+//! Chapter 3: one beam, one ball, and what decides whether the restitution converges as modes are
 //! added.
 
 mod convergence;
