@@ -66,6 +66,7 @@ pub mod draft;
 pub mod export;
 pub mod identify;
 pub mod infinite;
+pub mod law;
 pub mod model;
 pub mod net;
 pub mod orbit;
