@@ -9,6 +9,7 @@ mod errors;
 mod identify;
 mod impact;
 mod input;
+mod law;
 mod output;
 mod sweep;
 
@@ -25,6 +26,8 @@ mod _vibroimpact {
     use super::identify::identify;
     #[pymodule_export]
     use super::impact::{compare, infinite_beam, modes, plan, sensitivity, simulate, turning_points};
+    #[pymodule_export]
+    use super::law::law;
     #[pymodule_export]
     use super::sweep::sweep;
     use super::*;

@@ -1,0 +1,40 @@
+//! Laws of contact made to measure.
+
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use vibroimpact::law::{Kind, Request};
+use vibroimpact::{InvalidInput, export};
+
+use crate::errors::Fault;
+use crate::output;
+
+/// Parameters of the laws of contact that have a restitution (0.001 to 1) for a mass and a speed of approach.
+///
+/// Returns what `vibroimpact law --json` prints. `other_mass_kg` is the mass of the other body, immovable when left out;
+/// `compression_m` how deep the bodies press; `step_s` the step of an engine that steps by semi-implicit Euler, for which
+/// each law tells what the step makes of it, and parameters that make up for it. `law` names one alone: `mujoco`,
+/// `kelvin-voigt`, `hunt-crossley`, `flores`, `lankarani-nikravesh`.
+#[pyfunction]
+#[pyo3(signature = (restitution, mass_kg, speed_m_s, *, other_mass_kg = None, compression_m = None, step_s = None, law = None))]
+#[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
+pub fn law<'py>(
+    py: Python<'py>,
+    restitution: f64,
+    mass_kg: f64,
+    speed_m_s: f64,
+    other_mass_kg: Option<f64>,
+    compression_m: Option<f64>,
+    step_s: Option<f64>,
+    law: Option<&str>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let kind = law.map(|name| {
+        Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+            let names = Kind::ALL.map(Kind::name).join(", ");
+            Fault::from(InvalidInput { field: "law".into(), value: Some(name.to_owned()), allowed: names })
+        })
+    });
+    let law = kind.transpose()?;
+    let request = Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law };
+    let json = py.detach(|| Ok::<_, Fault>(export::json(&request.answer()?)?))?;
+    output::result(py, &json)
+}
