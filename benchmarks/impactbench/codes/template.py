@@ -17,13 +17,21 @@ A code is a program beside this one:
 import csv
 import json
 import math
+import multiprocessing
+import os
 import pathlib
 import platform
+import resource
+import signal
 import time
+
+import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
 LONGEST_S = 2.0
 BUDGET_S = 0.15
+# no code gets more than one core
+os.environ |= {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBER_OF_CPUS")}
 
 
 def problems():
@@ -33,7 +41,7 @@ def problems():
 
 def only_ball(problem):
     """Mass and downward speed of the only body, if it is a free mass that touches the ground without gravity."""
-    if len(problem["bodies"]) != 1 or len(problem["contacts"]) != 1 or problem["gravity_m_s2"] != 0:
+    if len(problem["bodies"]) != 1 or len(problem["contacts"]) != 1 or problem["gravity_m_s2"] != 0 or "loads" in problem:
         return None
     body, contact = problem["bodies"][0], problem["contacts"][0]
     if body["omega_rad_s"] != [0.0] or "lower" in contact or contact["gap_m"] != 0:
@@ -44,7 +52,9 @@ def only_ball(problem):
 
 def oscillator(problem):
     """Mass, stiffness, downward speed and stop of a mass on a spring that meets an elastic stop."""
-    if problem["family"] != "stop":
+    if problem["family"] != "stop" or len(problem["bodies"]) != 1 or "loads" in problem:
+        return None
+    if len(problem["bodies"][0]["shape"]) != 1:
         return None
     body, contact = problem["bodies"][0], problem["contacts"][0]
     shape, omega = body["shape"][0], body["omega_rad_s"][0]
@@ -55,6 +65,104 @@ def oscillator(problem):
         "gap_m": contact["gap_m"],
         "stop_n_m": contact["law"]["stiffness_n_m"],
     }
+
+
+def power_law(law):
+    """Stiffness k, exponent n, damping d and dashpot c of a force k xi^n (1 + d xi') + c xi', which does not pull; none for
+    another law."""
+    k = law.get("stiffness_n_m1_5", law.get("stiffness_n_m", law.get("stiffness_n_m_n")))
+    if law["kind"] in ("hertz", "viscous"):
+        return k, 1.5, law.get("damping_s_m", 0.0), 0.0
+    if law["kind"] in ("linear-spring", "kelvin-voigt"):
+        return k, 1.0, 0.0, law.get("damping_n_s_m", 0.0)
+    if law["kind"] == "hunt-crossley":
+        return k, law["exponent"], law["damping_s_m"], 0.0
+    return None
+
+
+class System:
+    """A problem as one system in its modes, q'' + 2 ratio omega q' + omega^2 q = constant + harmonics - psi force, and
+    compressions psi q - gap. Upper bodies are pushed up, lower ones down."""
+
+    def __init__(self, problem):
+        bodies = {body["name"]: body for body in problem["bodies"]}
+        places, count = {}, 0
+        for name, body in bodies.items():
+            places[name] = slice(count, count + len(body["shape"]))
+            count += len(body["shape"])
+
+        def together(field):
+            return numpy.array([value for body in bodies.values() for value in body[field]], dtype=float)
+
+        def spread(name, shape):
+            row = numpy.zeros(count)
+            row[places[name]] = bodies[name]["shape"] if shape is None else shape
+            return row
+
+        self.end = problem["end_s"]
+        self.omega, self.ratio = together("omega_rad_s"), together("damping_ratio")
+        self.amplitude, self.rate = together("amplitude"), together("rate")
+        self.constant = numpy.zeros(count)
+        for name, body in bodies.items():
+            if body["omega_rad_s"] == [0.0]:
+                self.constant[places[name]] = -problem["gravity_m_s2"] / body["shape"][0]
+        self.harmonics = []
+        for load in problem.get("loads", []):
+            row = load["force_n"] * spread(load["body"], load.get("shape"))
+            if load["omega_rad_s"] == 0.0:
+                self.constant += row * math.sin(load["phase_rad"])
+            else:
+                self.harmonics.append((load["omega_rad_s"], load["phase_rad"], row))
+        self.contacts = []
+        for contact in problem["contacts"]:
+            psi = numpy.zeros(count)
+            for side, sign in (("upper", -1), ("lower", 1)):
+                if side in contact:
+                    psi += sign * spread(contact[side], contact.get(side + "_shape"))
+            self.contacts.append((psi, contact["gap_m"], contact["law"]))
+        self.asked = [
+            (spread(quantity["body"], quantity.get("shape")), quantity["what"] == "velocity_m_s")
+            for quantity in problem["quantities"]
+            if problem["bodies"]
+        ]
+
+    def force(self, time):
+        """Modal forces of gravity and loads."""
+        total = self.constant.copy()
+        for omega, phase, row in self.harmonics:
+            total += row * math.sin(omega * time + phase)
+        return total
+
+    def powers(self):
+        """The laws as `power_law` has them; none if one of them is another, or there is no contact."""
+        laws = [power_law(law) for _, _, law in self.contacts]
+        return None if not laws or None in laws else laws
+
+    def scale(self):
+        """A modal rate that the motion has."""
+        driven = abs(self.constant) + sum(abs(row) for _, _, row in self.harmonics)
+        driven = driven * numpy.minimum(self.end, 1 / numpy.maximum(self.omega, 1e-12))
+        return float(max(numpy.linalg.norm(self.rate), numpy.linalg.norm(driven)))
+
+    def text(self):
+        """The system as `cvode/system.h` reads it; none where a law is no power."""
+        laws = self.powers()
+        if laws is None:
+            return None
+        lines = [[len(self.omega), len(self.contacts), len(self.harmonics)], [self.end]]
+        lines += [self.omega, self.ratio, self.amplitude, self.rate, self.constant]
+        for (psi, gap, _), law in zip(self.contacts, laws):
+            lines += [[*law, gap], psi]
+        for omega, phase, row in self.harmonics:
+            lines += [[omega, phase], row]
+        return "\n".join(" ".join(repr(float(value)) for value in line) for line in lines) + "\n"
+
+    def answers(self, q, rate):
+        """The numbers asked for."""
+        values = [float(row @ (rate if velocity else q)) for row, velocity in self.asked]
+        if not numpy.all(numpy.isfinite(values)):
+            raise ArithmeticError("not a number")
+        return values
 
 
 def damping_ratio(restitution):
@@ -76,14 +184,45 @@ def damping_ratio(restitution):
 
 
 def timed(run):
-    """What a run gives, and the least time of repeated ones."""
-    began, least = time.perf_counter(), math.inf
+    """What a run gives, and the mean processor time of repeated ones, which another program on the machine does not change."""
+    began, count = time.process_time(), 0
     while True:
-        start = time.perf_counter()
         found = run()
-        least = min(least, time.perf_counter() - start)
-        if time.perf_counter() - began > BUDGET_S:
-            return found, least
+        count += 1
+        spent = time.process_time() - began
+        if found is None or isinstance(found, tuple) or spent > BUDGET_S:
+            return found, spent / count
+
+
+def attempt(run, pipe):
+    """Sends what a run comes to: its values or none, its time, its status."""
+    # this process and the programs that it starts are ended when they take longer
+    resource.setrlimit(resource.RLIMIT_CPU, (int(2 * LONGEST_S),) * 2)
+    try:
+        values, seconds = timed(run)
+        if isinstance(values, tuple):
+            # a program of its own, which has measured itself
+            values, seconds = values
+        pipe.send((values, seconds, "ok"))
+    except Exception as fault:
+        pipe.send((None, None, str(fault).splitlines()[0] if str(fault) else type(fault).__name__))
+
+
+def guarded(run):
+    """The same from a process of its own, which may crash or take too long."""
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=attempt, args=(run, theirs))
+    process.start()
+    theirs.close()
+    try:
+        found = ours.recv() if ours.poll(20 * LONGEST_S) else (None, None, "too slow")
+    except EOFError:
+        process.join(1)
+        found = (None, None, "too slow" if process.exitcode == -signal.SIGKILL else "crashed")
+    process.kill()
+    process.join()
+    return found if found[1] is None or found[1] <= LONGEST_S else (None, None, "too slow")
 
 
 def bench(name, code, settings, solve, versions):
@@ -92,17 +231,15 @@ def bench(name, code, settings, solve, versions):
     for problem in problems():
         for setting in settings:
             row = {"problem": problem["name"], "code": code, "setting": setting, "time_s": "", "status": "ok", "values": ""}
-            try:
-                values, seconds = timed(lambda: solve(problem, setting))
-            except Exception as fault:
-                rows.append(row | {"status": str(fault).splitlines()[0]})
-                continue
-            if values is None:
+            values, seconds, status = guarded(lambda: solve(problem, setting))
+            if status != "ok":
+                rows.append(row | {"status": status})
+                if status == "too slow":
+                    break
+            elif values is None:
                 break
-            rows.append(row | {"time_s": seconds, "values": " ".join(repr(float(value)) for value in values)})
-            if seconds > LONGEST_S:
-                rows[-1] |= {"time_s": "", "status": "too slow", "values": ""}
-                break
+            else:
+                rows.append(row | {"time_s": seconds, "values": " ".join(repr(float(value)) for value in values)})
     results = HERE.parent / "results"
     with open(results / f"{name}.csv", "a", newline="") as file:
         table = csv.DictWriter(file, ["problem", "code", "setting", "time_s", "status", "values"])

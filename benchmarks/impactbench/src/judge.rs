@@ -122,21 +122,23 @@ mod tests {
     use crate::problem::{Body, Contact, LawOfContact, Quantity};
 
     fn problem() -> Problem {
-        let quantity =
-            Quantity { body: "ball".into(), what: What::VelocityMS, value: 1.0, uncertainty: 1e-9, scale: 2.0 };
+        let quantity = Quantity {
+            body: "ball".into(),
+            shape: None,
+            what: What::VelocityMS,
+            value: 1.0,
+            uncertainty: 1e-9,
+            scale: 2.0,
+        };
         Problem {
             name: "p".into(),
             family: Family::Law,
             statement: String::new(),
             needs: vec![],
             bodies: vec![Body::mass("ball", 1.0, 0.0, -2.0)],
-            contacts: vec![Contact {
-                upper: "ball".into(),
-                lower: None,
-                gap_m: 0.0,
-                law: LawOfContact::LinearSpring { stiffness_n_m: 1.0 },
-            }],
+            contacts: vec![Contact::new("ball", None, 0.0, LawOfContact::LinearSpring { stiffness_n_m: 1.0 })],
             gravity_m_s2: 0.0,
+            loads: vec![],
             infinite_beam_s: None,
             end_s: 1.0,
             quantities: vec![quantity],

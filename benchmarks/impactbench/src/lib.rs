@@ -6,10 +6,10 @@
 //! reference. All bodies together obey
 //!
 //! ```text
-//! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = phi_k (sum of the forces at the body's point)          (1)
+//! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = sum phi_k F                                             (1)
 //! ```
 //!
-//! with mass-normalised modes: a free mass has one, of frequency 0 and shape `m^(-1/2)`. A contact pushes its upper body up
+//! over the forces of contacts, loads and gravity, with mass-normalised modes: a free mass has one, of frequency 0 and shape `m^(-1/2)`. A contact pushes its upper body up
 //! and its lower one, if it is not the ground, down, with the force of its law at the compression
 //!
 //! ```text

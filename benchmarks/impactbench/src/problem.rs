@@ -26,6 +26,9 @@ pub struct Problem {
     pub contacts: Vec<Contact>,
     /// Acceleration of gravity, which acts downwards on free masses (m/s^2).
     pub gravity_m_s2: f64,
+    /// Further forces on the bodies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<Load>,
     /// The one number of an impact on an infinite beam, which then has no bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infinite_beam_s: Option<f64>,
@@ -55,7 +58,7 @@ pub enum Family {
     Stop,
 }
 
-/// A body, which is touched at one point.
+/// A body in its modes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
@@ -65,7 +68,8 @@ pub struct Body {
     pub omega_rad_s: Vec<f64>,
     /// Damping ratio of each mode.
     pub damping_ratio: Vec<f64>,
-    /// Mass-normalised shape of each mode at the point (kg^-1/2), `m^(-1/2)` of a free mass.
+    /// Mass-normalised shape of each mode at the body's point (kg^-1/2), `m^(-1/2)` of a free mass. Contacts, loads and
+    /// quantities refer to this point where they name no other.
     pub shape: Vec<f64>,
     /// Amplitudes at the start (kg^1/2 m).
     pub amplitude: Vec<f64>,
@@ -73,19 +77,43 @@ pub struct Body {
     pub rate: Vec<f64>,
 }
 
-/// A contact.
+/// A contact. The ground is on the side that names no body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Name of the body that is pushed up.
-    pub upper: String,
-    /// Name of the body that is pushed down; the ground when left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<String>,
+    /// Shapes of its modes where it is touched, if not at its own point (kg^-1/2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper_shape: Option<Vec<f64>>,
+    /// Name of the body that is pushed down.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<String>,
+    /// Shapes of its modes where it is touched, if not at its own point (kg^-1/2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lower_shape: Option<Vec<f64>>,
     /// Distance at zero displacement (m).
     pub gap_m: f64,
     /// The law.
     pub law: LawOfContact,
+}
+
+/// A force `force_n sin(omega_rad_s t + phase_rad)` on a body, positive upwards.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// Name of the body.
+    pub body: String,
+    /// Modal force per unit of force, if not the shapes at the body's own point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Vec<f64>>,
+    /// Amplitude (N, or m/s^2 where the shape is that of an acceleration).
+    pub force_n: f64,
+    /// Circular frequency (rad/s); 0 for a constant force, whose phase is then a quarter of a turn.
+    pub omega_rad_s: f64,
+    /// Phase at the start (rad).
+    pub phase_rad: f64,
 }
 
 /// The law of a contact, by name and parameters.
@@ -149,6 +177,9 @@ pub enum LawOfContact {
 pub struct Quantity {
     /// Name of the body; empty for an infinite beam.
     pub body: String,
+    /// Shapes of its modes at the point that is meant, if not its own (kg^-1/2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<Vec<f64>>,
     /// What of its point.
     pub what: What,
     /// The answer.
@@ -206,7 +237,7 @@ impl Body {
         }
     }
 
-    /// Displacement of the point, or its velocity, from amplitudes or rates.
+    /// Displacement of the body's point, or its velocity, from amplitudes or rates.
     pub fn at_point(&self, modal: &[f64]) -> f64 {
         self.shape.iter().zip(modal).map(|(shape, value)| shape * value).sum()
     }
@@ -245,7 +276,24 @@ impl LawOfContact {
     }
 }
 
+impl Contact {
+    /// A contact at the points that the bodies have; the ground for a side without a body.
+    pub fn new(upper: &str, lower: Option<&str>, gap_m: f64, law: LawOfContact) -> Contact {
+        let (upper, lower) = (Some(upper.to_owned()), lower.map(str::to_owned));
+        Contact { upper, upper_shape: None, lower, lower_shape: None, gap_m, law }
+    }
+}
+
 impl Problem {
+    /// A body by its name, and its number.
+    ///
+    /// # Errors
+    /// No body has this name.
+    pub fn body(&self, name: &str) -> Result<(usize, &Body), String> {
+        let found = self.bodies.iter().enumerate().find(|(_, body)| body.name == name);
+        found.ok_or_else(|| format!("{}: no body is called {name}", self.name))
+    }
+
     /// Every problem of a folder, in order of families and names.
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 //! A problem as a system of ordinary differential equations, and as an assembly of this workspace.
 
-use crate::problem::{Problem, What};
+use crate::problem::{Load, Problem, What};
 use contact_models::{After, Boundary, Branch, ContactLaw, Law, Memory};
-use vibroimpact_sim::assembly::{self, Assembly, Force, Load, Point};
+use vibroimpact_sim::assembly::{self, Assembly, Force, Point};
 
 /// The equations (1) and (2) of the crate's root: all amplitudes, then all rates.
 #[derive(Debug, Clone)]
@@ -13,6 +13,8 @@ pub struct System {
     damping: Vec<f64>,
     /// Constant acceleration of each mode.
     constant: Vec<f64>,
+    /// Harmonic loads: frequency, phase, and what each does to every mode.
+    harmonics: Vec<(f64, f64, Vec<f64>)>,
     /// The contacts: what each mode adds to the compression, the gap, and the law.
     contacts: Vec<(Vec<f64>, f64, Law)>,
 }
@@ -34,6 +36,13 @@ impl System {
     pub fn new(problem: &Problem, laws: &[Law]) -> Result<System, String> {
         let places = places(problem);
         let count = problem.bodies.iter().map(|body| body.shape.len()).sum();
+        let spread = |name: &str, shape: &Option<Vec<f64>>, scale: f64, into: &mut [f64]| {
+            let (number, body) = problem.body(name)?;
+            for (sum, shape) in into[places[number]..].iter_mut().zip(shape.as_ref().unwrap_or(&body.shape)) {
+                *sum += scale * shape;
+            }
+            Ok::<_, String>(())
+        };
         let (mut stiffness, mut damping, mut constant) = (Vec::new(), Vec::new(), Vec::new());
         for body in &problem.bodies {
             for (omega, ratio) in body.omega_rad_s.iter().zip(&body.damping_ratio) {
@@ -42,19 +51,29 @@ impl System {
                 constant.push(-problem.gravity_m_s2 * body.free_mass_kg().map_or(0.0, f64::sqrt));
             }
         }
+        let mut harmonics = Vec::new();
+        for Load { body, shape, force_n, omega_rad_s, phase_rad } in &problem.loads {
+            if *omega_rad_s == 0.0 {
+                spread(body, shape, force_n * phase_rad.sin(), &mut constant)?;
+            } else {
+                let mut amplitude = vec![0.0; count];
+                spread(body, shape, *force_n, &mut amplitude)?;
+                harmonics.push((*omega_rad_s, *phase_rad, amplitude));
+            }
+        }
         let mut contacts = Vec::new();
         for (contact, law) in problem.contacts.iter().zip(laws) {
             let mut psi = vec![0.0; count];
-            let upper = Some((&contact.upper, -1.0));
-            for (name, sign) in upper.into_iter().chain(contact.lower.as_ref().map(|name| (name, 1.0))) {
-                let body = number(problem, name)?;
-                for (k, shape) in problem.bodies[body].shape.iter().enumerate() {
-                    psi[places[body] + k] += sign * shape;
+            for (name, shape, sign) in
+                [(&contact.upper, &contact.upper_shape, -1.0), (&contact.lower, &contact.lower_shape, 1.0)]
+            {
+                if let Some(name) = name {
+                    spread(name, shape, sign, &mut psi)?;
                 }
             }
             contacts.push((psi, contact.gap_m, *law));
         }
-        Ok(System { stiffness, damping, constant, contacts })
+        Ok(System { stiffness, damping, constant, harmonics, contacts })
     }
 
     /// Number of modes.
@@ -67,6 +86,15 @@ impl System {
         self.stiffness[k].sqrt()
     }
 
+    /// The modal rate that the loads can drive up by a time, roughly.
+    pub fn driven(&self, time_s: f64) -> f64 {
+        let force = |k: usize| {
+            let harmonic: f64 = self.harmonics.iter().map(|(_, _, amplitude)| amplitude[k].abs()).sum();
+            (self.constant[k].abs() + harmonic) * time_s.min(1.0 / self.omega(k))
+        };
+        (0..self.modes()).map(|k| force(k).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// Compression of a contact and its rate.
     pub fn compression(&self, contact: usize, y: &[f64]) -> (f64, f64) {
         let (psi, gap, _) = &self.contacts[contact];
@@ -75,11 +103,17 @@ impl System {
         (dot(a) - gap, dot(b))
     }
 
-    /// Accelerations of the modes.
-    pub fn accelerations(&self, states: &[State], y: &[f64], out: &mut [f64]) {
+    /// Accelerations of the modes at a time.
+    pub fn accelerations(&self, states: &[State], time_s: f64, y: &[f64], out: &mut [f64]) {
         let (a, b) = y.split_at(self.modes());
         for k in 0..self.modes() {
             out[k] = self.constant[k] - self.damping[k] * b[k] - self.stiffness[k] * a[k];
+        }
+        for (omega, phase, amplitude) in &self.harmonics {
+            let now = (omega * time_s + phase).sin();
+            for (out, amplitude) in out.iter_mut().zip(amplitude) {
+                *out += now * amplitude;
+            }
         }
         for (c, state) in states.iter().enumerate() {
             let State::Closed(branch) = state else { continue };
@@ -132,11 +166,6 @@ fn places(problem: &Problem) -> Vec<usize> {
     counts.scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count))).collect()
 }
 
-fn number(problem: &Problem, name: &str) -> Result<usize, String> {
-    let found = problem.bodies.iter().position(|body| body.name == name);
-    found.ok_or_else(|| format!("{}: no body is called {name}", problem.name))
-}
-
 /// Amplitudes and rates at the start.
 pub fn start(problem: &Problem) -> Vec<f64> {
     let amplitudes = problem.bodies.iter().flat_map(|body| &body.amplitude);
@@ -150,9 +179,10 @@ pub fn start(problem: &Problem) -> Vec<f64> {
 pub fn answers(problem: &Problem, y: &[f64]) -> Result<Vec<f64>, String> {
     let places = places(problem);
     let of = |quantity: &crate::problem::Quantity| {
-        let body = number(problem, &quantity.body)?;
-        let from = places[body] + if quantity.what == What::VelocityMS { y.len() / 2 } else { 0 };
-        Ok(problem.bodies[body].at_point(&y[from..]))
+        let (number, body) = problem.body(&quantity.body)?;
+        let from = places[number] + if quantity.what == What::VelocityMS { y.len() / 2 } else { 0 };
+        let shape = quantity.shape.as_ref().unwrap_or(&body.shape);
+        Ok(shape.iter().zip(&y[from..]).map(|(shape, value)| shape * value).sum())
     };
     problem.quantities.iter().map(of).collect()
 }
@@ -162,14 +192,15 @@ pub fn answers(problem: &Problem, y: &[f64]) -> Result<Vec<f64>, String> {
 /// # Errors
 /// A contact with a body that is not there.
 pub fn assembly(problem: &Problem, laws: &[Law]) -> Result<Assembly<Law>, String> {
-    let side = |name: &str| {
-        let body = number(problem, name)?;
-        Ok::<_, String>(Point::OfBody { body, shape: problem.bodies[body].shape.clone() })
+    let side = |name: &Option<String>, shape: &Option<Vec<f64>>| {
+        let Some(name) = name else { return Ok(Point::Ground) };
+        let (number, body) = problem.body(name)?;
+        Ok::<_, String>(Point::OfBody { body: number, shape: shape.as_ref().unwrap_or(&body.shape).clone() })
     };
     let mut contacts = Vec::new();
     for (contact, law) in problem.contacts.iter().zip(laws) {
-        let lower = contact.lower.as_ref().map_or(Ok(Point::Ground), |name| side(name))?;
-        contacts.push(assembly::Contact { sides: [side(&contact.upper)?, lower], gap_m: contact.gap_m, law: *law });
+        let sides = [side(&contact.upper, &contact.upper_shape)?, side(&contact.lower, &contact.lower_shape)?];
+        contacts.push(assembly::Contact { sides, gap_m: contact.gap_m, law: *law });
     }
     let bodies = problem.bodies.iter().map(|body| assembly::Body {
         modes: (body.omega_rad_s.iter().zip(&body.damping_ratio))
@@ -181,8 +212,17 @@ pub fn assembly(problem: &Problem, laws: &[Law]) -> Result<Assembly<Law>, String
     let weight = |(i, body): (usize, &crate::problem::Body)| {
         let mass_kg = body.free_mass_kg().filter(|_| problem.gravity_m_s2 != 0.0)?;
         let force = Force::Constant { force_n: -problem.gravity_m_s2 };
-        Some(Load { body: i, shape: vec![mass_kg.sqrt()], force })
+        Some(assembly::Load { body: i, shape: vec![mass_kg.sqrt()], force })
     };
-    let loads = problem.bodies.iter().enumerate().filter_map(weight).collect();
+    let mut loads: Vec<assembly::Load> = problem.bodies.iter().enumerate().filter_map(weight).collect();
+    for Load { body, shape, force_n, omega_rad_s, phase_rad } in &problem.loads {
+        let (number, body) = problem.body(body)?;
+        let force = match *omega_rad_s {
+            0.0 => Force::Constant { force_n: force_n * phase_rad.sin() },
+            omega_rad_s => Force::Harmonic { force_n: *force_n, omega_rad_s, phase_rad: *phase_rad },
+        };
+        let shape = shape.as_ref().unwrap_or(&body.shape).clone();
+        loads.push(assembly::Load { body: number, shape, force });
+    }
     Ok(Assembly { bodies: bodies.collect(), contacts, loads })
 }

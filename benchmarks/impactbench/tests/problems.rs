@@ -2,7 +2,7 @@
 
 use contact_models::Law;
 use impactbench::codes::{dop853, own_assembly, run_all};
-use impactbench::problem::{Family, LawOfContact, Problem};
+use impactbench::problem::{Family, LawOfContact, Problem, Quantity, What};
 use impactbench::{judge, library, outcome, report};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,9 @@ fn laws_have_their_closed_relations() {
 /// A mass on a spring and an elastic stop: harmonic pieces, one after the other.
 #[test]
 fn stops_have_a_closed_form() {
-    let stops: Vec<Problem> = problems().into_iter().filter(|problem| problem.family == Family::Stop).collect();
+    let closed = |problem: &Problem| problem.bodies[0].shape.len() == 1 && problem.loads.is_empty();
+    let stops = problems().into_iter().filter(|problem| problem.family == Family::Stop && closed(problem));
+    let stops: Vec<Problem> = stops.collect();
     assert_eq!(stops.len(), 3);
     for problem in stops {
         let (body, contact) = (&problem.bodies[0], &problem.contacts[0]);
@@ -87,11 +89,37 @@ fn sdnd122_swings_at_its_exact_frequency() {
     assert!((found[0] / speed + 1.0).abs() < 1e-8, "{found:?} {speed}");
 }
 
+/// SDNL32 against the displacements that the VPCS guide lists, but for its misprint at 3 ms.
+#[test]
+fn sdnl32_moves_as_the_guide_lists() {
+    let mut problem = problems().into_iter().find(|problem| problem.name == "sdnl32").unwrap();
+    for (time_s, listed_mm) in [(1e-3, -2.66), (2e-3, -4.33), (5e-3, -3.82), (8e-3, -3.09), (0.012, -0.742)] {
+        problem.end_s = time_s;
+        let found_mm = 1e3 * own_assembly(&problem, &laws(&problem), 1e-10).unwrap()[0];
+        assert!((found_mm - listed_mm).abs() < 0.03, "{time_s}: {found_mm}");
+    }
+}
+
+/// SDNL105 against what its three integrators state.
+#[test]
+fn sdnl105_ends_as_is_stated() {
+    let problem = problems().into_iter().find(|problem| problem.name == "sdnl105").unwrap();
+    let of = |body: &str, what: What| {
+        let asked = |quantity: &&Quantity| quantity.body == body && quantity.what == what;
+        problem.quantities.iter().find(asked).unwrap().value
+    };
+    for (body, displacement_m) in [("tube-1", 0.016428), ("tube-2", 0.011165), ("tube-3", 0.005892)] {
+        let found = of(body, What::DisplacementM);
+        assert!((found / displacement_m - 1.0).abs() < 5e-3, "{body}: {found}");
+    }
+}
+
 /// DOP853 at another tolerance, which no reference was made with.
 #[test]
 fn a_general_solver_comes_near() {
     let easy = [Family::Law, Family::Several, Family::Stop];
-    for problem in problems().iter().filter(|problem| easy.contains(&problem.family)) {
+    let small = |problem: &Problem| problem.bodies.iter().all(|body| body.shape.len() <= 10);
+    for problem in problems().iter().filter(|problem| easy.contains(&problem.family) && small(problem)) {
         let found = dop853(problem, &laws(problem), 1e-10, Instant::now() + Duration::from_secs(60)).unwrap();
         assert!(problem.error(&found) < 1e-6, "{}: {found:?}", problem.name);
     }
@@ -100,7 +128,11 @@ fn a_general_solver_comes_near() {
 /// Momentum and, where nothing is lost, energy of the rows of balls.
 #[test]
 fn rows_of_balls_keep_what_they_have() {
-    for problem in problems().iter().filter(|problem| problem.bodies.len() > 2 || problem.name == "cradle-2") {
+    let row = |problem: &Problem| problem.name.starts_with("cradle") || problem.name.starts_with("row");
+    let problems = problems();
+    let rows: Vec<&Problem> = problems.iter().filter(|problem| row(problem)).collect();
+    assert_eq!(rows.len(), 5);
+    for problem in rows {
         let masses = problem.bodies.iter().map(|body| body.free_mass_kg().unwrap());
         let (mut momentum, mut energy) = (masses.clone().next().unwrap(), masses.clone().next().unwrap());
         for (mass_kg, quantity) in masses.zip(&problem.quantities) {

@@ -35,7 +35,7 @@ pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant)
     let tolerances = tolerances(problem, &system, &y, tolerance);
     let mut time_s = 0.0;
     for _ in 0..MOST_PHASES {
-        let phase = Phase::new(&system, &states, &y);
+        let phase = Phase::new(&system, &states, time_s, &y);
         let mut watch = Watch { phase: &phase, met: None, now: (0.0, y.clone()), late: false, deadline };
         let closed = states.iter().any(|state| matches!(state, State::Closed(_)));
         // the force begins as a power 3/2 of time, which error estimates do not see
@@ -73,9 +73,8 @@ pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant)
 /// time that matters to them.
 fn tolerances(problem: &Problem, system: &System, y: &[f64], tolerance: f64) -> Vec<f64> {
     let rates = &y[system.modes()..];
-    let falling: f64 = problem.bodies.iter().filter_map(|body| body.free_mass_kg()).sum();
-    let gained = falling.sqrt() * problem.gravity_m_s2 * problem.end_s;
-    let speed = rates.iter().map(|rate| rate * rate).sum::<f64>().sqrt().max(gained).max(1e-30);
+    let driven = system.driven(problem.end_s);
+    let speed = rates.iter().map(|rate| rate * rate).sum::<f64>().sqrt().max(driven).max(1e-30);
     let displacement = |k: usize| tolerance * speed * (1.0 / system.omega(k)).min(0.01 * problem.end_s);
     (0..system.modes()).map(displacement).chain(rates.iter().map(|_| tolerance * speed)).collect()
 }
@@ -84,14 +83,16 @@ fn tolerances(problem: &Problem, system: &System, y: &[f64], tolerance: f64) -> 
 struct Phase<'a> {
     system: &'a System,
     states: &'a [State],
+    /// When the phase begins (s).
+    start_s: f64,
     /// Subtracted from the margins: a phase that begins beyond its own end by a rounding does not end there.
     offsets: Vec<[f64; 2]>,
 }
 
 impl Phase<'_> {
-    fn new<'a>(system: &'a System, states: &'a [State], y: &[f64]) -> Phase<'a> {
+    fn new<'a>(system: &'a System, states: &'a [State], start_s: f64, y: &[f64]) -> Phase<'a> {
         let offset = |(c, state)| system.margins(c, state, y).map(|margin| margin.min(0.0));
-        Phase { system, states, offsets: states.iter().enumerate().map(offset).collect() }
+        Phase { system, states, start_s, offsets: states.iter().enumerate().map(offset).collect() }
     }
 
     fn margin(&self, contact: usize, which: usize, y: &[f64]) -> f64 {
@@ -100,10 +101,10 @@ impl Phase<'_> {
 }
 
 impl FirstOrderSystem for Phase<'_> {
-    fn derivative(&self, _: f64, y: &[f64], dy: &mut [f64]) {
+    fn derivative(&self, time_s: f64, y: &[f64], dy: &mut [f64]) {
         let (amplitudes, rates) = dy.split_at_mut(self.system.modes());
         amplitudes.copy_from_slice(&y[self.system.modes()..]);
-        self.system.accelerations(self.states, y, rates);
+        self.system.accelerations(self.states, self.start_s + time_s, y, rates);
     }
 }
 

@@ -9,9 +9,9 @@ use work_precision::measure::Effort;
 /// All runs: one a model, since they have no setting.
 pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     let [contact] = problem.contacts.as_slice() else { return Vec::new() };
-    let striker = problem.bodies.iter().find(|body| body.name == contact.upper);
-    let lower = contact.lower.as_ref().and_then(|name| problem.bodies.iter().find(|body| body.name == *name));
-    let Some((striker, mass_kg)) = striker.and_then(|body| Some((body, body.free_mass_kg()?))) else {
+    let named = |name: &Option<String>| Some(problem.body(name.as_deref()?).ok()?.1);
+    let lower = named(&contact.lower);
+    let Some((striker, mass_kg)) = named(&contact.upper).and_then(|body| Some((body, body.free_mass_kg()?))) else {
         return Vec::new();
     };
     let speed_m_s = -striker.at_point(&striker.rate);

@@ -67,18 +67,23 @@ pub(super) struct Single {
 
 impl Single {
     pub fn of(problem: &Problem, laws: &[Law]) -> Option<Single> {
-        let ([law], [Contact { upper, lower, gap_m: 0.0, .. }]) = (laws, problem.contacts.as_slice()) else {
+        let ([law], [contact]) = (laws, problem.contacts.as_slice()) else { return None };
+        let Contact { upper: Some(upper), upper_shape: None, lower, lower_shape: None, gap_m: 0.0, .. } = contact
+        else {
             return None;
         };
-        let named = |name: &String| problem.bodies.iter().find(|body| body.name == *name);
+        let named = |name: &String| Some(problem.body(name).ok()?.1);
         let striker = named(upper)?;
         let still = |body: &&Body| body.rate.iter().chain(&body.amplitude).all(|value| *value == 0.0);
         let modes = match lower {
             Some(name) => named(name).filter(still)?,
             None => &Body { omega_rad_s: vec![], damping_ratio: vec![], shape: vec![], ..striker.clone() },
         };
-        let asked = problem.quantities.iter().all(|quantity| quantity.body == *upper);
-        let stated = asked && problem.gravity_m_s2 == 0.0 && striker.amplitude.iter().all(|a| *a == 0.0);
+        let asked = problem.quantities.iter().all(|quantity| quantity.body == *upper && quantity.shape.is_none());
+        let stated = asked
+            && problem.loads.is_empty()
+            && problem.gravity_m_s2 == 0.0
+            && striker.amplitude.iter().all(|a| *a == 0.0);
         let mass_kg = striker.free_mass_kg().filter(|_| stated && problem.bodies.len() <= 2)?;
         let mode = |((&omega_rad_s, &damping_ratio), &shape)| modal::Mode { omega_rad_s, damping_ratio, shape };
         let modes = modes.omega_rad_s.iter().zip(&modes.damping_ratio).zip(&modes.shape).map(mode).collect();

@@ -40,7 +40,7 @@ fn follow(problem: &Problem, system: &System, step_s: f64, deadline: Instant) ->
                 states[c] = system.next(&states[c], c, which, &y);
             }
         }
-        system.accelerations(&states, &y, &mut accelerations);
+        system.accelerations(&states, step as f64 * step_s, &y, &mut accelerations);
         for k in 0..n {
             y[n + k] += step_s * accelerations[k];
             y[k] += step_s * y[n + k];
