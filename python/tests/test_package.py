@@ -46,6 +46,10 @@ def test_the_exception_tells_the_field():
     "call",
     [
         lambda: vibroimpact.infinite_beam(float("nan")),
+        lambda: vibroimpact.law(2, 0.1, 1),
+        lambda: vibroimpact.law(0.5, -0.1, 1),
+        lambda: vibroimpact.law(0.5, 0.1, 1, step_s=0),
+        lambda: vibroimpact.law(0.5, 0.1, 1, law="hertz"),
         lambda: vibroimpact.turning_points(0),
         lambda: vibroimpact.turning_points(61),
         lambda: vibroimpact.emoc_restitution(-1, [1, 2]),

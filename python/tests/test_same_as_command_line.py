@@ -129,6 +129,14 @@ def test_infinite_beam(command_line):
     assert plain(vibroimpact.turning_points(5)) == points
 
 
+def test_law(command_line):
+    wanted = ("--restitution", 0.5, "--mass-kg", 0.2, "--speed-m-s", 1.5)
+    assert plain(vibroimpact.law(0.5, 0.2, 1.5)) == command_line("law", *wanted)
+    for_engine = vibroimpact.law(0.5, 0.2, 1.5, other_mass_kg=0.3, compression_m=0.01, step_s=0.001, law="mujoco")
+    more = ("--other-mass-kg", 0.3, "--compression-m", 0.01, "--step-s", 0.001, "--law", "mujoco")
+    assert plain(for_engine) == command_line("law", *wanted, *more)
+
+
 def test_emoc(command_line):
     path = SCENES / "pinned-beam.json"
     assert vibroimpact.emoc(path) == command_line("emoc", path)

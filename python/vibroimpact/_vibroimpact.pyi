@@ -17,6 +17,7 @@ __all__ = [
     "fit",
     "identify",
     "infinite_beam",
+    "law",
     "modes",
     "orbit",
     "plan",
@@ -48,6 +49,16 @@ def orbit(
 ) -> Result: ...
 def infinite_beam(s: float, *, history: bool = False) -> Result: ...
 def turning_points(count: int) -> Result: ...
+def law(
+    restitution: float,
+    mass_kg: float,
+    speed_m_s: float,
+    *,
+    other_mass_kg: float | None = None,
+    compression_m: float | None = None,
+    step_s: float | None = None,
+    law: str | None = None,
+) -> Result: ...
 def emoc(
     scene: Mapping[str, Any] | str | PathLike[str],
     *,

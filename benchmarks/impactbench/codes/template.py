@@ -227,29 +227,33 @@ def guarded(run):
 
 def bench(name, code, settings, solve, versions):
     """Offers every problem at every setting, from coarse to fine, and writes NAME.csv and NAME.txt."""
-    rows = []
-    for problem in problems():
-        for setting in settings:
-            row = {"problem": problem["name"], "code": code, "setting": setting, "time_s": "", "status": "ok", "values": ""}
-            values, seconds, status = guarded(lambda: solve(problem, setting))
-            if status != "ok":
-                rows.append(row | {"status": status})
-                if status == "too slow":
-                    break
-            elif values is None:
-                break
-            else:
-                rows.append(row | {"time_s": seconds, "values": " ".join(repr(float(value)) for value in values)})
     results = HERE.parent / "results"
+    cpu = pathlib.Path("/proc/cpuinfo")
+    models = [line.split(": ")[1] for line in cpu.read_text().splitlines() if line.startswith("model name")] if cpu.exists() else []
+    processor = models[0] if models else platform.processor() or platform.machine()
+    about = f"{time.strftime('%Y-%m-%d')}; {processor}; Python {platform.python_version()}, {versions}\n"
+    (results / f"{name}.txt").write_text(about)
     with open(results / f"{name}.csv", "a", newline="") as file:
         table = csv.DictWriter(file, ["problem", "code", "setting", "time_s", "status", "values"])
         if file.tell() == 0:
             table.writeheader()
-        table.writerows(rows)
-    processor = platform.processor() or platform.machine()
-    cpu = pathlib.Path("/proc/cpuinfo")
-    if cpu.exists():
-        models = [line.split(": ")[1] for line in cpu.read_text().splitlines() if line.startswith("model name")]
-        processor = models[0] if models else processor
-    about = f"{time.strftime('%Y-%m-%d')}; {processor}; Python {platform.python_version()}, {versions}\n"
-    (results / f"{name}.txt").write_text(about)
+        for problem in problems():
+            table.writerows(sweep(problem, code, settings, solve))
+            file.flush()
+
+
+def sweep(problem, code, settings, solve):
+    """The rows of a problem: none where the code cannot take part."""
+    rows = []
+    for setting in settings:
+        row = {"problem": problem["name"], "code": code, "setting": setting, "time_s": "", "status": "ok", "values": ""}
+        values, seconds, status = guarded(lambda: solve(problem, setting))
+        if status != "ok":
+            rows.append(row | {"status": status})
+            if status == "too slow":
+                break
+        elif values is None:
+            break
+        else:
+            rows.append(row | {"time_s": seconds, "values": " ".join(repr(float(value)) for value in values)})
+    return rows
