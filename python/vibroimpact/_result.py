@@ -125,7 +125,7 @@ class Identification(Result):
         count = len(self["profiles"]) + 1
         figure, axes = _subplots(1, count, figsize=(3.6 * count, 3.2))
         for drawn, profile in zip(axes, self["profiles"]):
-            drawn.plot(profile["values"], profile["rise"])
+            drawn.plot(profile["values"], profile["rise"], ".-")
             drawn.axhline(profile["limit"], color="grey", linestyle="--")
             for end in self.intervals[profile["field"]]:
                 if end is not None:
@@ -162,13 +162,15 @@ def _subplots(rows: int, columns: int, **settings: Any) -> tuple[Figure, Any]:
 
 
 def _table(entries: Mapping[str, Any]) -> str:
-    rows = (f"<tr><th style='text-align: left'>{escape(name)}</th><td>{_cell(value)}</td></tr>" for name, value in entries.items())
+    cells = ((escape(name), _cell(value)) for name, value in entries.items())
+    rows = (f"<tr><th style='text-align: left'>{name}</th><td>{cell}</td></tr>" for name, cell in cells)
     return f"<table>{''.join(rows)}</table>"
 
 
 def _cell(value: Any) -> str:
     if isinstance(value, Mapping):
-        return f"<details><summary>{len(value)} entries</summary>{_table(value)}</details>" if value else "empty"
+        count = "1 entry" if len(value) == 1 else f"{len(value)} entries"
+        return f"<details><summary>{count}</summary>{_table(value)}</details>" if value else "empty"
     if isinstance(value, np.ndarray):
         columns = f" with the columns {', '.join(value.dtype.names)}" if value.dtype.names else ""
         return escape(f"array of shape {value.shape}{columns}")

@@ -12,6 +12,7 @@ use vibroimpact::Scene;
 use vibroimpact::identify::{Data, Free, Identification, Request, identify};
 
 use crate::chapters::Failure;
+use crate::progress::Progress;
 
 /// Tables fitted side by side before their rows are put down.
 const BATCH: usize = 32;
@@ -84,14 +85,20 @@ pub fn run(wanted: &Wanted) -> Result<String, Failure> {
         OpenOptions::new().create(true).write(true).append(wanted.resume).truncate(!wanted.resume).open(&path)?;
     let missing: Vec<(Kind, u64)> =
         all.iter().copied().filter(|(kind, n)| rows.iter().all(|row| (row.kind, row.number) != (*kind, *n))).collect();
+    let mut progress = Progress::of("tables");
+    progress.begin("", all.len() as u64, (all.len() - missing.len()) as u64);
     for batch in missing.chunks(BATCH) {
-        let solve =
-            |&(kind, number): &(Kind, u64)| row(kind, number).map_err(|fault| format!("{kind:?} {number}: {fault}"));
+        let solve = |&(kind, number): &(Kind, u64)| {
+            let found = row(kind, number).map_err(|fault| format!("{kind:?} {number}: {fault}"));
+            progress.add(1);
+            found
+        };
         let found = batch.par_iter().map(solve).collect::<Result<Vec<Row>, String>>()?;
         let lines: Result<Vec<String>, _> = found.iter().map(serde_json::to_string).collect();
         writeln!(file, "{}", lines?.join("\n"))?;
         rows.extend(found);
     }
+    progress.finish();
     rows.retain(|row| all.contains(&(row.kind, row.number)));
     let told = kinds.iter().map(|&kind| told(kind, &rows)).collect::<String>();
     fs::write(wanted.out.join("summary.txt"), &told)?;

@@ -7,6 +7,7 @@ mod examples;
 mod fuzz;
 mod identification;
 mod pages;
+mod progress;
 mod soak;
 
 use std::ffi::OsString;

@@ -10,6 +10,7 @@ mod problem;
 mod record;
 
 use crate::chapters::Failure;
+use crate::progress::Progress;
 use history::Stamp;
 pub use instructions::RUN_TASK;
 use problem::{Problem, Reference, error, measured_problem};
@@ -73,7 +74,7 @@ pub fn record(root: &Path, references: bool) -> Result<(), Failure> {
     let problems = problems(root)?;
     let kept: References =
         if references || !files.references.exists() { References::new() } else { read(&files.references)? };
-    let truth: References = for_each(&problems, |problem| match &problem.reference {
+    let truth: References = for_each("references", &problems, |problem| match &problem.reference {
         Reference::Exact(_) => Ok(None),
         Reference::Tighter(compute) => kept.get(&problem.name).cloned().map_or_else(compute, Ok).map(Some),
     })?;
@@ -143,7 +144,7 @@ fn measure(root: &Path, problems: &[Problem], truth: &References) -> Result<Reco
         Some(_) => instructions::count(&root.join("out/callgrind"), problems.len())?.into_iter().map(Some).collect(),
         None => vec![None; problems.len()],
     };
-    let mut entries = for_each(problems, |problem| measure_one(problem, truth).map(Some))?;
+    let mut entries = for_each("measurements", problems, |problem| measure_one(problem, truth).map(Some))?;
     for (problem, instructions) in problems.iter().zip(instructions) {
         if let Some(entry) = entries.get_mut(&problem.name) {
             entry.instructions = instructions;
@@ -153,17 +154,23 @@ fn measure(root: &Path, problems: &[Problem], truth: &References) -> Result<Reco
 }
 
 /// Something for every problem that has it, by name; or all problems that failed.
+/// Does something for each problem; `doing` names it while it goes on.
 fn for_each<T>(
+    doing: &str,
     problems: &[Problem],
     of: impl Fn(&Problem) -> Result<Option<T>, Failure>,
 ) -> Result<BTreeMap<String, T>, Failure> {
     let (mut all, mut faults) = (BTreeMap::new(), Vec::new());
+    let mut progress = Progress::of("problems");
+    progress.begin(doing, problems.len() as u64, 0);
     for problem in problems {
         match of(problem) {
             Ok(found) => all.extend(found.map(|found| (problem.name.clone(), found))),
             Err(error) => faults.push(format!("{}: {error}", problem.name)),
         }
+        progress.add(1);
     }
+    progress.finish();
     if faults.is_empty() { Ok(all) } else { Err(faults.join("\n").into()) }
 }
 

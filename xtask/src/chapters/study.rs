@@ -1,10 +1,10 @@
-//! What every chapter needs: a folder, a progress bar, sweeps in parallel, one writer.
+//! What every chapter needs: a folder, progress, sweeps in parallel, one writer.
 
 use super::Failure;
 use super::figures::Course;
 use super::statement::Statement;
 use super::tally::{Row, Tally, tell};
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::progress::Progress;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ pub(super) struct Study {
     timings: Vec<Timing>,
     remarks: Vec<String>,
     started: Instant,
-    bar: ProgressBar,
+    progress: Progress,
 }
 
 /// What a chapter that has run leaves for those who sum up.
@@ -86,11 +86,6 @@ impl Study {
             Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => return Err(failure.into()),
             _ => {}
         }
-        let bar = ProgressBar::new(0);
-        let look = "{elapsed_precise} {wide_bar} {pos}/{len} impacts, {per_sec} {msg}";
-        if let Ok(style) = ProgressStyle::with_template(look) {
-            bar.set_style(style);
-        }
         Ok(Study {
             out: out.into(),
             quick,
@@ -103,7 +98,7 @@ impl Study {
             timings: Vec::new(),
             remarks: Vec::new(),
             started: Instant::now(),
-            bar,
+            progress: Progress::of("impacts"),
         })
     }
 
@@ -114,7 +109,6 @@ impl Study {
 
     /// Begins a section of the report.
     pub fn section(&mut self, title: &str) {
-        self.bar.set_message(title.to_string());
         self.body.heading(title);
         self.timings.push(Timing { section: title.into(), impacts: 0, seconds: self.started.elapsed().as_secs_f64() });
     }
@@ -127,13 +121,16 @@ impl Study {
         impacts: usize,
         job: impl Fn(&C) -> Result<R, Failure> + Sync,
     ) -> Result<Vec<R>, Failure> {
-        self.bar.inc_length((cases.len() * impacts) as u64);
+        let count = cases.len() * impacts;
+        let chapter = if self.chapter > 0 { format!("chapter {}, ", self.chapter) } else { String::new() };
+        let section = self.timings.last().map_or("", |timing| &timing.section);
+        self.progress.begin(format!("{chapter}{section}"), count as u64, 0);
         if let Some(timing) = self.timings.last_mut() {
-            timing.impacts += cases.len() * impacts;
+            timing.impacts += count;
         }
         let each = |case| {
             let result = job(case);
-            self.bar.inc(impacts as u64);
+            self.progress.add(impacts as u64);
             result
         };
         cases.par_iter().map(each).collect()
@@ -260,7 +257,7 @@ impl Study {
         let manifest = Manifest { title, version: env!("CARGO_PKG_VERSION"), quick: self.quick, files: &files };
         self.csv("timings.csv", &timings)?;
         self.file(MANIFEST, serde_json::to_string_pretty(&manifest)?.as_bytes())?;
-        self.bar.finish_and_clear();
+        self.progress.finish();
 
         let summary = format!(
             "{title}: {impacts} impacts in {:.2} s, {:.2} s with all files.\n{}{counted}Report: {}",

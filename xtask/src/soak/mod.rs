@@ -5,15 +5,14 @@ mod checks;
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
-use std::io::IsTerminal;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::chapters::Failure;
+use crate::progress::Progress;
 use cases::case;
 use checks::{Verdict, judge};
 
@@ -133,21 +132,18 @@ impl Summary {
         mut save: impl FnMut(&Summary) -> Result<(), Failure>,
     ) -> Result<Summary, Failure> {
         let (start, before_s) = (Instant::now(), self.elapsed_s);
-        let style = ProgressStyle::with_template("{bar:30} {human_pos}/{human_len} impacts, {msg}, {eta} left");
-        let bar = ProgressBar::new(impacts).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_position(self.impacts);
-        bar.reset_eta();
-        bar.set_message("0 failed");
+        let mut progress = Progress::of("impacts");
         while self.impacts < impacts && limit.is_none_or(|limit| start.elapsed() < limit) {
             let (from, seed) = (self.impacts, self.seed);
             let to = impacts.min(from + BATCH);
+            progress.begin(format!("{} failed", self.failed), impacts, from);
             let indices: Vec<u64> = (from..to).collect();
             let verdicts: Vec<Verdict> = indices
                 .into_par_iter()
                 .with_max_len(16)
                 .map(|index| {
                     let verdict = judge(&case(seed, index));
-                    bar.inc(1);
+                    progress.add(1);
                     verdict
                 })
                 .collect();
@@ -155,13 +151,9 @@ impl Summary {
                 self.note(index, verdict);
             }
             self.elapsed_s = before_s + start.elapsed().as_secs_f64();
-            bar.set_message(format!("{} failed", self.failed));
-            if !std::io::stderr().is_terminal() {
-                eprintln!("{to} of {impacts} impacts in {:.0} s, {} failed", self.elapsed_s, self.failed);
-            }
             save(&self)?;
         }
-        bar.finish_and_clear();
+        progress.finish();
         Ok(self)
     }
 

@@ -1,0 +1,101 @@
+//! How far a long task has come, on the standard error: a bar on a terminal, elsewhere a line now and then.
+
+use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Before this nobody wonders.
+const FIRST_LINE: Duration = Duration::from_secs(5);
+/// Between two lines where there is no terminal.
+const BETWEEN_LINES: Duration = Duration::from_secs(15);
+
+/// The progress of a task whose parts follow each other. The total of a part is known when it begins, and stays.
+pub struct Progress {
+    /// What is counted.
+    unit: &'static str,
+    part: String,
+    done: AtomicU64,
+    total: u64,
+    begun: Instant,
+    next_line: Mutex<Instant>,
+    /// On a terminal only.
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// That of a task that counts these.
+    pub fn of(unit: &'static str) -> Progress {
+        let now = Instant::now();
+        let bar = stderr().is_terminal().then(|| {
+            let look = format!("{{elapsed_precise}} {{msg}} {{wide_bar}} {{human_pos}} of {{human_len}} {unit}, {{eta}} left");
+            let style = ProgressStyle::with_template(&look).unwrap_or_else(|_| ProgressStyle::default_bar());
+            ProgressBar::new(0).with_style(style)
+        });
+        let next_line = Mutex::new(now + FIRST_LINE);
+        Progress { unit, part: String::new(), done: AtomicU64::new(0), total: 0, begun: now, next_line, bar }
+    }
+
+    /// Begins a part of so many, some of which may be there already.
+    pub fn begin(&mut self, part: impl Into<String>, total: u64, done: u64) {
+        (self.part, self.total, self.done) = (part.into(), total, AtomicU64::new(done));
+        if let Some(bar) = &self.bar {
+            bar.set_message(self.part.clone());
+            bar.set_length(total);
+            bar.set_position(done);
+            bar.reset_eta();
+        }
+    }
+
+    /// So many more are done.
+    pub fn add(&self, count: u64) {
+        let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
+        match &self.bar {
+            Some(bar) => bar.inc(count),
+            // another thread that writes the line makes this one unnecessary
+            None => {
+                if let Ok(mut next) = self.next_line.try_lock()
+                    && Instant::now() >= *next
+                {
+                    *next = Instant::now() + BETWEEN_LINES;
+                    eprintln!("{}", self.line(done));
+                }
+            }
+        }
+    }
+
+    fn line(&self, done: u64) -> String {
+        let colon = if self.part.is_empty() { "" } else { ": " };
+        let elapsed_s = self.begun.elapsed().as_secs();
+        format!("{}{colon}{done} of {} {}, {elapsed_s} s so far", self.part, self.total, self.unit)
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_counts_to_its_total() {
+        let mut progress = Progress::of("impacts");
+        progress.begin("Figure 3.5", 40, 0);
+        for _ in 0..40 {
+            progress.add(1);
+        }
+        assert_eq!(progress.line(40), "Figure 3.5: 40 of 40 impacts, 0 s so far");
+        assert_eq!(progress.done.load(Ordering::Relaxed), progress.total);
+        // what an earlier run has done counts
+        progress.begin("", 100, 60);
+        progress.add(5);
+        assert_eq!(progress.line(progress.done.load(Ordering::Relaxed)), "65 of 100 impacts, 0 s so far");
+    }
+}
