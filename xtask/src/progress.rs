@@ -30,7 +30,8 @@ impl Progress {
     pub fn of(unit: &'static str) -> Progress {
         let now = Instant::now();
         let bar = stderr().is_terminal().then(|| {
-            let look = format!("{{elapsed_precise}} {{msg}} {{wide_bar}} {{human_pos}} of {{human_len}} {unit}, {{eta}} left");
+            let look =
+                format!("{{elapsed_precise}} {{msg}} {{wide_bar}} {{human_pos}} of {{human_len}} {unit}, {{eta}} left");
             let style = ProgressStyle::with_template(&look).unwrap_or_else(|_| ProgressStyle::default_bar());
             ProgressBar::new(0).with_style(style)
         });

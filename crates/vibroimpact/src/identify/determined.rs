@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use fitting::{Direction, Information};
 
 use super::summary::Undetermined;
-use crate::report::significant;
+use crate::text::significant;
 
 /// A direction along which the coordinates, mostly logarithms, have a larger standard deviation is left open.
 const OPEN: f64 = 0.5;

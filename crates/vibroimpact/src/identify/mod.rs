@@ -49,6 +49,7 @@ mod forward;
 mod free;
 mod gauge;
 mod judge;
+#[cfg(feature = "files")]
 mod picture;
 mod quantity;
 mod summary;
@@ -59,6 +60,7 @@ pub use data::Data;
 pub use estimate::{Request, identify};
 pub use free::Free;
 pub use gauge::ForceRecord;
+#[cfg(feature = "files")]
 pub use picture::picture;
 pub use quantity::Quantity;
 pub use summary::{

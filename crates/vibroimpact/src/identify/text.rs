@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::summary::{Identification, Identified};
-use crate::report::significant;
+use crate::text::significant;
 use crate::text::{filled, quantity};
 
 /// Lines are at most this long.

@@ -39,6 +39,7 @@ pub use attached::largest_share;
 pub use choose::Choice;
 pub(crate) use choose::settled_impact;
 pub use compare::{Comparison, Tier};
+#[cfg(feature = "files")]
 pub(crate) use draw::Draw;
 pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};

@@ -9,6 +9,7 @@
 mod bodies;
 mod closed_form;
 mod neighbours;
+#[cfg(feature = "files")]
 mod picture;
 mod table;
 mod text;
@@ -24,6 +25,7 @@ use crate::scene::{InvalidInput, Scene};
 use neighbours::Neighbours;
 
 pub use bodies::BodiesSensitivity;
+#[cfg(feature = "files")]
 pub use picture::figure;
 pub use table::{Field, OfField, Table};
 pub use text::{text, text_of_bodies};
