@@ -42,7 +42,7 @@ fn steps_that_change_nothing() {
     }
 }
 
-/// Two equal halves that a hair joins: pairs of nearly equal frequencies, shapes orthonormal all the same.
+/// Two equal halves joined by a very thin segment: pairs of nearly equal frequencies, and shapes still orthonormal.
 #[test]
 fn nearly_equal_frequencies() {
     for hair in [1e-2, 1e-3] {

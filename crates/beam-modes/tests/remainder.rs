@@ -68,7 +68,7 @@ fn block_moments(modes: &[PointsMode], i: usize, j: usize, order: i32) -> f64 {
 #[test]
 fn several_points_share_their_modes() {
     let beam = Beam { segments: vec![segment(0.6, 1.0, 1.0), segment(0.4, 0.4, 0.7)], ends: [End::Clamped, End::Free] };
-    // one twice, one on the clamp, one a hair beside another
+    // one twice, one on the clamp, one just beside another
     let places = [0.3, 0.8, 0.0, 0.3, 0.800_001, 1.0];
     let modes = beam.modes(400).unwrap();
     let seen = |k: usize| PointsMode {

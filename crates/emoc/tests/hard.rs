@@ -148,7 +148,7 @@ fn degenerate_and_infeasible_programs() {
     assert!(matches!(solver.solve(&immovable), Err(SolveError::Invalid(_))));
 }
 
-/// A point held but for a hair: its velocity may be as small as its mobility allows, and no larger.
+/// A point of almost no mobility: its velocity may be as small as its mobility allows, and no larger.
 #[test]
 fn a_point_that_hardly_moves() {
     let mut solver = Solver::new();

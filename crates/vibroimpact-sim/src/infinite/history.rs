@@ -1,4 +1,4 @@
-//! The past as the present feels it: a positive measure of point impulses.
+//! The memory of past forces: a positive measure of point impulses.
 //!
 //! What a finished piece of contact does to the structure afterwards is
 //! `int sqrt(t - s) f(s) ds` with `f >= 0`, so any quadrature with positive weights stands for
