@@ -29,8 +29,8 @@ pub struct Parameter<'a, L> {
 pub struct Derivative {
     /// The derivative.
     pub value: f64,
-    /// By how much it may be off, from the derivatives along two coarser solutions; `None` where one of these went another way, so
-    /// that no digit of the derivative is certain.
+    /// By how much it may be off, from the derivative along a coarser solution; `None` where that went another way, so that no digit of
+    /// the derivative is certain.
     pub uncertainty: Option<f64>,
 }
 
@@ -87,17 +87,17 @@ pub struct Differentiated {
     pub nearest_graze: f64,
 }
 
-/// How much more coarsely the two motions are solved whose derivatives tell the uncertainty: two may agree by accident.
-pub(crate) const COARSER: [f64; 2] = [32.0, 6.0];
+/// How much more coarsely the motion is solved whose derivatives tell the uncertainty.
+pub(crate) const COARSER: f64 = 32.0;
 /// The uncertainty in differences to them.
 const TIMES: f64 = 10.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
 const ROUNDING: f64 = 1e-10;
 
-/// A derivative, with those along the two coarser motions.
-pub(crate) fn beside(value: f64, coarse: Option<[f64; 2]>) -> Derivative {
-    let spread = |coarse: [f64; 2]| coarse.iter().map(|coarse| (coarse - value).abs()).fold(0.0, f64::max);
-    Derivative { value, uncertainty: coarse.map(|coarse| TIMES * spread(coarse) + ROUNDING * value.abs()) }
+/// A derivative, with that along the coarser motion.
+pub(crate) fn beside(value: f64, coarse: Option<f64>) -> Derivative {
+    let uncertainty = coarse.map(|coarse| TIMES * (coarse - value).abs() + ROUNDING * value.abs());
+    Derivative { value, uncertainty }
 }
 
 /// The changes along one run with one parameter: by contact the intervals, and displacement and velocity of both sides.
@@ -167,20 +167,15 @@ impl Solver<'_> {
         let Some(fine) = fine else {
             return Ok(none(run, intervals));
         };
-        // the coarser runs end where this one did
-        let stop_at_rest = false;
-        let coarse = COARSER.map(|factor| {
-            let tolerance = (factor * settings.tolerance).min(0.1);
-            let end_s = if run.outcome == Outcome::Rest { run.end_s } else { settings.end_s };
-            let coarser = Settings { tolerance, end_s, stop_at_rest, ..*settings };
-            self.along(&coarser, (parameters, &around, &changes), &mut expansions).2
-        });
+        // the coarser run ends where this one did
+        let tolerance = (COARSER * settings.tolerance).min(0.1);
+        let end_s = if run.outcome == Outcome::Rest { run.end_s } else { settings.end_s };
+        let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
+        let (_, _, coarse, _) = self.along(&coarser, (parameters, &around, &changes), &mut expansions);
         let derivatives = parameters.iter().zip(&fine).enumerate().map(|(i, (by, changes))| {
             let at_end = run.outcome == Outcome::End;
             let end_s = if at_end { Stencil::new(by.offsets).slope(by.end_s) } else { 0.0 };
-            let [one, other] = coarse.each_ref().map(|coarse| coarse.as_ref().map(|changes| &changes[i]));
-            let coarse = one.zip(other).map(|(one, other)| [one, other]);
-            Derivatives { end_s, contacts: changes.beside(&intervals, coarse) }
+            Derivatives { end_s, contacts: changes.beside(&intervals, coarse.as_ref().map(|coarse| &coarse[i])) }
         });
         let derivatives = Some(derivatives.collect());
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
@@ -276,13 +271,12 @@ fn sides(
 }
 
 impl Changes {
-    fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<[&Changes; 2]>) -> Vec<ContactDerivatives> {
+    fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<&Changes>) -> Vec<ContactDerivatives> {
         let contact = |(c, own): (usize, &Vec<IntervalChange>)| {
             let interval = |(j, change): (usize, &IntervalChange)| {
                 let with = |get: fn(&IntervalChange) -> f64| {
-                    let there = |coarse: &Changes| coarse.intervals[c].get(j).map(get);
-                    let [one, other] = coarse.map_or([None; 2], |coarse| coarse.map(there));
-                    beside(get(change), one.zip(other).map(|(one, other)| [one, other]))
+                    let there = coarse.and_then(|coarse| coarse.intervals[c].get(j)).map(get);
+                    beside(get(change), there)
                 };
                 let over = intervals[c].get(j).is_some_and(|interval| interval.end_s.is_some());
                 IntervalDerivatives {
@@ -297,11 +291,10 @@ impl Changes {
             };
             let same = coarse.filter(|coarse| {
                 let counts = |changes: &Changes| changes.intervals.iter().map(Vec::len).collect::<Vec<_>>();
-                coarse.iter().all(|coarse| counts(coarse) == counts(self))
+                counts(coarse) == counts(self)
             });
-            let side = |i: usize, order: usize| {
-                beside(self.sides[c][i][order], same.map(|coarse| coarse.map(|coarse| coarse.sides[c][i][order])))
-            };
+            let side =
+                |i: usize, order: usize| beside(self.sides[c][i][order], same.map(|coarse| coarse.sides[c][i][order]));
             ContactDerivatives {
                 intervals: own.iter().enumerate().map(interval).collect(),
                 displacement_m: [side(0, 0), side(1, 0)],

@@ -24,7 +24,7 @@ pub(crate) struct Response {
 #[derive(Default)]
 pub(crate) struct Forced {
     /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
-    at_nodes: Vec<(Nodal, Nodal)>,
+    pub at_nodes: Vec<(Nodal, Nodal)>,
     /// Amplitude and rate at the end, `[n][k]`, to a unit Legendre force `n` on mode `k`.
     amplitude: [Vec<f64>; Q],
     rate: [Vec<f64>; Q],
@@ -283,22 +283,6 @@ impl Forced {
                         for i in 0..Q {
                             moved[i] += from_a[i] * a + from_b[i] * b;
                         }
-                    }
-                }
-                moved
-            },
-        )
-    }
-
-    /// How far free motion moves the sum of all modes at the nodes, each from its own multiple of a unit motion.
-    pub fn sum_at_nodes(&self, amplitude: &[f64], rate: &[f64]) -> Nodal {
-        vectorized(
-            #[inline(always)]
-            || {
-                let mut moved = [0.0; Q];
-                for ((from_a, from_b), (a, b)) in self.at_nodes.iter().zip(amplitude.iter().zip(rate)) {
-                    for i in 0..Q {
-                        moved[i] += from_a[i] * a + from_b[i] * b;
                     }
                 }
                 moved

@@ -46,6 +46,7 @@ use super::system::{Link, Span, System};
 use super::tables::{Forced, Response};
 use crate::panel::dyadic::{Rotation, level_within, step_s};
 use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
+use crate::panel::vector::vectorized;
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
 use std::array;
 use std::collections::HashMap;
@@ -180,6 +181,15 @@ struct Moved {
     overlap: Vec<Nodal>,
 }
 
+/// What a contact sees of a change by free motion: at the start and at the nodes, and what is multiplied by the time.
+#[derive(Default)]
+struct Seen {
+    start: f64,
+    moved: Nodal,
+    timed_start: f64,
+    timed: Nodal,
+}
+
 struct Walk<'a> {
     posed: &'a Posed<'a>,
     system: &'a System,
@@ -297,9 +307,13 @@ impl<'a> Walk<'a> {
     /// Change of an overlap and its rate at a time, for a state and its change.
     fn overlap(&self, d: usize, c: usize, time_s: f64, state: [&[f64]; 2], change: [&[f64]; 2]) -> [f64; 2] {
         let (link, psi) = (&self.system.links[c], &self.changes[d].psi[c]);
-        let reference = self.tangents[d].contacts[c].reference;
-        let mut found =
-            [sum(psi, state[0]) + link.sum(change[0]) + reference, sum(psi, state[1]) + link.sum(change[1])];
+        let beyond = self.beyond(d, c, time_s);
+        array::from_fn(|i| sum(psi, state[i]) + link.sum(change[i]) + beyond[i])
+    }
+
+    /// The part of it that is not seen of the modes as they are carried.
+    fn beyond(&self, d: usize, c: usize, time_s: f64) -> [f64; 2] {
+        let mut found = [self.tangents[d].contacts[c].reference, 0.0];
         if let Some(loads) = &self.load_changes[d] {
             let by_loads = loads.overlap(c, time_s);
             let later = self.tangents[d].time_s;
@@ -307,6 +321,32 @@ impl<'a> Walk<'a> {
             found[1] += by_loads[1] + later * self.loads.bend(c, time_s);
         }
         found
+    }
+
+    /// How free motion from `y` and from the state moves what a contact sees of the change: in one pass over the modes.
+    fn seen(&self, d: usize, c: usize, forced: &Forced, y: [&[f64]; 2], [a, b, bend]: [&[f64]; 3]) -> Seen {
+        let change = &self.changes[d];
+        let mut seen = Seen::default();
+        for (Span { modes, psi }, Span { psi: by, .. }) in self.system.links[c].spans.iter().zip(&change.psi[c]) {
+            let at_nodes = &forced.at_nodes[modes.clone()];
+            let [ya, yb] = y.map(|values| &values[modes.clone()]);
+            let [a, b, bend] = [a, b, bend].map(|values| &values[modes.clone()]);
+            let (start, moved) = swept(at_nodes, [psi, by, ya, yb, a, b], |[psi, by, ya, yb, a, b]| {
+                (psi * ya + by * a, psi * yb + by * b)
+            });
+            seen.start += start;
+            add(&mut seen.moved, 1.0, &moved);
+            if change.moves_modes {
+                let [fade, stretch] = [&change.fade, &change.stretch].map(|values| &values[modes.clone()]);
+                let (start, timed) =
+                    swept(at_nodes, [psi, fade, stretch, a, b, bend], |[psi, fade, stretch, a, b, bend]| {
+                        (psi * (stretch * b - fade * a), psi * (stretch * bend - fade * b))
+                    });
+                seen.timed_start += start;
+                add(&mut seen.timed, 1.0, &timed);
+            }
+        }
+        seen
     }
 
     /// From what is carried to the whole motion at the end of the record.
@@ -546,33 +586,24 @@ impl<'a> Walk<'a> {
         let mut amplitude = tangent.amplitude.clone();
         let mut rate = tangent.rate.clone();
         if modes_move {
-            for k in 0..a.len() {
-                rate[k] += fade[k] * a[k] - stretches[k] * b[k];
-            }
+            vectorized(
+                #[inline(always)]
+                || {
+                    let held = fade.iter().zip(a).zip(stretches.iter().zip(b));
+                    for (rate, ((fade, a), (stretch, b))) in rate.iter_mut().zip(held) {
+                        *rate += fade * a - stretch * b;
+                    }
+                },
+            );
         }
         let (mut force, mut overlap) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for (p, own) in solved.iter().enumerate() {
             let c = own.contact;
-            let link = &system.links[c];
-            let [start, _] = self.overlap(d, c, from.start_s, [a, b], [&tangent.amplitude, &tangent.rate]);
-            let (mut from_a, mut from_b) = (vec![0.0; a.len()], vec![0.0; a.len()]);
-            weigh(&link.spans, (&amplitude, &rate), (&mut from_a, &mut from_b));
-            weigh(&change.psi[c], (a, b), (&mut from_a, &mut from_b));
-            let mut found = expansion.forced.sum_at_nodes(&from_a, &from_b);
+            let Seen { start, moved: mut found, timed_start, mut timed } =
+                self.seen(d, c, &expansion.forced, [&amplitude, &rate], [a, b, &passage.bends[0]]);
+            let start = start + self.beyond(d, c, from.start_s)[0];
             found.iter_mut().for_each(|value| *value += start);
-            // what is multiplied by the time
-            let mut timed = [0.0; Q];
-            if modes_move {
-                let (faded, stretched) = (&self.faded[d][c], &self.stretched[d][c]);
-                from_a.fill(0.0);
-                from_b.fill(0.0);
-                weigh(faded, (a, b), (&mut from_a, &mut from_b));
-                from_a.iter_mut().chain(&mut from_b).for_each(|value| *value = -*value);
-                weigh(stretched, (b, &passage.bends[0]), (&mut from_a, &mut from_b));
-                timed = expansion.forced.sum_at_nodes(&from_a, &from_b);
-                let at_start = sum(stretched, b) - sum(faded, a);
-                timed.iter_mut().for_each(|value| *value += at_start);
-            }
+            timed.iter_mut().for_each(|value| *value += timed_start);
             for (q, other) in solved.iter().enumerate() {
                 let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
                 if let Some(response) = of_force {
@@ -638,11 +669,19 @@ impl<'a> Walk<'a> {
         }
         if modes_move {
             let ([a, b], bend) = (passage.to, &passage.bends[1]);
-            for k in 0..a.len() {
-                let moving = stretches[k] * b[k] - fade[k] * a[k];
-                amplitude[k] += h * moving;
-                rate[k] += moving + h * (stretches[k] * bend[k] - fade[k] * b[k]);
-            }
+            vectorized(
+                #[inline(always)]
+                || {
+                    let motion = a.iter().zip(b).zip(bend).zip(fade.iter().zip(stretches));
+                    for ((amplitude, rate), (((a, b), bend), (fade, stretch))) in
+                        amplitude.iter_mut().zip(&mut rate).zip(motion)
+                    {
+                        let moving = stretch * b - fade * a;
+                        *amplitude += h * moving;
+                        *rate += moving + h * (stretch * bend - fade * b);
+                    }
+                },
+            );
         }
         Moved { amplitude, rate, force, overlap }
     }
@@ -998,6 +1037,32 @@ impl<'a> Walk<'a> {
     }
 }
 
+/// How far free motion moves the sum of all modes at the nodes, and that sum at the start: of each mode from the amplitude and
+/// the rate that are made of its numbers.
+fn swept<const N: usize>(
+    at_nodes: &[(Nodal, Nodal)],
+    rows: [&[f64]; N],
+    motion: impl Fn([f64; N]) -> (f64, f64),
+) -> (f64, Nodal) {
+    vectorized(
+        #[inline(always)]
+        || {
+            let n = at_nodes.len();
+            let rows = rows.map(|row| &row[..n]);
+            let (mut start, mut moved) = (0.0, [0.0; Q]);
+            for k in 0..n {
+                let (a, b) = motion(rows.map(|row| row[k]));
+                let (from_a, from_b) = &at_nodes[k];
+                start += a;
+                for i in 0..Q {
+                    moved[i] += from_a[i] * a + from_b[i] * b;
+                }
+            }
+            (start, moved)
+        },
+    )
+}
+
 /// Where a panel ends.
 struct Arrival<'a> {
     length_s: f64,
@@ -1015,17 +1080,6 @@ fn ending(next: &Stretch) -> Ending {
     match next.events.first() {
         Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,
         Some((c, event)) => Ending::Event(*c, *event),
-    }
-}
-
-/// Adds the motion of each mode, times its weight.
-fn weigh(spans: &[Span], (a, b): (&[f64], &[f64]), (to_a, to_b): (&mut [f64], &mut [f64])) {
-    for Span { modes, psi } in spans {
-        let rows = [(a, to_a as &mut [f64]), (b, to_b as &mut [f64])];
-        for (from, to) in rows {
-            let motion = psi.iter().zip(&from[modes.clone()]);
-            to[modes.clone()].iter_mut().zip(motion).for_each(|(to, (psi, value))| *to += psi * value);
-        }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution};
-use super::solve::{AMPLIFIED, Impact, Keep, LEAST, LOOSEST, Run, Solver};
+use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
 use crate::InvalidInput;
 pub use crate::assembly::Derivative;
 use crate::assembly::change::Change;
@@ -151,19 +151,11 @@ impl Solver {
         other.as_mut().unwrap_or(self).along_all(&impact, parameters)
     }
 
-    /// The impact at its tolerance and at two coarser ones, differentiated along each.
+    /// The impact at its tolerance and at a coarser one, differentiated along both.
     fn along_all(&mut self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
-        let once = Settings { estimate_uncertainty: false, ..*settings };
-        let (mut solution, fine) = self.solve_into(striker, law, Some(start), &once, Keep::Motion)?;
-        let tolerance = settings.tolerance.min(LOOSEST);
-        let coarse = COARSER.map(|factor| self.run(impact, factor * tolerance, Keep::Motion));
-        if let (Some(value), true) = (solution.restitution, settings.estimate_uncertainty) {
-            let error = |run: &Run| self.restitution(run, striker, start).map(|other| (other - value).abs());
-            let spread = coarse.iter().map(error).try_fold(0.0, |most: f64, error| error.map(|error| most.max(error)));
-            let uncertainty = spread.map_or(1.0, |spread| LEAST * settings.tolerance + AMPLIFIED * spread);
-            solution.restitution_uncertainty = Some(uncertainty);
-        }
+        let (solution, fine) = self.solve_into(striker, law, Some(start), settings, Keep::Motion)?;
+        let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
         let none = |solution| Differentiated { solution, derivatives: None, nearest_graze: 1.0 };
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution));
@@ -188,14 +180,10 @@ impl Solver {
         let Some((changes, nearest_graze)) = along.changes(&fine, &mut expansions) else {
             return Ok(none(solution));
         };
-        let coarse = coarse.map(|run| along.changes(&run, &mut expansions).map(|(changes, _)| changes));
+        let coarse = along.changes(&coarse, &mut expansions).map(|(changes, _)| changes);
         let of = |(i, fine): (usize, &Changes)| {
-            let same = |coarse: &'_ Option<Vec<Changes>>| {
-                let changes = &coarse.as_ref()?[i];
-                (changes.intervals.len() == fine.intervals.len()).then(|| changes.clone())
-            };
-            let [one, other] = coarse.each_ref().map(same);
-            fine.beside(one.zip(other).map(|(one, other)| [one, other]).as_ref())
+            let coarse = coarse.as_ref().map(|changes| &changes[i]);
+            fine.beside(coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len()))
         };
         let derivatives = changes.iter().enumerate().map(of).collect();
         Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze })
@@ -275,9 +263,9 @@ fn restitution_change(
 }
 
 impl Changes {
-    /// As derivatives, with those along coarser motions.
-    fn beside(&self, coarse: Option<&[Changes; 2]>) -> Derivatives {
-        let with = |of: &dyn Fn(&Changes) -> f64| beside(of(self), coarse.map(|coarse| coarse.each_ref().map(of)));
+    /// As derivatives, with those along the coarser motion.
+    fn beside(&self, coarse: Option<&Changes>) -> Derivatives {
+        let with = |of: &dyn Fn(&Changes) -> f64| beside(of(self), coarse.map(of));
         let number = |i: usize| with(&|changes| changes.numbers[i]);
         let interval = |i: usize| {
             let of = |get: fn(&IntervalChange) -> f64| with(&|changes| get(&changes.intervals[i]));

@@ -25,8 +25,8 @@ const OTHERWISE: f64 = 8.0;
 const THIRD: f64 = 8.0;
 /// The uncertainty in differences to them: without and with the third; and what is stated of the tolerance in any case.
 const ORDINARY: f64 = 2.5;
-pub(crate) const AMPLIFIED: f64 = 5.0;
-pub(crate) const LEAST: f64 = 3e-3;
+const AMPLIFIED: f64 = 5.0;
+const LEAST: f64 = 3e-3;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less.
