@@ -1,6 +1,6 @@
 //! A tilted rod dropped on an immovable surface (thesis chapter 8, Fig. 8.1).
 //!
-//! The rod falls without turning and meets the frictionless surface with its hemispherical end. Seen from the contact,
+//! The rod falls without rotation and meets the frictionless surface with its hemispherical end. Seen from the contact,
 //! it is a structure of two rigid-body motions, bending modes and axial modes, and the surface is a striker of infinite
 //! mass. With the inclination `theta` from the horizontal, the mass-normalised shapes in the direction of the surface's
 //! normal are

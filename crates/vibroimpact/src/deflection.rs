@@ -1,13 +1,13 @@
-//! How a beam or a string deflects during an impact, along its whole length: what an animation shows.
+//! The deflection of a beam or a string along its whole length during an impact, as an animation shows it.
 //!
-//! With the mass-normalised shapes `phi_k(x)` and the amplitudes `q_k(t)` of the modes that were kept,
+//! With the mass-normalised shapes `phi_k(x)` and the amplitudes `q_k(t)` of the retained modes,
 //!
 //! ```text
 //! w(x, t) = sum_k phi_k(x) q_k(t)                                                      (1)
 //! ```
 //!
-//! Remainder modes stand for the local response of all others at the location of impact. They have no shape elsewhere and
-//! are left out, so that at that place (1) lacks a part of the displacement there, which is small beside the whole.
+//! Remainder modes represent the local response of all others at the location of impact. They have no shape elsewhere and
+//! are left out, so at that location (1) lacks a part of the displacement, which is small compared with the whole.
 
 use serde::Serialize;
 

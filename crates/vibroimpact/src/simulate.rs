@@ -1,4 +1,4 @@
-//! A scene solved in the way that its structure asks for.
+//! A scene solved by the solver for its structure.
 
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Groups};

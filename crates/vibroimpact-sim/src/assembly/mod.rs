@@ -13,32 +13,33 @@
 //! |---|---|---|
 //! | `a_k`, `phi_k` | modal amplitude; mass-normalised shape at a point | m kg^1/2; kg^-1/2 |
 //! | `omega_k`, `zeta_k` | undamped circular frequency (0: rigid-body mode), damping ratio | rad/s, 1 |
-//! | `psi_kc` | what a unit amplitude adds to the overlap of a contact | kg^-1/2 |
+//! | `psi_kc` | overlap of a contact for a unit amplitude | kg^-1/2 |
 //! | `xi_c`, `F_c` | overlap (compression where it is positive) and force of a contact, which pushes A along `+x` | m, N |
 //! | `f_k` | modal load | N kg^-1/2 |
 //!
 //! One striker against one structure ([`crate::modal`]) is the case of two bodies, one contact and no load.
 //!
 //! # The method
-//! The modes are linear and uncoupled: they are propagated exactly, on panels of `2^-j` s whose tables are kept
-//! (`tables.rs`). Loads cost nothing on the way (`load.rs`): modes are carried relative to their steady motion. Unknown
-//! are only the forces of closed contacts, polynomials through Gauss nodes whose values the laws fix; Newton's method
-//! finds them, with a matrix that has a block for each two contacts on one body (`collocate.rs`).
+//! The modes are linear and uncoupled, and are propagated exactly on panels of `2^-j` s whose tables are cached
+//! (`tables.rs`). Modes are carried relative to their steady motion under the loads, which therefore cost nothing on a panel
+//! (`load.rs`). The only unknowns are the forces of closed contacts, polynomials through Gauss nodes whose values the laws
+//! determine. Newton's method finds them, with a matrix that has a block for every two contacts on one body
+//! (`collocate.rs`).
 //!
-//! The march (`march.rs`) tries a panel, judges it, and commits it, tries it shorter, or cuts it at an event. Three rules
+//! The march (`march.rs`) tries a panel, judges it, and commits it, tries a shorter one, or cuts it at an event. Three rules
 //! hold for every panel that is committed:
 //!
 //! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a tenth of the tolerance
 //!    in impulse;
 //! 2. no event function falls to zero on it. An event function is the distance to a boundary of a law's branch, or of
-//!    the surfaces of an open contact. It is known by a polynomial and a bound on what that misses (`enclosure.rs`), and
-//!    judged in one place (`event.rs`); a panel on which it is within the bound of zero is too long;
+//!    the separation of an open contact. It is known by a polynomial and a bound on the error of that (`enclosure.rs`), and
+//!    `event.rs` alone judges it; a panel on which it is within the bound of zero is too long;
 //! 3. it lies in one branch of every law. An event is the end of a terminal panel (`terminal.rs`), whose length is the
 //!    root of the event function; one law transition follows.
 //!
 //! Without closed contact a panel is as long as the bound on the motion of the open ones allows.
 //!
-//! Where it is wanted, an energy ledger is kept panel by panel (`ledger.rs`, `damping.rs`).
+//! On request an energy ledger is kept panel by panel (`ledger.rs`, `damping.rs`).
 //!
 //! # Limits
 //! Bodies are linear, contacts are points that move along one axis; there is no friction. A harmonic load at the frequency

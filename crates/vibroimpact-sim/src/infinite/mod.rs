@@ -18,7 +18,7 @@
 //! | `x` | compression, body minus structure displacement; negative: gap | `v T` | Eq. 2.5, `xi` |
 //! | `f` | contact force | `F` | Eqs. 2.5, 2.10 |
 //! | `t` | time since first touch | `T` | Eq. 2.9 |
-//! | `S` | the one nondimensional number, `C^10 k_H^2 m^8 v` for the beam | 1 | Eq. 2.8 |
+//! | `S` | the single nondimensional parameter, `C^10 k_H^2 m^8 v` for the beam | 1 | Eq. 2.8 |
 //! | `u` | speed of the body towards the structure | `v` | |
 //!
 //! Displacements in the thesis's unit `D` (Eq. 2.11) are `S^(1/3)` times those in `v T`.

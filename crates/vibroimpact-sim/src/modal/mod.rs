@@ -17,15 +17,16 @@
 //! | `xi`, `F` | compression and force of the contact | m, N |
 //!
 //! # The method
-//! An impact is the smallest assembly ([`crate::assembly`], where the method stands): two bodies, the striker one rigid mode,
-//! and one contact (`posed.rs`). The modes are propagated exactly; the force, a polynomial on each panel, is the only
-//! unknown; a bound on the motion says when a contact can come, and that none can come any more ends the impact. What the
-//! structure's modes need is tabulated once and kept for further strikers, speeds and laws.
+//! An impact is the smallest assembly ([`crate::assembly`] describes the method): two bodies, of which the striker is one rigid
+//! mode, and one contact (`posed.rs`). The modes are propagated exactly. The only unknown is the force, a polynomial on each
+//! panel. A bound on the motion gives a time before which no contact can occur, and the impact ends when none can occur any
+//! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws.
 //!
-//! The uncertainty of the restitution rests on coarser solutions: one of 32 times the tolerance, and one of eight times,
-//! whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger difference to them.
-//! Where that is more than the tolerance the impact amplifies errors, undamped ones with many modes by 1e5 and more, and two
-//! solutions may agree by accident: a third is asked, and the largest difference counts five times.
+//! The uncertainty of the restitution is estimated from two coarser solutions: one with 32 times the tolerance, and one with
+//! eight times, whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger
+//! difference from them. If that exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and
+//! more), and two solutions may agree by accident. A third solution is then computed, and the largest difference counts five
+//! times.
 
 mod differentiate;
 mod history;

@@ -1,17 +1,17 @@
-//! What the modes left out may change in a restitution, judged by impacts with other modes in their place.
+//! The possible change of a restitution by the truncated modes, estimated from impacts with other numbers of modes.
 //!
-//! Two numbers of modes may agree by accident, and the more impacts are asked the rarer that becomes. With `d_1` the last
+//! Two numbers of modes may agree by accident; the more impacts are compared, the rarer that is. With `d_1` the last
 //! change and `d_2` the one before,
 //!
 //! ```text
 //! u = max( 2 d_1, d_2, 10 E_r / E, d_s ) + d_c.
 //! ```
 //!
-//! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact: they answer slow forces as
-//! the tail does, and where they were set vibrating the force was too fast for that. It is known from one impact alone, and
-//! catches most accidents. `d_s`, for lists, is what changes with a single remainder mode in the place of several: the
-//! shape of their tail is an assumption. `d_c` is what changes where the static compliance, which all of them share, is greater by
-//! as much as it may be off; zero where that has a closed form.
+//! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact. They answer slow forces as
+//! the truncated modes do; if they vibrate, the force was too fast for that. This share is known from one impact alone, and
+//! detects most accidents. `d_s`, for lists, is the change with a single remainder mode in place of several, because the
+//! extrapolation of a list is an assumption. `d_c` is the change if the static compliance, which all of them share, is
+//! greater by its uncertainty; it is zero if that has a closed form.
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 

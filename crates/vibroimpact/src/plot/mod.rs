@@ -4,7 +4,7 @@
 //! (lines, markers, steps, stems, bands, error bars) or a [`HeatMap`]. Axis limits, ticks,
 //! margins and legends are worked out from the data; the same figure always gives the same
 //! bytes. Values that are not finite are left out and interrupt a line. Colours are those of
-//! Okabe and Ito (2008), chosen to be told apart with any colour vision; maps use viridis, or
+//! Okabe and Ito (2008), which can be distinguished with any colour vision; maps use viridis, or
 //! blue to red where their limits lie about zero.
 //!
 //! ```

@@ -1,7 +1,7 @@
-//! Reports: text, tables and figures as Markdown and as one HTML page that stands alone.
+//! Reports: text, tables and figures as Markdown and as one self-contained HTML page.
 //!
-//! A [`Report`] is written in Markdown piece by piece. Figures are kept as files beside the
-//! Markdown and drawn into the HTML. A [`Comparison`] sets a published number beside ours; its
+//! A [`Report`] is written in Markdown piece by piece. Figures are files beside the
+//! Markdown and are embedded in the HTML. A [`Comparison`] compares a published number with ours; its
 //! verdict follows from the two numbers and the tolerance alone.
 //!
 //! ```

@@ -2,17 +2,17 @@
 //! of an MPI job, with the same bytes as a result.
 //!
 //! A [`Sweep`] is a base scene and the fields that vary. Its points are numbered, and each is a function of its number
-//! alone. [`run`] computes them into a folder; when it is cut off at any moment, running it again goes on from there.
+//! alone. [`run`] computes them into a folder; after an interruption at any moment, another run continues from there.
 //! [`merge`] makes the folder of a whole sweep from those of its parts.
 //!
 //! | file | what it holds |
 //! |---|---|
 //! | `results.csv` | one row a point: `index`, the varied fields, the result, its cost, `error` if there is none |
 //! | `results.parquet` | the same, typed and compressed |
-//! | `report.html`, `report.md`, `figures/` | what was varied, what came out, pictures |
+//! | `report.html`, `report.md`, `figures/` | the varied fields, the results, pictures |
 //! | `distribution.csv` | of a sweep with uncertain fields: figures of the restitution at each grid point |
 //! | `summary.json` | a [`Tally`] |
-//! | `sweep.json`, `progress.json`, `lock` | what is computed here, how far it has come, who is at it |
+//! | `sweep.json`, `progress.json`, `lock` | the sweep, its progress, the process that works on it |
 //!
 //! ```
 //! use std::sync::atomic::AtomicBool;

@@ -1,6 +1,6 @@
-//! How far to trust an answer: what its theories can bear, each with a number.
+//! How far to trust an answer: whether its theories hold, each with a number.
 //!
-//! No solver knows whether its equations hold. These figures tell, computed from the impact as it was solved; each has a
+//! No solver knows whether its equations hold. These figures show it, computed from the impact as it was solved; each has a
 //! limit within which the theory holds and one beyond which it does not:
 //!
 //! | check | figure | within | outside |
@@ -32,17 +32,17 @@
 //! ```
 //!
 //! Metals yield first, below the surface, at `p = 1.6 Y`, and flow over the whole contact at a mean pressure of `3 Y`, that
-//! is `p = 4.5 Y` (K. L. Johnson, *Contact Mechanics*, 1985, 4.2 and 6.3). Hertz takes bodies for half-spaces, which they
-//! are while `a` is small against radius and thickness.
+//! is `p = 4.5 Y` (K. L. Johnson, *Contact Mechanics*, 1985, 4.2 and 6.3). Hertz's law assumes half-spaces, which is
+//! right while `a` is small compared with radius and thickness.
 //!
-//! *Edge.* What a theory of bending does not know of the stresses at an end decays as `e^(-4.2 x/h)` (P. F. Papkovich, 1940): to
+//! *Edge.* The stresses at an end that a theory of bending leaves out decay as `e^(-4.2 x/h)` (P. F. Papkovich, 1940): to
 //! 1.5 % over one thickness, and to 35 % over a quarter.
 //!
 //! *Ball.* The lowest mode of a solid ball that an impact excites is the one that makes it oblong, `omega R / c_t = 2.64`
 //! (H. Lamb, 1882; 2.64 to 2.65 for Poisson's ratios of 0.25 to 0.33), with `c_t = sqrt(G/rho)`.
 //!
-//! *Early response.* For a moment Timoshenko's beam answers with an impedance and not with the square root of time; how the
-//! first contact would end then is found from its mobility, Eqs. (3) and (4) in `early.rs`.
+//! *Early response.* At first Timoshenko's beam answers with an impedance and not with the square root of time. Its mobility
+//! shows how the first contact would end then, Eqs. (3) and (4) in `early.rs`.
 //!
 //! *Gravity* is left out of an impact; between contacts a ball that falls on the structure gains `g t`.
 
