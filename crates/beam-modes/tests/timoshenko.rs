@@ -75,6 +75,32 @@ fn multiple_precision_reference() {
     }
 }
 
+/// Up to the five hundredth mode of stepped beams, thick and slender, of both spectra and below the second.
+#[test]
+fn five_hundred_modes_against_multiple_precision() {
+    use End::{Clamped, Free, Pinned};
+    let thick = [(segment(0.6, 1.0, 1.0), shear(400.0, 1e-3)), (segment(0.4, 0.4, 0.6), shear(280.0, 4e-4))];
+    let forty = [(segment(0.5, 273.0, 1.0), shear(1.4e5, 5e-4)), (segment(0.5, 34.2, 0.5), shear(7e4, 2.5e-4))];
+    let end = |length: f64| (segment(length, 1.0, 1.0), shear(4e6, 1e-7));
+    let slender = [end(0.3), (segment(0.45, 0.4, 0.8), shear(3e6, 8e-8)), end(0.25)];
+    for (name, parts, ends) in [
+        ("thick", &thick[..], [Clamped, Free]),
+        ("forty thicknesses", &forty[..], [Clamped, Pinned]),
+        ("slender", &slender[..], [Free, Pinned]),
+    ] {
+        let modes = timoshenko(parts, ends).modes(500).unwrap();
+        let reference = rows(include_str!("data/timoshenko_modes_reference.csv")).filter(|row| row[0] == name);
+        let mut worst = 0.0f64;
+        for row in reference {
+            let (n, theirs): (usize, f64) = (row[1].parse().unwrap(), row[2].parse().unwrap());
+            let error = (modes.omega_rad_s()[n - 1] / theirs - 1.0).abs();
+            assert!(error < 1e-12, "{name}, mode {n}: {error:e}");
+            worst = worst.max(error);
+        }
+        println!("{name}: {worst:e}");
+    }
+}
+
 /// Largest entry of `int m w_i w_j + rho I t_i t_j dx - delta_ij`.
 fn defect(parts: &[(Segment, ShearSection)], modes: &Modes) -> f64 {
     let n = modes.len();

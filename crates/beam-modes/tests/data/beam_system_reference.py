@@ -96,7 +96,8 @@ def roots(case):
     raise SystemExit(f"{case[0]}: {len(found)} roots below {top}")
 
 
-print("case,mode,omega_rad_s")
-for case in CASES:
-    for n, omega in enumerate(roots(case), 1):
-        print(f"{case[0]},{n},{nstr(omega, 17)}")
+if __name__ == "__main__":
+    print("case,mode,omega_rad_s")
+    for case in CASES:
+        for n, omega in enumerate(roots(case), 1):
+            print(f"{case[0]},{n},{nstr(omega, 17)}")
