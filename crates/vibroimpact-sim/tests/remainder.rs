@@ -5,7 +5,7 @@ use beam_modes::{Beam, BeamSystem, End, PointMode, Segment, ShearSection, remain
 use common::{GOLDEN, pinned, settings, solve};
 use contact_models::{Body, Hertz, Law};
 use std::f64::consts::PI;
-use vibroimpact_sim::modal::{Mode, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Solution, Solver, Striker, Structure};
 
 const DAMPING: f64 = 0.02;
 
@@ -44,34 +44,42 @@ fn two_remainder_modes_are_worth_a_thousand_modes() {
     assert!(one < 1e-5 && two < 2e-6 && three < 1e-6);
 }
 
-/// The same beam by Timoshenko's theory with Cowper's coefficient, `n` modes and four remainder modes.
-fn timoshenko(n: usize) -> Structure {
-    let (side, modulus, density, nu): (f64, f64, f64, f64) = (0.011323, 2e11, 7800.0, 0.3);
-    let cowper = 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu);
-    let section = ShearSection {
-        shear_rigidity_n: cowper * modulus / (2.0 * (1.0 + nu)) * side.powi(2),
+/// A steel beam of square segments, length and side (m), by Timoshenko's theory: `n` modes as seen from a place and four
+/// remainder modes.
+fn square(segments: &[(f64, f64)], shear_coefficient: f64, ends: [End; 2], x: f64, n: usize) -> Structure {
+    let (modulus, density, nu) = (2e11, 7800.0, 0.3);
+    let section = |&(_, side): &(f64, f64)| ShearSection {
+        shear_rigidity_n: shear_coefficient * modulus / (2.0 * (1.0 + nu)) * side.powi(2),
         rotary_inertia_kg_m: density * side.powi(4) / 12.0,
     };
-    let segment = Segment::rectangular(1.0, modulus, density, side, side);
+    let segment = |&(length, side): &(f64, f64)| Segment::rectangular(length, modulus, density, side, side);
     let beam = BeamSystem {
-        shear: Some(vec![section]),
-        ..BeamSystem::from(Beam { segments: vec![segment], ends: [End::Pinned; 2] })
+        shear: Some(segments.iter().map(section).collect()),
+        ..BeamSystem::from(Beam { segments: segments.iter().map(segment).collect(), ends })
     };
     let kept = beam.modes(n).unwrap();
-    let shapes = kept.shapes_at(GOLDEN).unwrap();
+    let shapes = kept.shapes_at(x).unwrap();
     let known = kept.omega_rad_s().iter().zip(shapes).map(|(&omega_rad_s, shape)| PointMode { omega_rad_s, shape });
-    let all = known.chain(beam.remainder(GOLDEN, n, 4).unwrap());
+    let all = known.chain(beam.remainder(x, n, 4).unwrap());
     let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: DAMPING, shape: m.shape };
     Structure { modes: all.map(damped).collect() }
 }
 
-/// The restitution of a steel ball (m) at 1 m/s, mass and Hertz contact from its material.
-fn of_steel(structure: &Structure, radius_m: f64) -> f64 {
+/// The beam of chapter 3 with Cowper's coefficient.
+fn timoshenko(n: usize) -> Structure {
+    square(&[(1.0, 0.011323)], 10.0 * 1.3 / (12.0 + 11.0 * 0.3), [End::Pinned; 2], GOLDEN, n)
+}
+
+/// The impact of a steel ball (m) at 1 m/s, mass and Hertz contact from its material.
+fn solution(structure: &Structure, radius_m: f64, tolerance: f64) -> Solution {
     let striker = Striker { mass_kg: 4.0 / 3.0 * PI * radius_m.powi(3) * 7800.0, speed_m_s: 1.0 };
     let ball = Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m };
     let law = Law::Hertz(Hertz::from_bodies(&ball, &Body::flat(2e11, 0.3)).unwrap());
-    let solution = Solver::new(structure).unwrap().solve(&striker, &law, None, &settings(1e-9)).unwrap();
-    solution.restitution.unwrap()
+    Solver::new(structure).unwrap().solve(&striker, &law, None, &settings(tolerance)).unwrap()
+}
+
+fn of_steel(structure: &Structure, radius_m: f64) -> f64 {
+    solution(structure, radius_m, 1e-9).restitution.unwrap()
 }
 
 /// Balls of 2, 3 and 5 cm on the beam of chapter 3: 0.222, 0.143, 0.502 by Euler-Bernoulli's theory, 0.210, 0.253, 0.521 by
@@ -84,5 +92,40 @@ fn the_theory_of_the_beam_matters_more_than_its_modes() {
         println!("{radius_m}: {other} {few} {many}");
         assert!((few - many).abs() < 1e-4, "{few} {many}");
         assert!((many - thick).abs() < 1e-3 && (other - slender).abs() < 1e-3, "{other} {many}");
+    }
+}
+
+/// Other beams than that of chapter 3: 150 modes and four remainder modes are within 1e-4 of 600.
+#[test]
+fn a_hundred_and_fifty_modes_are_enough_for_thick_beams() {
+    let kappa = 5.0 * 1.3 / 7.5;
+    let (clamped, pinned, free) = (End::Clamped, End::Pinned, End::Free);
+    for (segments, ends, x, radius_m) in [
+        (&[(0.5, 0.02)][..], [clamped, free], 0.35, 0.01),
+        (&[(0.5, 0.0113), (0.5, 0.008)], [clamped, pinned], 0.4, 0.0125),
+        (&[(0.3, 0.015)], [free, free], 0.12, 0.01),
+        (&[(2.0, 0.01)], [pinned, clamped], 0.7, 0.01),
+    ] {
+        let with = |n: usize| of_steel(&square(segments, kappa, ends, x, n), radius_m);
+        let (few, many) = (with(150), with(600));
+        println!("{segments:?}: {many} {:e}", few - many);
+        assert!((few - many).abs() < 1e-4, "{segments:?}: {few} {many}");
+    }
+}
+
+/// With as many modes an impact takes as many steps by either theory (one contact by both: the 2 cm ball), and not many more
+/// with remainder modes, which are faster waves in a thick beam.
+#[test]
+fn thick_beams_cost_what_slender_ones_do() {
+    let steps = |structure: &Structure| {
+        let counts = solution(structure, 0.01, 1e-6).counts;
+        (counts.contact_steps + counts.rejected_steps + counts.flight_steps) as f64
+    };
+    for n in [40, 100, 150, 200] {
+        let (thick, slender) = (timoshenko(n), with_remainder(n, 4));
+        let alone = |of: &Structure| steps(&Structure { modes: of.modes[..n].to_vec() });
+        let ratios = [alone(&thick) / alone(&slender), steps(&thick) / steps(&slender)];
+        println!("{n}: {ratios:?}");
+        assert!(ratios[0] < 1.1 && ratios[1] < 1.5, "{n}: {ratios:?}");
     }
 }
