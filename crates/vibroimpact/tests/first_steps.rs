@@ -203,18 +203,30 @@ fn an_impact_is_shown_moving() {
     assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));
 }
 
-/// The picture of the README is what the program draws.
-#[test]
-fn the_readme_shows_the_demo() {
+/// Holds a figure of the book against what the program draws.
+fn assert_drawn(arguments: &[&str], figure: &str) {
     let folder = tempfile::tempdir().unwrap();
-    stdout(&run(folder.path(), &["demo", "--plot", "demo.svg"]));
-    let drawn = fs::read_to_string(folder.path().join("demo.svg")).unwrap();
-    let checked_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures/first-impact.svg");
+    stdout(&run(folder.path(), &[arguments, &["--plot", "drawn.svg"]].concat()));
+    let drawn = fs::read_to_string(folder.path().join("drawn.svg")).unwrap();
+    let checked_in = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/figures").join(figure);
     if std::env::var_os("VIBROIMPACT_BLESS").is_some() {
         fs::write(&checked_in, &drawn).unwrap();
     }
-    let shown = fs::read_to_string(&checked_in).unwrap();
-    assert!(shown == drawn, "docs/figures/first-impact.svg is not current; VIBROIMPACT_BLESS=1 writes it");
+    let shown = fs::read_to_string(&checked_in).unwrap_or_default();
+    assert!(shown == drawn, "docs/figures/{figure} is not current; VIBROIMPACT_BLESS=1 writes it");
+}
+
+/// The force pulse of the piano hammer in the book is what the program draws.
+#[test]
+fn the_book_shows_the_hammer() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes/piano-hammer.json");
+    assert_drawn(&["simulate", scene], "piano-hammer.svg");
+}
+
+/// The picture of the README is what the program draws.
+#[test]
+fn the_readme_shows_the_demo() {
+    assert_drawn(&["demo"], "first-impact.svg");
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
     assert!(readme.contains("](docs/figures/first-impact.svg)"));
 }
