@@ -179,6 +179,18 @@ fn the_bat_is_the_beam_that_its_table_was_made_from_and_has_a_sweet_spot() {
     assert!(near < 0.1 * vibration("barrel_end") && near < vibration("50_mm"));
 }
 
+/// The bat by its geometry, cut down to the modes of the table, rebounds as the table says.
+#[test]
+fn the_bat_posed_by_its_geometry_is_the_one_in_the_table() {
+    let restitution = |scene: &vibroimpact::Scene| scene.impact().unwrap().solve().unwrap().restitution.unwrap();
+    let geometry = named("baseball-bat-geometry");
+    let modes = vibroimpact::model::Modes::Count(8);
+    let cut = vibroimpact::Scene { modes, residual_compliance: Some(false), ..geometry.clone() };
+    let listed = restitution(&named("baseball-bat"));
+    assert!((restitution(&cut) - listed).abs() < 1e-5, "{} {listed}", restitution(&cut));
+    assert!((restitution(&geometry) - listed).abs() < 0.02, "{} {listed}", restitution(&geometry));
+}
+
 #[test]
 fn a_stepped_shaft_rings_between_its_two_thicknesses() {
     let scene = named("stepped-shaft");
