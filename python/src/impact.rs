@@ -91,8 +91,8 @@ pub fn sensitivity(py: Python<'_>, scene: Source, by: Vec<String>) -> PyResult<B
 /// `shape_at_location`, mass-normalised (kg^-1/2). Rigid-body modes come first, with frequency 0.
 #[pyfunction]
 pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, PyDict>> {
-    let ModeTable { omega_rad_s, frequency_hz, shape_at_location } =
-        py.detach(|| Ok::<_, Fault>(ModeTable::new(&scene.scene()?.mode_shapes(count)?)))?;
+    let ModeTable { omega_rad_s, frequency_hz, shape_at_location, .. } =
+        py.detach(|| Ok::<_, Fault>(ModeTable::new(&scene.scene()?.mode_shapes(count)?, None)))?;
     let table = PyDict::new(py);
     table.set_item("omega_rad_s", omega_rad_s.into_pyarray(py))?;
     table.set_item("frequency_hz", frequency_hz.into_pyarray(py))?;

@@ -59,10 +59,11 @@ fn ritz_agrees_with_lines_of_symmetry() {
     // two free edges apart: antisymmetric modes of [F, F] about the middle line are those of [P, F] on one half
     let whole = Plate { length_m: 2.0, ..unit(0.8, 0.3, [F, F, C, P]) };
     let half = unit(0.8, 0.3, [P, F, C, P]);
-    let (all, halves) = (whole.modes(24).unwrap(), frequencies(&half, 10));
+    // as many as the singular corners between clamped and free edges ask for
+    let (all, halves) = (whole.modes(400).unwrap(), frequencies(&half, 200));
     let middle = all.shapes_at(1.0, 0.37).unwrap();
     let odd = all.omega_rad_s().iter().zip(&middle).filter(|(_, phi)| phi.abs() < 1e-9).map(|(omega, _)| *omega);
-    for (a, b) in odd.zip(halves) {
+    for (a, b) in odd.zip(halves).take(10) {
         assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
     }
 }
@@ -73,7 +74,7 @@ fn ritz_agrees_with_lines_of_symmetry() {
 fn the_stated_change_bounds_the_error() {
     for edges in [[C, F, F, P], [C, F, F, F], [C, F, C, F], [F, F, F, F]] {
         let plate = unit(0.75, 0.3, edges);
-        let (few, many) = (plate.modes(20).unwrap(), plate.modes(150).unwrap());
+        let (few, many) = (plate.modes(20).unwrap(), plate.modes(300).unwrap());
         let elastic = few.rigid_body_count()..20;
         let error = |k: usize| few.omega_rad_s()[k] / many.omega_rad_s()[k] - 1.0;
         let largest = elastic.clone().map(error).fold(0.0, f64::max);

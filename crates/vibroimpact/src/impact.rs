@@ -167,6 +167,18 @@ impl Scene {
         self.structure.modes(self.place(), Some(count))
     }
 
+    /// How many of the first `count` modes, from the lowest, have frequencies that more polynomials would change by less than
+    /// [`CONVERGED_FREQUENCY`](scene::CONVERGED_FREQUENCY); `None` where modes have a closed form, or are stated.
+    ///
+    /// # Errors
+    /// As [`Scene::structure`].
+    pub fn converged_modes(&self, count: usize) -> Result<Option<usize>, InvalidInput> {
+        match &self.structure {
+            scene::Structure::Plate(plate) => plate.converged_modes(count),
+            _ => Ok(None),
+        }
+    }
+
     /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
     /// restitution needs to settle, which takes a few solves; [`Scene::choose`](crate::Scene::choose) tells how well
     /// it settled, and whether another model would do.

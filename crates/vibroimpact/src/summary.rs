@@ -183,12 +183,17 @@ pub struct ModeTable {
     pub frequency_hz: Vec<f64>,
     /// Mass-normalised shapes at the point of impact (kg^-1/2).
     pub shape_at_location: Vec<f64>,
+    /// Of a plate by Ritz's method: how many of the frequencies, from the lowest, have converged to
+    /// [`CONVERGED_FREQUENCY`](crate::scene::CONVERGED_FREQUENCY).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub converged_modes: Option<usize>,
 }
 
 impl ModeTable {
     /// Gathers modes for printing.
-    pub fn new(modes: &[Mode]) -> ModeTable {
+    pub fn new(modes: &[Mode], converged_modes: Option<usize>) -> ModeTable {
         ModeTable {
+            converged_modes,
             omega_rad_s: modes.iter().map(|mode| mode.omega_rad_s).collect(),
             frequency_hz: modes.iter().map(|mode| mode.omega_rad_s / std::f64::consts::TAU).collect(),
             shape_at_location: modes.iter().map(|mode| mode.shape).collect(),

@@ -248,13 +248,20 @@ pub fn result(summary: &Summary) -> String {
     text
 }
 
-/// A table of modes.
-pub fn modes(modes: &[Mode]) -> String {
+/// A table of modes, and how many of their frequencies have converged, if that is a question.
+pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     let mut text =
         format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
     for (k, mode) in modes.iter().enumerate() {
         let frequency = mode.omega_rad_s / std::f64::consts::TAU;
         let _ = writeln!(text, "{:>6}{:>18.8e}{:>18.8e}{:>26.8}", k + 1, mode.omega_rad_s, frequency, mode.shape);
+    }
+    if let Some(converged) = converged {
+        let (all, share) = (modes.len(), crate::scene::CONVERGED_FREQUENCY);
+        let _ = writeln!(
+            text,
+            "  {converged} of {all} frequencies would change by less than {share:e} with more polynomials."
+        );
     }
     text
 }

@@ -38,6 +38,7 @@ pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<Strin
     let scene = scene.impact()?;
     picture.require_room()?;
     let modes = scene.mode_shapes(count).map_err(of_option("--count"))?;
-    let printed = if json { export::json(&ModeTable::new(&modes))? } else { text::modes(&modes) };
+    let converged = scene.converged_modes(count).map_err(of_option("--count"))?;
+    let printed = if json { export::json(&ModeTable::new(&modes, converged))? } else { text::modes(&modes, converged) };
     Ok(printed + &picture.draw(json, || Ok(pictures::modes(&scene, count)?))?)
 }

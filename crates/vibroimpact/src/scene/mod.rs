@@ -76,7 +76,7 @@ pub use materials::{HertzStiffness, Materials};
 pub use modal::{Modal, Point};
 pub use modes_file::ModesFile;
 pub use path::FieldPath;
-pub use plate::{Edge, Plate, PlateTheory};
+pub use plate::{CONVERGED_FREQUENCY, Edge, Plate, PlateTheory};
 pub(crate) use remainder::{COMPLETE, require_elastic};
 pub use segment::Segment;
 pub use start::{MovingMode, Start};

@@ -7,6 +7,9 @@ use vibroimpact_sim::modal::Mode;
 use super::error::InvalidInput;
 use super::known::{require_damping, shapes_as_modes};
 
+/// A frequency that more polynomials would change by a smaller share than this has converged.
+pub const CONVERGED_FREQUENCY: f64 = 1e-5;
+
 /// A uniform rectangular plate, [`beam_modes::Plate`].
 ///
 /// ```
@@ -131,6 +134,14 @@ impl Plate {
         require_damping(self.damping_ratio)?;
         let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
         plate.modes(count).map_err(in_structure)
+    }
+
+    /// How many of the first `count` modes have converged; `None` where they have a closed form.
+    pub(crate) fn converged_modes(&self, count: usize) -> Result<Option<usize>, InvalidInput> {
+        if self.edges == [Edge::Pinned; 4] {
+            return Ok(None);
+        }
+        Ok(Some(self.modes(count)?.converged(CONVERGED_FREQUENCY)))
     }
 
     /// The modes as a striker at a location meets them.
