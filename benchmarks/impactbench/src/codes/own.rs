@@ -11,7 +11,7 @@ use work_precision::measure::Effort;
 
 /// All runs.
 pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
-    let tolerances = effort.tolerances(3, 12);
+    let tolerances = effort.tolerances(1, 12);
     if let Some(s) = problem.infinite_beam_s {
         return sweep(problem, "vibroimpact, infinite beam", &tolerances, effort, |tolerance, _| {
             let settings =
