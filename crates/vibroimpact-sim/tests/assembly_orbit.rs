@@ -36,8 +36,8 @@ fn without_contact_the_orbit_is_the_steady_motion_and_its_multipliers_are_known(
     // exp(lambda T), lambda = -zeta omega_0 +- i omega_d
     let (size, angle) = ((-zeta * 10.0 * period).exp(), 10.0 * (1.0 - zeta * zeta).sqrt() * period);
     for multiplier in &orbit.floquet_multipliers {
-        assert!((multiplier[0] - size * angle.cos()).abs() < 1e-8, "{multiplier:?}");
-        assert!((multiplier[1].abs() - (size * angle.sin()).abs()).abs() < 1e-8);
+        assert!((multiplier[0] - size * angle.cos()).abs() < 1e-12, "{multiplier:?}");
+        assert!((multiplier[1].abs() - (size * angle.sin()).abs()).abs() < 1e-12);
     }
     assert!(orbit.stable);
 }
@@ -54,7 +54,7 @@ fn an_orbit_against_a_stop_repeats_itself_and_its_multipliers_have_the_right_pro
         .iter()
         .fold((1.0, 0.0), |(re, im): (f64, f64), m| (re * m[0] - im * m[1], re * m[1] + im * m[0]));
     let volume = (-2.0 * zeta * 10.0 * orbit.period_s).exp();
-    assert!((product.0 - volume).abs() < 1e-7 && product.1.abs() < 1e-9, "{product:?} {volume}");
+    assert!((product.0 - volume).abs() < 1e-10 && product.1.abs() < 1e-12, "{product:?} {volume}");
     // a long transient arrives there
     let mut settings = Settings::until(400.0 * orbit.period_s + orbit.phase_s);
     settings.tolerance = 1e-11;

@@ -115,6 +115,28 @@ impl<'a> Change<'a> {
         change.moves_modes = change.fade.iter().chain(&change.stretch).any(|value| *value != 0.0);
         change
     }
+
+    /// Another amplitude of a mode at the start, or another rate; nothing else.
+    pub fn of_start(system: &System, place: usize, of_rate: bool) -> Change<'a> {
+        let n = system.modes.len();
+        let zeros = || vec![0.0; n];
+        let still = |span: &Span| Span { modes: span.modes.clone(), psi: vec![0.0; span.psi.len()] };
+        let mut change = Change {
+            amplitude: zeros(),
+            rate: zeros(),
+            gap_m: vec![0.0; system.links.len()],
+            psi: system.links.iter().map(|link| link.spans.iter().map(still).collect()).collect(),
+            fade: zeros(),
+            stretch: zeros(),
+            laws: None,
+            loads: None,
+            stencil: Stencil::central(1.0),
+            moves_modes: false,
+        };
+        let started = if of_rate { &mut change.rate } else { &mut change.amplitude };
+        started[place] = 1.0;
+        change
+    }
 }
 
 fn difference(link: &Link, neighbours: &[Link; 4], stencil: &Stencil<4>) -> Vec<Span> {

@@ -181,6 +181,28 @@ impl Solver<'_> {
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
     }
 
+    /// How all modes at the end, amplitudes and then rates, change with all of them at the start, body by body: `[at the start]
+    /// [at the end]`, with how the run ended. `None` where there is no derivative.
+    pub(crate) fn monodromy(&mut self, settings: &Settings) -> Result<(Outcome, Option<Vec<Vec<f64>>>), InvalidInput> {
+        settings.check()?;
+        let Solver { posed, system, tables } = self;
+        let (run, stretches) = follow(posed, (system, tables), settings, &mut (), true);
+        if run.outcome != Outcome::End {
+            return Ok((run.outcome, None));
+        }
+        let places = || system.place.iter().flatten().copied();
+        let of = |of_rate: bool| places().map(move |place| (place, of_rate));
+        let changes: Vec<Change> =
+            of(false).chain(of(true)).map(|(place, of_rate)| Change::of_start(system, place, of_rate)).collect();
+        let fixed = vec![0.0; changes.len()];
+        let found = tangents(posed, system, &stretches, (&changes, Some(&fixed)), &mut Expansions::default());
+        let column = |tangent: Tangent| {
+            let of = |values: &[f64]| places().map(|place| values[place]).collect::<Vec<f64>>();
+            [of(&tangent.amplitude), of(&tangent.rate)].concat()
+        };
+        Ok((run.outcome, found.map(|found| found.tangents.into_iter().map(column).collect())))
+    }
+
     /// The assemblies at the neighbouring values of a parameter, found to be such.
     fn neighbours<'n, L: ContactLaw>(
         &self,

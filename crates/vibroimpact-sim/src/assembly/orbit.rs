@@ -2,26 +2,26 @@
 //!
 //! After `n` periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by the march. A periodic
 //! motion is a fixed point, found by Newton's method, `(DP - 1) dx = x - P(x)`; the eigenvalues of `DP` there are its
-//! Floquet multipliers, and it is stable where none exceeds 1 in size. `DP` is taken by central differences of the map,
-//! which is known to the tolerance of the run. Where contacts graze the map has no derivative, and Newton's method
-//! need not converge.
+//! Floquet multipliers, and it is stable where none exceeds 1 in size. `DP` is the tangent of the march, made of the exact
+//! pieces of the motion ([`Solver::differentiate`] has the same for other parameters). Where contacts graze the map has no
+//! derivative; central differences take its place, and Newton's method need not converge.
 //!
 //! The states are compared at a moment at which every contact is open, if the motion has one: what a law remembers of a
 //! contact under way is no part of `x`.
 
 use super::problem::{Assembly, Force, Settings};
 use super::solution::{ContactSample, Interval, Motion, Observer, Outcome};
-use super::solve::run;
+use super::solve::{Solver, run};
 use crate::InvalidInput;
 use contact_models::ContactLaw;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Changes for the differences, relative to the size of the motion.
+/// Changes for differences, relative to the size of the motion.
 const DIFFERENCE: f64 = 1e-5;
 /// Moments of a period at which it is sampled.
 const SAMPLES: usize = 1024;
-/// A multiplier may exceed 1 by this much before a motion counts as unstable: the differences know no more.
+/// A multiplier may exceed 1 by this much before a motion counts as unstable: where contacts graze, no more is known.
 const MARGINAL: f64 = 1e-6;
 /// Frequencies of loads are multiples of one if they are so to this accuracy.
 const COMMENSURATE: f64 = 1e-9;
@@ -324,8 +324,17 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
         difference.iter().zip(scales.iter()).map(|(d, scale)| (d / scale).abs()).fold(0.0, f64::max)
     }
 
-    /// `DP`, by central differences.
+    /// `DP`: the tangent of the motion, or, at a graze, where that does not exist, central differences.
     pub fn derivative(&self, state: &DVector<f64>, scales: &DVector<f64>) -> Reached<DMatrix<f64>> {
+        let assembly = self.posed(state);
+        match Solver::new(&assembly)?.monodromy(&self.settings)? {
+            (Outcome::End, Some(columns)) => Ok(Ok(DMatrix::from_fn(state.len(), state.len(), |i, j| columns[j][i]))),
+            (Outcome::End, None) => self.differences(state, scales),
+            (outcome, _) => Ok(Err(outcome)),
+        }
+    }
+
+    fn differences(&self, state: &DVector<f64>, scales: &DVector<f64>) -> Reached<DMatrix<f64>> {
         let n = state.len();
         let mut jacobian = DMatrix::zeros(n, n);
         for i in 0..n {
@@ -462,5 +471,53 @@ impl Observer for Survey {
 
     fn wants_panels(&self) -> bool {
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Body, BodyMode, Contact, Load, Point};
+    use super::*;
+    use contact_models::{Law, LinearSpring};
+
+    /// Two bodies of two modes, a spring between them and one at the ground, two loads.
+    fn rattling() -> Assembly<Law> {
+        let body = |omega: f64| {
+            let mode = |omega_rad_s: f64| BodyMode { omega_rad_s, damping_ratio: 0.03 };
+            Body::at_rest(vec![mode(omega), mode(2.7 * omega)])
+        };
+        let point = |body: usize, first: f64| Point::OfBody { body, shape: vec![first, -0.7 * first] };
+        let contacts = vec![
+            Contact { sides: [point(0, 1.0), point(1, 1.2)], gap_m: 1e-3, law: LinearSpring::new(4e3).unwrap().into() },
+            Contact { sides: [point(1, 1.2), Point::Ground], gap_m: 2e-3, law: LinearSpring::new(6e3).unwrap().into() },
+        ];
+        let load = |body: usize, force| Load { body, shape: vec![1.0, 0.5], force };
+        let driving = Force::Harmonic { force_n: 3.0, omega_rad_s: 11.0, phase_rad: 0.2 };
+        let loads = vec![load(0, driving), load(1, Force::Constant { force_n: -0.3 })];
+        Assembly { bodies: vec![body(9.0), body(14.0)], contacts, loads }
+    }
+
+    #[test]
+    fn the_tangent_of_a_period_is_that_of_differences() {
+        let map = PeriodMap::new(rattling(), &OrbitSettings { tolerance: 1e-12, ..OrbitSettings::default() }).unwrap();
+        let state = map.start();
+        let mut closed = Closed::default();
+        map.follow(&state, map.period_s(), &mut closed).unwrap().unwrap();
+        assert!(closed.0.len() > 2, "{:?}", closed.0);
+        let scales = map.scales(&state, &map.apply(&state).unwrap().unwrap());
+        let exact = map.derivative(&state, &scales).unwrap().unwrap();
+        let differences = map.differences(&state, &scales).unwrap().unwrap();
+        let n = state.len();
+        for i in 0..n {
+            for j in 0..n {
+                let error = (exact[(i, j)] - differences[(i, j)]).abs() * scales[j] / scales[i];
+                assert!(error < 1e-4, "{i} {j}: {} {}", exact[(i, j)], differences[(i, j)]);
+            }
+        }
+        // the volume of the states shrinks by the modes' damping alone, whatever the springs do
+        let damping: f64 =
+            map.assembly.bodies.iter().flat_map(|body| &body.modes).map(|mode| 0.06 * mode.omega_rad_s).sum();
+        let volume = (-damping * map.period_s()).exp();
+        assert!((exact.determinant() / volume - 1.0).abs() < 1e-8, "{} {volume}", exact.determinant());
     }
 }

@@ -314,11 +314,14 @@ impl<'a> Walk<'a> {
     /// The part of it that is not seen of the modes as they are carried.
     fn beyond(&self, d: usize, c: usize, time_s: f64) -> [f64; 2] {
         let mut found = [self.tangents[d].contacts[c].reference, 0.0];
+        if !self.loads.is_empty() {
+            let later = self.tangents[d].time_s;
+            found[0] += later * self.loads.overlap(c, time_s).1;
+            found[1] += later * self.loads.bend(c, time_s);
+        }
         if let Some(loads) = &self.load_changes[d] {
             let by_loads = loads.overlap(c, time_s);
-            let later = self.tangents[d].time_s;
-            found[0] += by_loads[0] + later * self.loads.overlap(c, time_s).1;
-            found[1] += by_loads[1] + later * self.loads.bend(c, time_s);
+            (0..2).for_each(|i| found[i] += by_loads[i]);
         }
         found
     }
@@ -355,12 +358,14 @@ impl<'a> Walk<'a> {
         let (mut amplitude, mut rate) = (last.amplitude.clone(), last.rate.clone());
         loads.shift_modes(self.system, time_s, 1.0, &mut amplitude, &mut rate);
         for (tangent, changed) in self.tangents.iter_mut().zip(&self.load_changes) {
-            let Some(changed) = changed else { continue };
             let later = tangent.time_s;
-            let (steady, steady_rate) = changed.steady(self.system, time_s);
+            if let Some(changed) = changed {
+                let (steady, steady_rate) = changed.steady(self.system, time_s);
+                tangent.amplitude.iter_mut().zip(&steady).for_each(|(change, steady)| *change += steady);
+                tangent.rate.iter_mut().zip(&steady_rate).for_each(|(change, steady)| *change += steady);
+            }
             for k in 0..amplitude.len() {
-                tangent.amplitude[k] += steady[k] + later * (rate[k] - last.rate[k]);
-                tangent.rate[k] += steady_rate[k];
+                tangent.amplitude[k] += later * (rate[k] - last.rate[k]);
             }
             loads.add_accelerations(time_s, later, &mut tangent.rate);
         }
@@ -621,11 +626,11 @@ impl<'a> Walk<'a> {
             for i in 0..Q {
                 found[i] += BASIS.nodes[i] * h * timed[i];
             }
+            for (found, s) in found.iter_mut().zip(BASIS.nodes).filter(|_| !self.loads.is_empty()) {
+                *found += tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
+            }
             if let Some(loads) = &self.load_changes[d] {
-                for (found, s) in found.iter_mut().zip(BASIS.nodes) {
-                    let later = tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
-                    *found += loads.moved(c, from.start_s, s * h) + later;
-                }
+                found.iter_mut().zip(BASIS.nodes).for_each(|(found, s)| *found += loads.moved(c, from.start_s, s * h));
             }
             let slope = slopes(start, &found, h);
             let by_law = self.force_change(d, own);
@@ -659,9 +664,11 @@ impl<'a> Walk<'a> {
                 push(&self.stretched[d][c], &driven, -1.0);
             }
         }
-        if let Some(loads) = &self.load_changes[d] {
-            for k in (0..a.len()).filter(|&k| system.modes[k].is_rigid()) {
-                let (push, slope) = loads.line(k, system, from.start_s);
+        let rigid = (0..a.len()).filter(|&k| system.modes[k].is_rigid());
+        if !self.loads.is_empty() || self.load_changes[d].is_some() {
+            for k in rigid {
+                let changes = self.load_changes[d].as_ref();
+                let (push, slope) = changes.map_or((0.0, 0.0), |loads| loads.line(k, system, from.start_s));
                 let push = push + tangent.time_s * self.loads.line(k, from.start_s).1;
                 amplitude[k] += h * h * (0.5 * push + h * slope / 6.0);
                 rate[k] += h * (push + 0.5 * h * slope);
