@@ -64,7 +64,39 @@ try {
   await page.waitForFunction(() => drawing && drawing.result.scene.striker.speed_m_s === 2);
   await agree("faster, on aluminium");
 
-  // for readers of screens: every control has a name, the result is announced
+  // by keys alone: the focus passes every control once and shows where it is
+  const controls = await page.evaluate(() => [...document.querySelectorAll("[role=slider], button, input, select")].map(e => e.id));
+  await page.focus(`#${controls[0]}`);
+  const passed = [controls[0]];
+  while (passed.length < controls.length) {
+    await page.keyboard.press("Tab");
+    passed.push(await page.evaluate(() => document.activeElement.id));
+    const seen = await page.evaluate(() => document.activeElement.matches(":focus-visible"));
+    if (!seen) throw new Error(`the focus on ${passed.at(-1)} is not shown`);
+  }
+  must(passed.join() === controls.join(), `the tabulator reaches all ${controls.length} controls in the order of the page`);
+  await page.focus("#play");
+  const label = await page.textContent("#play");
+  await page.keyboard.press("Space");
+  must(await page.textContent("#play") !== label, "the space bar plays and pauses");
+  await page.focus("#time");
+  await page.keyboard.press("Home");
+  await page.keyboard.press("PageUp");
+  must(/time .*force/.test(await page.getAttribute("#time", "aria-valuetext")), "the slider of time says time and force");
+  await page.focus("#radius");
+  const radius = await page.inputValue("#radius");
+  await page.keyboard.press("ArrowLeft");
+  must(Number(await page.inputValue("#radius")) < Number(radius), "arrow keys change the ball");
+  await page.waitForFunction(() => drawing && drawing.result.scene.striker.radius_m === state.radius / 1000);
+  await agree("a smaller ball");
+
+  // for readers of screens: the tree that they read
+  const tree = await page.locator("body").ariaSnapshot();
+  for (const wanted of [/main/, /heading "Play with an impact" \[level=1\]/, /slider "Place of impact"/, /group "Beam and ball"/,
+    /button "(Play|Pause)"/, /form "Ball and beam"/, /status/, /row "Restitution/, /img "Contact force over time: \d+ contacts/]) {
+    if (!wanted.test(tree)) throw new Error(`a reader of screens does not find ${wanted} in\n${tree}`);
+  }
+  console.log("ok: a reader of screens finds headings, controls, results and the picture");
   const nameless = await page.evaluate(() => [...document.querySelectorAll("input, select, button, [role=slider]")]
     .filter(e => !(e.labels?.length || e.textContent.trim() || e.getAttribute("aria-label"))).map(e => e.id));
   must(nameless.length === 0, "every control has a name");
