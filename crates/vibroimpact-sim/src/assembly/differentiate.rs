@@ -10,6 +10,9 @@ use crate::InvalidInput;
 use contact_models::ContactLaw;
 use std::array;
 
+/// How all modes at the end change with all of them at the start: `[at the start][at the end]`.
+type Monodromy = Vec<Vec<f64>>;
+
 /// A parameter, by what the assembly becomes at four neighbouring values of it. They must lie so near that everything which
 /// poses the assembly is smooth between them, and keep the number and the order of bodies, modes, contacts and loads.
 pub struct Parameter<'a, L> {
@@ -183,7 +186,7 @@ impl Solver<'_> {
 
     /// How all modes at the end, amplitudes and then rates, change with all of them at the start, body by body: `[at the start]
     /// [at the end]`, with how the run ended. `None` where there is no derivative.
-    pub(crate) fn monodromy(&mut self, settings: &Settings) -> Result<(Outcome, Option<Vec<Vec<f64>>>), InvalidInput> {
+    pub(crate) fn monodromy(&mut self, settings: &Settings) -> Result<(Outcome, Option<Monodromy>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
         let (run, stretches) = follow(posed, (system, tables), settings, &mut (), true);
