@@ -4,11 +4,19 @@
 //! `k l`, a step stretches it.
 
 use crate::piece::Piece;
-use crate::rod::RodEnd;
 use crate::roots::Characteristic;
 use crate::shapes::{Match, Waveguide};
 use crate::span::Span;
 use std::f64::consts::PI;
+
+/// How an end of a rod is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RodEnd {
+    /// No displacement.
+    Fixed,
+    /// No force.
+    Free,
+}
 
 #[derive(Debug, Clone)]
 pub(crate) struct Axial {

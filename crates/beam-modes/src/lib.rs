@@ -95,6 +95,7 @@ mod system;
 mod uniform;
 mod waves;
 
+pub use axial::RodEnd;
 pub use beam::{Beam, End, Segment};
 pub use error::InvalidInput;
 pub use modes::Modes;
@@ -103,7 +104,7 @@ pub use remainder::{
     MOST_REMAINDER_MODES, PointMode, PointsMode, enough_for_remainder, remainder_at_points, remainder_from_trend,
     remainder_modes,
 };
-pub use rod::{Rod, RodEnd, RodSegment};
+pub use rod::{Rod, RodSegment};
 pub use string::{TautString, TautStringModes};
 pub use system::{Attachment, BeamSystem, ShearSection, Support};
 

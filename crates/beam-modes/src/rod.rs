@@ -1,6 +1,6 @@
 //! Rods in axial vibration.
 
-use crate::axial::Axial;
+use crate::axial::{Axial, RodEnd};
 use crate::error::InvalidInput;
 use crate::modes::{Modes, require_count};
 use crate::piece::{Piece, gauss};
@@ -18,15 +18,6 @@ pub struct RodSegment {
     pub axial_rigidity_n: f64,
     /// Mass per unit length `rho A`, kg/m.
     pub mass_per_length_kg_m: f64,
-}
-
-/// How an end of a rod is held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum RodEnd {
-    /// No displacement.
-    Fixed,
-    /// No force.
-    Free,
 }
 
 /// A rod of uniform segments in axial vibration, joined end to end from `x = 0` on.

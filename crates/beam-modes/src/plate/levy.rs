@@ -9,7 +9,7 @@
 //! D G = sum_m sin^2(k x) (1 + what the edges add)/(2 a k^3).                                                      (1)
 //! ```
 
-use super::Edge;
+use super::definition::Edge;
 use super::navier::sines_over_cubes;
 use crate::statics::solve;
 use std::f64::consts::PI;

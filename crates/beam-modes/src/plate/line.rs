@@ -4,7 +4,7 @@
 //! ends. Below them stand those polynomials of degree 3 or less that the edges allow. The second derivatives of bubbles
 //! are orthogonal to each other and to those of the others, so that stiffness matrices are well conditioned at any degree.
 
-use super::Edge;
+use super::definition::Edge;
 
 /// A polynomial and its two derivatives, as coefficients of Legendre polynomials.
 pub(super) struct Function {

@@ -1,6 +1,6 @@
 //! Modes of a plate, and what can be asked of them.
 
-use super::Plate;
+use super::definition::Plate;
 use super::line::Line;
 use crate::error::InvalidInput;
 use crate::string::{sine_mean, sine_of};

@@ -10,8 +10,8 @@
 //!
 //! Modes of thickness-shear in which `w` is zero everywhere are left out.
 
+use super::definition::{Plate, PlateTheory};
 use super::modes::{Kind, PlateModes, Sine};
-use super::{Plate, PlateTheory};
 use std::f64::consts::PI;
 
 /// The first `count` modes.

@@ -12,9 +12,9 @@
 //! that are alike on opposite sides split the problem into two, or four.
 
 use super::block::{Block, Found, Rigid};
+use super::definition::{Edge, Plate};
 use super::line::{Line, Products};
 use super::modes::{Kind, PlateModes, Product, lines};
-use super::{Edge, Plate};
 use crate::error::InvalidInput;
 use std::f64::consts::PI;
 
