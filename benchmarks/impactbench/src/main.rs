@@ -4,6 +4,7 @@ use clap::{Parser, Subcommand};
 use impactbench::{codes, library, outcome, problem::Problem, report};
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 use vibroimpact::report::write_whole;
 use work_precision::machine;
 use work_precision::measure::Effort;
@@ -58,8 +59,12 @@ fn work(cli: &Cli) -> Result<(), String> {
     };
     if cli.task.is_none() {
         let about = machine::describe();
-        let effort =
-            if cli.quick { Effort::QUICK } else { Effort { cap: std::time::Duration::from_secs(2), ..Effort::FULL } };
+        let effort = if cli.quick {
+            Effort::QUICK
+        } else {
+            // short repetitions, as there are thousands of runs
+            Effort { cap: Duration::from_secs(2), budget: Duration::from_millis(50), ..Effort::FULL }
+        };
         let wanted = |problem: &&Problem| cli.only.as_ref().is_none_or(|only| problem.name.contains(only));
         let mut outcomes = Vec::new();
         for problem in problems.iter().filter(wanted) {
