@@ -70,7 +70,7 @@ fn faults_name_the_field() {
     let scene = rig(folder.path(), 0.05);
     for (arguments, named) in [
         (vec!["--over", "loads[0].colour", "--to", "2"], "--over"),
-        (vec!["--over", "loads[7].frequency_hz", "--to", "2", "--from", "1"], "loads has 1 entries"),
+        (vec!["--over", "loads[7].frequency_hz", "--to", "2", "--from", "1"], "loads has 1 entry"),
         (vec!["--over", "loads[0].frequency_hz", "--to", "1.3"], "to"),
         (vec!["--over", "loads[0].frequency_hz", "--to", "2", "--step", "7"], "step"),
     ] {

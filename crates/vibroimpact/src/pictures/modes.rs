@@ -38,7 +38,7 @@ const HEIGHTS_PX: [f64; 2] = [40.0, 400.0];
 ///     "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 }, "location_m": 0.4, "modes": 100
 /// }"#)?;
 /// let svg = vibroimpact::pictures::modes(&scene, 6)?.svg().expect("a picture");
-/// assert!(svg.contains("place along the beam (m)"));
+/// assert!(svg.contains("location along the beam (m)"));
 /// # Ok::<(), vibroimpact::SceneError>(())
 /// ```
 pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {

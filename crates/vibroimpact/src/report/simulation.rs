@@ -10,7 +10,7 @@ use crate::plot::Figure;
 use crate::scene::{BeamTheory, PlateTheory, Scene, Structure};
 use crate::simulate::Resolved;
 use crate::summary::Summary;
-use crate::text::{quantity, restitution, stopped};
+use crate::text::{quantity, restitution, significant, stopped};
 use crate::trust::Check;
 
 /// Under the picture of an impact.
@@ -233,8 +233,8 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
         format!("{}; the contact law is {}.", striker(scene, impact), scene.contact.law_name()),
         format!(
             "Modes move exactly, and only the contact force is approximated; the accuracy aimed at in the restitution \
-             is {:e}.",
-            impact.settings.tolerance
+             is {}.",
+            significant(impact.settings.tolerance, 2)
         ),
     ]
 }
