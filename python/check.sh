@@ -9,8 +9,9 @@ venv=$target/python-venv
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 # shellcheck disable=SC1091
 source "$venv/bin/activate"
+# pyNastran holds numpy below 2, pandas 3 above it
 python -m pip install --quiet --disable-pip-version-check 'maturin>=1.7,<2' numpy pytest mypy matplotlib nbclient ipykernel \
-  pandas scipy 'pyNastran>=1.4' pyuff
+  'pandas<3' scipy 'pyNastran>=1.4' pyuff
 cargo fmt --check --manifest-path python/Cargo.toml
 cargo clippy --quiet --locked --manifest-path python/Cargo.toml -- -D warnings
 cargo build --quiet --locked --package vibroimpact
