@@ -28,11 +28,16 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Source {
             let convert = given.py().import("vibroimpact._convert")?;
             return Ok(Source::Text(convert.call_method1("to_json", (given,))?.extract()?));
         }
-        given.extract().map(Source::File).map_err(|_| {
-            let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
-            PyTypeError::new_err(format!("expected a mapping or the path of a file{kind}"))
-        })
+        path(given, "a mapping").map(Source::File)
     }
+}
+
+/// The name of a file, where something else could have been given too.
+fn path(given: Borrowed<'_, '_, PyAny>, or: &str) -> PyResult<PathBuf> {
+    given.extract().map_err(|_| {
+        let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
+        PyTypeError::new_err(format!("expected {or} or the path of a file{kind}"))
+    })
 }
 
 /// Columns, as a table of comma-separated values, or the name of a file.
@@ -52,10 +57,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Columns {
             let convert = given.py().import("vibroimpact._convert")?;
             return Ok(Columns::Text(convert.call_method1("to_csv", (given,))?.extract()?));
         }
-        given.extract().map(Columns::File).map_err(|_| {
-            let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
-            PyTypeError::new_err(format!("expected a mapping of columns or the path of a file{kind}"))
-        })
+        path(given, "a mapping of columns").map(Columns::File)
     }
 }
 

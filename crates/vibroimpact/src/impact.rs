@@ -4,6 +4,7 @@ use contact_models::Law;
 use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::model::{self, Kept};
+use crate::same_modes::{Seen, matched};
 use crate::scene::{self, InvalidInput, Scene, require_elastic};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
@@ -54,9 +55,6 @@ impl Impact {
     }
 }
 
-/// Modes that change by more than this part from an impact to a neighbour of it are not the same ones.
-const SAME: f64 = 1e-2;
-
 impl Impact {
     /// As a neighbour of another impact is posed; `at_rest` stands in where the structure does not move.
     pub(crate) fn posing<'a>(&'a self, at_rest: &'a Start) -> Posing<'a> {
@@ -64,35 +62,21 @@ impl Impact {
         Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
     }
 
-    /// Gives the modes the signs and the order of those of an impact nearby: they may come with another sign, and two of them in
-    /// another order where their frequencies cross. `false` if they are not the same modes.
+    /// Gives the modes the signs and the order of those of an impact nearby. `false` if they are not the same modes.
     pub(crate) fn take_modes_of(&mut self, base: &Impact) -> bool {
-        let modes = &base.structure.modes;
-        if self.structure.modes.len() != modes.len() {
-            return false;
-        }
-        let largest = modes.iter().fold(f64::MIN_POSITIVE, |most, mode| most.max(mode.shape.abs()));
-        let distance = |one: &Mode, other: &Mode| {
-            let by_shape = (one.shape.abs() - other.shape.abs()).abs() / largest;
-            by_shape.max((one.omega_rad_s - other.omega_rad_s).abs() / one.omega_rad_s.max(f64::MIN_POSITIVE))
+        let seen = |impact: &Impact| -> Vec<Seen> {
+            let of = |mode: &Mode| Seen { omega_rad_s: mode.omega_rad_s, shapes: vec![mode.shape] };
+            impact.structure.modes.iter().map(of).collect()
         };
-        for (k, mode) in modes.iter().enumerate() {
-            let from = |i: usize| distance(mode, &self.structure.modes[i]);
-            let later = (k + 1..modes.len().min(k + 3)).filter(|i| from(*i) < from(k));
-            let i = later.min_by(|i, j| from(*i).total_cmp(&from(*j))).unwrap_or(k);
-            self.structure.modes.swap(k, i);
-            let own = &mut self.structure.modes[k];
-            let turned = (own.shape + mode.shape).abs() < (own.shape - mode.shape).abs();
-            if turned {
-                own.shape = -own.shape;
-            }
-            if distance(mode, own) > SAME {
-                return false;
-            }
+        let Some(steps) = matched(&seen(base), seen(self)) else { return false };
+        for (k, (i, sign)) in steps.into_iter().enumerate() {
+            let modes = &mut self.structure.modes;
+            modes.swap(k, i);
+            modes[k].shape *= sign;
             if let Some(start) = &mut self.start {
                 for values in [&mut start.amplitude, &mut start.rate] {
                     values.swap(k, i);
-                    values[k] *= if turned { -1.0 } else { 1.0 };
+                    values[k] *= sign;
                 }
             }
         }

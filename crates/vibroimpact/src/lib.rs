@@ -59,6 +59,7 @@
 mod impact;
 mod input;
 mod result_file;
+mod same_modes;
 
 pub mod assembly;
 pub mod deflection;

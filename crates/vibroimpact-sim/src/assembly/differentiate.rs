@@ -97,6 +97,13 @@ const TIMES: f64 = 10.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
 const ROUNDING: f64 = 1e-10;
 
+/// Passes the offsets of a parameter that have a slope through them.
+pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), InvalidInput> {
+    let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
+    let field = format!("parameters[{parameter}].offsets");
+    InvalidInput::unless(different, field, format!("{offsets:?}"), "four different finite numbers")
+}
+
 /// A derivative, with that along the coarser motion.
 pub(crate) fn beside(value: f64, coarse: Option<f64>) -> Derivative {
     let uncertainty = coarse.map(|coarse| TIMES * (coarse - value).abs() + ROUNDING * value.abs());
@@ -163,22 +170,25 @@ impl Solver<'_> {
             .zip(parameters)
             .map(|(posed, by)| Change::new(&self.system, posed.each_ref(), by.changes_laws, Stencil::new(by.offsets)))
             .collect();
+        let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
         let mut expansions = Expansions::default();
-        let (run, intervals, fine, nearest_graze) =
-            self.along(settings, (parameters, &around, &changes), &mut expansions);
+        let (run, intervals, fine, nearest_graze) = self.along(settings, (&around, &changes, &asked), &mut expansions);
         let none = |run, intervals| Differentiated { run, intervals, derivatives: None, nearest_graze: 1.0 };
         let Some(fine) = fine else {
             return Ok(none(run, intervals));
         };
-        // the coarser run ends where this one did
+        // the coarser run ends where this one did, which is a fixed time unless that is the one asked for
+        let (end_s, ends) = match run.outcome {
+            Outcome::End => (settings.end_s, asked),
+            Outcome::Rest => (run.end_s, vec![0.0; parameters.len()]),
+            _ => (settings.end_s, vec![0.0; parameters.len()]),
+        };
         let tolerance = (COARSER * settings.tolerance).min(0.1);
-        let end_s = if run.outcome == Outcome::Rest { run.end_s } else { settings.end_s };
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
-        let (_, _, coarse, _) = self.along(&coarser, (parameters, &around, &changes), &mut expansions);
-        let derivatives = parameters.iter().zip(&fine).enumerate().map(|(i, (by, changes))| {
-            let at_end = run.outcome == Outcome::End;
-            let end_s = if at_end { Stencil::new(by.offsets).slope(by.end_s) } else { 0.0 };
-            Derivatives { end_s, contacts: changes.beside(&intervals, coarse.as_ref().map(|coarse| &coarse[i])) }
+        let (_, _, coarse, _) = self.along(&coarser, (&around, &changes, &ends), &mut expansions);
+        let derivatives = fine.iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
+            let coarse = coarse.as_ref().map(|coarse| &coarse[i]);
+            Derivatives { end_s, contacts: changes.beside(&intervals, coarse) }
         });
         let derivatives = Some(derivatives.collect());
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
@@ -212,10 +222,7 @@ impl Solver<'_> {
         i: usize,
         parameter: &Parameter<'n, L>,
     ) -> Result<[Posed<'n>; 4], InvalidInput> {
-        let offsets = &parameter.offsets;
-        let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
-        let field = || format!("parameters[{i}].offsets");
-        InvalidInput::unless(different, field(), format!("{offsets:?}"), "four different finite numbers")?;
+        check_offsets(i, &parameter.offsets)?;
         let ends = &parameter.end_s;
         let field = || format!("parameters[{i}].end_s");
         InvalidInput::unless(ends.iter().all(|end| *end > 0.0), field(), format!("{ends:?}"), "four positive times")?;
@@ -239,21 +246,22 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run with its changes, and how nearly it grazes.
-    fn along<L>(
+    /// One run with its changes, and how nearly it grazes; `end_s` has the changes of the time asked for.
+    fn along(
         &mut self,
         settings: &Settings,
-        (parameters, around, changes): (&[Parameter<L>], &[[Posed; 4]], &[Change]),
+        (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
         expansions: &mut Expansions,
     ) -> (Run, Vec<Vec<Interval>>, Option<Vec<Changes>>, f64) {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
         let (run, stretches) = follow(posed, (system, tables), settings, &mut watch, true);
-        let ends: Vec<f64> = match run.outcome {
-            Outcome::End => parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect(),
-            _ => vec![0.0; parameters.len()],
+        let zeros = vec![0.0; changes.len()];
+        let fixed = match run.outcome {
+            Outcome::Parted => None,
+            Outcome::End => Some(end_s),
+            _ => Some(zeros.as_slice()),
         };
-        let fixed = (run.outcome != Outcome::Parted).then_some(ends.as_slice());
         let stopped = matches!(run.outcome, Outcome::Stopped(_));
         let found = if stopped { None } else { tangents(posed, system, &stretches, (changes, fixed), expansions) };
         let nearest_graze = found.as_ref().map_or(1.0, |found| found.nearest_graze);

@@ -18,7 +18,7 @@ pub(crate) struct LoadChange {
 }
 
 impl LoadChange {
-    /// `None` if there are no loads, and if they change at other times than those of the neighbours.
+    /// `None` if there are no loads.
     pub fn new(posed: [&Posed; 4], stencil: Stencil<4>) -> Option<LoadChange> {
         if posed.iter().all(|posed| posed.loads.is_empty()) {
             return None;

@@ -347,8 +347,7 @@ impl Sums<'_> {
 }
 
 impl Response {
-    /// From what was gathered over all modes, on a panel of `h`.
-    /// With that of rigid modes of this inverse mass (1/kg), on a panel of `h`.
+    /// With that of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
         let Response { mut nodes, mut end, mut end_rate } = *self;
         let moved = inverse_mass * h * h;

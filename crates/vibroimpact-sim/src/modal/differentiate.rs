@@ -8,7 +8,7 @@ use crate::InvalidInput;
 pub use crate::assembly::Derivative;
 use crate::assembly::change::Change;
 pub use crate::assembly::change::Stencil;
-use crate::assembly::differentiate::{COARSER, beside};
+use crate::assembly::differentiate::{COARSER, beside, check_offsets};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -131,10 +131,7 @@ impl Solver {
     ) -> Result<Differentiated, InvalidInput> {
         let count = self.modes().len();
         for (i, parameter) in parameters.iter().enumerate() {
-            let offsets = &parameter.offsets;
-            let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
-            let field = format!("parameters[{i}].offsets");
-            InvalidInput::unless(different, field, format!("{offsets:?}"), "four different finite numbers")?;
+            check_offsets(i, &parameter.offsets)?;
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
                 let found = neighbour.structure.modes.len();
                 let field = format!("parameters[{i}].neighbours[{place}].structure.modes");

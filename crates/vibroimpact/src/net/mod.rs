@@ -119,6 +119,12 @@ fn vibrating(modes: &[Mode]) -> Vec<f64> {
     modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| mode.shape).collect()
 }
 
+/// The restitution by the law of an impact that is posed in modes already.
+pub(crate) fn restitution(parameters: &Parameters, posed: &crate::Impact) -> Result<f64, InvalidInput> {
+    let modes = &posed.structure.modes[..posed.kept_modes()];
+    Ok(parameters.rebound(&impact_on(modes, posed.striker.mass_kg)?)?.restitution)
+}
+
 /// The numbers that the law takes: a striker of mass `mass_kg` on a structure seen from the point of impact.
 fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     // an immovable floor is the limit in which the rigid-body motions alone have mass

@@ -4,20 +4,19 @@ use contact_models::Law;
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, ContactDerivatives, Derivative, Derivatives, Differentiated, Outcome, Parameter, Point,
-    Settings, Solver,
+    Assembly, Body, BodyMode, Contact, ContactDerivatives, Derivative, Derivatives, Differentiated, Load, Outcome,
+    Parameter, Point, Settings, Solver,
 };
 
 use super::MODES;
 use super::neighbours::{Neighbours, around};
 use super::table::Table;
 use crate::assembly::{AssemblyScene, Posed};
+use crate::same_modes::{Seen, matched};
 use crate::scene::{InvalidInput, versioned_tree};
 
 /// A run is kept whole while it is differentiated; one of more panels is refused.
 const MOST_PANELS: u64 = 100_000;
-/// Modes that change by more than this part from a scene to a neighbour of it are not the same ones.
-const SAME: f64 = 1e-2;
 
 /// A run of a scene of bodies, with the derivatives of its outputs by fields of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -84,7 +83,7 @@ impl AssemblyScene {
                 allowed,
             ));
         };
-        let outputs = |derivatives| outputs(&base, &found, derivatives);
+        let outputs = |derivatives| outputs(&base, derivatives);
         let by_errors = derivatives.last().map(outputs).unwrap_or_default();
         let mut table = Table::new(&around, left_out);
         for (near, derivatives) in around.iter().zip(derivatives) {
@@ -146,9 +145,8 @@ fn laws(posed: &Posed) -> impl Iterator<Item = Law> + '_ {
 }
 
 /// The outputs of a run by their names in a result.
-fn outputs(posed: &Posed, found: &Differentiated, derivatives: &Derivatives) -> Vec<(String, Derivative)> {
+fn outputs(posed: &Posed, derivatives: &Derivatives) -> Vec<(String, Derivative)> {
     let mut outputs = Vec::new();
-    debug_assert_eq!(found.intervals.len(), derivatives.contacts.len());
     for (name, ContactDerivatives { intervals, .. }) in posed.contacts.iter().zip(&derivatives.contacts) {
         for (i, interval) in intervals.iter().enumerate() {
             for (quantity, derivative) in [
@@ -187,66 +185,43 @@ fn of_modes(near: &Neighbours<Posed>, base: &Posed) -> Vec<(String, Derivative)>
     found
 }
 
-/// All shapes of a mode of a body: at its contacts, and then under its loads.
-fn shapes(assembly: &mut Assembly<Law>, body: usize, k: usize) -> Vec<&mut f64> {
-    let sides = assembly.contacts.iter_mut().flat_map(|contact| &mut contact.sides);
-    let of_contacts = sides.filter_map(|point| match point {
-        Point::OfBody { body: of, shape } if *of == body => Some(&mut shape[k]),
+/// The shapes of a body's modes: at its contacts, and then under its loads.
+fn shapes<'a>(
+    contacts: &'a mut [Contact<Law>],
+    loads: &'a mut [Load],
+    body: usize,
+) -> impl Iterator<Item = &'a mut Vec<f64>> {
+    let of_contacts = contacts.iter_mut().flat_map(|contact| &mut contact.sides).filter_map(move |point| match point {
+        Point::OfBody { body: of, shape } if *of == body => Some(shape),
         _ => None,
     });
-    let of_loads = assembly.loads.iter_mut().filter(|load| load.body == body).map(|load| &mut load.shape[k]);
-    of_contacts.chain(of_loads).collect()
+    of_contacts.chain(loads.iter_mut().filter(move |load| load.body == body).map(|load| &mut load.shape))
 }
 
-/// Gives the modes the signs and the order of those of an assembly nearby: they may come with another sign, and two of them
-/// in another order where their frequencies cross. `false` if they are not the same modes.
+/// Gives the modes the signs and the order of those of an assembly nearby. `false` if they are not the same modes.
 fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> bool {
-    let counts = |assembly: &Assembly<Law>| assembly.bodies.iter().map(|body| body.modes.len()).collect::<Vec<_>>();
-    if near.contacts.len() != base.contacts.len() || counts(near) != counts(base) {
+    if near.contacts.len() != base.contacts.len() || near.bodies.len() != base.bodies.len() {
         return false;
     }
     let mut base = base.clone();
-    for body in 0..base.bodies.len() {
-        let count = base.bodies[body].modes.len();
-        let values = |assembly: &mut Assembly<Law>, k: usize| -> Vec<f64> {
-            shapes(assembly, body, k).into_iter().map(|shape| *shape).collect()
+    let seen = |Assembly { bodies, contacts, loads }: &mut Assembly<Law>, body: usize| -> Vec<Seen> {
+        let lists: Vec<&mut Vec<f64>> = shapes(contacts, loads, body).collect();
+        let of = |(k, mode): (usize, &BodyMode)| Seen {
+            omega_rad_s: mode.omega_rad_s,
+            shapes: lists.iter().map(|list| list[k]).collect(),
         };
-        let own: Vec<Vec<f64>> = (0..count).map(|k| values(&mut base, k)).collect();
-        let mut found: Vec<Vec<f64>> = (0..count).map(|k| values(near, k)).collect();
-        let largest = own.iter().flatten().fold(f64::MIN_POSITIVE, |most, shape| most.max(shape.abs()));
-        for k in 0..count {
-            let omega = |body: &Body, k: usize| body.modes[k].omega_rad_s;
-            let target = omega(&base.bodies[body], k);
-            let sign = |there: &[f64]| {
-                let product: f64 = own[k].iter().zip(there).map(|(one, other)| one * other).sum();
-                if product < 0.0 { -1.0 } else { 1.0 }
-            };
-            let distance = |i: usize| {
-                let there = &found[i];
-                let apart = own[k].iter().zip(there).map(|(one, other)| (one - sign(there) * other).abs() / largest);
-                let frequency = (target - omega(&near.bodies[body], i)).abs() / target.max(f64::MIN_POSITIVE);
-                apart.fold(frequency, f64::max)
-            };
-            let later = (k + 1..count.min(k + 3)).filter(|i| distance(*i) < distance(k));
-            let i = later.min_by(|i, j| distance(*i).total_cmp(&distance(*j))).unwrap_or(k);
-            if distance(i) > SAME {
-                return false;
-            }
-            let turned = sign(&found[i]);
-            found.swap(k, i);
-            let Body { modes, amplitude, rate } = &mut near.bodies[body];
+        bodies[body].modes.iter().enumerate().map(of).collect()
+    };
+    for body in 0..base.bodies.len() {
+        let Some(steps) = matched(&seen(&mut base, body), seen(near, body)) else { return false };
+        for (k, (i, sign)) in steps.into_iter().enumerate() {
+            let Assembly { bodies, contacts, loads } = &mut *near;
+            let Body { modes, amplitude, rate } = &mut bodies[body];
             modes.swap(k, i);
-            [amplitude, rate].into_iter().for_each(|values| {
+            for values in [amplitude, rate].into_iter().chain(shapes(contacts, loads, body)) {
                 values.swap(k, i);
-                values[k] *= turned;
-            });
-            if i != k {
-                let other = values(near, k);
-                let own = values(near, i);
-                shapes(near, body, k).into_iter().zip(own).for_each(|(shape, value)| *shape = value);
-                shapes(near, body, i).into_iter().zip(other).for_each(|(shape, value)| *shape = value);
+                values[k] *= sign;
             }
-            shapes(near, body, k).into_iter().for_each(|shape| *shape *= turned);
         }
     }
     true
@@ -255,14 +230,12 @@ fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> bool {
 /// The same with errors in the modes that vibrate.
 fn with_errors(base: &Posed, error: &mut dyn FnMut() -> f64) -> Posed {
     let mut posed = base.clone();
-    for body in 0..posed.assembly.bodies.len() {
-        let vibrates = |mode: &BodyMode| mode.omega_rad_s > 0.0;
-        for k in 0..posed.assembly.bodies[body].modes.len() {
-            if vibrates(&posed.assembly.bodies[body].modes[k]) {
-                posed.assembly.bodies[body].modes[k].omega_rad_s *= error();
-                let by = error();
-                shapes(&mut posed.assembly, body, k).into_iter().for_each(|shape| *shape *= by);
-            }
+    let Assembly { bodies, contacts, loads } = &mut posed.assembly;
+    for (body, Body { modes, .. }) in bodies.iter_mut().enumerate() {
+        for (k, mode) in modes.iter_mut().enumerate().filter(|(_, mode)| mode.omega_rad_s > 0.0) {
+            mode.omega_rad_s *= error();
+            let by = error();
+            shapes(contacts, loads, body).for_each(|list| list[k] *= by);
         }
     }
     posed

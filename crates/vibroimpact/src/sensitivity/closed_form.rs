@@ -1,11 +1,11 @@
 //! Answers that have a closed form: by their own values at the neighbours, since nothing in them is integrated.
 
-use serde_json::Value;
-
 use super::Sensitivity;
 use super::neighbours::{Neighbours, around};
 use super::table::Table;
 use crate::emoc::Parameters;
+use crate::impact::Impact;
+use crate::net;
 use crate::scene::{InvalidInput, Scene};
 
 /// The restitution of a wall or of the net law.
@@ -33,15 +33,17 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
     })
 }
 
-/// Adds what the three-parameter law says of the same impact, by the fields with which it is smooth.
-pub(super) fn add_emoc(table: &mut Table, scene: &Scene, tree: &Value) {
-    let law = |scene: &Scene| scene.emoc(&Parameters::default(), None).map(|rebound| rebound.restitution);
-    let Ok(value) = law(scene) else { return };
-    for path in table.fields.iter().map(|field| field.path.clone()).collect::<Vec<_>>() {
-        let near: Result<Neighbours<f64>, _> =
-            Neighbours::of(tree, &path, &|tree| law(&Scene::from_value(tree)?), &|_| true);
-        if let Ok(near) = near {
-            table.insert("emoc_restitution", &path, near.derivative(value, |at| *at));
+/// Adds what the three-parameter law says of the same impact, where it holds: from the modes that are posed already.
+pub(super) fn add_emoc(table: &mut Table, scene: &Scene, base: &Impact, around: &[Neighbours<Impact>]) {
+    let parameters = Parameters::default();
+    if scene.emoc(&parameters, None).is_err() {
+        return;
+    }
+    let law = |posed: &Impact| net::restitution(&parameters, posed).unwrap_or(f64::NAN);
+    for near in around {
+        let derivative = near.derivative(law(base), law);
+        if derivative.value.is_finite() {
+            table.insert("emoc_restitution", &near.field, derivative);
         }
     }
 }

@@ -148,7 +148,7 @@ fn differentiate(
             table.insert(&output, &neighbours.field, derivative);
         }
     }
-    closed_form::add_emoc(&mut table, scene, &tree);
+    closed_form::add_emoc(&mut table, scene, base, around);
     Ok(Sensitivity {
         restitution,
         restitution_uncertainty: solution.restitution_uncertainty,

@@ -1,0 +1,50 @@
+//! Which mode of a structure is which of one nearby.
+//!
+//! Modes come with either sign, and two of them in another order where their frequencies cross.
+
+/// Modes that change by more than this part from a structure to a neighbour of it are not the same ones.
+const SAME: f64 = 1e-2;
+
+/// A mode, as far as it is compared.
+pub(crate) struct Seen {
+    /// Its frequency (rad/s).
+    pub omega_rad_s: f64,
+    /// Its shape at some points.
+    pub shapes: Vec<f64>,
+}
+
+impl Seen {
+    /// The sign with which another mode is most like this one.
+    fn sign_of(&self, other: &Seen) -> f64 {
+        let product: f64 = self.shapes.iter().zip(&other.shapes).map(|(one, other)| one * other).sum();
+        if product < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    fn distance(&self, other: &Seen, largest: f64) -> f64 {
+        let sign = self.sign_of(other);
+        let by_shape = self.shapes.iter().zip(&other.shapes).map(|(one, other)| (one - sign * other).abs() / largest);
+        let by_frequency = (self.omega_rad_s - other.omega_rad_s).abs() / self.omega_rad_s.max(f64::MIN_POSITIVE);
+        by_shape.fold(by_frequency, f64::max)
+    }
+}
+
+/// For each mode in turn: the place of its like, which is to be swapped into its own, and the sign to multiply it by. `None` if
+/// they are not the same modes.
+pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Option<Vec<(usize, f64)>> {
+    if own.len() != found.len() {
+        return None;
+    }
+    let largest = own.iter().flat_map(|mode| &mode.shapes).fold(f64::MIN_POSITIVE, |most, shape| most.max(shape.abs()));
+    let mut steps = Vec::with_capacity(own.len());
+    for (k, mode) in own.iter().enumerate() {
+        let distance = |i: usize| mode.distance(&found[i], largest);
+        let later = (k + 1..own.len().min(k + 3)).filter(|i| distance(*i) < distance(k));
+        let i = later.min_by(|i, j| distance(*i).total_cmp(&distance(*j))).unwrap_or(k);
+        if distance(i) > SAME {
+            return None;
+        }
+        found.swap(k, i);
+        steps.push((i, mode.sign_of(&found[k])));
+    }
+    Some(steps)
+}
