@@ -1,19 +1,24 @@
 //! Errors, failures by kind, shares solved.
 
+use crate::codes::own_assembly;
 use crate::outcome::Outcome;
 use crate::problem::{Family, Problem, What};
 use std::collections::BTreeMap;
 
-/// Errors that problems are counted by.
+/// Errors within which problems are counted as solved.
 pub const LEVELS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-6];
 /// Share of the scale that counts as nothing.
 const NOTHING: f64 = 1e-9;
+/// Distance within which an answer is that of the motion without contacts.
+const MISSED: f64 = 1e-3;
 
 /// What is wrong with a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Failure {
     /// The ball leaves faster than it came.
     EnergyGained,
+    /// The answer is that of a motion without contacts.
+    MissedContact,
     /// The ball still moves into the ground or the structure.
     FellThrough,
     /// The ball does not leave, but should.
@@ -28,8 +33,9 @@ pub enum Failure {
 
 impl Failure {
     /// All kinds, in the order of tables.
-    pub const ALL: [Failure; 6] = [
+    pub const ALL: [Failure; 7] = [
         Failure::EnergyGained,
+        Failure::MissedContact,
         Failure::FellThrough,
         Failure::Stuck,
         Failure::Wrong,
@@ -41,6 +47,7 @@ impl Failure {
     pub fn as_str(self) -> &'static str {
         match self {
             Failure::EnergyGained => "energy gained",
+            Failure::MissedContact => "missed contact",
             Failure::FellThrough => "fell through",
             Failure::Stuck => "stuck",
             Failure::Wrong => "wrong by more than 0.1",
@@ -55,21 +62,23 @@ impl Failure {
 pub struct Judged<'a> {
     /// The run.
     pub outcome: &'a Outcome,
-    /// Its error, not below what the reference knows; none without an answer.
+    /// Its error, at least the uncertainty of the reference; none without an answer.
     pub error: Option<f64>,
     /// What is wrong with it.
     pub failure: Option<Failure>,
 }
 
-/// Judges every run of a problem that is known, by problem.
+/// Judges every run of these problems; the results are listed by problem.
 pub fn judge<'a>(problems: &'a [Problem], outcomes: &'a [Outcome]) -> BTreeMap<&'a str, Vec<Judged<'a>>> {
+    let free: BTreeMap<&str, Option<Vec<f64>>> =
+        problems.iter().map(|problem| (problem.name.as_str(), without_contacts(problem))).collect();
     let mut judged: BTreeMap<&str, Vec<Judged>> = BTreeMap::new();
     for outcome in outcomes {
         let Some(problem) = problems.iter().find(|problem| problem.name == outcome.problem) else { continue };
         let answer = outcome.answer().filter(|values| values.len() == problem.quantities.len());
         let error = answer.as_ref().map(|values| problem.error(values)).filter(|error| error.is_finite());
         let failure = match (&answer, error) {
-            (Some(values), Some(error)) => failure(problem, values, error),
+            (Some(values), Some(error)) => failure(problem, free[problem.name.as_str()].as_deref(), values, error),
             _ if outcome.status == "too slow" => Some(Failure::TooSlow),
             _ => Some(Failure::NoAnswer),
         };
@@ -79,10 +88,20 @@ pub fn judge<'a>(problems: &'a [Problem], outcomes: &'a [Outcome]) -> BTreeMap<&
     judged
 }
 
-/// What is wrong with an answer. How a rebound fails can be told of one ball that leaves.
-fn failure(problem: &Problem, values: &[f64], error: f64) -> Option<Failure> {
+/// The answer to a problem whose contacts are left out.
+fn without_contacts(problem: &Problem) -> Option<Vec<f64>> {
+    let free = Problem { contacts: vec![], ..problem.clone() };
+    own_assembly(&free, &[], 1e-9).ok().filter(|_| problem.infinite_beam_s.is_none())
+}
+
+/// What is wrong with an answer. The ways in which a rebound fails are told apart where one ball leaves.
+fn failure(problem: &Problem, free: Option<&[f64]>, values: &[f64], error: f64) -> Option<Failure> {
     let of_rebound = matches!(problem.family, Family::Law | Family::Restitution | Family::Structure);
     let wrong = (error > 0.1).then_some(Failure::Wrong);
+    let missed = free.is_some_and(|free| problem.distance(values, free) < MISSED);
+    if wrong.is_some() && missed {
+        return Some(Failure::MissedContact);
+    }
     let ([quantity], [value], true) = (problem.quantities.as_slice(), values, of_rebound) else { return wrong };
     let (ratio, wanted) = (value / quantity.scale, quantity.value / quantity.scale);
     match ratio {
@@ -160,6 +179,7 @@ mod tests {
             row("ok", "1", 3.0),
             row("ok", "1.02", 1.0),
             row("ok", "2.1", 1.0),
+            row("ok", "-2", 1.0),
             row("ok", "-1", 1.0),
             row("ok", "0", 1.0),
             row("ok", "1.5", 1.0),
@@ -171,9 +191,9 @@ mod tests {
         let judged = judge(&problems, &rows);
         let found: Vec<_> = judged["p"].iter().map(|run| run.failure).collect();
         use Failure::*;
-        let wanted = [EnergyGained, FellThrough, Stuck, Wrong, TooSlow, NoAnswer, NoAnswer].map(Some);
+        let wanted = [EnergyGained, MissedContact, FellThrough, Stuck, Wrong, TooSlow, NoAnswer, NoAnswer].map(Some);
         assert_eq!(found, [[None, None].as_slice(), &wanted].concat());
-        // the error is no less than what the reference knows
+        // the error is at least the uncertainty of the reference
         assert_eq!(least_error(&judged["p"], "c"), Some(5e-10));
         assert_eq!(time_at(&judged["p"], "c", 0.02), Some(1.0));
         assert_eq!(time_at(&judged["p"], "c", 1e-6), Some(3.0));

@@ -316,10 +316,16 @@ impl Problem {
         self.quantities.iter().map(|quantity| quantity.uncertainty / quantity.scale).fold(1e-16, f64::max)
     }
 
-    /// The error of an answer: the greatest over the quantities.
+    /// The error of an answer.
     pub fn error(&self, values: &[f64]) -> f64 {
-        let of = |(quantity, value): (&Quantity, &f64)| (value - quantity.value).abs() / quantity.scale;
-        self.quantities.iter().zip(values).map(of).fold(0.0, f64::max)
+        let right: Vec<f64> = self.quantities.iter().map(|quantity| quantity.value).collect();
+        self.distance(values, &right)
+    }
+
+    /// The distance between two answers: the greatest over the quantities, each divided by its scale.
+    pub fn distance(&self, values: &[f64], others: &[f64]) -> f64 {
+        let pairs = self.quantities.iter().zip(values.iter().zip(others));
+        pairs.map(|(quantity, (value, other))| (value - other).abs() / quantity.scale).fold(0.0, f64::max)
     }
 
     /// The restitution wanted of the only contact, where no law is given.

@@ -8,15 +8,23 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
-/// Text that stands above the numbers, and below.
+/// Text before and after the numbers.
 const ABOVE: &str = include_str!("above.md");
 const BELOW: &str = include_str!("below.md");
+const FAILURES: &str = "The table counts the runs of each code at all settings, coarse ones included, that fail:\n\n\
+- energy gained: the ball leaves faster than it came;\n\
+- missed contact: the code answers as if there were no contact;\n\
+- fell through: the ball still moves into what it struck;\n\
+- stuck: the ball should leave but stands still;\n\
+- wrong by more than 0.1: the error is above a tenth in another way;\n\
+- too slow, no answer: the run ended without a result.\n\n\
+The first, the third and the fourth are judged where one ball rebounds once.";
 const FAMILIES: [(Family, &str, &str); 6] = [
-    (Family::Law, "A law at the ground", "law"),
-    (Family::Restitution, "A restitution asked for", "restitution"),
+    (Family::Law, "A given law at the ground", "law"),
+    (Family::Restitution, "A given restitution", "restitution"),
     (Family::Structure, "Beams and plates", "structure"),
     (Family::InfiniteBeam, "Infinite beams", "infinite-beam"),
-    (Family::Several, "Several bodies, many contacts", "several"),
+    (Family::Several, "Several bodies or contacts", "several"),
     (Family::Stop, "Elastic stops", "stop"),
 ];
 const COLOURS: [Colour; 7] =
@@ -34,7 +42,7 @@ pub struct Page {
     pub figures: Vec<(String, String)>,
 }
 
-/// The page on these results; `about` tells on what each was made.
+/// The page of these results; `about` lists the machines and versions.
 ///
 /// # Errors
 /// If a figure cannot be drawn.
@@ -52,7 +60,7 @@ pub fn page(problems: &[Problem], outcomes: &[Outcome], about: &str) -> Result<P
         }
         let path = format!("figures/impactbench-{name}.svg");
         let _ = write!(text, "\n## {title}\n\n![Error against time: {title}]({path})\n");
-        text += &table("Least error", &of, &judged, &codes, |runs, code| {
+        text += &table("Least error of each code", &of, &judged, &codes, |runs, code| {
             least_error(runs, code).map(|error| format!("{error:.0e}"))
         });
         text += &table("Least time to an error of 1e-6", &of, &judged, &codes, |runs, code| {
@@ -66,7 +74,7 @@ pub fn page(problems: &[Problem], outcomes: &[Outcome], about: &str) -> Result<P
     Ok(Page { text, figures })
 }
 
-/// On what the results of each code were made: the texts beside the tables.
+/// The machine and the versions behind the results of each code, from the texts beside the tables.
 ///
 /// # Errors
 /// A file that cannot be read, by its name.
@@ -87,7 +95,10 @@ pub fn machines(folder: &Path) -> Result<String, String> {
 /// How many problems each code solves.
 fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     let count = problems.len();
-    let mut text = format!("\n## Solved\n\nOf {count} problems, at the best setting:\n\n| code | takes part in |");
+    let mut text = format!(
+        "\n## Problems solved\n\nThe table counts how many of the {count} problems each code solves at its best setting, and \
+         on how many it is the fastest to come within 1e-6.\n\n| code | takes part in |"
+    );
     for level in LEVELS {
         let _ = write!(text, " within {level:.0e} |");
     }
@@ -118,7 +129,7 @@ fn fastest<'a>(runs: &[Judged], codes: &[&'a str]) -> Option<&'a str> {
 /// How many runs of each code fail, by kind.
 fn failures(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     let known = |name: &str| problems.iter().any(|problem| problem.name == name);
-    let mut text = "\n## Failures\n\nRuns at all settings, the coarse ones included:\n\n| code | runs |".to_owned();
+    let mut text = format!("\n## Failures\n\n{FAILURES}\n\n| code | runs |");
     for kind in Failure::ALL {
         let _ = write!(text, " {} |", kind.as_str());
     }
@@ -162,7 +173,10 @@ fn table(
     text + "\n"
 }
 
-/// Error against time, a panel a problem, two in a row.
+/// Greatest error in figures: a run that diverges would hide the others.
+const GREATEST_DRAWN: f64 = 10.0;
+
+/// Error against time: a panel for each problem, two in a row.
 fn figure(title: &str, problems: &[&Problem], judged: &ByProblem, codes: &[&str]) -> Figure {
     let panel = |problem: &&Problem| {
         let time = Axis::new(format!("{}: time", problem.name)).unit("s").log();
@@ -172,7 +186,7 @@ fn figure(title: &str, problems: &[&Problem], judged: &ByProblem, codes: &[&str]
             let points = runs.iter().filter(|run| run.outcome.code == *code);
             let found: Vec<(f64, f64)> = points
                 .filter_map(|run| Some((run.outcome.time_s?, run.error?)))
-                .filter(|(time, _)| *time > 0.0)
+                .filter(|(time, error)| *time > 0.0 && *error <= GREATEST_DRAWN)
                 .collect();
             if found.is_empty() {
                 continue;
@@ -197,9 +211,11 @@ fn figure(title: &str, problems: &[&Problem], judged: &ByProblem, codes: &[&str]
 
 /// What each problem says, and how it is known.
 fn statements(problems: &[Problem]) -> String {
-    let mut text = "\n## The problems\n\n| problem | what happens | answer | its uncertainty | how it is known |\n\
+    let mut text =
+        "\n## The problems\n\nUncertainties are those of the error: divided by the scale of the problem.\n\n\
+                    | problem | what happens | answer | its uncertainty | how it was obtained |\n\
                     | --- | --- | --- | --- | --- |\n"
-        .to_owned();
+            .to_owned();
     for problem in problems {
         let values: Vec<String> = problem.quantities.iter().map(|quantity| format!("{:.9}", quantity.value)).collect();
         let _ = writeln!(
@@ -215,12 +231,25 @@ fn statements(problems: &[Problem]) -> String {
     text
 }
 
-/// A time in a unit that suits it.
+/// A time to two digits, which is what repeats, in a unit that suits it.
 fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-6 => format!("{:.0} ns", s * 1e9),
-        s if s < 1e-3 => format!("{:.3} us", s * 1e6),
-        s if s < 1.0 => format!("{:.2} ms", s * 1e3),
-        s => format!("{s:.2} s"),
+    let seconds: f64 = format!("{seconds:.1e}").parse().unwrap_or(seconds);
+    let (value, unit) = match seconds {
+        s if s < 1e-6 => (s * 1e9, "ns"),
+        s if s < 1e-3 => (s * 1e6, "µs"),
+        s if s < 1.0 => (s * 1e3, "ms"),
+        s => (s, "s"),
+    };
+    if value < 9.95 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::duration;
+
+    #[test]
+    fn durations_have_two_digits() {
+        let found = [4.04e-8, 9.96e-7, 1.2567e-5, 2.5e-4, 0.00994, 0.0996, 3.14159].map(duration);
+        assert_eq!(found, ["40 ns", "1.0 µs", "13 µs", "250 µs", "9.9 ms", "100 ms", "3.1 s"]);
     }
 }

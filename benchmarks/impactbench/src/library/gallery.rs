@@ -11,7 +11,7 @@ use vibroimpact::model::Modes;
 use vibroimpact::{Impact, Scene};
 use vibroimpact_sim::assembly::{Force, Point};
 
-/// All of them, their references still to be made.
+/// All of them; their references are still to be computed.
 pub(super) fn problems() -> Result<Vec<Problem>, String> {
     let mut problems = Vec::new();
     for (file, name, count, end_s) in [
@@ -43,7 +43,7 @@ fn path(folder: &str, file: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "../../datasets", folder, &format!("{file}.json")].iter().collect()
 }
 
-/// The impact of a scene with this many modes; with all that are listed if none.
+/// The impact of a scene with this many modes, or with all that it lists.
 fn impact(file: &str, count: Option<usize>) -> Result<Impact, String> {
     let mut scene = Scene::read(&path("scenes", file)).map_err(|error| error.to_string())?;
     if let Some(count) = count {
@@ -59,7 +59,7 @@ fn ball(file: &str, name: &str, count: Option<usize>, end_s: f64) -> Result<Prob
     let modes = &found.structure.modes;
     let body = Body::at_rest("structure", modes);
     let statement = format!(
-        "The scene {file}.json of the gallery with {} modes, as listed. How fast does the ball move after {end_s} s?",
+        "The scene {file}.json of the gallery with {} modes. How fast does the ball move after {end_s} s?",
         modes.len()
     );
     let ball = (found.striker.mass_kg, found.striker.speed_m_s);
@@ -93,8 +93,9 @@ fn dropped_rod() -> Result<Problem, String> {
         .map(|(shape, omega)| if *omega == 0.0 { *shape } else { 0.0 })
         .collect();
     problem.statement = format!(
-        "A steel rod of 0.2 m falls on an immovable floor at 1 m/s, inclined by 45 degrees: its motion as a rigid body, in \
-         bending and along its axis in {} modes, as listed. How fast does its lower end rise after 2 ms, vibration left out?",
+        "A steel rod of 0.2 m falls on an immovable floor at 1 m/s, inclined by 45 degrees; {} \
+         modes describe its rigid, bending and axial motion. How fast does its lower end rise after 2 ms by the rigid \
+         motion alone?",
         body.shape.len()
     );
     problem.end_s = 2e-3;
@@ -106,43 +107,44 @@ fn dropped_rod() -> Result<Problem, String> {
 fn turning_beam() -> Result<Problem, String> {
     let mut problem = against_ground("sdnl32", "beam", &impact("sdnl32", Some(10))?)?;
     problem.family = Family::Stop;
-    problem.statement = "SDNL32: a straight beam turns about its pinned end, and its tip meets a stop of 18 kN/m at \
-                         2.9754 m/s; 10 modes. Where is the tip after 12 ms, and how fast? (The guide has -0.742 mm after \
-                         12 ms by Timoshenko elements, and a misprint at 3 ms: -4.92 for -4.95 mm.)"
+    problem.statement = "SDNL32: a straight beam of 10 modes turns about its pinned end, and its tip meets a stop of 18 kN/m \
+                         at 2.9754 m/s. Where is the tip after 12 ms, and how fast does it move? (The guide lists -0.742 mm, \
+                         by Timoshenko elements. Its value at 3 ms is a misprint, -4.92 instead of -4.95 mm.)"
         .into();
     problem.end_s = 0.012;
     problem.quantities = vec![quantity("beam", What::DisplacementM, 5e-3), quantity("beam", What::VelocityMS, 2.9754)];
     Ok(problem)
 }
 
-/// What is said of a scene of bodies, and where the figures that its source states are wrong.
+/// What a scene of several bodies shows, and which figures of its source are wrong.
 fn statement(file: &str) -> &'static str {
     match file {
         "sdnd102" => "Code_Aster's SDND102: an oscillator on a shaken base strikes a wall.",
         "sdnd125" => {
-            "Code_Aster's SDND125: three masses in a row, the outer ones on springs, the middle one driven. (Stated is a \
-             force of 1698.44669 N on the left at 0.68044 s; exact is 1698.44744 N.)"
+            "Code_Aster's SDND125: three masses in a row, the outer ones on springs, the middle one driven. (The \
+             source states a force of 1698.44669 N on the left at 0.68044 s; the exact one is 1698.44744 N.)"
         }
         "sdnl104" => {
-            "Code_Aster's SDNL104 with 40 modes: a cantilever under a force at its tip above a stop. (Its two answers for \
-             the tip at 0.1315 s are 7 % apart.)"
+            "Code_Aster's SDNL104 with 40 modes: a cantilever under a force at its tip above a stop. (The two \
+             answers of the source for the tip at 0.1315 s are 7 % apart.)"
         }
         "sdnl105" => {
-            "Code_Aster's SDNL105 with 5 modes a tube: three tubes, the first pushed against the second and this against \
-             the third. (With more modes velocities change by up to 40 %.)"
+            "Code_Aster's SDNL105 with 5 modes for each of three tubes: the first is pushed against the second, and the \
+             second against the third. (With more modes the velocities change by up to 40 %.)"
         }
         "sdnl301" => {
-            "Code_Aster's SDNL301: a tube in four loose supports of two sides under a harmonic load. (Stated is 23.98 N of \
-             root mean square at the last support by a fixed step; exact in time is 24.53 N.)"
+            "Code_Aster's SDNL301: a tube under a harmonic load has gaps on both sides at four supports. (The source states a \
+             root mean square of 23.98 N at the last support, from fixed steps; without an error in time it is 24.53 N.)"
         }
         "shaken-table" => {
-            "A ball on a table that shakes at 20 Hz with 1.2 times the acceleration of gravity, seen from it."
+            "A ball bounces on a table that shakes at 20 Hz with 1.2 times the acceleration of gravity. Motion is relative to \
+             the table."
         }
-        _ => "A ball dropped from 5 mm bounces on a pinned beam under its weight.",
+        _ => "A ball dropped from 5 mm bounces on a pinned beam under gravity.",
     }
 }
 
-/// A scene of bodies, and how each body is and moves in the end.
+/// A scene of several bodies; the displacement and the velocity of each at the end are asked for.
 fn bodies(file: &str, family: Family, end_s: f64) -> Result<Problem, String> {
     let scene = AssemblyScene::read(&path("assemblies", file)).map_err(|error| error.to_string())?;
     let posed = scene.pose().map_err(|error| error.to_string())?;
@@ -202,7 +204,7 @@ fn bodies(file: &str, family: Family, end_s: f64) -> Result<Problem, String> {
     let mut problem = Problem {
         name: file.into(),
         family,
-        statement: format!("{} Where is each body after {end_s} s, and how fast?", statement(file)),
+        statement: format!("{} Where is each body after {end_s} s, and how fast does it move?", statement(file)),
         needs: needs(&["bodies in their modes", "loads", "the law of the contact"]),
         quantities: names
             .iter()
@@ -220,7 +222,7 @@ fn bodies(file: &str, family: Family, end_s: f64) -> Result<Problem, String> {
     Ok(problem)
 }
 
-/// Lets every error be divided by the largest value of its kind at any of 32 moments of the motion.
+/// Scales errors by the largest displacement and velocity at any of 32 instants of the motion.
 fn scale(problem: &mut Problem) -> Result<(), String> {
     let laws: Result<Vec<Option<Law>>, _> = problem.contacts.iter().map(|contact| contact.law.law()).collect();
     let laws: Vec<Law> = laws.map_err(|error| error.to_string())?.into_iter().flatten().collect();

@@ -1,9 +1,9 @@
 //! The problems as they are made, with their references.
 //!
-//! A reference is exact where there is a closed form. Otherwise it is that of two methods that share no code. Where every law
-//! is a power of the compression, one is the program `reference/quad.c` in quadruple precision, whose numbers stand in
-//! `reference/quad.csv`; they take those of the file to be exact. The other is this workspace's assembly, which propagates
-//! modes exactly and collocates forces, and stands beside DOP853, on the equations as they stand, for other laws.
+//! A reference is exact where there is a closed form. Otherwise two methods that share no code must agree. Where every law
+//! is a power of the compression, one of them is the program `reference/quad.c` in quadruple precision, which takes the
+//! numbers of the file to be exact and whose results are in `reference/quad.csv`. The other is this workspace's assembly,
+//! which propagates modes exactly and collocates forces. For other laws it is compared with DOP853.
 
 mod gallery;
 
@@ -19,11 +19,11 @@ const BALL_KG: f64 = 0.11027;
 /// Hertz's stiffness of it on steel.
 const K_H: f64 = 1.7945e10;
 const HERTZ: LawOfContact = LawOfContact::Hertz { stiffness_n_m1_5: K_H };
-/// Longest run of a method that makes references.
+/// Longest run of a method that computes references.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// By which two methods may differ.
+/// Largest difference allowed between the two methods.
 const AGREED: f64 = 1e-8;
-/// No reference claims more.
+/// Least uncertainty of a reference, relative to its scale: rounding to double precision.
 const ROUNDING: f64 = 4e-16;
 
 /// Every problem.
@@ -48,7 +48,7 @@ fn needs(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// Makes the reference by two methods.
+/// Computes the reference by two methods.
 fn referenced(mut problem: Problem, quad: &[Quad]) -> Result<Problem, String> {
     let named = |error: String| format!("{}: {error}", problem.name);
     let laws: Option<Vec<Law>> = problem.contacts.iter().map(|contact| contact.law.law().ok().flatten()).collect();
@@ -65,8 +65,8 @@ fn referenced(mut problem: Problem, quad: &[Quad]) -> Result<Problem, String> {
             return Err(named(format!("two methods differ by {apart:.0e}")));
         }
         problem.reference = format!(
-            "quadruple precision by extrapolation; the assembly (tolerance 1e-12), which shares no code with it, differs by \
-             {apart:.0e}"
+            "extrapolation in quadruple precision; the assembly at a tolerance of 1e-12, which shares no code with it, differs \
+             by {apart:.0e}"
         );
         return Ok(problem);
     }
@@ -75,9 +75,10 @@ fn referenced(mut problem: Problem, quad: &[Quad]) -> Result<Problem, String> {
         quantity.value = value;
         quantity.uncertainty = (value - other).abs().max(ROUNDING * quantity.scale);
     }
-    problem.reference = "assembly (tolerance 1e-12) and DOP853 (1e-14), which share no code; the uncertainty is their \
+    problem.reference =
+        "the assembly at a tolerance of 1e-12 and DOP853 at 1e-14, which share no code; the uncertainty is their \
                          difference"
-        .into();
+            .into();
     Ok(problem)
 }
 
@@ -137,7 +138,7 @@ fn laws() -> Vec<Problem> {
             Of::Thornton { effective_modulus_pa: 1.1e11, effective_radius_m: 0.015, yield_pressure_pa: 1.2e9 },
         ),
     ];
-    let statement = "A ball of 110.27 g meets an immovable ground at 1 m/s, without gravity; the law is given. How fast \
+    let statement = "A ball of 110.27 g meets an immovable ground at 1 m/s, without gravity, with a given law. How fast \
                      does it leave?";
     let problem = |(name, law)| {
         let mut problem = at_ground(name, Family::Law, statement.into(), law, 1.0, 1e-3);
@@ -153,8 +154,8 @@ fn restitutions() -> Vec<Problem> {
     let cases = at_one.into_iter().chain([1e-3, 0.1, 10.0].map(|speed| (0.5, speed)));
     let problem = |(restitution, speed_m_s): (f64, f64)| {
         let statement = format!(
-            "A ball of 110.27 g and 15 mm radius meets an immovable ground at {speed_m_s} m/s, without gravity, and shall \
-             leave with {restitution} of its speed; how is the code's choice. How fast does it leave?"
+            "A ball of 110.27 g and 15 mm radius meets an immovable ground at {speed_m_s} m/s, without gravity. It \
+             should leave with {restitution} of its speed; each code chooses how. How fast does it leave?"
         );
         let name = format!("restitution-{restitution}-at-{speed_m_s}");
         let law = LawOfContact::Restitution { restitution };
@@ -175,8 +176,8 @@ fn infinite_beams() -> Result<Vec<Problem>, String> {
             name: format!("infinite-beam-{s}"),
             family: Family::InfiniteBeam,
             statement: format!(
-                "A ball strikes an infinite beam, S = {s}. How fast does it move away after the first contact, over the \
-                 speed of impact?"
+                "A ball strikes an infinite beam, S = {s}. What is its velocity away from the beam \
+                 after the first contact, divided by the speed of impact?"
             ),
             needs: needs(&["an infinite beam"]),
             bodies: vec![],
@@ -193,13 +194,13 @@ fn infinite_beams() -> Result<Vec<Problem>, String> {
                 uncertainty: ROUNDING,
                 scale: 1.0,
             }],
-            reference: "one global panel in 25 digits".into(),
+            reference: "collocation on a single panel with 25 digits".into(),
         })
     };
     [1e-3, 1.0, 1.5, 15.0, 1e3].into_iter().map(problem).collect()
 }
 
-/// A ball that meets a structure at the speed, touching at the start.
+/// A ball, by its mass and speed, that touches a structure at the start.
 fn on_structure(name: &str, statement: String, body: Body, ball: (f64, f64), law: LawOfContact, end_s: f64) -> Problem {
     let (mass_kg, speed_m_s) = ball;
     let mut problem = at_ground(name, Family::Structure, statement, law, speed_m_s, end_s);
@@ -217,11 +218,10 @@ fn structures() -> Result<Vec<Problem>, String> {
     for of in impact::library()? {
         let reference = impact::reference(of.name)?;
         let body = Body::at_rest("structure", &of.structure.modes);
-        let statement =
-            format!("{}, in its modes as listed. How fast does the ball leave, all contacts over?", of.about);
+        let statement = format!("{}. How fast does the ball leave after the last contact?", of.about);
         let ball = (of.striker.mass_kg, of.striker.speed_m_s);
         let mut problem = on_structure(of.name, statement, body, ball, gallery::by_name(&of.law)?, reference.end_s());
-        // the hysteretic law is no power; its reference is of the same precision, by a program of its own
+        // the hysteretic law is no power of the compression; a program of its own computes its reference in quadruple precision
         if matches!(of.law, Law::Hysteretic(_)) {
             problem.quantities[0].value = reference.outcome.restitution * of.striker.speed_m_s;
             problem.quantities[0].uncertainty = reference.restitution_error.max(ROUNDING);
@@ -242,8 +242,8 @@ fn several() -> Vec<Problem> {
             name: name.into(),
             family: Family::Several,
             statement: format!(
-                "{about} They touch at the start, the first moves towards the others at 1 m/s. How fast does each move in \
-                 the end?"
+                "{about} touch at the start, and the first moves towards the rest at 1 m/s. How fast does each move in the \
+                 end?"
             ),
             needs: needs(&["several free masses", "the law of the contact"]),
             bodies: masses_kg.iter().enumerate().map(ball).collect(),
@@ -261,8 +261,8 @@ fn several() -> Vec<Problem> {
     let mut fall = at_ground(
         "bounces",
         Family::Several,
-        "A ball of 110.27 g falls from 50 mm on an immovable ground, Hertz's contact, elastic. How high is it and how fast \
-         after 1 s, bounces later?"
+        "A ball of 110.27 g falls from 50 mm onto an immovable ground with Hertz's contact. How high is it after 1 s, and how \
+         fast does it move?"
             .into(),
         HERTZ,
         0.0,
@@ -274,14 +274,14 @@ fn several() -> Vec<Problem> {
     fall.quantities = vec![quantity("ball", What::DisplacementM, 0.05), quantity("ball", What::VelocityMS, 1.0)];
     let mut damped = fall.clone();
     damped.name = "bounces-damped".into();
-    damped.statement = damped.statement.replace("elastic", "with viscous losses of 0.5 s/m");
+    damped.statement = damped.statement.replace("Hertz's contact", "Hertz's contact and viscous losses of 0.5 s/m");
     damped.contacts[0].law = LawOfContact::Viscous { stiffness_n_m1_5: K_H, damping_s_m: 0.5 };
     vec![
-        row("cradle-2", &[0.1, 0.1], hertz, "Two balls of 100 g, Hertz's contact, elastic."),
-        row("cradle-3", &[0.1; 3], hertz, "Three balls of 100 g, Hertz's contacts, elastic."),
-        row("cradle-5", &[0.1; 5], hertz, "Newton's cradle: five balls of 100 g, Hertz's contacts, elastic."),
-        row("cradle-5-damped", &[0.1; 5], viscous, "Five balls of 100 g, Hertz's contacts with viscous losses."),
-        row("row-unequal", &[0.3, 0.05, 0.1, 0.02], hertz, "Balls of 300, 50, 100 and 20 g, Hertz's contacts."),
+        row("cradle-2", &[0.1, 0.1], hertz, "Two balls of 100 g with Hertz's contact"),
+        row("cradle-3", &[0.1; 3], hertz, "Three balls of 100 g with Hertz's contacts"),
+        row("cradle-5", &[0.1; 5], hertz, "Newton's cradle: five balls of 100 g with Hertz's contacts"),
+        row("cradle-5-damped", &[0.1; 5], viscous, "Five balls of 100 g with Hertz's contacts and viscous losses"),
+        row("row-unequal", &[0.3, 0.05, 0.1, 0.02], hertz, "Balls of 300, 50, 100 and 20 g with Hertz's contacts"),
         fall,
         damped,
     ]
@@ -320,8 +320,8 @@ fn stops() -> Vec<Problem> {
     let speed = (2.0 * energy_j).sqrt();
     let sdnd101 = problem(
         "sdnd101",
-        "Code_Aster's SDND101: 100 kg on a spring of 1e4 N/m move at 1 m/s against a stop of 1e6 N/m that they touch. How \
-         fast do they move after 1 s and three contacts?",
+        "Code_Aster's SDND101: a mass of 100 kg on a spring of 1e4 N/m moves at 1 m/s against a stop of 1e6 N/m that it \
+         touches. How fast does it move after 1 s and three contacts?",
         oscillator("mass", 100.0, 10.0, 1.0),
         0.0,
         1e6,
@@ -330,8 +330,8 @@ fn stops() -> Vec<Problem> {
     );
     let sdnd122 = problem(
         "sdnd122",
-        "Code_Aster's SDND122: 1 kg on a spring of 10 N/m with an energy of 0.00650108331626 J meets a stop of 50 N/m at \
-         10 mm. How fast does it move after 15 s? (The test's own \"analytic\" frequency is off by 6.4e-4.)",
+        "Code_Aster's SDND122: a mass of 1 kg on a spring of 10 N/m with an energy of 0.00650108331626 J meets a stop of \
+         50 N/m at 10 mm. How fast does it move after 15 s? (The \"analytic\" frequency of the source is off by 6.4e-4.)",
         oscillator("mass", 1.0, 10f64.sqrt(), speed),
         0.01,
         50.0,
@@ -340,7 +340,8 @@ fn stops() -> Vec<Problem> {
     );
     let hard = problem(
         "hard-stop",
-        "1 kg on a spring of 1000 N/m meets a stop of 1e8 N/m at 1 mm again and again. How fast does it move after 2 s?",
+        "A mass of 1 kg on a spring of 1000 N/m meets a stop of 1e8 N/m at 1 mm again and again. How fast does it move after \
+         2 s?",
         oscillator("mass", 1.0, 1000f64.sqrt(), 0.1),
         1e-3,
         1e8,
