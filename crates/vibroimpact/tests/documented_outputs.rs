@@ -148,6 +148,11 @@ fn every_key_and_column_of_a_sweep_is_documented() {
             "bodies",
             json!({ "scene_file": dataset("assemblies/sdnl104.json"), "vary": [{ "field": "end_s", "values": [0.01] }] }),
         ),
+        (
+            "drawn-bodies",
+            json!({ "scene_file": dataset("assemblies/sdnl104.json"), "sampling": { "draws": 32 },
+                    "uncertain": { "end_s": { "uniform": [0.01, 0.011] } } }),
+        ),
     ];
     for (name, sweep) in runs {
         fs::write(folder.join("sweep.json"), sweep.to_string()).unwrap();
@@ -164,7 +169,7 @@ fn every_key_and_column_of_a_sweep_is_documented() {
         let varied = " `index` `FIELD` `striker.speed_m_s` `end_s` `drawn.FIELD`";
         columns(&folder.join(name).join("results.csv"), &(sweeps.clone() + varied), &ours);
         let distribution = folder.join(name).join("distribution.csv");
-        assert_eq!(distribution.exists(), name == "drawn" || name == "mapped");
+        assert_eq!(distribution.exists(), ["drawn", "mapped", "drawn-bodies"].contains(&name));
         if distribution.exists() {
             columns(&distribution, &(text.clone() + varied), &ours);
         }

@@ -17,8 +17,9 @@ pub const EXAMPLES: &str = r#"Examples:
 The blur is the standard deviation of a field about its value on the map, or about that of the scene: a number in the unit of
 the field (normally distributed), or a share of its value in per cent (its logarithm normally distributed). Every point of the
 map gets the same number of draws. The folder holds a picture of median and spread (report.html), distribution.csv with mean,
-standard deviation and quantiles at every point and their sampling errors, and every draw (results.csv). Ctrl-C stops; the
-same command continues from there.
+standard deviation and quantiles at every point and their sampling errors, and every draw (results.csv). What is mapped is the
+restitution; of a scene of bodies it is the intervals of contact, the largest force and the contact work rate. Ctrl-C stops;
+the same command continues from there.
 
 The exit code is 0 for a finished map, 130 for one that was stopped, 2 for a scene, field or number that cannot be used, 1 if
 reading or writing fails."#;

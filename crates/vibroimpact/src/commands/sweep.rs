@@ -28,7 +28,8 @@ A sweep file holds a scene (or names one) and the fields that vary:
               { "field": "structure.damping_ratio", "values": [0, 0.02] } ],
     "random": { "seed": 1, "draws": 10, "fields": [ { "field": "striker.speed_m_s", "from": 0.5, "to": 2 } ] } }
 
-In place of "random" fields may be known as distributions; the restitution is then told as one, with sampling errors:
+In place of "random" fields may be known as distributions; the restitution (of bodies, any "outputs" of "sampling") is then told
+as one, with sampling errors:
 
   { "scene_file": "ball.json",
     "uncertain": { "location_m": { "normal": [0.4, 1e-3] }, "striker.speed_m_s": { "uniform": [0.9, 1.1] } },

@@ -18,7 +18,7 @@ use crate::scene::json::{self, quote};
 use crate::scene::{InvalidInput, toml};
 
 /// Changed whenever the same sweep gives other rows or other columns.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 /// Points by which it is judged whether the scene can be used at all, spread over the sweep.
 const PROBES: u64 = 5;
 /// Chunks into which a sweep is divided, unless it is so large that they would hold too many points.
@@ -81,7 +81,7 @@ impl Sweep {
     }
 
     fn new(contents: Contents) -> Result<Sweep, InvalidInput> {
-        let Contents { description, scene, axes, random, uncertain, canonical } = contents;
+        let Contents { description, scene, axes, random, uncertain, told, canonical } = contents;
         let drawn = uncertain.as_ref().map(|uncertain| uncertain.draws().count());
         let sizes = axes.iter().map(Axis::count).chain(random.iter().map(|random| random.draws)).chain(drawn);
         let points = sizes.clone().try_fold(1u64, u64::checked_mul).filter(|points| *points <= MAX_POINTS);
@@ -92,7 +92,10 @@ impl Sweep {
         let results = Results::Impact;
         let mut sweep = Sweep { description, axes, random, uncertain, scene, canonical, points, results };
         sweep.check_overlap()?;
-        sweep.results = sweep.results_of(&sweep.check_values()?)?;
+        sweep.results = sweep.results_of(&sweep.check_values()?);
+        if let Some(uncertain) = &mut sweep.uncertain {
+            uncertain.tell(told, &sweep.results).map_err(|found| found.within("sampling"))?;
+        }
         sweep.check_scene()?;
         Ok(sweep)
     }
@@ -130,14 +133,10 @@ impl Sweep {
     }
 
     /// What the points of a sweep with this scene come to.
-    fn results_of(&self, scene: &AnyScene) -> Result<Results, InvalidInput> {
+    fn results_of(&self, scene: &AnyScene) -> Results {
         match (scene, &self.uncertain) {
-            (AnyScene::Impact(_), Some(_)) => Ok(Results::Draw),
-            (AnyScene::Bodies(_), Some(_)) => {
-                let allowed = "left out of a scene of bodies, which has no restitution of its own; random draws them";
-                Err(InvalidInput::new("uncertain", "{...}", allowed))
-            }
-            (_, None) => Ok(Results::of(scene)),
+            (AnyScene::Impact(_), Some(_)) => Results::Draw,
+            _ => Results::of(scene),
         }
     }
 
@@ -154,7 +153,7 @@ impl Sweep {
     }
 
     fn is_adaptive(&self) -> bool {
-        self.uncertain.as_ref().is_some_and(|uncertain| uncertain.sampling.sampling_error.is_some())
+        self.uncertain.as_ref().is_some_and(Uncertain::is_adaptive)
     }
 
     /// A part of a sweep that ends by its sampling error cannot know when.
@@ -164,12 +163,12 @@ impl Sweep {
 
     /// Whether the points may be computed on several machines.
     pub(super) fn check_undivided(&self) -> Result<(), InvalidInput> {
-        match self.uncertain.as_ref().and_then(|uncertain| uncertain.sampling.sampling_error) {
-            Some(error) => {
+        match self.canonical.pointer("/sampling/sampling_error") {
+            Some(error) if self.is_adaptive() => {
                 let allowed = "left out where a sweep is computed in parts or over MPI, whose number of draws is fixed";
-                Err(InvalidInput::new("sampling.sampling_error", json::number(error), allowed))
+                Err(InvalidInput::new("sampling.sampling_error", quote(error), allowed))
             }
-            None => Ok(()),
+            _ => Ok(()),
         }
     }
 

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::error::SweepError;
-use super::uncertain::{self, SamplingEntry, Uncertain, UncertainEntry};
+use super::uncertain::{self, SamplingEntry, Told, Uncertain, UncertainEntry};
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
 use crate::assembly;
 use crate::scene::FieldPath;
@@ -48,11 +48,13 @@ const FIELDS: &[(&str, &str)] = &[
     ("fields[]", "an object with field, from and to"),
     (
         "sampling",
-        "an object with seed, draws, sequence, replicates, sampling_error and indices, each of which may be left out",
+        "an object with seed, draws, sequence, replicates, outputs, sampling_error and indices, each of which may be left out",
     ),
     ("sequence", "sobol or random"),
     ("replicates", "a whole number from 2 to 1000"),
-    ("sampling_error", "a number greater than 0"),
+    ("outputs", "a list of results of the sweep"),
+    ("outputs[]", "the name of a result of the sweep"),
+    ("sampling_error", "a number greater than 0, or an object with outputs and such numbers"),
     ("indices", "true or false"),
 ];
 
@@ -95,7 +97,7 @@ pub(super) struct SweepFile {
     /// What is drawn at random at each point of the grid.
     #[schemars(with = "Option<RandomEntry>")]
     random: Option<Value>,
-    /// Fields that are known as distributions, at each point of the grid; the restitution is told as a distribution then.
+    /// Fields that are known as distributions, at each point of the grid; outputs are told as distributions then.
     #[schemars(with = "Option<UncertainEntry>")]
     uncertain: Option<Value>,
     /// How uncertain fields are drawn.
@@ -170,6 +172,7 @@ pub(super) struct Contents {
     pub axes: Vec<Axis>,
     pub random: Option<Random>,
     pub uncertain: Option<Uncertain>,
+    pub told: Told,
     /// The file as a tree, with the scene in it.
     pub canonical: Value,
 }
@@ -241,13 +244,15 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     let axes = axes.collect::<Result<Vec<_>, _>>()?;
     let random = file.random.map(|value| random(&value).map_err(|found| found.within("random"))).transpose()?;
     let sampling = file.sampling.as_ref();
-    let uncertain = match &file.uncertain {
+    let (uncertain, told) = match &file.uncertain {
         Some(uncertain) => Some(uncertain::read(uncertain, sampling, typed)?),
         None if sampling.is_some() => {
             return Err(InvalidInput::missing("uncertain", "the fields that are to be drawn"));
         }
         None => None,
-    };
+    }
+    .unzip();
+    let told: Told = told.unwrap_or_default();
     if axes.is_empty() && random.is_none() && uncertain.is_none() {
         return Err(InvalidInput::missing("vary", "give vary, random or uncertain: something must change"));
     }
@@ -255,11 +260,13 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         let allowed = "left out beside uncertain, which makes all draws";
         return Err(InvalidInput::new("random", "{...}", allowed));
     }
-    if let Some(error) = uncertain.as_ref().and_then(|u| u.sampling.sampling_error).filter(|_| !axes.is_empty()) {
+    if let Some(error) =
+        canonical.pointer("/sampling/sampling_error").filter(|_| told.is_adaptive() && !axes.is_empty())
+    {
         let allowed = "left out beside vary: every point of a grid has the same draws";
-        return Err(InvalidInput::new("sampling.sampling_error", number(error), allowed));
+        return Err(InvalidInput::new("sampling.sampling_error", quote(error), allowed));
     }
-    Ok(Contents { description: file.description, scene, axes, random, uncertain, canonical })
+    Ok(Contents { description: file.description, scene, axes, random, uncertain, told, canonical })
 }
 
 /// Reads an object; what is allowed is told in the terms of sweeps.

@@ -11,7 +11,7 @@ use super::report;
 use super::row::{Row, columns};
 use super::table::Table;
 use super::tally::Tally;
-use super::uncertain::{self, Collector};
+use super::uncertain::{self, Collector, Uncertain};
 
 pub(super) const TABLE: &str = "results.parquet";
 pub(super) const SUMMARY: &str = "summary.json";
@@ -29,7 +29,7 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     let unfinished = file.with_extension("part");
     let mut table = Table::create(&unfinished, "results", columns(sweep))?;
     let mut pictures = Pictures::new(sweep);
-    let mut distributions = sweep.uncertain.as_ref().map(Collector::new);
+    let mut distributions = Collector::new(sweep);
     let mut tally = each_row(sweep, part, folder, |point, row| {
         match &mut distributions {
             Some(distributions) => distributions.add(row),
@@ -40,14 +40,14 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     table.close(&unfinished)?;
     settle(&unfinished, &file).map_err(SweepError::io(&file))?;
     let path = folder.path();
-    let figures = match distributions {
-        Some(distributions) => {
+    let figures = match (distributions, &sweep.uncertain) {
+        (Some(distributions), Some(uncertain)) => {
             let found = distributions.finish();
-            tally.add_distributions(!sweep.axes.is_empty(), &found);
+            tally.add_distributions(uncertain, !sweep.axes.is_empty(), &found);
             write_durably(&path.join(DISTRIBUTION), &uncertain::table(sweep, &found))?;
             uncertain::figures(sweep, &found)
         }
-        None => pictures.figures(),
+        _ => pictures.figures().into_iter().map(|(name, figure, caption)| (name.to_owned(), figure, caption)).collect(),
     };
     report::report(sweep, &tally, figures).and_then(|report| report.write(path)).map_err(SweepError::io(path))?;
     close(folder, &tally)?;
@@ -56,8 +56,8 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
 
 /// Whether the draws that are there have the sampling error that is wanted.
 pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bool, SweepError> {
-    let wanted = sweep.uncertain.as_ref().filter(|uncertain| uncertain.sampling.sampling_error.is_some());
-    let Some(mut draws) = wanted.map(Collector::new) else { return Ok(false) };
+    let adaptive = sweep.uncertain.as_ref().is_some_and(Uncertain::is_adaptive);
+    let Some(mut draws) = Collector::new(sweep).filter(|_| adaptive) else { return Ok(false) };
     each_row(sweep, part, folder, |_, row| {
         draws.add(row);
         Ok(())

@@ -19,7 +19,7 @@ pub(super) fn short(value: &Value) -> String {
 }
 
 /// Units by the end of a field's name, longer ends first.
-const UNITS: [(&str, &str); 19] = [
+const UNITS: [(&str, &str); 22] = [
     ("_n_m1_5", "N/m^1.5"),
     ("_n_m_n", "N/m^n"),
     ("_m_s2", "m/s²"),
@@ -29,6 +29,7 @@ const UNITS: [(&str, &str); 19] = [
     ("_kg_m", "kg/m"),
     ("_rad_s", "rad/s"),
     ("_n_m", "N/m"),
+    ("_n_s", "N s"),
     ("_m_s", "m/s"),
     ("_m_n", "m/N"),
     ("_s_m", "s/m"),
@@ -39,12 +40,23 @@ const UNITS: [(&str, &str); 19] = [
     ("_m", "m"),
     ("_n", "N"),
     ("_s", "s"),
+    ("_j", "J"),
+    ("_w", "W"),
 ];
 
 /// What an axis is called: `striker.mass_kg` is `striker mass` in `kg`.
 pub(super) fn label_and_unit(field: &FieldPath) -> (String, &'static str) {
     let path = field.to_string();
-    let path = ["structure.", "bodies."].iter().find_map(|object| path.strip_prefix(object)).unwrap_or(&path);
+    named(["structure.", "bodies."].iter().find_map(|object| path.strip_prefix(object)).unwrap_or(&path))
+}
+
+/// The axis of a result: `largest_force_n` is `largest force` in `N`.
+pub(super) fn axis_of_result(column: &str) -> Axis {
+    let (label, unit) = named(column);
+    Axis::new(label).unit(unit)
+}
+
+fn named(path: &str) -> (String, &'static str) {
     // theta_m of the hysteretic law is a mean, not a length
     let unit = UNITS.iter().find(|(end, _)| path.ends_with(end) && !path.ends_with("theta_m"));
     let (name, unit) = unit.map_or((path, ""), |(end, unit)| (&path[..path.len() - end.len()], *unit));

@@ -10,7 +10,7 @@
 //! | `results.csv` | one row a point: `index`, the varied fields, the result, its cost, `error` if there is none |
 //! | `results.parquet` | the same, typed and compressed |
 //! | `report.html`, `report.md`, `figures/` | the varied fields, the results, pictures |
-//! | `distribution.csv` | of a sweep with uncertain fields: figures of the restitution at each grid point |
+//! | `distribution.csv` | of a sweep with uncertain fields: figures of the outputs at each grid point |
 //! | `summary.json` | a [`Tally`] |
 //! | `sweep.json`, `progress.json`, `lock` | the sweep, its progress, the process that works on it |
 //!
@@ -71,7 +71,8 @@ pub use predictability::{Blur, BlurWidth, Over};
 pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
 pub use uncertain::{
-    Distribution, Estimate, Histogram, Quantile, RestitutionDistribution, Sampling, Sequence, SobolIndices, Uncertain,
+    Distribution, Estimate, Histogram, Output, OutputDistribution, Quantile, Sampling, Sequence, SobolIndices,
+    Uncertain,
 };
 pub use values::{Axis, AxisValues, Interval, Random, Scale};
 

@@ -1,4 +1,4 @@
-//! Where the restitution can be predicted: its spread over one or two fields of a scene, under a stated blur.
+//! Where the outcome can be predicted: its spread over one or two fields of a scene, under a stated blur.
 
 use serde_json::{Map, Value, json};
 
@@ -45,8 +45,8 @@ pub enum BlurWidth {
 }
 
 impl Sweep {
-    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), where some fields are known
-    /// within a `blur` only: about the value on the map, or about the scene's own. Every point has as many draws, by the same
+    /// The sweep that maps the spread of the restitution of a scene (of a scene of bodies, of what its sweeps tell unless they are asked)
+    /// over one or two fields (`over`), where some fields are known within a `blur` only: about the value on the map, or about the scene's own. Every point has as many draws, by the same
     /// `seed`.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl Sweep {
             json!({ "field": field, "from": from, "to": to, "count": count, "scale": scale })
         };
         let sweep = json!({
-            "description": "How predictable the restitution is",
+            "description": "Predictability under uncertain fields",
             "scene": scene,
             "vary": over.iter().map(axis).collect::<Vec<_>>(),
             "uncertain": uncertain,

@@ -14,12 +14,12 @@ use crate::report::{Report, significant};
 /// Values of a list that are told one by one.
 const VALUES_TOLD: usize = 12;
 
-pub(super) fn report(sweep: &Sweep, tally: &Tally, figures: Vec<(&'static str, Figure, String)>) -> io::Result<Report> {
+pub(super) fn report(sweep: &Sweep, tally: &Tally, figures: Vec<(String, Figure, String)>) -> io::Result<Report> {
     let mut report = Report::new(sweep.description.as_deref().unwrap_or("A sweep"));
     report.heading("What came out");
     report.text(&format!("```text\n{}```", tally.text()));
     for (name, figure, caption) in figures {
-        report.figure(name, &figure, &caption)?;
+        report.figure(&name, &figure, &caption)?;
     }
     report.heading("What was varied");
     report.table(&["field", "values", "number"], &varied(sweep));

@@ -86,6 +86,21 @@ const LAST: [(&str, Kind); 11] = [
     ("error", Kind::Text),
 ];
 
+/// What is told of a run as a distribution, where nothing else is asked for.
+const TOLD_OF_RUN: [&str; 3] = ["intervals", "largest_force_n", "contact_work_rate_w"];
+/// Numbers of a run that are no outputs: how it was computed, and the motion, of which there is no mean.
+const NOT_OUTPUTS: [&str; 9] = [
+    "motion_periods",
+    "motion_intervals",
+    "residual_j",
+    "contact_steps",
+    "rejected_steps",
+    "newton_iterations",
+    "law_evaluations",
+    "flight_steps",
+    "events",
+];
+
 /// Which results there are.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Results {
@@ -132,7 +147,27 @@ impl Results {
         }
     }
 
-    /// Where the column of this name stands, if it is none of a single contact.
+    /// The columns that can be told as distributions.
+    pub(super) fn outputs(&self) -> Vec<String> {
+        match self {
+            Results::Impact | Results::Draw => ["restitution", "sub_impact_count"].map(str::to_owned).to_vec(),
+            Results::Run(_) => {
+                let is_output =
+                    |(name, kind): &(String, Kind)| *kind != Kind::Text && !NOT_OUTPUTS.contains(&name.as_str());
+                self.columns().into_iter().filter(is_output).map(|(name, _)| name).collect()
+            }
+        }
+    }
+
+    /// Those of them that are told unless others are asked for.
+    pub(super) fn told(&self) -> &'static [&'static str] {
+        match self {
+            Results::Impact | Results::Draw => &["restitution"],
+            Results::Run(_) => &TOLD_OF_RUN,
+        }
+    }
+
+    /// Where the column of this name stands.
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         let among = |columns: &[(&str, Kind)]| columns.iter().position(|(column, _)| *column == name);
         match self {
@@ -140,7 +175,13 @@ impl Results {
             Results::Draw => among(&OF_DRAW),
             Results::Run(contacts) => {
                 let last = || among(&LAST).map(|place| OF_RUN.len() + contacts.len() * OF_CONTACT.len() + place);
-                among(&OF_RUN).or_else(last)
+                let of_contact = || {
+                    let (contact, column) = name.rsplit_once('.')?;
+                    let number = contacts.iter().position(|other| other == contact)?;
+                    let place = OF_CONTACT.iter().position(|(other, _)| *other == column)?;
+                    Some(OF_RUN.len() + number * OF_CONTACT.len() + place)
+                };
+                among(&OF_RUN).or_else(last).or_else(of_contact)
             }
         }
     }

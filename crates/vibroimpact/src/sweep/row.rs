@@ -87,8 +87,12 @@ impl<'a> Row<'a> {
 
     /// The cell of a result, by the name of its column.
     pub(super) fn text(&self, name: &str) -> &'a str {
-        let place = self.results.place(name);
-        place.and_then(|place| self.cells.get(self.first + place)).unwrap_or_default()
+        self.results.place(name).map_or("", |place| self.at(place))
+    }
+
+    /// The cell of the result that stands there among the results.
+    fn at(&self, place: usize) -> &'a str {
+        self.cells.get(self.first + place).unwrap_or_default()
     }
 
     /// The motion to which a run has settled, `intervals/periods`; `none` if it has not, empty without a harmonic load.
@@ -103,5 +107,10 @@ impl<'a> Row<'a> {
     /// The same as a number; `None` if there is none.
     pub(super) fn number(&self, name: &str) -> Option<f64> {
         self.text(name).parse().ok()
+    }
+
+    /// The same of the result that stands there among the results.
+    pub(super) fn number_at(&self, place: usize) -> Option<f64> {
+        self.at(place).parse().ok()
     }
 }

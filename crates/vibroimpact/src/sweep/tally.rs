@@ -6,7 +6,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 
 use super::row::Row;
-use super::uncertain::{self, RestitutionDistribution};
+use super::uncertain::{self, Distributions, OutputDistribution, Uncertain};
 use crate::text::significant;
 
 /// Failures that are told one by one.
@@ -41,12 +41,12 @@ pub struct Tally {
     pub contact_work_rate_w: Option<Extremes>,
     /// Runs under a harmonic load by the motion to which they have settled, as `intervals/periods`, or `none`.
     pub motions: BTreeMap<String, u64>,
-    /// What the restitution is with uncertain fields, where there is no grid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub distribution: Option<RestitutionDistribution>,
-    /// Least and greatest width of the interval of nine draws of ten, by points of the grid, where there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub width_90: Option<Extremes>,
+    /// What each output is with uncertain fields, where there is no grid.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub distributions: BTreeMap<String, OutputDistribution>,
+    /// For each output the least and greatest width of the interval of nine draws of ten, by points of the grid, where there is one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub width_90: BTreeMap<String, Extremes>,
     /// Steps in contact, over all points.
     pub contact_steps: u64,
     /// Evaluations of the contact law, over all points.
@@ -128,14 +128,18 @@ impl Tally {
         self.mode_steps = self.mode_steps.saturating_add(count("mode_steps"));
     }
 
-    /// Takes the distributions at the points of a grid, or the one where there is none.
-    pub(super) fn add_distributions(&mut self, has_grid: bool, found: &[Option<RestitutionDistribution>]) {
-        if let ([Some(one)], false) = (found, has_grid) {
-            self.distribution = Some(one.clone());
-        }
-        for (place, one) in (0..).zip(found) {
-            if let (Some(one), true) = (one, has_grid) {
-                self.width_90 = Some(Extremes::with(self.width_90, one.width_90.value, place));
+    /// Takes the distributions at the points of a grid, or those where there is none.
+    pub(super) fn add_distributions(&mut self, uncertain: &Uncertain, has_grid: bool, found: &[Distributions]) {
+        for (place, found) in (0..).zip(found) {
+            for (output, one) in uncertain.outputs.iter().zip(found) {
+                let Some(one) = one else { continue };
+                if has_grid {
+                    let before = self.width_90.get(&output.name).copied();
+                    let widths = Extremes::with(before, one.width_90.value, place);
+                    self.width_90.insert(output.name.clone(), widths);
+                } else {
+                    self.distributions.insert(output.name.clone(), one.clone());
+                }
             }
         }
     }
@@ -181,18 +185,20 @@ impl Tally {
             ("intervals", &self.intervals),
             ("largest force, N", &self.largest_force_n),
             ("contact work rate, W", &self.contact_work_rate_w),
-            ("width of 9 in 10", &self.width_90),
         ] {
             if let Some(extremes) = found {
                 line(name, &range(extremes));
             }
+        }
+        for (output, extremes) in &self.width_90 {
+            line("width of 9 in 10", &format!("{output} {}", range(extremes)));
         }
         let Tally { contact_steps, law_evaluations, mode_steps, .. } = self;
         line("cost", &format!("{contact_steps} steps in contact, {law_evaluations} evaluations of the law"));
         if *mode_steps > 0 {
             line("", &format!("{mode_steps} steps times modes"));
         }
-        lines += &self.distribution.as_ref().map_or_else(String::new, uncertain::text);
+        lines.extend(self.distributions.iter().map(|(output, found)| uncertain::text(output, found)));
         lines
     }
 }

@@ -7,6 +7,7 @@ mod files;
 mod parts;
 mod resume;
 mod uncertain;
+mod uncertain_bodies;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,88 +1,106 @@
-//! From the rows of a sweep to a distribution for each point of its grid, and to their table.
+//! From the rows of a sweep to distributions for each point of its grid, and to their table.
 
 use super::design::{Draws, Uncertain};
-use super::estimate::{Estimate, RestitutionDistribution};
+use super::estimate::{Estimate, OutputDistribution};
 use crate::scene::json::number;
 use crate::sweep::definition::Sweep;
 use crate::sweep::row::{Row, cell, line};
+
+/// The distribution of every output at a point of the grid; `None` of one that no draw has.
+pub(in crate::sweep) type Distributions = Vec<Option<OutputDistribution>>;
 
 /// Takes rows in order.
 pub(in crate::sweep) struct Collector<'a> {
     uncertain: &'a Uncertain,
     layout: Draws,
-    names: Option<Vec<String>>,
-    /// Restitutions of the grid point whose draws come now.
-    draws: Vec<f64>,
-    found: Vec<Option<RestitutionDistribution>>,
+    fields: Option<Vec<String>>,
+    /// Where the outputs stand in a row.
+    places: Vec<Option<usize>>,
+    /// Each output of the grid point whose draws come now.
+    draws: Vec<Vec<f64>>,
+    found: Vec<Distributions>,
 }
 
 impl<'a> Collector<'a> {
-    pub fn new(uncertain: &'a Uncertain) -> Collector<'a> {
+    /// `None` for a sweep without uncertain fields.
+    pub fn new(sweep: &'a Sweep) -> Option<Collector<'a>> {
+        let uncertain = sweep.uncertain.as_ref()?;
         let names = || uncertain.fields.iter().map(|(field, _)| field.to_string()).collect();
-        let names = uncertain.sampling.indices.then(names);
-        Collector { uncertain, layout: uncertain.draws(), names, draws: Vec::new(), found: Vec::new() }
+        let fields = uncertain.sampling.indices.then(names);
+        let places = uncertain.outputs.iter().map(|output| sweep.results().place(&output.name)).collect();
+        let draws = vec![Vec::new(); uncertain.outputs.len()];
+        Some(Collector { uncertain, layout: uncertain.draws(), fields, places, draws, found: Vec::new() })
     }
 
     pub fn add(&mut self, row: &Row) {
-        self.draws.push(row.number("restitution").unwrap_or(f64::NAN));
-        if self.draws.len() as u64 == self.layout.count() {
+        // the outputs of a run that was stopped are not those at its end
+        let complete = row.text("outcome") != "stopped";
+        for (draws, place) in self.draws.iter_mut().zip(&self.places) {
+            let value = place.filter(|_| complete).and_then(|place| row.number_at(place));
+            draws.push(value.unwrap_or(f64::NAN));
+        }
+        if self.draws.iter().any(|draws| draws.len() as u64 == self.layout.count()) {
             self.close();
         }
     }
 
     fn close(&mut self) {
-        self.found.push(RestitutionDistribution::new(&self.draws, self.layout, self.names.as_deref()));
-        self.draws.clear();
+        let of = |draws: &mut Vec<f64>| {
+            let found = OutputDistribution::new(draws, self.layout, self.fields.as_deref());
+            draws.clear();
+            found
+        };
+        self.found.push(self.draws.iter_mut().map(of).collect());
     }
 
-    /// The distribution of every grid point; `None` of one without any restitution.
-    pub fn finish(mut self) -> Vec<Option<RestitutionDistribution>> {
+    /// The distributions at every point of the grid.
+    pub fn finish(mut self) -> Vec<Distributions> {
         // fewer draws than there could be, because they were enough
-        if !self.draws.is_empty() {
+        if self.draws.iter().any(|draws| !draws.is_empty()) {
             self.close();
         }
         self.found
     }
 
-    /// Whether the sampling error is as small as was wanted.
+    /// Whether all sampling errors are as small as was wanted.
     pub fn enough(self) -> bool {
-        let wanted = self.uncertain.sampling.sampling_error.unwrap_or_default();
-        self.finish().iter().flatten().all(|found| found.largest_error() <= wanted)
+        let wanted: Vec<f64> =
+            self.uncertain.outputs.iter().map(|output| output.sampling_error.unwrap_or(f64::INFINITY)).collect();
+        let small = |(found, wanted): (&Option<OutputDistribution>, &f64)| {
+            found.as_ref().is_none_or(|found| found.largest_error() <= *wanted)
+        };
+        self.finish().iter().all(|found| found.iter().zip(&wanted).all(small))
     }
 }
 
-/// A table with a row for each grid point: the varied fields, and every figure with its standard error.
-pub(in crate::sweep) fn table(sweep: &Sweep, found: &[Option<RestitutionDistribution>]) -> Vec<u8> {
+/// A table with a row for each grid point and output: the varied fields, and every figure with its standard error.
+pub(in crate::sweep) fn table(sweep: &Sweep, found: &[Distributions]) -> Vec<u8> {
     let axes = sweep.axes.iter().map(|axis| axis.field.to_string());
-    let some = found.iter().flatten().next();
-    let names = some.map_or_else(Vec::new, |found| figures(found).into_iter().map(|(name, _)| name).collect());
+    let outputs = || sweep.uncertain.iter().flat_map(|uncertain| &uncertain.outputs);
+    // indices are there if the output varies
+    let most = found.iter().flatten().flatten().map(figures).max_by_key(Vec::len);
+    let names: Vec<String> = most.unwrap_or_default().into_iter().map(|(name, _)| name).collect();
     let with_error = |name: &String| [name.clone(), format!("{name}_standard_error")];
-    let counts = ["draws", "with_restitution"].map(str::to_owned);
+    let counts = ["output", "draws", "with_value"].map(str::to_owned);
     let mut rows = line(axes.chain(counts).chain(names.iter().flat_map(with_error)));
     for (place, found) in found.iter().enumerate() {
         let values = sweep.values(place as u64 * sweep.draws());
-        let axes = values[..sweep.axes.len()].iter().map(cell);
-        let cells = match found {
-            Some(found) => {
-                let counts = [found.draws, found.with_restitution].map(|count| count.to_string());
-                let known = |error: Option<f64>| error.map_or_else(String::new, number);
-                let figures =
-                    figures(found).into_iter().flat_map(|(_, it)| [number(it.value), known(it.standard_error)]);
-                counts.into_iter().chain(figures).collect()
-            }
-            None => {
-                let counts = [sweep.draws().to_string(), "0".to_owned()];
-                counts.into_iter().chain(vec![String::new(); 2 * names.len()]).collect::<Vec<_>>()
-            }
-        };
-        rows.extend(line(axes.chain(cells)));
+        for (output, found) in outputs().zip(found) {
+            let axes = values[..sweep.axes.len()].iter().map(cell).chain([output.name.clone()]);
+            let counts = found.as_ref().map_or([sweep.draws(), 0], |found| [found.draws, found.with_value]);
+            let known = |error: Option<f64>| error.map_or_else(String::new, number);
+            let told = found.iter().flat_map(figures).flat_map(|(_, it)| [number(it.value), known(it.standard_error)]);
+            let empty = std::iter::repeat(String::new());
+            let cells = told.chain(empty).take(2 * names.len());
+            rows.extend(line(axes.chain(counts.map(|count| count.to_string())).chain(cells)));
+        }
     }
     rows
 }
 
 /// All figures of a distribution by their column.
-fn figures(found: &RestitutionDistribution) -> Vec<(String, Estimate)> {
-    let RestitutionDistribution { mean, standard_deviation, width_90, quantiles, indices, .. } = found;
+fn figures(found: &OutputDistribution) -> Vec<(String, Estimate)> {
+    let OutputDistribution { mean, standard_deviation, width_90, quantiles, indices, .. } = found;
     let moments = [("mean", mean), ("standard_deviation", standard_deviation), ("width_90", width_90)];
     let moments = moments.map(|(name, figure)| (name.to_owned(), *figure));
     let quantiles = quantiles.iter().map(|quantile| {

@@ -34,8 +34,6 @@ pub struct Sampling {
     pub sequence: Sequence,
     /// Independent scramblings, from whose scatter the sampling error is told.
     pub replicates: u64,
-    /// No more draws are made once the mean and every quantile that is told have a standard error of at most this.
-    pub sampling_error: Option<f64>,
     /// Whether first and total indices of Sobol' are computed.
     pub indices: bool,
 }
@@ -47,7 +45,19 @@ pub struct Uncertain {
     pub fields: Vec<(FieldPath, Distribution)>,
     /// How they are drawn.
     pub sampling: Sampling,
+    /// What is told as a distribution.
+    pub outputs: Vec<Output>,
     sobol: Sobol,
+}
+
+/// A result of the sweep that is told as a distribution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// Its column.
+    pub name: String,
+    /// No more draws are made once the mean and every quantile of all outputs have a standard error of at most this, in the unit
+    /// of the output.
+    pub sampling_error: Option<f64>,
 }
 
 /// The numbers in which draws are laid out: draw `(group * replicates + replicate) * impacts + impact`, so that all draws up to
@@ -72,7 +82,12 @@ impl Uncertain {
     /// Needs at most 16 fields, and draws enough for two groups in each replicate.
     pub(super) fn new(fields: Vec<(FieldPath, Distribution)>, sampling: Sampling) -> Uncertain {
         let coordinates = if sampling.indices { 2 * fields.len() } else { fields.len() };
-        Uncertain { sobol: Sobol::new(coordinates), fields, sampling }
+        Uncertain { sobol: Sobol::new(coordinates), fields, sampling, outputs: Vec::new() }
+    }
+
+    /// Whether draws end by their sampling error.
+    pub(in crate::sweep) fn is_adaptive(&self) -> bool {
+        self.outputs.iter().any(|output| output.sampling_error.is_some())
     }
 
     /// How the draws are laid out.
@@ -94,7 +109,7 @@ impl Uncertain {
     /// The numbers of draws after which it is asked whether they are enough, the last of which is all.
     pub(in crate::sweep) fn stages(&self) -> impl Iterator<Item = u64> {
         let Draws { impacts, replicates, groups } = self.draws();
-        let first = if self.sampling.sampling_error.is_some() { FIRST_STAGE.min(groups) } else { groups };
+        let first = if self.is_adaptive() { FIRST_STAGE.min(groups) } else { groups };
         let stages = std::iter::successors(Some(first), move |stage| (2 * stage <= groups).then_some(2 * stage));
         stages.map(move |stage| stage * impacts * replicates)
     }
@@ -141,8 +156,9 @@ mod tests {
     fn uncertain(draws: u64, indices: bool, sampling_error: Option<f64>) -> Uncertain {
         let fields = ["x", "y"].map(|name| (FieldPath::parse(name).unwrap(), Distribution::Uniform([0.0, 1.0])));
         let sequence = Sequence::Sobol;
-        let sampling = Sampling { seed: 1, draws, sequence, replicates: 8, sampling_error, indices };
-        Uncertain::new(fields.to_vec(), sampling)
+        let sampling = Sampling { seed: 1, draws, sequence, replicates: 8, indices };
+        let outputs = vec![Output { name: "restitution".to_owned(), sampling_error }];
+        Uncertain { outputs, ..Uncertain::new(fields.to_vec(), sampling) }
     }
 
     #[test]

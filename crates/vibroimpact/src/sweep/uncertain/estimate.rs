@@ -26,9 +26,9 @@ pub struct Estimate {
 pub struct Quantile {
     /// The share of the draws below.
     pub share: f64,
-    /// The restitution there.
+    /// The output there.
     pub value: f64,
-    /// Its standard error; null where some replicates have no restitution.
+    /// Its standard error; null where some replicates have no such output.
     pub standard_error: Option<f64>,
 }
 
@@ -43,13 +43,13 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// What the restitution is where fields are uncertain.
+/// What an output is where fields are uncertain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RestitutionDistribution {
-    /// Impacts, of all replicates.
+pub struct OutputDistribution {
+    /// Scenes solved, of all replicates.
     pub draws: u64,
-    /// Those that have a restitution.
-    pub with_restitution: u64,
+    /// Those that have the output.
+    pub with_value: u64,
     /// Mean.
     pub mean: Estimate,
     /// Standard deviation.
@@ -58,23 +58,18 @@ pub struct RestitutionDistribution {
     pub width_90: Estimate,
     /// Quantiles, by rising share.
     pub quantiles: Vec<Quantile>,
-    /// Numbers of draws between the least and the greatest restitution.
+    /// Numbers of draws between the least and the greatest value.
     pub histogram: Histogram,
-    /// Indices of Sobol' by field, if they were asked for, every draw has a restitution, and these vary.
+    /// Indices of Sobol' by field, if they were asked for, every draw has the output, and it varies.
     pub indices: Option<BTreeMap<String, SobolIndices>>,
 }
 
-impl RestitutionDistribution {
-    /// Of the restitutions of all draws by their number, not-a-number where there is none; `None` if there is no restitution at
-    /// all. `fields` are those of the indices, if they are wanted.
-    pub(super) fn new(
-        restitutions: &[f64],
-        draws: Draws,
-        fields: Option<&[String]>,
-    ) -> Option<RestitutionDistribution> {
+impl OutputDistribution {
+    /// Of the output of all draws by their number, not-a-number where there is none; `None` if there is none at all. `fields` are those of the indices, if they are wanted.
+    pub(super) fn new(outputs: &[f64], draws: Draws, fields: Option<&[String]>) -> Option<OutputDistribution> {
         let replicate = |number: usize| number / draws.impacts as usize % draws.replicates as usize;
         let mut parts = vec![Vec::new(); draws.replicates as usize];
-        for (number, value) in restitutions.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
+        for (number, value) in outputs.iter().enumerate().filter(|(_, value)| !value.is_nan()) {
             parts[replicate(number)].push(*value);
         }
         let mut all: Vec<f64> = parts.concat();
@@ -92,16 +87,16 @@ impl RestitutionDistribution {
             let Estimate { value, standard_error } = of(&|part| quantile(part, share));
             Quantile { share, value, standard_error }
         });
-        let complete = all.len() == restitutions.len();
-        Some(RestitutionDistribution {
-            draws: restitutions.len() as u64,
-            with_restitution: all.len() as u64,
+        let complete = all.len() == outputs.len();
+        Some(OutputDistribution {
+            draws: outputs.len() as u64,
+            with_value: all.len() as u64,
             mean: of(&mean),
             standard_deviation: of(&standard_deviation),
             width_90: of(&|part| quantile(part, 0.95) - quantile(part, 0.05)),
             quantiles: quantiles.to_vec(),
             histogram: Histogram { from, to, counts },
-            indices: fields.filter(|_| complete).and_then(|fields| indices(restitutions, draws, fields)),
+            indices: fields.filter(|_| complete).and_then(|fields| indices(outputs, draws, fields)),
         })
     }
 
@@ -152,12 +147,12 @@ mod tests {
     use crate::sweep::uncertain::{Distribution, Sampling, Sequence, Uncertain};
 
     /// The sum of two numbers, normal with standard deviations 0.6 and 0.8, which is standard normal.
-    fn of_sum(sequence: Sequence, seed: u64) -> RestitutionDistribution {
+    fn of_sum(sequence: Sequence, seed: u64) -> OutputDistribution {
         let field = |name: &str, sd| (FieldPath::parse(name).unwrap(), Distribution::Normal([0.0, sd]));
-        let sampling = Sampling { seed, draws: 4096, sequence, replicates: 16, sampling_error: None, indices: false };
+        let sampling = Sampling { seed, draws: 4096, sequence, replicates: 16, indices: false };
         let uncertain = Uncertain::new(vec![field("x", 0.6), field("y", 0.8)], sampling);
         let values: Vec<f64> = (0..4096).map(|number| uncertain.draw(number).iter().sum()).collect();
-        RestitutionDistribution::new(&values, uncertain.draws(), None).unwrap()
+        OutputDistribution::new(&values, uncertain.draws(), None).unwrap()
     }
 
     #[test]
@@ -186,17 +181,17 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_restitution_is_left_out_of_the_figures() {
+    fn what_has_no_output_is_left_out_of_the_figures() {
         let draws = Draws { impacts: 1, replicates: 2, groups: 4 };
         let values = [0.1, f64::NAN, 0.3, f64::NAN, 0.2, f64::NAN, 0.4, f64::NAN];
-        let found = RestitutionDistribution::new(&values, draws, Some(&["x".to_owned()])).unwrap();
-        assert_eq!((found.draws, found.with_restitution), (8, 4));
+        let found = OutputDistribution::new(&values, draws, Some(&["x".to_owned()])).unwrap();
+        assert_eq!((found.draws, found.with_value), (8, 4));
         assert!((found.mean.value - 0.25).abs() < 1e-15);
         // the second replicate has none
         assert_eq!((found.mean.standard_error, found.indices.as_ref()), (None, None));
         assert_eq!(found.largest_error(), f64::INFINITY);
-        assert_eq!(RestitutionDistribution::new(&values[1..2], draws, None), None);
-        let same = RestitutionDistribution::new(&[0.5; 8], draws, None).unwrap();
+        assert_eq!(OutputDistribution::new(&values[1..2], draws, None), None);
+        let same = OutputDistribution::new(&[0.5; 8], draws, None).unwrap();
         assert_eq!((same.histogram.counts[0], same.largest_error(), same.width_90.value), (8, 0.0, 0.0));
     }
 }

@@ -6,13 +6,14 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::design::{Sampling, Sequence, Uncertain};
+use super::design::{Output, Sampling, Sequence, Uncertain};
 use super::distribution::Distribution;
 use super::sobol::MOST_COORDINATES;
 use crate::scene::FieldPath;
 use crate::scene::InvalidInput;
 use crate::scene::json::{number, quote};
 use crate::sweep::file::MAX_POINTS;
+use crate::sweep::results::Results;
 
 /// Most uncertain fields: indices take two coordinates each.
 const MOST_FIELDS: usize = MOST_COORDINATES / 2;
@@ -22,6 +23,8 @@ const DISTRIBUTION: &str =
 const DRAWS: u64 = 16_384;
 const REPLICATES: u64 = 16;
 const MOST_REPLICATES: u64 = 1000;
+/// Most outputs: each is kept for all draws of a point of the grid.
+const MOST_OUTPUTS: usize = 32;
 
 /// Fields by their path, each with its distribution. Beside a field of `vary` the drawn number is added to the grid's value
 /// (uniform, normal) or multiplied by it (log-uniform, lognormal).
@@ -43,11 +46,78 @@ pub(in crate::sweep) struct SamplingEntry {
     /// Independent scramblings, from whose scatter the sampling error is told; 16 when left out.
     #[schemars(range(min = 2, max = 1000))]
     replicates: Option<u64>,
-    /// The standard error at which no more draws are made: of the mean and every quantile that is told.
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    sampling_error: Option<f64>,
+    /// Results of the sweep that are told as distributions; the restitution when left out or, of a scene of bodies, the intervals of
+    /// contact, the largest force and the contact work rate.
+    #[schemars(length(min = 1, max = 32))]
+    outputs: Option<Vec<String>>,
+    /// The standard error at which no more draws are made, of the mean and every quantile: a number for a single output, an
+    /// object with such numbers for several.
+    sampling_error: Option<SamplingError>,
     /// Whether first and total indices of Sobol' are computed, which takes as many impacts a draw as there are fields, and two.
     indices: Option<bool>,
+}
+
+/// One number for the only output, or one for each that is to have it.
+#[derive(Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum SamplingError {
+    OfOne(#[schemars(extend("exclusiveMinimum" = 0))] f64),
+    OfEach(BTreeMap<String, f64>),
+}
+
+/// What is to be told of the draws, not yet held against the results of the sweep.
+#[derive(Default)]
+pub(in crate::sweep) struct Told {
+    outputs: Option<Vec<String>>,
+    sampling_error: Option<SamplingError>,
+}
+
+impl Told {
+    /// Whether draws are to end by their sampling error.
+    pub fn is_adaptive(&self) -> bool {
+        self.sampling_error.is_some()
+    }
+}
+
+impl Uncertain {
+    /// Takes what is to be told, of a sweep with these results.
+    pub(in crate::sweep) fn tell(&mut self, told: Told, results: &Results) -> Result<(), InvalidInput> {
+        let all = results.outputs();
+        let allowed = || format!("one of {}", all.join(", "));
+        let names = told.outputs.unwrap_or_else(|| results.told().iter().map(|name| (*name).to_owned()).collect());
+        if !(1..=MOST_OUTPUTS).contains(&names.len()) {
+            let allowed = format!("a list of 1 to {MOST_OUTPUTS} results of the sweep");
+            return Err(InvalidInput::new("outputs", format!("{} names", names.len()), allowed));
+        }
+        for (i, name) in names.iter().enumerate() {
+            let fault = |allowed| InvalidInput::new(format!("outputs[{i}]"), quote(&name.as_str().into()), allowed);
+            if !all.contains(name) {
+                return Err(fault(allowed()));
+            }
+            if names[..i].contains(name) {
+                return Err(fault("each result once".to_owned()));
+            }
+        }
+        let wanted = match (told.sampling_error, names.as_slice()) {
+            (None, _) => BTreeMap::new(),
+            (Some(SamplingError::OfOne(error)), [one]) => BTreeMap::from([(one.clone(), error)]),
+            (Some(SamplingError::OfOne(error)), _) => {
+                let allowed = format!(
+                    "an object with such a number for some of {}, which differ in their units",
+                    names.join(", ")
+                );
+                return Err(InvalidInput::new("sampling_error", number(error), allowed));
+            }
+            (Some(SamplingError::OfEach(wanted)), _) => wanted,
+        };
+        if let Some((name, error)) = wanted.iter().find(|(name, _)| !names.contains(name)) {
+            let allowed = format!("under one of {}", names.join(", "));
+            return Err(InvalidInput::new(format!("sampling_error.{name}"), number(*error), allowed));
+        }
+        let output = |name: String| Output { sampling_error: wanted.get(&name).copied(), name };
+        self.outputs = names.into_iter().map(output).collect();
+        Ok(())
+    }
 }
 
 /// Reads both; `typed` reads an object in the terms of sweeps.
@@ -55,7 +125,7 @@ pub(in crate::sweep) fn read(
     uncertain: &Value,
     sampling: Option<&Value>,
     typed: impl FnOnce(&Value) -> Result<SamplingEntry, InvalidInput>,
-) -> Result<Uncertain, InvalidInput> {
+) -> Result<(Uncertain, Told), InvalidInput> {
     let fields = match uncertain {
         Value::Object(map) if (1..=MOST_FIELDS).contains(&map.len()) => map,
         other => {
@@ -74,21 +144,29 @@ pub(in crate::sweep) fn read(
     let within = |found: InvalidInput| found.within("sampling");
     let empty = Value::Object(Default::default());
     let entry = typed(sampling.unwrap_or(&empty)).map_err(within)?;
-    let SamplingEntry { seed, draws, sequence, replicates, sampling_error, indices } = entry;
+    let SamplingEntry { seed, draws, sequence, replicates, outputs, sampling_error, indices } = entry;
     let sampling = Sampling {
         seed: seed.unwrap_or(1),
         draws: draws.unwrap_or(DRAWS),
         sequence: sequence.unwrap_or_default(),
         replicates: replicates.unwrap_or(REPLICATES),
-        sampling_error,
         indices: indices.unwrap_or_default(),
     };
     if !(2..=MOST_REPLICATES).contains(&sampling.replicates) {
         let allowed = format!("a whole number from 2 to {MOST_REPLICATES}");
         return Err(within(InvalidInput::new("replicates", sampling.replicates.to_string(), allowed)));
     }
-    if let Some(error) = sampling_error.filter(|error| !(error.is_finite() && *error > 0.0)) {
-        return Err(within(InvalidInput::new("sampling_error", number(error), "a number greater than 0")));
+    let positive = |error: f64| error.is_finite() && error > 0.0;
+    let fault = match &sampling_error {
+        Some(SamplingError::OfOne(error)) if !positive(*error) => Some(("sampling_error".to_owned(), *error)),
+        Some(SamplingError::OfEach(errors)) => {
+            let found = errors.iter().find(|(_, error)| !positive(**error));
+            found.map(|(name, error)| (format!("sampling_error.{name}"), *error))
+        }
+        _ => None,
+    };
+    if let Some((field, error)) = fault {
+        return Err(within(InvalidInput::new(field, number(error), "a number greater than 0")));
     }
     let uncertain = Uncertain::new(fields, sampling);
     let layout = uncertain.draws();
@@ -98,5 +176,5 @@ pub(in crate::sweep) fn read(
             format!("a whole number from {least} (two groups of {} in each replicate) to 1e12", layout.impacts);
         return Err(within(InvalidInput::new("draws", sampling.draws.to_string(), allowed)));
     }
-    Ok(uncertain)
+    Ok((uncertain, Told { outputs, sampling_error }))
 }

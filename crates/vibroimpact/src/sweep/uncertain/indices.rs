@@ -84,7 +84,7 @@ mod tests {
     fn of(f: impl Fn(&[f64]) -> f64, sequence: Sequence, draws: u64) -> Vec<SobolIndices> {
         let names = ["x", "y", "z"].map(str::to_owned);
         let fields = names.clone().map(|name| (FieldPath::parse(&name).unwrap(), Distribution::Uniform([0.0, 1.0])));
-        let sampling = Sampling { seed: 3, draws, sequence, replicates: 16, sampling_error: None, indices: true };
+        let sampling = Sampling { seed: 3, draws, sequence, replicates: 16, indices: true };
         let uncertain = Uncertain::new(fields.to_vec(), sampling);
         let values: Vec<f64> = (0..uncertain.draws().count()).map(|number| f(&uncertain.draw(number))).collect();
         indices(&values, uncertain.draws(), &names).unwrap().into_values().collect()

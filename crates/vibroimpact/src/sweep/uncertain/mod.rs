@@ -1,4 +1,4 @@
-//! Fields that are known as distributions, and what the restitution is then: a distribution too.
+//! Fields that are known as distributions, and what the outputs are then: distributions too.
 //!
 //! Draw `m` of a replicate `r` are numbers `u` from (0, 1), one a field, by scrambled Sobol' points (`sobol.rs`) or at random,
 //! and each field has the value `Q_j(u_j)` with the quantile function of its distribution. Every replicate is an
@@ -18,7 +18,8 @@
 //! ```
 //!
 //! `S_j` is the share of the variance that would be gone if field `j` were known, `T_j` the share that would be left if
-//! all others were. Draws that end without a restitution are counted by their outcome; the figures are those of the others.
+//! all others were. Draws without the output (an impact without restitution, a run that was stopped) are counted by their outcome; the figures are
+//! those of the others.
 
 mod collect;
 mod design;
@@ -30,12 +31,12 @@ mod pictures;
 mod sobol;
 mod text;
 
-pub use design::{Sampling, Sequence, Uncertain};
+pub use design::{Output, Sampling, Sequence, Uncertain};
 pub use distribution::Distribution;
-pub use estimate::{Estimate, Histogram, Quantile, RestitutionDistribution};
+pub use estimate::{Estimate, Histogram, OutputDistribution, Quantile};
 pub use indices::SobolIndices;
 
-pub(super) use collect::{Collector, table};
-pub(super) use file::{SamplingEntry, UncertainEntry, read};
+pub(super) use collect::{Collector, Distributions, table};
+pub(super) use file::{SamplingEntry, Told, UncertainEntry, read};
 pub(super) use pictures::figures;
 pub(super) use text::text;

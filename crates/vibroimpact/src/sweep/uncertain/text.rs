@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::estimate::{Estimate, RestitutionDistribution};
+use super::estimate::{Estimate, OutputDistribution};
 use crate::text::significant;
 
 /// Characters before the figures.
@@ -21,16 +21,16 @@ fn told(figure: Estimate) -> String {
     }
 }
 
-/// The lines on a distribution.
-pub(in crate::sweep) fn text(found: &RestitutionDistribution) -> String {
+/// The lines on the distribution of an output.
+pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String {
     let mut lines = String::new();
     // a String does not fail to be written
     let mut line = |name: &str, text: String| {
         let gap = if name.len() < NAMES { "" } else { "  " };
         let _ = writeln!(lines, "  {name:<NAMES$}{gap}{text}");
     };
-    let RestitutionDistribution { draws, with_restitution, quantiles, indices, .. } = found;
-    line("restitution of draws", format!("{with_restitution} of {draws}; every figure ± its standard error"));
+    let OutputDistribution { draws, with_value, quantiles, indices, .. } = found;
+    line(output, format!("of {with_value} of {draws} draws; every figure ± its standard error"));
     line("mean", told(found.mean));
     line("standard deviation", told(found.standard_deviation));
     for quantile in quantiles {
