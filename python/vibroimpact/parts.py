@@ -50,9 +50,9 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Attachment(Part):
-    """Masses and springs fixed to a beam at one place; all but the place may be left out.
+    """Masses and springs fixed to a beam at one location; all fields but the location may be left out.
 
-    ``location_m``: Place on the beam from its left end (m).
+    ``location_m``: Location on the beam from its left end (m).
     ``mass_kg``: Mass (kg); 0 when left out.
     ``rotary_inertia_kg_m2``: Rotary inertia about the axis of bending (kg m^2); 0 when left out.
     ``rotational_spring_n_m_rad``: Rotational spring between beam and ground (N m/rad); 0 when left out.
@@ -70,7 +70,7 @@ class Attachment(Part):
 class Support(Part):
     """A rigid support between the ends of a beam: no displacement, no moment.
 
-    ``location_m``: Place on the beam from its left end (m).
+    ``location_m``: Location on the beam from its left end (m).
     """
 
     location_m: float
@@ -133,7 +133,8 @@ class MovingMode(Part):
     ``mode``: Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
     ``displacement_m``: Displacement there (m); 0 when left out.
     ``location``: Name of the point of a modal structure; the point of impact when left out.
-    ``location_m``: Place on a beam, string or plate (m), as the scene's ``location_m``; the point of impact when left out.
+    ``location_m``: Location on a beam, string or plate (m), as the scene's ``location_m``; the point of impact when left
+        out.
     ``velocity_m_s``: Velocity there (m/s); 0 when left out.
     """
 
@@ -146,8 +147,8 @@ class MovingMode(Part):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Start(Part):
-    """How the structure moves when the clock starts, and how far away the striker then is. Displacements and velocities are
-    positive towards the striker. What is given adds up.
+    """How the structure moves at the start, and how far away the striker then is. Displacements and velocities are positive
+    towards the striker. What is given adds up.
 
     ``amplitude_m_kg0_5``: Amplitudes of the first mass-normalised modes (m kg^1/2); those of the rest are 0.
     ``gap_m``: Distance from the striker to the structure's deflected surface (m); 0, touching, when left out.
@@ -276,9 +277,9 @@ class Modal(Part):
     """Any linear structure, given by its modes (measured, or from finite elements).
 
     ``omega_rad_s``: Angular frequencies (rad/s); 0 for a rigid-body mode.
-    ``damping_ratios``: Damping ratios, one a mode; all 0 when left out.
-    ``modal_mass_kg``: Modal masses that go with the shapes (kg), one a mode. When left out, shapes are mass-normalised: 1
-        kg each.
+    ``damping_ratios``: Damping ratios, one for each mode; all 0 when left out.
+    ``modal_mass_kg``: Modal masses that go with the shapes (kg), one for each mode. When left out, shapes are mass-
+        normalised: 1 kg each.
     ``points``: Points of the structure by their names, in place of ``shape_at_location`` and ``static_compliance_m_n``.
     ``shape_at_location``: Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with ``modal_mass_kg``.
     ``static_compliance_m_n``: Static compliance at the point of impact (m/N) of the whole elastic structure, modes beyond
@@ -687,8 +688,8 @@ class Scene(Part):
     ``description``: A text for the reader; may be left out.
     ``location``: Name of the point that is struck. Required for a modal structure with named points; other structures have
         none.
-    ``location_m``: Place of the impact (m): from the left end of a beam or string; on a plate two numbers, ``[x, y]`` from
-        a corner. Required for these; other structures have none.
+    ``location_m``: Location of the impact (m): from the left end of a beam or string; on a plate two numbers, ``[x, y]``
+        from a corner. Required for these; other structures have none.
     ``model``: Which model answers; the program's choice when left out.
     ``modes``: Modes retained, from the lowest: a number (0 is an immovable structure), or the program's choice when left
         out.

@@ -1,4 +1,4 @@
-//! How often the intervals of `identify` hold the truth, whether a wrong model is noticed, and how many starting points find the truth
+//! How often the intervals of `identify` contain the truth, whether a wrong model is noticed, and how many starting points find the truth
 //! where impacts have many contacts: random tables of synthetic measurements.
 
 use std::fs::{self, File, OpenOptions};
@@ -14,7 +14,7 @@ use vibroimpact::identify::{Data, Free, Identification, Request, identify};
 use crate::chapters::Failure;
 use crate::progress::Progress;
 
-/// Tables fitted side by side before their rows are put down.
+/// Tables fitted side by side before their rows are written.
 const BATCH: usize = 32;
 /// Parameters are found if they are this near the truth.
 const FOUND: f64 = 0.02;
@@ -25,16 +25,16 @@ const SPEEDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 const NOISE: [f64; 2] = [0.004, 4e-7];
 const FREE: [&str; 2] = ["contact.stiffness_n_m1_5", "striker.mass_kg"];
 
-/// What a study of identification is asked for.
+/// Options of the study of identification.
 #[derive(clap::Args)]
 pub struct Wanted {
-    /// How many tables of each kind
+    /// Number of tables of each kind
     #[arg(long, value_name = "COUNT", default_value_t = 2000)]
     tables: u64,
-    /// How many tables of impacts with many contacts
+    /// Number of tables of impacts with many contacts
     #[arg(long, value_name = "COUNT", default_value_t = 40)]
     rough: u64,
-    /// Go on from what an earlier run has put down
+    /// Resume from the results of an earlier run
     #[arg(long)]
     resume: bool,
     /// The folder to write to
@@ -42,7 +42,7 @@ pub struct Wanted {
     out: PathBuf,
 }
 
-/// One table and what became of it.
+/// One table and the outcome of its fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Row {
     kind: Kind,

@@ -1,4 +1,4 @@
-//! The workspace's own tasks: checks, the thesis's chapters, studies, and the record of cost and error.
+//! Development tasks: checks, the chapters of the thesis, studies, and the record of cost and error.
 
 mod bench;
 mod book;
@@ -37,13 +37,13 @@ enum Task {
     },
     /// Run the example programs of the crates
     Examples {
-        /// Those outside the workspace, which use one crate alone
+        /// Run those outside the workspace, which use one crate alone
         #[arg(long)]
         alone: bool,
     },
-    /// Measure what every solver costs and how far off it is, and write the record, its history and its page
+    /// Measure cost and error of every solver, and write the record, its history and its page
     BenchRecord {
-        /// Compute the references anew, which otherwise stay
+        /// Compute the references anew as well
         #[arg(long)]
         references: bool,
     },
@@ -54,7 +54,7 @@ enum Task {
     BenchRun,
     /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
     ReproduceChapter {
-        /// The chapter: 2 to 8; `ensemble` for what is our choice in chapter 4, varied; `theories` for chapters 3, 4 and 7
+        /// The chapter: 2 to 8; `ensemble` for chapter 4 with our choices varied; `theories` for chapters 3, 4 and 7
         /// by Timoshenko's theory; or `all` for the whole thesis and one report
         chapter: Chapters,
         /// Fewer points through the same code
@@ -69,25 +69,25 @@ enum Task {
     },
     /// Run every fuzz target; needs a nightly compiler and cargo-fuzz
     Fuzz {
-        /// How long each (s)
+        /// Time for each target (s)
         #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
         seconds: u32,
     },
-    /// Solve random impacts, wide of anything ordinary: no panic, no NaN, no energy gained, no hang
+    /// Solve random impacts far outside the usual range: no panic, no NaN, no energy gained, no hang
     Soak {
-        /// How many
+        /// Number of impacts
         #[arg(long, default_value_t = 1_000_000)]
         impacts: u64,
-        /// The row of cases
+        /// Seed of the cases
         #[arg(long, default_value_t = 2019)]
         seed: u64,
-        /// Begin nothing new after this many minutes
+        /// Start no further impact after this many minutes
         #[arg(long)]
         minutes: Option<u64>,
-        /// Solve this case of the row alone, and print it
+        /// Solve only the case with this number, and print it
         #[arg(long, value_name = "INDEX")]
         only: Option<u64>,
-        /// Go on where the run that wrote the summary ended
+        /// Resume where the run that wrote the summary ended
         #[arg(long)]
         resume: bool,
         /// The file for the summary, written after every 4,096
@@ -112,9 +112,9 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
-    /// Put the automatic choice of the model to the test: random scenes against a far tighter reference
+    /// Test the automatic choice of the model: random scenes against a far more accurate reference
     StudyAuto(RandomScenes),
-    /// Fit the scatter of the law of energy minimisation, and put its intervals to the test on beams left out
+    /// Fit the scatter of the law of energy minimisation, and test its intervals on beams left out
     StudyScatter {
         /// Fewer points through the same code
         #[arg(long)]
@@ -123,7 +123,7 @@ enum Task {
         #[arg(long, value_name = "DIR", default_value = "out/study-scatter")]
         out: PathBuf,
     },
-    /// Put identification to the test: random tables of synthetic measurements with noise
+    /// Test identification: random tables of synthetic measurements with noise
     StudyIdentify(identification::Wanted),
 }
 
@@ -197,7 +197,7 @@ fn impactbench(arguments: &[OsString]) -> Result<(), Failure> {
     })
 }
 
-/// What `reproduce-chapter` is asked for.
+/// What `reproduce-chapter` computes.
 #[derive(Clone, Copy)]
 enum Chapters {
     All,
@@ -221,7 +221,7 @@ fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) ->
 
 fn say(text: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{text}") {
-        // a reader that has seen enough is no failure
+        // a reader that closes the pipe early is no failure
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

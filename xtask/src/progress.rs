@@ -1,4 +1,4 @@
-//! How far a long task has come, on the standard error: a bar on a terminal, elsewhere a line now and then.
+//! Progress of a long task on the standard error: a bar on a terminal, a line from time to time elsewhere.
 
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Before this nobody wonders.
+/// Time before the first line where there is no terminal.
 const FIRST_LINE: Duration = Duration::from_secs(5);
-/// Between two lines where there is no terminal.
+/// Time between two lines there.
 const BETWEEN_LINES: Duration = Duration::from_secs(15);
 
 /// The progress of a task whose parts follow each other. The total of a part is known when it begins, and stays.

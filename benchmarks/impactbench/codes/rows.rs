@@ -1,4 +1,4 @@
-//! What the physics engines in Rust share: the rows of balls that they can take, and the table. A restitution is asked for, or
+//! What the physics engines in Rust share: the rows of balls that they can take, and the table. A restitution is requested, or
 //! the balls of a row are taken as elastic. The setting is the time step.
 
 use serde_json::Value;

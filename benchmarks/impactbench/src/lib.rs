@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask impactbench` runs this package; `docs/impactbench.md` is what came out, and tells how to add a code.
 //!
-//! A problem is a file in `problems`: bodies in their modes, contacts between them, and what is asked for, with its
+//! A problem is a file in `problems`: bodies in their modes, contacts between them, and what is requested, with its
 //! reference. All bodies together obey
 //!
 //! ```text

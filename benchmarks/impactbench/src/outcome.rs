@@ -16,7 +16,7 @@ pub struct Outcome {
     pub time_s: Option<f64>,
     /// `ok`, or why there is no answer.
     pub status: String,
-    /// What was asked for, in the order of the problem, with blanks between.
+    /// What was requested, in the order of the problem, with blanks between.
     pub values: String,
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use vibroimpact_sim::modal::Mode;
 
-/// A problem: what happens, what is asked for, and the answer.
+/// A problem: what happens, what is requested, and the answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Problem {
@@ -34,7 +34,7 @@ pub struct Problem {
     pub infinite_beam_s: Option<f64>,
     /// When the quantities are read (s).
     pub end_s: f64,
-    /// What is asked for.
+    /// What is requested.
     pub quantities: Vec<Quantity>,
     /// How the reference was made.
     pub reference: String,
@@ -46,7 +46,7 @@ pub struct Problem {
 pub enum Family {
     /// A ball at an immovable ground, its law given.
     Law,
-    /// The same, where only the restitution is asked for.
+    /// The same, where only the restitution is requested.
     Restitution,
     /// A ball on a structure in its modes.
     Structure,
@@ -171,7 +171,7 @@ pub enum LawOfContact {
     },
 }
 
-/// A number that is asked for.
+/// A number that is requested.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quantity {
@@ -190,7 +190,7 @@ pub struct Quantity {
     pub scale: f64,
 }
 
-/// What of a body's point is asked for at the end.
+/// What of a body's point is requested at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum What {
@@ -244,7 +244,7 @@ impl Body {
 }
 
 impl LawOfContact {
-    /// The law itself; none where only a restitution is asked for.
+    /// The law itself; none where only a restitution is requested.
     ///
     /// # Errors
     /// A parameter out of range.

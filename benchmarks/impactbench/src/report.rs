@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn durations_have_two_digits() {
-        let found = [4.04e-8, 9.96e-7, 1.2567e-5, 2.5e-4, 0.00994, 0.0996, 3.14159].map(duration);
+        let found = [4.04e-8, 9.96e-7, 1.2567e-5, 2.5e-4, 0.00994, 0.0996, 3.06].map(duration);
         assert_eq!(found, ["40 ns", "1.0 µs", "13 µs", "250 µs", "9.9 ms", "100 ms", "3.1 s"]);
     }
 }

@@ -172,7 +172,7 @@ pub fn start(problem: &Problem) -> Vec<f64> {
     amplitudes.chain(problem.bodies.iter().flat_map(|body| &body.rate)).copied().collect()
 }
 
-/// What is asked for, from amplitudes and rates at the end.
+/// What is requested, from amplitudes and rates at the end.
 ///
 /// # Errors
 /// A body that is not there.

@@ -9,7 +9,7 @@ use vibroimpact::report::Report;
 
 /// The targets are stated at this error of the restitution.
 const ERROR: f64 = 1e-6;
-/// Below this no double-precision solver is asked for digits.
+/// Smallest error that is expected of a solver in double precision.
 const ROUNDING: f64 = 1e-15;
 
 /// The smallest error that means something on a problem: the reference's own.

@@ -143,7 +143,7 @@ impl Beam {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.static_green(x_m, x_m)
     }
@@ -185,7 +185,7 @@ pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> V
     let stands = |&[p, q]: &[f64; 2]| !founded && (!turned || q == 0.0) && held.iter().all(|x| p + q * x == 0.0);
     let motions = match ends {
         [Free, Free] => match held.as_slice() {
-            // about the only place that is held
+            // about the only location that is held
             [x, rest @ ..] if rest.iter().all(|other| other == x) => vec![[-x, 1.0]],
             _ => vec![[1.0, 0.0], [-centre, 1.0]],
         },

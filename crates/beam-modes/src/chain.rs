@@ -16,7 +16,7 @@ pub(crate) struct Chain {
     pub units: Units,
 }
 
-/// Places closer than this, in lengths of the beam, are one.
+/// Locations closer than this, in lengths of the beam, are one.
 const SAME_PLACE: f64 = 1e-12;
 /// More spans than this are not cut.
 const MOST_SPANS: f64 = 5000.0;
@@ -116,7 +116,7 @@ impl Chain {
         Ok(chain)
     }
 
-    /// The node at a place; a span is cut there if there is none.
+    /// The node at a location; a span is cut there if there is none.
     fn node_at(&mut self, x: f64) -> &mut Node {
         let i = self.index(x);
         &mut self.nodes[i]

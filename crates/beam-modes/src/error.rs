@@ -26,7 +26,7 @@ impl InvalidInput {
         }
     }
 
-    /// Passes a place on a structure of the given length.
+    /// Passes a location on a structure of the given length.
     pub(crate) fn require_on(field: &str, x_m: f64, length_m: f64) -> Result<f64, InvalidInput> {
         if x_m >= 0.0 && x_m <= length_m {
             Ok(x_m)

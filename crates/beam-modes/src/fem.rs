@@ -21,7 +21,7 @@ pub enum Coordinate {
 /// A beam cut into elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// Places of the nodes, m.
+    /// Locations of the nodes, m.
     pub nodes_m: Vec<f64>,
     /// Node and coordinate of every degree of freedom that the ends leave free.
     pub dofs: Vec<(usize, Coordinate)>,
@@ -164,7 +164,7 @@ impl ModelModes {
     /// Shape of mode `k` at `x_m`, kg^(-1/2), by the element's cubics.
     ///
     /// # Errors
-    /// [`InvalidInput`] for a mode that is not there or a place off the beam.
+    /// [`InvalidInput`] for a mode that is not there or a location off the beam.
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         let length_m = self.nodes_m.last().copied().unwrap_or(0.0);
         let x_m = InvalidInput::require_on("x_m", x_m, length_m)?;
@@ -182,7 +182,7 @@ impl ModelModes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a place off the beam.
+    /// [`InvalidInput`] for a location off the beam.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         (0..self.nodal.len()).map(|k| self.shape(k, x_m)).collect()
     }

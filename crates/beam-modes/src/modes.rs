@@ -18,7 +18,7 @@ pub struct Modes {
     rigid: usize,
     /// Mode by mode, span by span; dimensionless.
     pieces: Vec<Piece>,
-    /// Masses fixed to the structure: span, place within it, mass; dimensionless.
+    /// Masses fixed to the structure: span, location within it, mass; dimensionless.
     fixed: Vec<(usize, f64, f64)>,
 }
 
@@ -69,7 +69,7 @@ impl Modes {
         self.omega_rad_s.len()
     }
 
-    /// Whether no mode was asked for.
+    /// Whether no mode was requested.
     pub fn is_empty(&self) -> bool {
         self.omega_rad_s.is_empty()
     }
@@ -92,7 +92,7 @@ impl Modes {
     /// Shape of mode `k` (from 0) at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a mode that is not there or a place off the structure. The same holds for
+    /// [`InvalidInput`] for a mode that is not there or a location off the structure. The same holds for
     /// [`slope`](Self::slope) and [`curvature`](Self::curvature).
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         self.quantity(0, k, x_m, Piece::displacement)
@@ -126,7 +126,7 @@ impl Modes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a place off the structure.
+    /// [`InvalidInput`] for a location off the structure.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (span, x) = self.place(x_m)?;
         let unit = self.unit(0);

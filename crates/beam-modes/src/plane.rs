@@ -1,6 +1,6 @@
 //! The plane of states that one end of a beam allows, carried along the beam without loss.
 //!
-//! The state at a place is `z = sqrt(EI k^3) (w, t/k, M/(EI k^2), -V/(EI k^3))` with the span's own `k` (see `waves`); for
+//! The state at a location is `z = sqrt(EI k^3) (w, t/k, M/(EI k^2), -V/(EI k^3))` with the span's own `k` (see `waves`); for
 //! Euler-Bernoulli's beam these are the derivatives of `w`. The states that satisfy the two conditions of an end form a plane; its orthonormal basis is all that an eigenvalue search needs.
 //! Crossing a span turns the oscillating part, shrinks one exponential and stretches the other: the basis is first
 //! turned so that a single column holds the growing exponential, and that column is measured at the far end.

@@ -71,7 +71,7 @@ impl Rod {
     /// elastic part, as for [`Beam::static_compliance`](crate::Beam::static_compliance).
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the rod.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the rod.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         let (spans, units) = self.checked()?;
         let x = InvalidInput::require_on("x_m", x_m, units.length_m)? / units.length_m;

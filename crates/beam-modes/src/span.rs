@@ -138,7 +138,7 @@ fn merged(raw: &[[f64; 3]], section: impl Fn(usize) -> [f64; 2]) -> (Vec<Span>, 
     (spans, Units { length_m, rigidity: first[1], mass_per_length_kg_m: first[2] })
 }
 
-/// The span that contains the dimensionless place `x`, and the place within it.
+/// The span that contains the dimensionless location `x`, and the location within it.
 pub(crate) fn locate(spans: &[Span], x: f64) -> (usize, f64) {
     let i = spans.partition_point(|span| span.start <= x).saturating_sub(1);
     (i, (x - spans[i].start).clamp(0.0, spans[i].length))

@@ -89,7 +89,7 @@ impl TautString {
     /// in which nothing cancels, down to a string that only its stiffness holds.
     ///
     /// # Errors
-    /// As [`TautString::modes`], and for a place off the string.
+    /// As [`TautString::modes`], and for a location off the string.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.checked()?;
         let x = InvalidInput::require_on("x_m", x_m, self.length_m)?;
@@ -127,7 +127,7 @@ impl TautStringModes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a place off the string.
+    /// [`InvalidInput`] for a location off the string.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let share = InvalidInput::require_on("x_m", x_m, self.string.length_m)? / self.string.length_m;
         let size = (2.0 / (self.string.mass_per_length_kg_m * self.string.length_m)).sqrt();

@@ -21,7 +21,7 @@ pub struct ShearSection {
     pub rotary_inertia_kg_m: f64,
 }
 
-/// Springs and masses fixed to a beam at one place. All but the place may be zero, and are by default.
+/// Springs and masses fixed to a beam at one location. Each of them may be zero, and is by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attachment {
     /// Distance from the left end, m.
@@ -158,7 +158,7 @@ impl BeamSystem {
     /// Static compliance `G(x, x)`, m/N, with the deflection in shear; see [`Beam::static_compliance`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.static_green(x_m, x_m)
     }

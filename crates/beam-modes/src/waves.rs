@@ -211,8 +211,8 @@ impl Pair {
         }
     }
 
-    /// Amplitudes referred to a place `y = k x` further on; `factor` is common to all but the growing exponential,
-    /// which is measured at that place.
+    /// Amplitudes referred to a location `y = k x` further on; `factor` is common to all but the growing exponential,
+    /// which is measured at that location.
     pub fn carry(&self, [a, b, c, d]: [f64; 4], y: f64, factor: f64) -> [f64; 4] {
         let (sin, cos) = (self.travelling * y).sin_cos();
         let (even, odd) = (factor * (a * cos + b * sin), factor * (b * cos - a * sin));

@@ -5,7 +5,7 @@
 //! | numbers are finite, wherever the law is asked | an iteration may step beyond a branch |
 //! | no pull within a branch | surfaces part where the law says so, and nowhere else |
 //! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
-//! | [`depends_on_rate`](ContactLaw::depends_on_rate) says whether it does | the rate is computed only where it is asked for |
+//! | [`depends_on_rate`](ContactLaw::depends_on_rate) says whether it does | the rate is computed only where it is requested |
 //! | the force is continuous from branch to branch, and zero at a release | events carry no impulse |
 //! | a branch is valid where it begins, and few follow each other between two instants | time goes on |
 //! | a complete contact returns no more work than it took | energy is not made |

@@ -101,7 +101,7 @@
 //! ```
 //!
 //! For one striker and a structure at rest this is P_1. With a structure that vibrates, or bodies that touch each
-//! other in several places, the demands on the right can exceed the available energy. Then all demands are lowered
+//! other in several locations, the demands on the right can exceed the available energy. Then all demands are lowered
 //! by a common share `s`, `(1-s)` times what the least-energy impact attains plus `s` times what was demanded, with
 //! the largest `s` (to 1e-6) at which the energy does not grow. At `s = 0` that impact itself is feasible,
 //! so that there always is such an `s`.

@@ -53,7 +53,7 @@ pub struct MovingImpact<'a> {
     pub velocity_m_s: f64,
     /// `ebar`, `beta_0` and `beta_1`.
     pub coefficients: Coefficients<f64>,
-    /// Mass-normalised mode shapes at the place (kg^-1/2).
+    /// Mass-normalised mode shapes at the location (kg^-1/2).
     pub phi: &'a [f64],
     /// Modal speeds before the impact (kg^1/2 m/s).
     pub rates: &'a [f64],

@@ -74,7 +74,7 @@ impl<'a> Scaled<'a> {
             velocity_m_s: stated.velocity_m_s.iter().map(|v| v / speed).collect(),
             modes,
         };
-        // the modes left out still move the contact points a little: that counts in how fast they close
+        // the truncated modes still move the contact points a little: that counts in how fast they close
         let closing = normals.iter().map(|&i| (-opening[i] / speed).max(0.0)).collect();
         Ok(Some(Scaled { stated, problem, kept, normals, closing, speed, root }))
     }

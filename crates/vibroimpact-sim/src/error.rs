@@ -13,7 +13,7 @@ pub struct InvalidInput {
 }
 
 impl InvalidInput {
-    /// Passes when `ok` holds, and reports the field otherwise.
+    /// Accepts the field if `ok` holds, and reports it otherwise.
     pub(crate) fn unless(
         ok: bool,
         field: impl Into<String>,

@@ -1,6 +1,6 @@
 //! Why a computation stopped before the impact had ended.
 
-/// What ended a computation before the impact did. What was found until then stands; how the impact ends is not known.
+/// What ended a computation before the impact did. What was found until then is valid; how the impact ends is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StopReason {

@@ -17,11 +17,11 @@ use crate::simulate::Resolved;
 /// The motion of structure and striker at some times. Displacements are positive away from the side that is struck.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Deflection {
-    /// Places along the structure (m).
+    /// Locations along the structure (m).
     pub location_m: Vec<f64>,
     /// Times (s).
     pub time_s: Vec<f64>,
-    /// Displacement of the structure (m): for each time one number a place.
+    /// Displacement of the structure (m): for each time one number for each location.
     pub structure_m: Vec<Vec<f64>>,
     /// Displacement of the striker (m).
     pub striker_m: Vec<f64>,
@@ -81,23 +81,23 @@ impl Resolved {
     }
 }
 
-/// Frequencies that differ by less than this part are those of one mode.
+/// Frequencies whose relative difference is smaller belong to one mode.
 const SAME: f64 = 1e-9;
 
-/// Places along a structure (m), and for each the shapes there.
+/// Locations along a structure (m), and the shapes at each.
 struct Shapes {
     location_m: Vec<f64>,
     shapes: Vec<Vec<f64>>,
 }
 
-/// Modes of a beam or string: frequencies (rad/s), its length (m), and the shapes at any place.
+/// Modes of a beam or string: frequencies (rad/s), its length (m), and the shapes at any location.
 struct Line {
     omega_rad_s: Vec<f64>,
     length_m: f64,
     shapes_at: Box<dyn Fn(f64) -> Result<Vec<f64>, beam_modes::InvalidInput>>,
 }
 
-/// Places along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
+/// Locations along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
 /// Modes that the location of impact does not excite may have been left out between them.
 fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<Shapes>, InvalidInput> {
     let highest = kept.last().copied().unwrap_or(0.0) * (1.0 - SAME);

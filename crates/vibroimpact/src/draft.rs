@@ -29,7 +29,7 @@ use crate::scene::{A_SCENE, FieldPath, InvalidInput, Scene, SceneError, json, re
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
     tree: Value,
-    /// Where tables that the scene names are looked for.
+    /// The folder in which tables that the scene names are looked for.
     folder: PathBuf,
 }
 

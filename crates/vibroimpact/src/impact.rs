@@ -12,26 +12,26 @@ use crate::scene::{self, InvalidInput, Scene, require_elastic};
 pub struct Impact {
     /// The modes of the structure at the point of impact, remainder modes last.
     pub structure: Structure,
-    /// How many of them, at the end, are remainder modes: they represent all modes left out
+    /// How many of them, at the end, are remainder modes: they represent all truncated modes
     /// ([`beam_modes::remainder_modes`]).
     pub remainder_modes: usize,
     /// Mass and speed.
     pub striker: Striker,
     /// The law of the contact, with its parameters.
     pub law: Law,
-    /// Motion of the structure when the clock starts, and the striker's distance; at rest and touching for `None`.
+    /// Motion of the structure at the start, and the distance of the striker; at rest and touching for `None`.
     pub start: Option<Start>,
     /// Accuracy and limits.
     pub settings: Settings,
 }
 
 impl Impact {
-    /// How many modes of the structure are kept, remainder modes not counted.
+    /// Number of modes retained, without remainder modes.
     pub fn kept_modes(&self) -> usize {
         self.structure.modes.len() - self.remainder_modes.min(self.structure.modes.len())
     }
 
-    /// Static compliance of the modes left out (m/N), with which the remainder modes answer; 0 without them.
+    /// Static compliance of the truncated modes (m/N), with which the remainder modes answer; 0 without them.
     pub fn residual_compliance_m_n(&self) -> f64 {
         compliance(&self.structure.modes[self.kept_modes()..])
     }
@@ -45,7 +45,7 @@ impl Impact {
         solver.solve(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
-    /// Solves the impact and keeps its whole motion.
+    /// Solves the impact and records its whole motion.
     ///
     /// # Errors
     /// As [`Impact::solve`].
@@ -84,7 +84,7 @@ impl Impact {
     }
 }
 
-/// The solver's fault under the names that scenes use.
+/// The solver's error under the names that scenes use.
 pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
     let fault = InvalidInput::from(fault);
     match fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("].")) {
@@ -164,8 +164,8 @@ impl Scene {
     }
 
     /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
-    /// restitution needs to settle, which takes a few solves; [`Scene::choose`](crate::Scene::choose) tells how well
-    /// it settled, and whether another model would do.
+    /// restitution needs to converge, which takes a few solves; [`Scene::choose`](crate::Scene::choose) states how well
+    /// it converged, and whether another model would do.
     ///
     /// # Errors
     /// As [`Scene::structure`].

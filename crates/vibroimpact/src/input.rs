@@ -1,4 +1,4 @@
-//! Files that come in: read whole up to a size, and tables of comma-separated values with faults by line.
+//! Input files: read whole up to a size, and tables of comma-separated values whose errors name the line.
 
 use std::fs::File;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! Laws of contact made to measure: for a restitution that is wanted, the parameters of each law that has it.
+//! Laws of contact for a requested restitution: the parameters of each law that has it.
 //!
 //! ```
 //! use vibroimpact::law::{Kind, Parameters, Request};
@@ -19,10 +19,10 @@ use crate::InvalidInput;
 use contact_models::{self, Flores, HuntCrossley, LankaraniNikravesh, Law, Solref, Stepped, Wanted};
 use contact_models::{damping_ratio_if_it_pulled, reduced_mass_kg, stepped_restitution};
 
-/// What is wanted.
+/// The requested restitution and what it refers to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// Speed of parting over speed of approach, 0.001 to 1.
+    /// Restitution: speed of separation over speed of approach, 0.001 to 1.
     pub restitution: f64,
     /// Mass of the striker (kg).
     pub mass_kg: f64,
@@ -30,11 +30,11 @@ pub struct Request {
     pub other_mass_kg: Option<f64>,
     /// Speed of approach (m/s).
     pub speed_m_s: f64,
-    /// How deep the bodies press (m); if none, six steps of approach, or a millimetre without a step.
+    /// Largest compression (m); if none, the distance covered in six steps, or a millimetre without a step.
     pub compression_m: Option<f64>,
     /// Time step of an engine that steps by semi-implicit Euler (s).
     pub step_s: Option<f64>,
-    /// This law alone; all if none.
+    /// Only this law; all if none.
     pub law: Option<Kind>,
 }
 
@@ -57,13 +57,13 @@ pub enum Kind {
 /// What the command `law` prints as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Answer {
-    /// The restitution wanted.
+    /// The requested restitution.
     pub restitution: f64,
-    /// By which two free bodies count (kg).
+    /// Reduced mass of the two bodies (kg).
     pub reduced_mass_kg: f64,
     /// Speed of approach (m/s).
     pub speed_m_s: f64,
-    /// How deep the bodies press (m).
+    /// Largest compression (m).
     pub compression_m: f64,
     /// Time step of the engine (s).
     pub step_s: Option<f64>,
@@ -76,19 +76,19 @@ pub struct Answer {
 pub struct Made {
     /// Its name.
     pub law: &'static str,
-    /// With the exact restitution; none where the law cannot have it.
+    /// The parameters with the exact restitution; none if the law cannot have it.
     pub parameters: Option<Parameters>,
     /// Its restitution, computed from the parameters.
     pub restitution: Option<f64>,
-    /// The restitution that the published rule for the damping leads to.
+    /// The restitution that the published formula for the damping gives.
     pub restitution_by_the_paper: f64,
-    /// What a fixed step makes of these parameters.
+    /// The restitution of these parameters with the fixed step.
     pub at_the_step: Option<AtStep>,
-    /// Parameters whose mean at the step is the restitution wanted, and what the step makes of them.
+    /// Parameters whose mean with the fixed step is the requested restitution, and their restitution with it.
     pub for_the_step: Option<ForStep>,
 }
 
-/// Restitutions over all places of the first touch within a step.
+/// Restitutions over all phases of the first touch within a step.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AtStep {
     /// The lowest.
@@ -97,7 +97,7 @@ pub struct AtStep {
     pub mean: f64,
     /// The highest.
     pub highest: f64,
-    /// How many steps the contact lasts.
+    /// Number of steps that the contact lasts.
     pub steps_in_contact: f64,
 }
 
@@ -106,12 +106,12 @@ pub struct AtStep {
 pub struct ForStep {
     /// The parameters.
     pub parameters: Parameters,
-    /// What the step makes of them.
+    /// Their restitution with the step.
     #[serde(flatten)]
     pub restitution: AtStep,
 }
 
-/// The numbers to set.
+/// The parameters to set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Parameters {
@@ -140,17 +140,17 @@ pub enum Parameters {
         /// Damping (s/m).
         damping_s_m: f64,
     },
-    /// Of the laws that are told a restitution.
+    /// Of the laws that have a restitution as a parameter.
     ByRestitution {
         /// Stiffness (N/m^1.5).
         stiffness_n_m1_5: f64,
-        /// The restitution that they are to be told.
+        /// The restitution to set.
         restitution: f64,
     },
 }
 
 impl Kind {
-    /// The law that has the restitution, and the numbers to set.
+    /// The law that has the restitution, and its parameters.
     fn make(self, wanted: &Wanted) -> Result<(Law, Parameters), contact_models::InvalidInput> {
         Ok(match self {
             Kind::Mujoco => (wanted.kelvin_voigt()?, Parameters::of_mujoco(&wanted.solref()?)),
@@ -177,7 +177,7 @@ impl Kind {
         })
     }
 
-    /// The law that the published rule leads to; its stiffness does not matter.
+    /// The law by the published formula; its stiffness does not matter.
     fn by_the_paper(self, wanted: &Wanted) -> Result<f64, contact_models::InvalidInput> {
         let (e, mass_kg, speed_m_s) = (wanted.restitution, wanted.mass_kg, wanted.speed_m_s);
         let law = match self {
@@ -279,10 +279,10 @@ impl Request {
     }
 }
 
-/// What a quantity may be.
+/// The allowed values of a quantity.
 pub const POSITIVE: &str = "a number greater than 0 (from 1e-30 to 1e30)";
 
-/// A law made to measure; one that cannot have the restitution is a fault only where it was asked for by name.
+/// A law made to measure; one that cannot have the restitution is a fault only where it was requested by name.
 fn made(kind: Kind, wanted: &Wanted, step_s: Option<f64>, by_name: bool) -> Result<Made, contact_models::InvalidInput> {
     let mut made = Made {
         law: kind.name(),

@@ -54,14 +54,14 @@ struct Cli {
     /// Print nothing but results and errors: no progress, no names of files
     #[arg(long, short, global = true, conflicts_with = "verbose", help_heading = "Everywhere")]
     quiet: bool,
-    /// Print on the standard error what is done, and how long it takes
+    /// Also report each step and its time on the standard error
     #[arg(long, short, global = true, help_heading = "Everywhere")]
     verbose: bool,
 }
 
 #[derive(Subcommand)]
 enum Command {
-    /// Solve a scene that the program brings along: a steel ball strikes a steel bar
+    /// Solve a built-in scene: a steel ball strikes a steel bar
     #[command(after_help = first::DEMO_EXAMPLES)]
     Demo(first::DemoArguments),
     /// Write a first scene, complete and explained field by field
@@ -73,40 +73,40 @@ enum Command {
     /// State which model would be used and why, and what each would cost
     #[command(after_help = choice::PLAN_EXAMPLES)]
     Plan(choice::PlanArguments),
-    /// Answer a scene by every model, side by side
+    /// Solve a scene with every model, side by side
     #[command(after_help = choice::COMPARE_EXAMPLES)]
     Compare(choice::CompareArguments),
     /// List natural frequencies, and mode shapes at the point of impact
     #[command(after_help = modes::EXAMPLES)]
     Modes(modes::Arguments),
-    /// Net restitution without integration in time: energy minimisation under outward constraints
+    /// Compute the net restitution without integration in time: energy minimisation under outward constraints
     #[command(after_help = net::EMOC_EXAMPLES)]
     Emoc(net::EmocArguments),
     /// Fit the three parameters of `emoc` to a table of restitutions
     #[command(after_help = net::FIT_EXAMPLES)]
     Fit(net::FitArguments),
-    /// Find fields of a scene from measurements, by resolved impacts: values, intervals, what the data leave open
+    /// Find fields of a scene from measurements: estimates, intervals, and what the data leave open
     #[command(after_help = identify::EXAMPLES)]
     Identify(identify::Arguments),
     /// Give the parameters of laws of contact for a wanted restitution, exactly and for a fixed step
     #[command(after_help = law::EXAMPLES)]
     Law(law::Arguments),
-    /// Solve the impact on an infinite beam, posed by its one number S or by a scene
+    /// Solve the impact on an infinite beam, given by its single parameter S or by a scene
     #[command(after_help = infinite_beam::EXAMPLES)]
     InfiniteBeam(infinite_beam::Arguments),
     /// Find the periodic motion of bodies under a harmonic load, and follow it over a field
     #[command(after_help = orbit::EXAMPLES)]
     Orbit(orbit::Arguments),
-    /// Differentiate an impact by the numbers of its scene: what matters, and how much
+    /// Differentiate an impact by the numbers of its scene: which of them matter, and how much
     #[command(after_help = sensitivity::EXAMPLES)]
     Sensitivity(sensitivity::Arguments),
     /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
     #[command(after_help = sweep::SWEEP_EXAMPLES)]
     Sweep(sweep::SweepArguments),
-    /// Map where the restitution can be predicted: its spread over one or two fields, under a stated blur
+    /// Map where the restitution can be predicted: its spread over one or two fields if others are uncertain
     #[command(after_help = predictability::EXAMPLES)]
     Predictability(predictability::Arguments),
-    /// Join the parts of a sweep, and prove that none is missing
+    /// Join the parts of a sweep, and check that none is missing
     #[command(after_help = sweep::MERGE_EXAMPLES)]
     Merge(sweep::MergeArguments),
     /// Print a script that completes commands and options in a shell
@@ -132,11 +132,11 @@ fn main() -> ExitCode {
     });
     match run(cli.command).and_then(|printed| print(&printed)) {
         Ok(()) => ExitCode::SUCCESS,
-        // a reader that has seen enough is no failure
+        // a reader that closes the pipe early is no failure
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
             if let Some(NoPointSolved { printed, .. }) = failure.downcast_ref() {
-                // the results are there, and are told as ever
+                // the results are complete, and are printed as usual
                 let _ = print(printed);
             }
             eprintln!("error: {}", printable(&failure.to_string()));
@@ -150,7 +150,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tells what is wrong with the command line, or prints the help that was asked for. What was typed is not repeated in a
+/// Reports what is wrong with the command line, or prints the requested help. What was typed is not repeated in a
 /// way that could steer the terminal.
 fn misused(fault: &clap::Error) -> ExitCode {
     let hostile = |argument: &String| shorten(&printable(argument)) != *argument;

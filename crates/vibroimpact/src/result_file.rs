@@ -39,7 +39,7 @@ pub struct ResultFile {
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution: the whole of what can be estimated; null where nothing can.
+    /// Estimated error of the restitution: the sum of what can be estimated; null where nothing can.
     pub restitution_uncertainty: Option<f64>,
     /// Its parts; null where a part cannot be known, which `choice.not_known` explains.
     pub uncertainty: Uncertainty,
@@ -53,19 +53,19 @@ pub struct ResultFile {
     pub rod: Option<RodMotion>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: Option<f64>,
-    /// Number of modes kept.
+    /// Number of modes retained.
     pub modes: usize,
     /// Number of remainder modes that represent all others; they come last in lists of modes.
     pub remainder_modes: usize,
-    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
+    /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Where the energy went; null for a model that does not resolve it.
     pub energy: Option<Energy>,
     /// What the last solution cost; null for a model that solves nothing in time. The whole cost is that of `choice`.
     pub counts: Option<Cost>,
-    /// Which model, why, how near it came to the tolerance, and the whole cost.
+    /// The model, the reason for it, how near it came to the tolerance, and the whole cost.
     pub choice: Option<Answer>,
-    /// How far the theories behind the result can be trusted, [`Scene::trust`]; empty where nothing can be told.
+    /// How far the theories behind the result can be trusted, [`Scene::trust`]; empty if no check applies.
     pub trust: Vec<Check>,
     /// The solution for an infinite structure, as `infinite-beam --json` prints it; null for everything else.
     pub infinite: Option<infinite::Summary>,
@@ -138,7 +138,7 @@ impl ResultFile {
         }
     }
 
-    /// An answer of a model that resolves no course in time.
+    /// An answer of a model that does not resolve the motion in time.
     pub fn of_answer(scene: &Scene, answer: &Answer) -> ResultFile {
         ResultFile {
             vibroimpact: env!("CARGO_PKG_VERSION"),

@@ -1,15 +1,15 @@
-//! Which mode of a structure is which of one nearby.
+//! Matching the modes of a structure with those of one nearby.
 //!
 //! Modes come with either sign, and two of them in another order where their frequencies cross.
 
-/// Modes that change by more than this part from a structure to a neighbour of it are not the same ones.
+/// Largest relative change of a mode from a structure to its neighbour; beyond it they count as different modes.
 const SAME: f64 = 1e-2;
 
-/// A mode, as far as it is compared.
+/// What is compared of a mode.
 pub(crate) struct Seen {
     /// Its frequency (rad/s).
     pub omega_rad_s: f64,
-    /// Its shape at some points.
+    /// Its shape at the points.
     pub shapes: Vec<f64>,
 }
 

@@ -12,7 +12,7 @@ use crate::result_file::ResultFile;
 use crate::scene::{self, InvalidInput, Scene};
 use crate::summary::{RodMotion, Summary};
 
-/// What [`Scene::simulate`] found.
+/// The result of [`Scene::simulate`].
 pub enum Simulation {
     /// An impact on a structure with modes.
     Modal(Box<Resolved>),
@@ -20,14 +20,14 @@ pub enum Simulation {
     Infinite {
         /// The units of the solution.
         groups: Groups,
-        /// The result, which can be asked for the motion.
+        /// The result, which can evaluate the motion.
         solution: infinite::Solution,
     },
-    /// An answer of a model that does not resolve the course in time.
+    /// An answer of a model that does not resolve the motion in time.
     Net(Answer),
 }
 
-/// An impact with its course in time.
+/// An impact with its motion in time.
 pub struct Resolved {
     /// What was solved.
     pub impact: Impact,
@@ -38,7 +38,7 @@ pub struct Resolved {
 }
 
 impl Scene {
-    /// Solves the impact by the model that the scene asks for, or that [`Scene::choose`] chooses, and keeps its motion.
+    /// Solves the impact by the model that the scene names, or that [`Scene::choose`] chooses, and records its motion.
     ///
     /// # Errors
     /// A value out of range, or fields of which too few or too many are given.
@@ -79,7 +79,7 @@ impl Scene {
     /// The contact with a structure that does not move at all.
     pub(crate) fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
         let impact = self.impact_of(Some(0), &mut Kept::default())?;
-        // a tolerance that counts modes left out may be looser than any of the solver's
+        // a tolerance that includes truncation may be looser than any that the solver takes
         Ok(Impact {
             structure: Structure::default(),
             remainder_modes: 0,

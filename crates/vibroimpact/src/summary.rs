@@ -16,7 +16,7 @@ pub struct Summary {
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution: the whole of what can be estimated, the sum of the parts in `uncertainty`.
+    /// Estimated error of the restitution: the sum of the known parts in `uncertainty`.
     pub restitution_uncertainty: Option<f64>,
     /// Its parts; null where a part cannot be known, which `choice.not_known` explains.
     pub uncertainty: Uncertainty,
@@ -30,17 +30,17 @@ pub struct Summary {
     pub rod: Option<RodMotion>,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,
-    /// Number of modes kept.
+    /// Number of modes retained.
     pub modes: usize,
     /// Number of remainder modes that represent all others; they come last in lists of modes.
     pub remainder_modes: usize,
-    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
+    /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Where the energy went.
     pub energy: Energy,
-    /// What the computation cost.
+    /// The cost of the computation.
     pub counts: Cost,
-    /// Which model, why, and how near it came to the tolerance; null if no choice was made.
+    /// The model, the reason for it, and how near it came to the tolerance; null if no choice was made.
     pub choice: Option<Answer>,
 }
 
@@ -116,7 +116,7 @@ pub struct Energy {
 pub struct Cost {
     /// Steps accepted in contact.
     pub contact_steps: u64,
-    /// Steps tried in contact and taken back.
+    /// Steps tried in contact and rejected.
     pub rejected_steps: u64,
     /// Newton iterations.
     pub newton_iterations: u64,

@@ -13,10 +13,10 @@ use crate::summary::Summary;
 
 /// Shares of the energy below this are rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Contacts listed one by one; the rest are counted.
+/// Most contacts that are listed; the rest are counted.
 const LISTED: usize = 20;
 
-/// The words of a text in lines as long as `fits` allows; a word too long stands alone.
+/// The words of a text in lines as long as `fits` allows; a word that is too long has a line of its own.
 pub(crate) fn filled(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -100,7 +100,7 @@ pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
     }
 }
 
-/// One line on what strikes what.
+/// A line that states what strikes what.
 pub fn headline(scene: &Scene, striker: &Striker) -> String {
     let structure = match &scene.structure {
         Structure::Beam(beam) => {
@@ -153,7 +153,7 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
     )
 }
 
-/// One line on what strikes what, for an infinite structure.
+/// A line that states what strikes what, for an infinite structure.
 pub fn infinite_headline(scene: &Scene, impact: &vibroimpact_sim::infinite::Impact) -> String {
     let (mass, speed) = (quantity(impact.mass_kg * 1e3, "g"), quantity(impact.speed_m_s, "m/s"));
     let structure = scene.structure.kind().replace('-', " ");
@@ -248,7 +248,7 @@ pub fn result(summary: &Summary) -> String {
     text
 }
 
-/// A table of modes, and how many of their frequencies have converged, if that is a question.
+/// A table of modes, and how many of their frequencies have converged where that is not known to be all.
 pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     let mut text =
         format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
@@ -266,7 +266,7 @@ pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     text
 }
 
-/// A net restitution and what it follows from; `stated` tells whether the user gave the parameters.
+/// A net restitution and the numbers behind it; `stated` says whether the user gave the parameters.
 pub fn net_rebound(rebound: &NetRebound, stated: bool) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

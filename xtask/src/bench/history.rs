@@ -1,4 +1,4 @@
-//! Every value that was ever recorded, and its course as a picture.
+//! Every value that was ever recorded, and a picture of its history.
 
 use super::record::Record;
 use crate::chapters::Failure;
@@ -92,7 +92,7 @@ pub fn recordings(history: &[Row]) -> Vec<&Row> {
     first
 }
 
-/// Three courses beside each other, each relative to the first recording: counts, instructions, errors.
+/// Three histories beside each other, each relative to the first recording: counts, instructions, errors.
 pub fn figure(history: &[Row], record: &Record) -> Figure {
     let panel = |title: &str, is_shown: &dyn Fn(&str) -> bool| {
         let numbers = Axis::new("recording").integers();

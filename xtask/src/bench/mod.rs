@@ -1,4 +1,4 @@
-//! The record of what the solvers cost and how far off they are: made by `cargo xtask bench-record`, kept by
+//! The record of cost and error of the solvers: made by `cargo xtask bench-record`, kept by
 //! `cargo xtask bench-check`.
 
 mod history;

@@ -1,4 +1,4 @@
-//! The record: what every problem cost and how far off it was, and the comparison of two of them.
+//! The record: cost and error of every problem, and the comparison of two records.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -6,7 +6,7 @@ use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
 use vibroimpact_sim::modal::{Mode, Structure};
 
-/// Remainder modes for the modes left out of an Euler-Bernoulli beam, as the program takes them; as many as there may be
+/// Remainder modes for the truncated modes of an Euler-Bernoulli beam, as the program takes them; as many as there may be
 /// for a Timoshenko beam.
 const REMAINDER_MODES: usize = 2;
 

@@ -65,7 +65,7 @@ fn panels(columns: &[Column], x: &Axis, of: fn(&Row) -> f64, y: &Axis, value: fn
     columns.iter().map(panel).collect()
 }
 
-/// The course of one impact, sampled evenly and densely enough for a picture.
+/// The motion of one impact, sampled evenly and densely enough for a picture.
 pub(super) struct Course {
     pub time_ms: Vec<f64>,
     pub structure_mm: Vec<f64>,
@@ -76,7 +76,7 @@ pub(super) struct Course {
     pub compression_m: Vec<f64>,
 }
 
-/// One sample of a course in SI units.
+/// One sample of a motion in SI units.
 #[derive(Serialize)]
 pub(super) struct CourseRow {
     time_s: f64,

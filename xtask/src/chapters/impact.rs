@@ -48,12 +48,12 @@ pub(super) struct Setup<'a> {
     pub law: Law,
     pub speed_m_s: f64,
     pub damping_ratio: f64,
-    /// Whether remainder modes represent the modes left out.
+    /// Whether remainder modes represent the truncated modes.
     pub residual: bool,
     pub modes: usize,
 }
 
-/// The restitution of the chapters is asked for with this tolerance.
+/// Tolerance of the restitutions of the chapters.
 const TOLERANCE: f64 = 1e-7;
 
 impl Setup<'_> {
@@ -91,7 +91,7 @@ impl Setup<'_> {
         self.solve_with(&mut self.solver()?)
     }
 
-    /// The impact with its course in time.
+    /// The impact with its motion in time.
     pub fn record(&self) -> Result<(Solution, History<Law>), Failure> {
         Ok(self.solver()?.record(&self.striker(), &self.law, None, &Setup::settings())?)
     }

@@ -198,7 +198,7 @@ impl Study {
         self.targets.get_or_insert(("Targets", Vec::new())).1.push(target);
     }
 
-    /// Writes the course of an impact.
+    /// Writes the motion of an impact.
     pub fn course(&mut self, name: &str, course: &Course) -> Result<(), Failure> {
         self.csv(name, &course.rows())
     }

@@ -1,4 +1,4 @@
-//! Random impacts: most of them wide of anything ordinary, some at the very limits of what the solvers accept.
+//! Random impacts: most of them far outside the usual range, some at the very limits of what the solvers accept.
 
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend};
 use contact_models::{
@@ -27,7 +27,7 @@ pub enum Case {
     Scene(Value),
     /// A beam or plate without ends.
     Infinite(infinite::Structure, f64),
-    /// A net restitution without its course in time.
+    /// A net restitution without integration in time.
     Net(Problem),
     /// A single striker's, at the ends of all ranges: shapes, for a mass of 1 kg.
     Single(Vec<f64>, Coefficients<f64>),
@@ -285,7 +285,7 @@ fn infinite(random: &mut Rng) -> Case {
     if once_in(random, 4) {
         return Case::Infinite(infinite::Structure::Plate, decades(random, -12.0, 8.0));
     }
-    // every fourth beam is close to where its story changes, from above or below
+    // every fourth beam is close to where its contact history changes, from above or below
     let s = if once_in(random, 4) {
         CHANGES[random.usize(0..CHANGES.len())] * (1.0 + signed(random) * decades(random, -12.0, -0.3))
     } else {

@@ -88,7 +88,7 @@ pub fn judge(case: &Case) -> Verdict {
     verdict
 }
 
-/// Passes when `holds`, and tells what does not otherwise.
+/// Notes a complaint unless `holds`.
 fn check(holds: bool, fault: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(fault()) }
 }
@@ -172,7 +172,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
     let kinetic = |speed: f64| if speed == 0.0 { 0.0 } else { 0.5 * striker.mass_kg * speed * speed };
     let before = kinetic(striker.speed_m_s) + modes(&start.amplitude, &start.rate);
     let after = kinetic(solution.striker_velocity_m_s) + modes(&solution.amplitude, &solution.rate);
-    // Impulses are asked for to `tolerance` of the momentum P of the approach, a contact. An impulse wrong by d does work
+    // The error of each impulse should be below `tolerance` times the momentum P of the approach. An error d does work
     // on surfaces that move with v, and moves them by d sum phi^2 itself.
     let excited = structure.modes.iter().zip(&start.rate).zip(&start.amplitude);
     let surface: f64 = excited.map(|((mode, b), a)| (mode.shape * (b.abs() + mode.omega_rad_s * a.abs())).abs()).sum();

@@ -21,7 +21,7 @@ const BATCH: u64 = 4096;
 /// Failures listed in full; the others are counted.
 const LISTED: usize = 100;
 
-/// What a soak came to.
+/// The result of a soak.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// The seed of the row of cases.

@@ -24,7 +24,7 @@ pub fn run_all(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     all.into_iter().flat_map(|runs| runs(problem, effort)).collect()
 }
 
-/// The laws of the contacts; none if a restitution is asked for in their place.
+/// The laws of the contacts; none if a restitution is requested in their place.
 fn laws(problem: &Problem) -> Option<Vec<Law>> {
     problem.contacts.iter().map(|contact| contact.law.law().ok().flatten()).collect()
 }

@@ -1,4 +1,4 @@
-//! Models without a course in time: the rigid structure, and EMOC as it stands before anything is fitted.
+//! Models that do not resolve the motion in time: the rigid structure, and EMOC with its default parameters.
 
 use super::{laws, sweep};
 use crate::outcome::Outcome;

@@ -144,7 +144,7 @@ fn statement(file: &str) -> &'static str {
     }
 }
 
-/// A scene of several bodies; the displacement and the velocity of each at the end are asked for.
+/// A scene of several bodies; the displacement and the velocity of each at the end are requested.
 fn bodies(file: &str, family: Family, end_s: f64) -> Result<Problem, String> {
     let scene = AssemblyScene::read(&path("assemblies", file)).map_err(|error| error.to_string())?;
     let posed = scene.pose().map_err(|error| error.to_string())?;

@@ -154,7 +154,7 @@ impl Plate {
         }
     }
 
-    /// A place as shares of length and width.
+    /// A location as shares of length and width.
     pub(super) fn place(&self, x_m: f64, y_m: f64) -> Result<(f64, f64), InvalidInput> {
         let x_m = InvalidInput::require_on("x_m", x_m, self.length_m)?;
         let y_m = InvalidInput::require_on("y_m", y_m, self.width_m)?;

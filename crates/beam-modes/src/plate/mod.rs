@@ -16,7 +16,7 @@ pub use modes::PlateModes;
 use crate::error::InvalidInput;
 use ritz::Ritz;
 
-/// Largest number of modes that a plate is asked for.
+/// Largest number of modes that may be requested.
 const MOST: usize = 20_000;
 /// Polynomials that resolve so many modes are taken for fewer, too: they cost little, and low modes with singular corners need them.
 const AMPLE: usize = 120;
@@ -61,7 +61,7 @@ impl Plate {
         Ritz::new(self, degrees).modes(count)
     }
 
-    /// Static deflection at a place under a unit load there, m/N: of the elastic modes alone if the plate can move as a
+    /// Static deflection at a location under a unit load there, m/N: of the elastic modes alone if the plate can move as a
     /// rigid body.
     ///
     /// In closed form (a single series after summing Navier's double one) for a plate pinned all round. Otherwise
@@ -71,7 +71,7 @@ impl Plate {
     /// in the degree, to some 1e-7, and to 1e-4 very near to corners that clamped edges hold.
     ///
     /// # Errors
-    /// As [`Plate::checked`]; a place off the plate; Mindlin's theory, which gives no finite deflection.
+    /// As [`Plate::checked`]; a location off the plate; Mindlin's theory, which gives no finite deflection.
     pub fn static_compliance(&self, x_m: f64, y_m: f64) -> Result<f64, InvalidInput> {
         Ok(self.static_compliance_with_uncertainty(x_m, y_m)?.0)
     }
@@ -114,7 +114,7 @@ impl Plate {
         Ok((whole, last.abs() + ROUNDING * whole))
     }
 
-    /// A plate of the same size that is alike near a place, given in shares of length and width, and its static compliance
+    /// A plate of the same size that is alike near a location, given in shares of length and width, and its static compliance
     /// there in closed form: pinned along two opposite edges, with this plate's two others where one of them is the
     /// nearest free edge; or pinned all round.
     fn known_nearby(&self, x: f64, y: f64) -> (Plate, f64) {

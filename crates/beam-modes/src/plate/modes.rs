@@ -62,7 +62,7 @@ impl PlateModes {
         self.omega_rad_s.len()
     }
 
-    /// Whether no mode was asked for.
+    /// Whether no mode was requested.
     pub fn is_empty(&self) -> bool {
         self.omega_rad_s.is_empty()
     }
@@ -88,10 +88,10 @@ impl PlateModes {
         self.change.iter().take_while(|change| **change < share).count()
     }
 
-    /// Shapes of all modes at a place, kg^(-1/2).
+    /// Shapes of all modes at a location, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a place off the plate.
+    /// [`InvalidInput`] for a location off the plate.
     pub fn shapes_at(&self, x_m: f64, y_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (x, y) = self.plate.place(x_m, y_m)?;
         Ok(match &self.kind {

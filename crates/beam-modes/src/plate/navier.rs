@@ -78,7 +78,7 @@ fn branches(plate: &Plate, k: f64, mut found: impl FnMut(f64, f64)) {
     }
 }
 
-/// Static compliance at a place, given in shares of length and width.
+/// Static compliance at a location, given in shares of length and width.
 ///
 /// For each wave across one direction the other is a beam on `(d^2/ds^2 - k^2)^2`, solved in closed form; what is left is
 /// a single series, `1/k^3` for waves short against the distance to the edges, whose sum is known.
@@ -87,7 +87,7 @@ pub(super) fn static_compliance(plate: &Plate, x: f64, y: f64) -> f64 {
     if [x, y].iter().any(|share| *share <= 0.0 || *share >= 1.0) {
         return 0.0;
     }
-    // waves along the direction across which the place is deeper inside
+    // waves along the direction across which the location is deeper inside
     let depth = |share: f64, length: f64| share.min(1.0 - share) * length;
     let (along, across, x, y) = if depth(y, b) / a >= depth(x, a) / b { (a, b, x, y) } else { (b, a, y, x) };
     let mut sum = 0.0;

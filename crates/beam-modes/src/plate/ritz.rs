@@ -175,7 +175,7 @@ impl<'a> Ritz<'a> {
         Ok(PlateModes { plate: *self.plate, rigid, omega_rad_s, change, kind })
     }
 
-    /// Static deflection under a unit load at a place, in shares of length and width; of elastic modes alone.
+    /// Static deflection under a unit load at a location, in shares of length and width; of elastic modes alone.
     pub fn static_compliance(&self, x: f64, y: f64) -> Result<f64, InvalidInput> {
         let (along, across) = (self.lines[0].values(2.0 * x - 1.0), self.lines[1].values(2.0 * y - 1.0));
         let mut sum = 0.0;

@@ -17,7 +17,7 @@ impl Beam {
     /// The `count` remainder modes (1 to 4) at `x_m` of all modes but the first `kept` (rigid-body motions included), so
     /// that `kept` modes and these few answer a force at `x_m` nearly as all modes do; see [`remainder_modes`].
     ///
-    /// Computes twice as many modes as are kept. Where remainders are wanted at many places or for many
+    /// Computes twice as many modes as are kept. Where remainders are wanted at many locations or for many
     /// `kept`, [`Modes::remainder`] does it from modes computed once.
     ///
     /// ```
@@ -30,15 +30,15 @@ impl Beam {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), for a place off the beam, and for a `count` other than 1 to 4.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location off the beam, and for a `count` other than 1 to 4.
     pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
         BeamSystem::from(self.clone()).remainder(x_m, kept, count)
     }
 
-    /// Remainder modes common to several places on the beam, at most one a place; see [`remainder_at_points`].
+    /// Remainder modes common to several locations on the beam, at most one a location; see [`remainder_at_points`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
     pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
         BeamSystem::from(self.clone()).remainder_at(x_m, kept)
     }
@@ -49,7 +49,7 @@ impl BeamSystem {
     /// inverse of the number of modes, and remainder modes bring more there.
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), for a place off the beam, and for a `count` other than 1 to 4.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location off the beam, and for a `count` other than 1 to 4.
     pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
         let whole_m_n = self.static_compliance(x_m)?;
         self.modes(enough_for_remainder(kept))?.remainder(x_m, kept, count, whole_m_n)
@@ -58,7 +58,7 @@ impl BeamSystem {
     /// As [`Beam::remainder_at`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a place off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
     pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
         let modes = self.modes(enough_for_remainder(kept))?;
         let shapes = x_m.iter().map(|&x| modes.shapes_at(x)).collect::<Result<Vec<_>, _>>()?;
@@ -83,7 +83,7 @@ impl Modes {
     /// `static_compliance_m_n` is that of the whole structure at `x_m`.
     ///
     /// # Errors
-    /// [`InvalidInput`] for a place off the structure, for a `count` other than 1 to 4, for no mode beyond `kept`, and
+    /// [`InvalidInput`] for a location off the structure, for a `count` other than 1 to 4, for no mode beyond `kept`, and
     /// for a compliance that is negative or not finite.
     pub fn remainder(
         &self,

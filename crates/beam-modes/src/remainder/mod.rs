@@ -1,4 +1,4 @@
-//! Modes left out of a truncated model, replaced by a few *remainder modes* that answer a force as they do.
+//! A few *remainder modes* that respond to a force as all the modes do that a truncated model leaves out.
 //!
 //! Seen from one point, the modes `k > N` left out are the spectral measure with the weights `phi_k^2 / omega_k^2` at
 //! `x_k = 1 / omega_k^2`; its moments are
@@ -40,7 +40,7 @@ pub struct PointMode {
 /// At most as many remainder modes as this: more gain nothing against the rounding of the moments.
 pub const MOST_REMAINDER_MODES: usize = 4;
 
-/// The `count` remainder modes (1 to 4) of the modes left out, in ascending order of frequency; fewer where the tail
+/// The `count` remainder modes (1 to 4) of the truncated modes, in ascending order of frequency; fewer where the tail
 /// moves at fewer frequencies, none where the point does not move in it.
 ///
 /// `tail` lists the modes `N+1 .. M` that were computed but are not kept. `static_rest_m_n` is what the modes beyond

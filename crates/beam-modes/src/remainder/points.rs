@@ -21,7 +21,7 @@ const DEPENDENT: f64 = 1e-11;
 /// Points whose shapes are smaller than this against those of the liveliest stand still but for rounding.
 const NODE: f64 = 1e-13;
 
-/// Remainder modes of the modes left out as seen from several points of one body: at most one a point, fewer where
+/// Remainder modes of the truncated modes as seen from several points of one body: at most one a point, fewer where
 /// points coincide or lie on nodes of all shapes of the tail.
 ///
 /// They match the first two moments `M_j = sum_{k > N} phi_k phi_k^T / omega_k^(2 j)`, `j = 1, 2`, which are matrices

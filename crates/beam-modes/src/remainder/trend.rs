@@ -1,4 +1,4 @@
-//! Remainder modes where nothing but the residual compliance is known of the modes left out.
+//! Remainder modes where nothing but the residual compliance is known of the truncated modes.
 
 use super::quadrature::power_law_atoms;
 use super::{PointMode, from_atoms, require_compliance, require_count, require_mode};

@@ -4,16 +4,16 @@ use emoc::{Impact, Parameters, Site};
 
 /// One impact.
 pub struct Datum {
-    /// Number of the place on the beam.
+    /// Number of the location on the beam.
     #[allow(dead_code)]
     pub place: usize,
-    /// Mass and place as the law takes them.
+    /// Mass and location as the law takes them.
     pub impact: Impact,
     /// The restitution.
     pub restitution: f64,
 }
 
-/// 12 masses at 25 places, 50 modes; an error of `noise` times a fixed sequence within -1..1 is added.
+/// 12 masses at 25 locations, 50 modes; an error of `noise` times a fixed sequence within -1..1 is added.
 pub fn impacts([mu0, alpha0, alpha1]: [f64; 3], noise: f64) -> Vec<Datum> {
     let law = Parameters { mu0, alpha0, alpha1, notional_restitution: 1.0 };
     let mut data = Vec::new();

@@ -37,7 +37,7 @@ pub struct BranchSettings {
     pub from: f64,
     /// See `from`.
     pub to: f64,
-    /// First step, as a part of the range. Default 0.02.
+    /// First step, as a share of the range. Default 0.02.
     pub step: f64,
     /// Longest step, likewise. Default 0.05.
     pub longest_step: f64,
@@ -106,7 +106,7 @@ pub struct SpecialPoint {
     pub kind: Special,
     /// The parameter.
     pub parameter: f64,
-    /// By how much the parameter may be off: half the distance of the two orbits that the point lies between.
+    /// Uncertainty of the parameter: half the distance of the two orbits that the point lies between.
     pub uncertainty: f64,
     /// The orbit of the branch that follows it.
     pub before_orbit: usize,

@@ -23,9 +23,9 @@ pub(crate) struct Unknown<'a> {
     /// By how much it would have grown at the nodes if no contact had a force (m): without the start, whose rounding the
     /// slopes would magnify on short panels.
     pub free: Nodal,
-    /// Whether the rate is asked for, by the law or by an end of its branch.
+    /// Whether the rate is requested, by the law or by an end of its branch.
     pub needs_rate: bool,
-    /// How well the force is wanted (N).
+    /// Requested accuracy of the force (N).
     pub accuracy: f64,
     /// A first guess of the force at the nodes (N).
     pub guess: Nodal,

@@ -1,4 +1,4 @@
-//! What modal damping takes from all modes within a panel.
+//! Energy that all modes lose to modal damping within a panel.
 //!
 //! For one mode it is a quadratic form of its state at the start and of the Legendre coefficients of its force
 //! (`damping_form.rs`). A contact drives all modes of a body by the same polynomial, `g_nk = -psi_k F_n`: what is quadratic
@@ -63,7 +63,7 @@ impl Damping {
         }
     }
 
-    /// What damping takes from these bodies within a panel (J). Needs [`Damping::prepare`].
+    /// Energy that these bodies lose to damping within a panel (J). Needs [`Damping::prepare`].
     pub fn lost(
         &self,
         system: &System,

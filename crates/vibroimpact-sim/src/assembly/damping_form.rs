@@ -1,4 +1,4 @@
-//! What modal damping takes from one mode within a panel, as a quadratic form of what moves it there.
+//! Energy that one mode loses to modal damping within a panel, as a quadratic form of its state and its force.
 //!
 //! On a panel of `h` a mode starts at `(a, b)` and is driven by `g(t) = sum g_n P_n(2 t/h - 1)`. A displacement `a` acts
 //! like a force `-omega^2 a` that is constant, so with `S` the impulse response its rate is

@@ -90,14 +90,14 @@ pub struct Differentiated {
     pub nearest_graze: f64,
 }
 
-/// How much more coarsely the motion is solved whose derivatives tell the uncertainty.
+/// Factor of the tolerance of the coarser motion whose derivatives give the uncertainty.
 pub(crate) const COARSER: f64 = 32.0;
-/// The uncertainty in differences to them.
+/// Uncertainty divided by the difference from them.
 const TIMES: f64 = 10.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
 const ROUNDING: f64 = 1e-10;
 
-/// Passes the offsets of a parameter that have a slope through them.
+/// Accepts offsets of a parameter through which a slope can be taken.
 pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), InvalidInput> {
     let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
     let field = format!("parameters[{parameter}].offsets");

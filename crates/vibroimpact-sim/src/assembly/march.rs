@@ -24,13 +24,13 @@ use crate::panel::peak::Peak;
 use crate::panel::vector::{sum_over, vectorized};
 use contact_models::{After, Boundary, Branch, ContactLaw, LARGEST, Memory, check_contract};
 
-/// Part of the stated tolerance that one panel may use up.
+/// Share of the stated tolerance that one panel may use up.
 const STEP_SHARE: f64 = 0.1;
-/// Part of that which the nodal forces may miss the law by.
+/// Share of that by which the nodal forces may miss the law.
 const NEWTON_SHARE: f64 = 1e-2;
 /// A panel is doubled when its error is this many times below the tolerance.
 const GROWTH: f64 = 250.0;
-/// Part of the way to an expected event that one panel may take.
+/// Share of the time to an expected event that one panel may take.
 const SHARE: f64 = 0.85;
 /// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
 const LANDING: f64 = 2.5;
@@ -40,13 +40,13 @@ const CARRIED: f64 = 0.05;
 const SINGULAR: f64 = 1e-4;
 /// A flight is followed by power series once the next safe step is this many levels finer than the series reach.
 const WINDOW: i32 = 2;
-/// So many events in a row without time going on are chatter.
+/// Number of successive events without progress in time that counts as chatter.
 const CHATTER: u64 = 10_000;
-/// Rest is looked for once in so many committed panels.
+/// Number of committed panels between two checks for rest.
 const REST: u64 = 64;
-/// The laws are tried once so many panels with contact have been made, many times what an impact takes.
+/// Number of panels with contact after which the laws are checked, many times what an impact needs.
 const TRY_LAWS: u64 = 5_000;
-/// The observer is asked whether to stop once in so many panels.
+/// Number of panels between two questions to the observer whether to stop.
 const ASK: u64 = 64;
 
 /// Which event function of which contact: a boundary of its branch, or its closing.

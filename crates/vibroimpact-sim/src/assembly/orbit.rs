@@ -26,7 +26,7 @@ const MARGINAL: f64 = 1e-6;
 /// Frequencies of loads are multiples of one if they are so to this accuracy.
 const COMMENSURATE: f64 = 1e-9;
 
-/// How a periodic motion is looked for.
+/// How a periodic motion is searched for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitSettings {
     /// Periods of the loads after which the motion repeats. Default 1.
@@ -35,7 +35,7 @@ pub struct OrbitSettings {
     pub transient_periods: u32,
     /// Tolerance of the runs, see [`Settings::tolerance`]. Default 1e-11.
     pub tolerance: f64,
-    /// Difference `|P(x) - x|`, relative to the size of the motion, that counts as none. Default 1e-9.
+    /// Largest difference `|P(x) - x|` of a periodic motion, relative to its size. Default 1e-9.
     pub closure: f64,
     /// Newton iterations at most. Default 30.
     pub max_iterations: u32,
@@ -98,7 +98,7 @@ pub struct Orbit {
     pub iterations: u32,
 }
 
-/// What the search for a periodic motion came to.
+/// The result of the search for a periodic motion.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum OrbitOutcome {
@@ -355,7 +355,7 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
         Ok(Ok(jacobian))
     }
 
-    /// All about the orbit through a state.
+    /// The orbit through a state, with all that is reported of it.
     fn describe(
         &self,
         state: DVector<f64>,

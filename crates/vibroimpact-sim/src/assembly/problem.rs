@@ -1,4 +1,4 @@
-//! The problem as the field poses it: bodies in their modes, contacts between their points, loads.
+//! The problem in the terms of mechanics: bodies by their modes, contacts between their points, loads.
 
 use crate::InvalidInput;
 pub use crate::panel::oscillator::BodyMode;
@@ -11,14 +11,14 @@ const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// A harmonic load nearer than this, relative to the frequency of an undamped mode that it drives, is resonance.
 const RESONANCE: f64 = 1e-9;
 
-/// A linear body: its modes, and their motion when the clock starts.
+/// A linear body: its modes, and their motion at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Body {
     /// The mass-normalised modes, in any order.
     pub modes: Vec<BodyMode>,
-    /// Modal amplitudes `a_k` at the start (m kg^1/2), one a mode.
+    /// Modal amplitudes `a_k` at the start (m kg^1/2), one for each mode.
     pub amplitude: Vec<f64>,
-    /// Their rates (m kg^1/2 / s), one a mode.
+    /// Their rates (m kg^1/2 / s), one for each mode.
     pub rate: Vec<f64>,
 }
 
@@ -50,7 +50,7 @@ pub enum Point {
     OfBody {
         /// Number of the body.
         body: usize,
-        /// `phi_k` at the point (kg^-1/2), one value a mode.
+        /// `phi_k` at the point (kg^-1/2), one value for each mode.
         shape: Vec<f64>,
     },
 }
@@ -117,7 +117,7 @@ pub struct Assembly<L> {
     pub loads: Vec<Load>,
 }
 
-/// How accurately, and how far.
+/// Accuracy and end of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Time at which the run ends (s); infinity only with `stop_when_over`.
@@ -181,7 +181,7 @@ fn require_all_finite(values: &[f64], count: usize, field: &str) -> Result<(), I
     wrong.map_or(Ok(()), |k| require(false, || format!("{field}[{k}]"), values[k], FINITE))
 }
 
-/// An assembly as the engine reads it, whatever the type of its laws: the engine is compiled once.
+/// An assembly as the engine reads it, with laws of any type: the engine is compiled once.
 pub(crate) struct Posed<'a> {
     pub bodies: &'a [Body],
     /// Of every contact.

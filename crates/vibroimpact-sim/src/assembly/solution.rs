@@ -1,4 +1,4 @@
-//! What a run came to, and what is told while it goes on.
+//! The result of a run, and what an observer sees while it is under way.
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -131,11 +131,11 @@ pub struct Ledger {
     pub modal_damping_j: f64,
     /// Lost in the contacts (J).
     pub contact_loss_j: f64,
-    /// What the numbers leave open (J).
+    /// What is missing in the balance (J).
     pub unaccounted_j: f64,
 }
 
-/// What the computation cost, in deterministic counts.
+/// The cost of the computation, in deterministic counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
     /// Panels committed with a closed contact.
@@ -153,7 +153,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Panels of all kinds, those tried in vain among them.
+    /// Panels of all kinds, rejected ones included.
     pub fn steps(&self) -> u64 {
         self.contact_steps + self.rejected_steps + self.flight_steps
     }
@@ -183,7 +183,7 @@ pub struct Run {
     pub rate: Vec<Vec<f64>>,
     /// The contacts.
     pub contacts: Vec<ContactEnd>,
-    /// Energy, if it was asked for ([`Observer::wants_energy`]).
+    /// Energy, if it was requested ([`Observer::wants_energy`]).
     pub energy: Option<Ledger>,
     /// Costs.
     pub counts: Counts,
@@ -201,17 +201,17 @@ pub trait Observer {
         let _ = panel;
     }
 
-    /// Whether [`Observer::panel`] is wanted. Default: no.
+    /// Whether [`Observer::panel`] is called. Default: no.
     fn wants_panels(&self) -> bool {
         false
     }
 
-    /// Whether the energy ledger is wanted. Default: no.
+    /// Whether the energy ledger is computed. Default: no.
     fn wants_energy(&self) -> bool {
         false
     }
 
-    /// Asked now and then: whether the run should stop.
+    /// Whether the run should stop; asked from time to time.
     fn interrupts(&mut self) -> bool {
         false
     }
@@ -237,7 +237,7 @@ pub struct ContactSample {
     pub velocity_m_s: [f64; 2],
 }
 
-/// A stretch of motion between two events, evaluated where it is asked for.
+/// A stretch of motion between two events, evaluated where it is requested.
 pub trait Motion {
     /// Its beginning (s).
     fn start_s(&self) -> f64;

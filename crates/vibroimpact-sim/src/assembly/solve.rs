@@ -40,7 +40,7 @@ pub fn run<L: ContactLaw>(
     Solver::new(assembly)?.run(settings, observer)
 }
 
-/// Solves an assembly, more than once if asked: its tables are built as they are needed and kept.
+/// Solves an assembly, more than once if needed: its tables are built at first use and cached.
 pub struct Solver<'a> {
     pub(crate) posed: Posed<'a>,
     pub(crate) system: System,
@@ -92,7 +92,7 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// One run, and all stretches of its motion if they are wanted; after bodies have parted for good the last one is endless,
+/// One run, and all stretches of its motion if they are requested; after bodies have parted for good the last one is endless,
 /// otherwise one of no length ends it.
 pub(crate) fn follow(
     posed: &Posed,

@@ -1,4 +1,4 @@
-//! Panels of any length, for the step that ends on an event.
+//! Panels of any length, for the step that ends at an event.
 //!
 //! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series, whose
 //! terms at the contacts are the same few numbers whatever the length tried.

@@ -83,7 +83,7 @@ pub enum Structure {
     Plate,
 }
 
-/// How accurately, and how far, to solve.
+/// Accuracy and extent of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Collocation nodes per panel, 8 to 32. Default 20.

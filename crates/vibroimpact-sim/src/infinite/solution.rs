@@ -1,4 +1,4 @@
-//! What a run found, and the questions it answers.
+//! The result of a run, and its evaluation at any time.
 
 use super::Structure;
 use super::contact::Piece;
@@ -93,7 +93,7 @@ pub struct State {
     pub structure_speed: f64,
 }
 
-/// Contacts of two solutions are the same while their times differ by less than this part.
+/// Contacts of two solutions are the same while the relative difference of their times is smaller.
 const SAME: f64 = 0.5;
 
 /// Free flight after a contact.
@@ -131,9 +131,9 @@ pub struct Solution {
     /// differ in the number of contacts or in the outcome. `None` if not asked for.
     pub error: Option<f64>,
     /// How many separations, from the first, both solutions have at the same times, to half of these. Beyond them nothing
-    /// is known. `None` if no second solution was asked for.
+    /// is known. `None` if no second solution was requested.
     pub certain_separations: Option<usize>,
-    /// The motion can be asked for up to this time (units of `T`).
+    /// The motion can be requested up to this time (units of `T`).
     pub known_until: f64,
     /// Panels in the solution.
     pub panels: usize,

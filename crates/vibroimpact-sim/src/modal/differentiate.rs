@@ -24,7 +24,7 @@ pub struct Posing<'a> {
     pub striker: &'a Striker,
     /// The law of their contact.
     pub law: &'a dyn ContactLaw,
-    /// How the structure moves when the clock starts.
+    /// How the structure moves at the start.
     pub start: &'a Start,
 }
 

@@ -31,7 +31,7 @@ pub struct Sample {
 /// Where the energy went (J).
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyLedger {
-    /// Kinetic energy of the striker and energy of the structure when the clock starts.
+    /// Kinetic energy of the striker and energy of the structure at the start.
     pub initial_j: f64,
     /// Kinetic energy of the striker at the end.
     pub striker_j: f64,

@@ -39,7 +39,7 @@ impl Mode {
     }
 }
 
-/// A linear structure, as seen from the contact. Modes left out are best represented by remainder modes
+/// A linear structure, as seen from the contact. Truncated modes are best represented by remainder modes
 /// (`beam_modes::remainder_modes`), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Structure {
@@ -94,12 +94,12 @@ impl Striker {
     }
 }
 
-/// How the structure moves when the clock starts, and how far away the striker then is.
+/// How the structure moves at the start, and how far away the striker then is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
-    /// Modal amplitudes `a_k` (m kg^1/2), one a mode.
+    /// Modal amplitudes `a_k` (m kg^1/2), one for each mode.
     pub amplitude: Vec<f64>,
-    /// Their rates (m kg^1/2 / s), one a mode.
+    /// Their rates (m kg^1/2 / s), one for each mode.
     pub rate: Vec<f64>,
     /// Distance from the striker to the structure's deflected surface (m); 0 is touching.
     pub gap_m: f64,

@@ -1,4 +1,4 @@
-//! What an impact came to.
+//! The result of an impact.
 
 use crate::StopReason;
 pub use crate::assembly::Counts;

@@ -18,12 +18,12 @@ use contact_models::ContactLaw;
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.
 pub(crate) const LOOSEST: f64 = 1e-4;
-/// How much more coarsely than the solution those are computed that tell its uncertainty: in the same unit of time, in
+/// Factors of the tolerance for the coarser solutions that give the uncertainty: in the same unit of time, in
 /// another one, and a third where these differ by more than the tolerance.
 const COARSER: f64 = 32.0;
 const OTHERWISE: f64 = 8.0;
 const THIRD: f64 = 8.0;
-/// The uncertainty in differences to them: without and with the third; and what is stated of the tolerance in any case.
+/// Uncertainty divided by the difference from them: without and with the third; and what is stated of the tolerance in any case.
 const ORDINARY: f64 = 2.5;
 const AMPLIFIED: f64 = 5.0;
 const LEAST: f64 = 3e-3;
@@ -116,7 +116,7 @@ impl Solver {
         Ok(Solver::unchecked(structure.modes.clone()))
     }
 
-    /// Turns to another place of the same structure, or to a structure of other modes. Tables that do not depend on the
+    /// Turns to another location of the same structure, or to a structure of other modes. Tables that do not depend on the
     /// shapes are kept where frequencies and damping are the same; results are those of a new solver, to the last bit.
     ///
     /// # Errors
@@ -139,7 +139,7 @@ impl Solver {
         Solver { moved: moved(&modes), modes, kept: None, otherwise: None }
     }
 
-    /// Solves one impact. `start` is the structure's motion when the clock starts; `None` means at rest and touching.
+    /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
     ///
     /// # Errors
     /// Names the field, its value and what would be allowed, for input that poses no impact problem.

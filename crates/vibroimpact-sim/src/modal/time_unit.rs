@@ -1,4 +1,4 @@
-//! The same impact in another unit of time: what it comes to is the same, the steps of the ladder are others.
+//! The same impact in another unit of time: its result is the same, while its dyadic steps differ.
 //!
 //! Steps are powers of two of a second. Two solutions of different tolerances share many of them, and so what these steps
 //! get wrong. With times written in units of `sqrt(1/2)` s all steps lie between those of before.

@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 
 /// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
 pub(crate) const Q: usize = 8;
-/// Powers of time kept in a Taylor series over a landing step.
+/// Powers of time in a Taylor series over a terminal step.
 pub(crate) const TAYLOR: usize = 14;
-/// Powers kept in a Taylor series over a step of the ladder, and about its middle: enough for [`SLOW`] rad.
+/// Powers of time in a Taylor series over a dyadic step, and about its middle: enough for [`SLOW`] rad.
 pub(crate) const SERIES: usize = 42;
 pub(crate) const HALF_SERIES: usize = 30;
 /// A mode that turns by at most this much (rad) in a step is expanded in power series.

@@ -46,7 +46,7 @@ pub enum MassKind {
     Mass,
 }
 
-/// A structure with modes, and its motion when the clock starts: undeformed and at rest, plus what is given.
+/// A structure with modes, and its motion at the start: undeformed and at rest, plus what is given.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Elastic {
     /// The structure: `rod`, or any kind that is struck in a scene of one impact and has modes.
@@ -55,7 +55,7 @@ pub struct Elastic {
     pub structure: Elastics,
     /// Number of modes, from the lowest; required where they are computed. When left out: all that are listed.
     pub modes: Option<usize>,
-    /// Whether the modes left out answer with their static compliance; `false` when left out.
+    /// Whether the truncated modes answer with their static compliance; `false` when left out.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub residual_compliance: bool,
     /// Uniform velocity at the start of a body that is free to translate (m/s); 0 when left out.
@@ -79,7 +79,7 @@ pub enum Elastics {
     Structure(Structure),
 }
 
-/// Motion of single modes when the clock starts; what is given adds up.
+/// Motion of single modes at the start; what is given adds up.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "BodyStart")]

@@ -22,7 +22,7 @@ use crate::scene::{InvalidInput, Location, SceneError, table_path};
 pub struct Load {
     /// Name of the body.
     pub body: String,
-    /// Place on a beam, string or rod, from its left end (m); on a plate `[x, y]`.
+    /// Location on a beam, string or rod, from its left end (m); on a plate `[x, y]`.
     pub location_m: Option<Location>,
     /// Name of the point of a modal structure.
     pub location: Option<String>,

@@ -136,7 +136,7 @@ impl AssemblyScene {
     }
 }
 
-/// A fault of a place or a field of an object under the object's path; that of a body has its own path already.
+/// A fault of a location or a field of an object under the object's path; that of a body has its own path already.
 fn beside(fault: InvalidInput, path: &str) -> InvalidInput {
     if fault.field.starts_with("bodies.") { fault } else { fault.within(path) }
 }

@@ -23,7 +23,7 @@ pub(super) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    /// The modes of the body with this name, on which contacts and loads stand at `places_m`, as far as they are places on
+    /// The modes of the body with this name, on which contacts and loads stand at `places_m`, as far as they are locations on
     /// a beam or rod.
     pub fn new(name: &str, body: &'a Body, places_m: Vec<f64>) -> Result<Seen<'a>, InvalidInput> {
         let (path, known) = (format!("bodies.{name}"), KnownModes::default());
@@ -73,7 +73,7 @@ impl<'a> Seen<'a> {
         InvalidInput { field, ..fault }.within(&self.path)
     }
 
-    /// Shapes of the modes at a location (kg^-1/2). A fault of the place has the field `location_m` or `location`, any other
+    /// Shapes of the modes at a location (kg^-1/2). A fault of the location has the field `location_m` or `location`, any other
     /// its whole path.
     pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
         let listed = self.modes_at(place)?.into_iter().map(|mode| mode.shape);
@@ -90,7 +90,7 @@ impl<'a> Seen<'a> {
         };
         let kept = body.modes.unwrap_or_default();
         let on_beam = |place: &f64| *place >= 0.0;
-        // a place off the beam is told of as that of its contact or load
+        // a location off the beam is reported as that of its contact or load
         match self.places_m.iter().all(on_beam) && !self.places_m.is_empty() {
             true => {
                 let remainder =
@@ -103,7 +103,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// The modes as seen from a location, remainder modes left out; faults as in [`Seen::shape`].
+    /// The modes as seen from a location, without remainder modes; errors as in [`Seen::shape`].
     pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match self.body {
             Body::Mass(mass) => {
@@ -159,7 +159,7 @@ impl<'a> Seen<'a> {
         };
         let values = || format!("{} values", given.len());
         match computed {
-            // what the modes left out would sag under their weight is far below what they answer at a point
+            // the sag of the truncated modes under their weight is far smaller than their response at a point
             Some(mut computed) => {
                 computed.resize(self.modes.len(), 0.0);
                 Ok(computed)
@@ -182,7 +182,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// Some place of the structure.
+/// Some location of the structure.
 fn anywhere(body: &Elastic) -> (Option<Location>, Option<String>) {
     match &body.structure {
         Elastics::Rod(_) | Elastics::Structure(Structure::Beam(_) | Structure::TautString(_)) => {

@@ -40,7 +40,7 @@ pub struct Simulation {
     /// within that tolerance of the time since the start. `None` if it was not found out: it was not wanted, not all
     /// intervals were kept, or the run was interrupted.
     pub reliable_until_s: Option<f64>,
-    /// Intervals of contact, contact by contact, as many as were wanted.
+    /// Intervals of contact, contact by contact, as many as were requested.
     pub intervals: Vec<Vec<Interval>>,
     /// How many more there were.
     pub left_out: Vec<u64>,
@@ -48,7 +48,7 @@ pub struct Simulation {
     pub period_s: Option<f64>,
     /// The motion to which it has settled at the end, as periods of this load.
     pub steady: Option<SteadyMotion>,
-    /// Samples of the motion, if they were wanted.
+    /// Samples of the motion, if they were requested.
     pub course: Option<Course>,
 }
 
@@ -81,7 +81,7 @@ impl AssemblyScene {
         })
     }
 
-    /// Solves the scene and keeps what is wanted.
+    /// Solves the scene and records what is requested.
     ///
     /// # Errors
     /// As [`AssemblyScene::pose`], or a fault of what takes the intervals.

@@ -1,4 +1,4 @@
-//! What is kept of a run while it goes on: intervals of contact, samples of the motion, a Poincare section.
+//! What is recorded of a run: intervals of contact, samples of the motion, a Poincare section.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,7 +28,7 @@ pub struct Row {
     pub contacts: Vec<ContactSample>,
 }
 
-/// The course of a run, sampled.
+/// The motion of a run, sampled.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Course {
     /// Samples in order of time: at equal distances, and more while contacts are closed.
@@ -94,7 +94,7 @@ pub(super) struct Watch<'a> {
     sink: Option<Sink<'a>>,
     /// Why they could not go there.
     pub fault: Option<Failure>,
-    /// Samples of the motion, if they are wanted.
+    /// Samples of the motion, if they are requested.
     pub course: Option<Course>,
     /// The end of the motion, where it has a period.
     pub moments: Option<Moments>,

@@ -13,9 +13,9 @@ use super::products::Products;
 use super::sweep::stop_on_signal;
 use super::voice::{is_quiet, signature};
 
-/// Solves the scene and returns what is to be printed; at most `intervals` intervals of contact are listed.
+/// Solves the scene and returns the text to print; at most `intervals` intervals of contact are listed.
 pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) -> Result<String, Failure> {
-    // a fault of the scene is told before anything is written
+    // an error of the scene is reported before anything is written
     let posed = scene.pose()?;
     let headline = assembly::headline(scene, &posed);
     let mut files = products.out.as_deref().map(|folder| IntervalFiles::create(folder, &posed.contacts)).transpose()?;
@@ -51,7 +51,7 @@ pub fn simulate(scene: &AssemblyScene, intervals: usize, products: &Products) ->
     Ok(printed + &told)
 }
 
-/// Progress on the standard error: a bar on a terminal, elsewhere a line now and then.
+/// Progress on the standard error: a bar on a terminal, a line from time to time elsewhere.
 struct Progress {
     end_s: f64,
     begun: Instant,
@@ -59,9 +59,9 @@ struct Progress {
     bar: Option<ProgressBar>,
 }
 
-/// Before this nobody wonders.
+/// Time before the first line where there is no terminal.
 const FIRST: Duration = Duration::from_secs(1);
-/// Between two lines where there is no terminal.
+/// Time between two lines there.
 const BETWEEN_LINES: Duration = Duration::from_secs(30);
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;

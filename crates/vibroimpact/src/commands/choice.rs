@@ -37,7 +37,7 @@ pub struct PlanArguments {
     json: bool,
 }
 
-/// The scene to answer by every model.
+/// The scene to solve with every model.
 #[derive(Args)]
 pub struct CompareArguments {
     #[command(flatten)]

@@ -29,7 +29,7 @@ pub const INIT_EXAMPLES: &str = "Examples:
 
 The file is complete, and each of its fields is explained in it. Change a line, and solve it again.";
 
-/// How the result of the built-in scene is wanted.
+/// The forms of the result of the built-in scene.
 #[derive(Args)]
 pub struct DemoArguments {
     #[command(flatten)]
@@ -40,13 +40,13 @@ pub struct DemoArguments {
     products: Products,
 }
 
-/// Which scene, and where to.
+/// The scene to write, and its file.
 #[derive(Args)]
 pub struct InitArguments {
     /// The file to write, which ends in .toml; - is the standard output
     #[arg(default_value = "impact.toml", value_parser = toml_file)]
     file: PathBuf,
-    /// What is struck
+    /// The kind of scene
     #[arg(long, value_enum, default_value_t = Kind::Beam)]
     kind: Kind,
     /// Replace the file if it exists
@@ -54,16 +54,16 @@ pub struct InitArguments {
     force: bool,
 }
 
-/// The scenes that the program brings along.
+/// The built-in scenes.
 #[derive(Clone, Copy, ValueEnum)]
 enum Kind {
     /// A beam on two supports, struck by a ball
     Beam,
     /// A stepped cantilever with a mass at its tip, struck by a ball
     Cantilever,
-    /// A plate that is held along its edges, struck by a ball
+    /// A plate held along its edges, struck by a ball
     Plate,
-    /// A ball that falls on a beam again and again
+    /// A ball that bounces on a beam
     Bodies,
 }
 

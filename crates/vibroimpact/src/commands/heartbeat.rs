@@ -1,4 +1,4 @@
-//! A sign of life from work that cannot tell how far it has come.
+//! A sign of life from work whose progress is not known.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 
 use super::voice::{is_quiet, note, seconds};
 
-/// Before this nobody wonders.
+/// Time before the first line.
 const FIRST: Duration = Duration::from_secs(10);
-/// Each silence is twice as long as the last, up to this.
+/// Each pause is twice as long as the last, up to this.
 const LONGEST: Duration = Duration::from_secs(300);
 
-/// Does the work; as long as it takes, a line now and then on the standard error says that it goes on.
+/// Does the work, and reports on the standard error from time to time that it continues.
 pub fn watched<T>(name: &str, work: impl FnOnce() -> T) -> T {
     let tell = |elapsed: Duration| {
         if !is_quiet() {

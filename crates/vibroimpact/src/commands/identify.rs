@@ -34,7 +34,7 @@ The search for a free field begins at its value in the scene and extends over a 
 stated limits (field=low..high), beyond which it may go if they are positive. Without standard deviations the noise is
 estimated from the misfit. Intervals are those of the likelihood profile.";
 
-/// The data, the scene, and what is free in it.
+/// The data, the scene, and its free fields.
 #[derive(Args)]
 pub struct Arguments {
     /// The table of measurements (CSV)
@@ -44,7 +44,7 @@ pub struct Arguments {
     scene: PathBuf,
     #[command(flatten)]
     changes: Changes,
-    /// Fields of the scene to be found, each alone or as field=low..high
+    /// Fields of the scene to find, each as FIELD or FIELD=low..high
     #[arg(long, value_name = "FIELD", value_delimiter = ',', required = true)]
     free: Vec<String>,
     /// Starting points of the search
@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Probability with which an interval holds its field
     #[arg(long, default_value_t = 0.95)]
     level: f64,
-    /// Experiments that could be made (CSV), of which the most informative is found
+    /// Possible experiments (CSV), which are ranked by how much they would tell
     #[arg(long, value_name = "FILE")]
     candidates: Option<PathBuf>,
     /// Print one JSON object in place of the text

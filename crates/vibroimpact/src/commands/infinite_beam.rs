@@ -26,7 +26,7 @@ or more separations, then sustained contact, and S above 35264 sustained contact
 solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"stopped\", with how many are certain.
 A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and a hertz contact.";
 
-/// What to solve, and where to put it.
+/// The impact to solve, and where its result goes.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct Arguments {
@@ -35,7 +35,7 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     #[command(flatten)]
     changes: Changes,
-    /// The nondimensional number S, in place of a scene
+    /// The nondimensional parameter S, in place of a scene
     #[arg(long, value_name = "S", allow_hyphen_values = true)]
     s: Option<f64>,
     #[command(flatten)]
@@ -49,7 +49,7 @@ pub struct Arguments {
 enum Study {
     /// List the critical S and the turning points, at which the n-th separation disappears
     TurningPoints {
-        /// How many turning points, from the first (at the largest S); 1 to 60
+        /// Number of turning points, from the first (at the largest S); 1 to 60
         #[arg(long, value_name = "N")]
         count: usize,
         /// Print one JSON object in place of the table

@@ -24,28 +24,28 @@ A fixed step misses: the touch lies anywhere within a step, so that there is a r
 Euler (MuJoCo and most engines); the parameters \"for the step\" are such that the mean of that range is the wanted one.
 In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers given.";
 
-/// What is wanted.
+/// The requested restitution and what it refers to.
 #[derive(Args)]
 pub struct Arguments {
-    /// Speed of parting over speed of approach, from 0.001 to 1
+    /// Restitution: speed of separation over speed of approach, from 0.001 to 1
     #[arg(long, allow_negative_numbers = true)]
     restitution: f64,
     /// Mass of the striker
     #[arg(long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
     mass_kg: f64,
-    /// Mass of the other body; immovable when left out
+    /// Mass of the other body; without it that body is immovable
     #[arg(long, value_name = "KG", value_parser = positive, allow_negative_numbers = true)]
     other_mass_kg: Option<f64>,
     /// Speed of approach
     #[arg(long, value_name = "M/S", value_parser = positive, allow_negative_numbers = true)]
     speed_m_s: f64,
-    /// How deep the bodies press; when left out six steps of approach, or a millimetre without a step
+    /// Largest compression; default: the distance covered in six steps, or a millimetre without a step
     #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
     compression_m: Option<f64>,
     /// Time step of an engine that steps by semi-implicit Euler
     #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     step_s: Option<f64>,
-    /// This law alone
+    /// Only this law
     #[arg(long, value_enum)]
     law: Option<Kind>,
     /// Print one JSON object in place of the table

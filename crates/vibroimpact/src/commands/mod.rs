@@ -1,4 +1,4 @@
-//! The commands, a file each: arguments, help, and what is printed.
+//! The commands, one file for each: arguments, help, and printed text.
 
 pub mod bodies;
 pub mod choice;
@@ -31,7 +31,7 @@ fn mode_count(text: &str) -> Result<usize, String> {
     count.ok_or_else(|| format!("allowed is a whole number from 1 to {MOST_MODES}"))
 }
 
-/// A fault in a number of modes that an option gave.
+/// The error for a number of modes that an option gave.
 fn of_option(option: &str) -> impl Fn(InvalidInput) -> InvalidInput {
     move |fault| if fault.field == "modes" { InvalidInput { field: option.to_owned(), ..fault } } else { fault }
 }

@@ -18,12 +18,12 @@ pub const EXAMPLES: &str = "Examples:
 
 Shapes are mass-normalised (kg^-1/2). Rigid-body modes come first, with omega 0.";
 
-/// Which modes.
+/// The modes to list.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// How many modes, from the lowest
+    /// Number of modes, from the lowest
     #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
     count: usize,
     /// Print one JSON object in place of the table

@@ -48,16 +48,16 @@ a law with three parameters are not: take them as a lower bound on the uncertain
 pub struct EmocArguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// Moderated mass ratio coefficient, not negative; 1 when left out
+    /// Moderated mass ratio coefficient, not negative; default 1
     #[arg(long, allow_negative_numbers = true)]
     mu0: Option<f64>,
-    /// Modal richness coefficient, not negative; 1 when left out
+    /// Modal richness coefficient, not negative; default 1
     #[arg(long, allow_negative_numbers = true)]
     alpha0: Option<f64>,
-    /// Slow response coefficient, not negative; 1 when left out
+    /// Slow response coefficient, not negative; default 1
     #[arg(long, allow_negative_numbers = true)]
     alpha1: Option<f64>,
-    /// Number of modes in the law; the scene's when left out
+    /// Number of modes in the law; default: that of the scene
     #[arg(long, value_name = "N", value_parser = mode_count, allow_negative_numbers = true)]
     emoc_modes: Option<usize>,
     /// Print one JSON object in place of the list
@@ -65,7 +65,7 @@ pub struct EmocArguments {
     json: bool,
 }
 
-/// The data and the beam that they are of.
+/// The data, and the scene of their beam.
 #[derive(Args)]
 pub struct FitArguments {
     /// The table (CSV): mass_kg, location_m, restitution

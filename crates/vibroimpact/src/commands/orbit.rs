@@ -28,7 +28,7 @@ leads to is mapped by a sweep over fields of the start.
 
 The exit code is 0 for every result, 2 for a scene or a field that cannot be used, 1 if writing fails.";
 
-/// Which motion is looked for, and where to put it.
+/// The periodic motion to find, and the file for its branch.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -42,19 +42,19 @@ pub struct Arguments {
     /// Follow the branch over this field of the scene
     #[arg(long, value_name = "FIELD", requires = "to")]
     over: Option<String>,
-    /// First value of the field; the scene's own when left out
+    /// First value of the field; default: that of the scene
     #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
     from: Option<f64>,
     /// Value towards which the branch is followed
     #[arg(long, value_name = "VALUE", requires = "over", allow_negative_numbers = true)]
     to: Option<f64>,
-    /// First step, as a part of the range
+    /// First step, as a share of the range
     #[arg(long, value_name = "PART", requires = "over", default_value_t = 0.02)]
     step: f64,
     /// Print one JSON object in place of the summary
     #[arg(long)]
     json: bool,
-    /// Write the branch as a table into this file
+    /// Write the branch as a table to this file
     #[arg(long, value_name = "FILE", requires = "over")]
     csv: Option<PathBuf>,
     #[command(flatten)]

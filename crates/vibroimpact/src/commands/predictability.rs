@@ -24,12 +24,12 @@ the same command continues from there.
 The exit code is 0 for a finished map, 130 for one that was stopped, 2 for a scene, field or number that cannot be used, 1 if
 reading or writing fails."#;
 
-/// What is mapped, how well fields are known, and where the map goes.
+/// The fields to map, how well others are known, and the folder for the map.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// A field over which to map, its first and last value, and how many; with `:log` for equal ratios. Once or twice
+    /// A field to map, its first and last value, and the number of values; `:log` spaces them by equal ratios. Once or twice
     #[arg(long, required = true, value_name = "FIELD=FROM:TO:COUNT", value_parser = over)]
     over: Vec<Over>,
     /// A field that is not known exactly, and its standard deviation: a number, or per cent of its value
@@ -38,7 +38,7 @@ pub struct Arguments {
     /// Draws at each point, rounded down to 16 times a power of two
     #[arg(long, value_name = "N", default_value_t = 256)]
     draws: u64,
-    /// What the draws depend on
+    /// Seed of the draws
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]

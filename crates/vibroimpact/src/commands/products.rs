@@ -11,19 +11,19 @@ use vibroimpact::text::printable;
 
 use super::voice::is_quiet;
 
-/// How the result is wanted: printed, and as files.
+/// The forms of the result: printed, and as files.
 #[derive(Args)]
 pub struct Products {
     /// Print one JSON object in place of the summary
     #[arg(long)]
     pub json: bool,
-    /// Write histories, picture and result into this folder
+    /// Write histories, picture and result to this folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Draw the impact into this file, .svg or .png
+    /// Draw the impact to this file, .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     plot: Option<PathBuf>,
-    /// Write a report with pictures and tables into this file, .html
+    /// Write a report with pictures and tables to this file, .html
     #[arg(long, value_name = "FILE", value_parser = page_file)]
     report: Option<PathBuf>,
     /// Replace files that exist
@@ -31,10 +31,10 @@ pub struct Products {
     force: bool,
 }
 
-/// A picture beside what is printed.
+/// A picture in addition to the printed result.
 #[derive(Args)]
 pub struct Picture {
-    /// Draw the result into this file, .svg or .png
+    /// Draw the result to this file, .svg or .png
     #[arg(long, value_name = "FILE", value_parser = picture_file)]
     plot: Option<PathBuf>,
     /// Replace the file if it exists
@@ -53,7 +53,7 @@ impl Picture {
         require_free(option, path, self.force)
     }
 
-    /// Draws the picture, if one is asked for, and returns what to tell a reader: nothing beside JSON.
+    /// Draws the picture, if one is requested, and returns a line about it for people; empty if the result is JSON.
     pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
         match &self.plot {
             Some(path) => write_single(path, &picture(path, &figure()?)?, json),
@@ -62,7 +62,7 @@ impl Picture {
     }
 }
 
-/// Whether anything has this name, be it a link to nowhere.
+/// Whether anything has this name, even a broken link.
 fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
@@ -116,8 +116,8 @@ impl Products {
         Ok(())
     }
 
-    /// Writes what is asked for and returns what to tell a reader: nothing beside JSON. Every file is complete in
-    /// memory before the first is written.
+    /// Writes the requested files and returns lines about them for people; empty if the result is JSON. Every file is
+    /// complete in memory before the first is written.
     pub fn write(
         &self,
         figure: impl FnOnce() -> Figure,
@@ -141,7 +141,7 @@ impl Products {
         Ok(told)
     }
 
-    /// Whether pictures or tables of the course in time are asked for.
+    /// Whether pictures or tables of the motion in time are requested.
     pub fn want_course(&self) -> bool {
         self.out.is_some() || self.plot.is_some() || self.report.is_some()
     }
@@ -168,7 +168,7 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
     Ok(figure.bytes(Format::of(path).ok_or(Format::ENDINGS)?)?)
 }
 
-/// Writes one file and returns what to tell a reader: nothing beside JSON.
+/// Writes one file and returns a line about it for people; empty if the result is JSON.
 pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
     let silent = json || is_quiet();

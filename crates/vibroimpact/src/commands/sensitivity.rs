@@ -22,16 +22,15 @@ pub const EXAMPLES: &str = "Examples:
 A derivative is exact: the motion itself is differentiated, and no second impact is compared. It holds for small changes;
 an impact with several contacts may lose or gain one soon after. The result states how near its slowest contact is to that.";
 
-/// Which derivatives.
+/// The derivatives to compute.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// Fields of the scene, by their paths and separated by commas; every number of the scene where left out
+    /// Paths of fields of the scene, separated by commas; default: every number of the scene
     #[arg(long, value_name = "FIELDS", value_delimiter = ',')]
     by: Vec<String>,
-    /// The output that the table and the picture are of; the restitution where left out, or the first impulse of a scene of
-    /// bodies
+    /// Output that the table and the picture show; default: the restitution, or the first impulse of a scene of bodies
     #[arg(long, value_name = "OUTPUT")]
     of: Option<String>,
     /// Print one JSON object with all outputs in place of the table

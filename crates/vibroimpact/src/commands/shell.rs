@@ -36,13 +36,13 @@ pub struct CompletionsArguments {
     shell: Shell,
 }
 
-/// Which manual pages, and where to.
+/// The manual pages to print or write.
 #[derive(Args)]
 pub struct ManualArguments {
-    /// The command whose page is printed; the program's own page when left out
+    /// The command whose page is printed; default: the page of the program itself
     #[arg(conflicts_with = "out")]
     command: Option<String>,
-    /// Write the pages of the program and of all its commands into this folder
+    /// Write the pages of the program and of all its commands to this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace files that exist
@@ -58,7 +58,7 @@ pub struct SchemaArguments {
     of: InputFile,
 }
 
-/// Files that come in and have a schema.
+/// Input files that have a schema.
 #[derive(Clone, Copy, ValueEnum)]
 enum InputFile {
     /// A scene

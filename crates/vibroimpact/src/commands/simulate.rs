@@ -36,7 +36,7 @@ report.html, result.json, and section.csv where a load is harmonic.
 The exit code is 0 for every result, sustained contact and a computation that stopped among them, 2 for a scene that cannot be
 used (the message names the field, its value and what is allowed; nothing is written), 1 if writing fails.";
 
-/// What to solve, and where to put it.
+/// The scene to solve, and where its result goes.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
@@ -47,16 +47,16 @@ pub struct Arguments {
     products: Products,
 }
 
-/// How much of a course in time is shown.
+/// How much of the motion is shown.
 #[derive(Args)]
 pub struct Extent {
-    /// List at most so many intervals of contact of a scene of bodies, the first ones; files hold all
+    /// Most intervals of contact that are listed for a scene of bodies, the first ones; files hold all
     #[arg(long, value_name = "N", default_value_t = MOST_INTERVALS)]
     intervals: usize,
-    /// How far histories and pictures go, from the start of the clock; a little past the last contact when left out
+    /// End of histories and pictures, from the start; default: a little after the last contact
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Show beam and ball moving, in slow motion, in this file, .svg
+    /// Write an animation of beam and ball in slow motion to this file, .svg
     #[arg(long, value_name = "FILE", value_parser = svg_file)]
     animate: Option<PathBuf>,
 }
@@ -67,7 +67,7 @@ impl Extent {
         require_free("--animate", self.animate.as_deref(), products.may_replace())
     }
 
-    /// What moves but cannot be shown.
+    /// Why a motion cannot be animated.
     fn require_still(&self) -> Result<(), InvalidInput> {
         match &self.animate {
             None => Ok(()),
@@ -100,7 +100,7 @@ pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, F
     answer(scene, extent, &products)
 }
 
-/// Solves a scene and returns what is to be printed of it.
+/// Solves a scene and returns the text to print.
 pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<String, Failure> {
     let (intervals, until) = (extent.intervals, extent.until);
     if matches!(&scene, AnyScene::Bodies(_)) {
@@ -163,7 +163,7 @@ fn in_modes(
     Ok(printed + &told + &shown)
 }
 
-/// The moving picture, if it is asked for.
+/// The animation, if it is requested.
 fn animation(
     scene: &Scene,
     headline: &str,
@@ -183,10 +183,10 @@ fn animation(
     Ok(Some(pictures::animation(headline, location_m, &deflection, &resolved.history)))
 }
 
-/// Pieces of the length, and of the time, in a moving picture.
+/// Intervals of the length and of the time in an animation.
 const FRAMES: [usize; 2] = [48, 240];
 
-/// A model that has no course in time.
+/// The error for a model that does not resolve the motion in time.
 fn without_course(
     scene: &Scene,
     json: String,

@@ -52,13 +52,13 @@ The results have the very bytes that an undivided sweep gives.";
 /// Exit code of a sweep that was asked to stop.
 pub const STOPPED: u8 = 130;
 
-/// Where results go, and how they are computed and told.
+/// Where results go, and how they are computed and printed.
 #[derive(Args)]
 pub struct Run {
-    /// The folder for the results; one that holds a part of them goes on
+    /// The folder for the results; an unfinished sweep in it is resumed
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Threads; as many as the machine has cores when left out
+    /// Number of threads; default: one for each core
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     threads: Option<u16>,
     /// Print one JSON object in place of the summary
@@ -66,14 +66,14 @@ pub struct Run {
     json: bool,
 }
 
-/// A sweep, and where it goes.
+/// A sweep, and the folder for its results.
 #[derive(Args)]
 pub struct SweepArguments {
     /// The sweep file
     sweep: PathBuf,
     #[command(flatten)]
     run: Run,
-    /// Compute the K-th of N parts only
+    /// Compute only the K-th of N parts
     #[arg(long, value_name = "K/N", value_parser = part)]
     shard: Option<Part>,
     /// Compute on the ranks of an MPI job, under mpirun; the first rank hands out the work
@@ -81,7 +81,7 @@ pub struct SweepArguments {
     mpi: bool,
 }
 
-/// The parts of a sweep, and where the whole goes.
+/// The parts of a sweep, and the folder for the whole.
 #[derive(Args)]
 pub struct MergeArguments {
     /// The folders of the parts
@@ -114,7 +114,7 @@ pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
     }
 }
 
-/// Computes a sweep that has been read, and returns what is to be printed.
+/// Computes a sweep that has been read, and returns the text to print.
 pub fn compute(sweep: &Sweep, part: Part, run: &Run) -> Result<String, Failure> {
     let stop = stop_on_signal()?;
     let mut progress = Progress::new(is_quiet());
@@ -152,19 +152,19 @@ pub fn merge(arguments: MergeArguments) -> Result<String, Failure> {
     solved(&tally, printed(&tally, &arguments.out, arguments.json, None)?)
 }
 
-/// A sweep that came to its end without a single result.
+/// A sweep that ended without a single result.
 #[derive(Debug, thiserror::Error)]
 #[error("none of the {points} points could be solved; the first: {first}")]
 pub struct NoPointSolved {
-    /// How many there were.
+    /// Number of points.
     points: u64,
-    /// What was wrong with the first.
+    /// The error of the first.
     first: String,
-    /// What is to be printed all the same.
+    /// The text that is printed all the same.
     pub printed: String,
 }
 
-/// Passes what is to be printed, unless every point failed.
+/// Returns the text to print, unless every point failed.
 fn solved(tally: &Tally, printed: String) -> Result<String, Failure> {
     if tally.points == 0 || tally.failures < tally.points {
         return Ok(printed);
@@ -173,7 +173,7 @@ fn solved(tally: &Tally, printed: String) -> Result<String, Failure> {
     Err(NoPointSolved { points: tally.points, first, printed }.into())
 }
 
-/// The first signal asks for an orderly end, the second is one.
+/// The first signal requests an orderly end, the second ends the program at once.
 pub fn stop_on_signal() -> Result<Arc<AtomicBool>, Failure> {
     let stop = Arc::new(AtomicBool::new(false));
     let asked = Arc::clone(&stop);
@@ -211,20 +211,20 @@ fn printed(tally: &Tally, out: &Path, as_json: bool, progress: Option<&Progress>
     Ok(text)
 }
 
-/// Progress on the standard error: a bar on a terminal, elsewhere a line now and then.
+/// Progress on the standard error: a bar on a terminal, a line from time to time elsewhere.
 struct Progress {
     quiet: bool,
     begun: Instant,
-    /// Where it stood when this run began, and where it stands.
+    /// Points at the beginning of this run, and now.
     first: Option<Status>,
     last: Option<Status>,
     bar: Option<ProgressBar>,
     next_line: Instant,
 }
 
-/// Before the first line, where there is no terminal.
+/// Time before the first line where there is no terminal.
 const FIRST_LINE: Duration = Duration::from_secs(10);
-/// Between two of them.
+/// Time between two lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(30);
 
 impl Progress {

@@ -1,4 +1,4 @@
-//! How much is said beside the result: progress and notes on the standard error, files that were written.
+//! How much is printed in addition to the result: progress and notes on the standard error, names of written files.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ pub enum Voice {
 /// That of this run of the program, and when it began.
 static VOICE: OnceLock<(Voice, Instant)> = OnceLock::new();
 
-/// Says once, before anything else, how much is to be said.
+/// Sets, once and before anything else, how much is printed.
 pub fn set(voice: Voice) {
     VOICE.get_or_init(|| (voice, Instant::now()));
 }
@@ -28,12 +28,12 @@ fn get() -> (Voice, Instant) {
     *VOICE.get_or_init(|| (Voice::Normal, Instant::now()))
 }
 
-/// Whether nothing is to be said beside the result.
+/// Whether only the result is printed.
 pub fn is_quiet() -> bool {
     get().0 == Voice::Quiet
 }
 
-/// Says something that only a curious user wants to know.
+/// Prints a note if `--verbose` was given.
 pub fn note(text: impl FnOnce() -> String) {
     if get().0 == Voice::Verbose {
         eprintln!("{}", text());

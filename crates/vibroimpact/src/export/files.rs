@@ -43,7 +43,7 @@ impl Files {
         Files(files)
     }
 
-    /// `result.json` and `impact.svg`, for a model without a course in time.
+    /// `result.json` and `impact.svg`, for a model that does not resolve the motion in time.
     ///
     /// # Errors
     /// None that an impact could cause.

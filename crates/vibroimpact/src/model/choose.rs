@@ -90,7 +90,7 @@ impl Scene {
     }
 }
 
-/// A model that was asked for and cannot be had.
+/// A model that was requested and cannot be had.
 pub(super) fn refused(model: Model, reason: String) -> InvalidInput {
     InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason)
 }
@@ -178,7 +178,7 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
     }
 }
 
-/// A tier that was asked for; `Err` inside says why it cannot be had.
+/// A tier that was requested; `Err` inside says why it cannot be had.
 pub(super) fn forced_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
     match model {
         Model::Rigid => rigid::forced(pose, cost),

@@ -19,7 +19,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether it is not known what the modes left out change in the best tier.
+    /// Whether it is not known what the truncated modes change in the best tier.
     pub(super) fn best_leaves_modes_out(&self) -> bool {
         let best = self.tiers.iter().filter(|tier| tier.model == self.best);
         best.filter_map(|tier| tier.answer.as_ref()).any(|answer| answer.uncertainty.modes_left_out.is_none())
@@ -51,7 +51,7 @@ impl Scene {
         let this = self.as_answered(Some(&chosen));
         let (mut tiers, mut kept) = (Vec::new(), Kept::default());
         for model in [Model::Rigid, Model::Emoc, Model::InfiniteBeam, Model::Modal] {
-            // the tiers see what was asked for, because being asked for widens what they accept
+            // the tiers see what was requested, because being asked for widens what they accept
             let scene = Scene { model, ..this.clone() };
             let found = match (scene.is_infinite(), modal_only(&scene)) {
                 (true, _) if model == Model::InfiniteBeam => Ok(chosen.clone()),

@@ -31,7 +31,7 @@ impl From<Answer> for Draw {
 
 impl Scene {
     /// Solves one draw of many. Stated modes are solved once, at [`TOLERANCE`] where the scene states none; whatever else
-    /// is answered as ever.
+    /// is answered as usual.
     pub(crate) fn draw_with(&self, kept: &mut Kept) -> Result<Draw, InvalidInput> {
         let stated = modal_only(self).is_some() || !chooses_modes(self);
         if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) || !stated {

@@ -100,7 +100,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     }
 }
 
-/// The law, because it was asked for.
+/// The law, because it was requested.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     if !pose.approaches() {
         return Ok(Err("another model where the striker does not approach".to_owned()));

@@ -7,7 +7,7 @@
 //! R(N) = omega_N^2 / ( k (1/m + 3 c_N omega_N^2) )
 //! ```
 //!
-//! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the place). The guess is
+//! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the location). The guess is
 //! the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
 
 use super::Cost;
@@ -22,7 +22,7 @@ pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
 pub(super) const MOST_MODES: usize = 1500;
 /// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, whose `c_N` falls as
 /// `1/omega_N` only while remainder modes do as well as for the others; and of all else, where `R` grows no faster than the
-/// number of modes. It settles at about twice the number: from too few it takes one step more, from too many every step
+/// number of modes. It converges at about twice the number: from too few it takes one step more, from too many every step
 /// costs too much.
 const TARGET: [f64; 2] = [0.2, 0.47];
 const TARGET_WITH_SHEAR: [f64; 2] = [0.4, 0.3];
@@ -74,7 +74,7 @@ fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
     Ok(enough.unwrap_or(MOST_MODES))
 }
 
-/// The number of modes with which to begin, and the one with which the restitution may have settled.
+/// The number of modes with which to begin, and the one with which the restitution may have converged.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
     let found = resolving(pose, 1.0, cost)?;
     Ok((fewer(found), found))

@@ -20,7 +20,7 @@
 //! tolerance lets matter are waves up to the frequency `z/tau` whose `z` makes the bound below equal to it. Everything
 //! is similar in `z`, the damping and the number `S` of thesis Eq. 2.8; [`reflection_bound`] holds for every `S`.
 //!
-//! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the place moves away
+//! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the location moves away
 //! from it as on the infinite beam; afterwards it never comes back further than `W = sum phi_k^2 P/omega_k` beyond
 //! where it started, `P` the impulse. If the striker is then out of reach, it stays so.
 
@@ -43,7 +43,7 @@ const WAVES: f64 = 10.0;
 const CRITICAL_S: f64 = 1.560;
 /// Error of the infinite beam's own solution, as a share of the change of speed.
 const SOLVER: f64 = 1e-7;
-/// Modes summed one by one for the reach of the place.
+/// Modes summed one by one for the reach of the location.
 const SUMMED: usize = 24;
 
 /// How an end sends waves back.
@@ -152,7 +152,7 @@ impl Uniform {
         FirstReturn { omega_rad_s, group_velocity_m_s, after_s: 2.0 * distance_m / group_velocity_m_s }
     }
 
-    /// How long the place answers as that of an infinite beam (s).
+    /// How long the location answers as that of an infinite beam (s).
     fn undisturbed_s(&self) -> f64 {
         self.distances[0].min(self.distances[1]).powi(2) / (LEAST_Z * self.spread())
     }
@@ -213,7 +213,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     }
 }
 
-/// The infinite beam, because it was asked for.
+/// The infinite beam, because it was requested.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let beam = match Uniform::new(pose)? {
         Ok(beam) => beam,

@@ -34,15 +34,15 @@ const MOST_MODES: usize = 2000;
 pub struct Kept {
     pub(crate) modes: KnownModes,
     solvers: VecDeque<(Structure, Solver)>,
-    /// Whether places of impact hardly ever come again.
+    /// Whether locations of impact hardly ever come again.
     passing: bool,
 }
 
-/// Solvers that are kept where places hardly ever come again: a group of draws for indices has two places.
+/// Solvers that are kept where locations hardly ever come again: a group of draws for indices has two locations.
 const PASSING: usize = 2;
 
 impl Kept {
-    /// For scenes of one beam whose places hardly ever come again: few tables are kept, and turned from place to place.
+    /// For scenes of one beam whose locations hardly ever come again: few tables are kept, and turned from location to location.
     pub(crate) fn passing() -> Kept {
         Kept { passing: true, ..Kept::default() }
     }

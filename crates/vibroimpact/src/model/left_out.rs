@@ -17,7 +17,7 @@ use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
 use crate::impact::compliance;
 
-/// The uncertainty from modes left out in terms of the larger of two changes, weighted below, and of the energy of the
+/// The uncertainty from truncated modes in terms of the larger of two changes, weighted below, and of the energy of the
 /// remainder modes.
 const CAUTION: f64 = 2.0;
 const OF_ENERGY: f64 = 10.0;
@@ -51,7 +51,7 @@ impl Change {
         self.restitution.max(FLIGHTS * self.flights)
     }
 
-    /// What modes left out may change after this change from fewer modes.
+    /// What truncated modes may change after this change from fewer modes.
     pub fn left_out(self, before: Option<Change>) -> f64 {
         CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
     }

@@ -2,10 +2,10 @@
 //!
 //! | tier | what it assumes | chosen where |
 //! |---|---|---|
-//! | [`Model::Rigid`] | the place cannot move | a bound on the energy that the structure can take up says so |
+//! | [`Model::Rigid`] | the location cannot move | a bound on the energy that the structure can take up says so |
 //! | [`Model::InfiniteBeam`] | no wave comes back from an end | the contact ends first, and the striker is never caught again |
 //! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | everywhere else; raised until the restitution has converged |
-//! | [`Model::Emoc`] | no course in time at all | asked for, or the tolerance is as wide as the law's validated error |
+//! | [`Model::Emoc`] | no motion in time | asked for, or the tolerance is as wide as the law's validated error |
 //!
 //! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] many scenes of one beam, faster), [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
 //! beside the others. All of it is deterministic.
@@ -65,7 +65,7 @@ pub enum Model {
     /// The program chooses.
     #[default]
     Auto,
-    /// The place does not move: the law's restitution at a wall.
+    /// The location does not move: the law's restitution at a wall.
     Rigid,
     /// A beam without ends, [`vibroimpact_sim::infinite`]; of an infinite plate, the plate.
     InfiniteBeam,
@@ -174,15 +174,15 @@ pub struct Answer {
     pub uncertainty: Uncertainty,
     /// Why parts of the uncertainty are not known, a sentence each that begins with the part.
     pub not_known: Vec<String>,
-    /// Accuracy that was wanted.
+    /// Requested accuracy.
     pub tolerance: f64,
     /// Number of separate contacts; null for a model that does not resolve them.
     pub sub_impact_count: Option<usize>,
-    /// Number of modes kept.
+    /// Number of modes retained.
     pub modes: usize,
     /// Number of remainder modes integrated beside them, which represent all others; 0 where those were left out.
     pub remainder_modes: usize,
-    /// Static compliance of the modes left out, with which the remainder modes answer (m/N); 0 without them.
+    /// Static compliance of the truncated modes, with which the remainder modes answer (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Whether the tolerance was reached, by the theory used (for stated modes: whether the solver's part of the uncertainty is within ten
     /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).

@@ -46,9 +46,9 @@ type Certify = fn(&mut Pose, &mut Cost) -> Tried;
 pub struct Plan {
     /// The model that would be used.
     pub model: Model,
-    /// Accuracy wanted of the restitution.
+    /// Requested accuracy of the restitution.
     pub tolerance: f64,
-    /// Duration of the first contact, were the place immovable (s); null for infinite structures.
+    /// Duration of the first contact, were the location immovable (s); null for infinite structures.
     pub contact_duration_s: Option<f64>,
     /// Each tier, the cheapest first.
     pub tiers: Vec<Estimate>,
@@ -183,7 +183,7 @@ fn pilot() -> Settings {
     Settings { tolerance: PILOT_TOLERANCE, estimate_uncertainty: false, ..Settings::default() }
 }
 
-/// Refuses a tier that was asked for and cannot be had, as [`Scene::answer`] does.
+/// Refuses a tier that was requested and cannot be had, as [`Scene::answer`] does.
 fn forced_tier_applies(model: Model, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
     if model != Model::Modal {
         forced_tier(model, pose, cost)?.map_err(|reason| refused(model, reason))?;

@@ -8,7 +8,7 @@ use crate::impact::{compliance, in_scene};
 use crate::scene::json::number;
 use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, require_elastic};
 
-/// Tolerances that can be asked for where the program chooses the modes.
+/// Tolerances that can be requested where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
 /// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
@@ -22,7 +22,7 @@ pub(super) struct Pose<'a> {
     pub scene: &'a Scene,
     pub striker: Striker,
     pub law: Law,
-    /// Accuracy wanted of the restitution.
+    /// Requested accuracy of the restitution.
     pub tolerance: f64,
     pub wall: Wall,
     pub source: Source<'a>,
@@ -43,7 +43,7 @@ pub(super) fn modal_only(scene: &Scene) -> Option<&'static str> {
     }
 }
 
-/// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to settle to.
+/// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to converge to.
 pub(crate) fn chooses_modes(scene: &Scene) -> bool {
     let settles = match &scene.structure {
         scene::Structure::Modal(listed) => listed.gives_compliance(scene.location.as_deref()),
@@ -100,7 +100,7 @@ impl Wall {
 
 /// Where modes come from.
 pub(super) enum Source<'a> {
-    /// A beam: as many modes as are asked for.
+    /// A beam: as many modes as are requested.
     Beam { beam: &'a scene::Beam, location_m: f64, whole_m_n: f64, modes: Vec<Mode> },
     /// A string or plate, likewise.
     Computed {
@@ -142,7 +142,7 @@ impl<'a> Pose<'a> {
         rigid.solve(&striker, &law, None, &checked).map_err(in_scene)?;
         let source = match &scene.structure {
             scene::Structure::Beam(beam) => {
-                // an empty list of modes checks place, segments and damping
+                // an empty list of modes checks location, segments and damping
                 scene.structure.modes(scene.place(), Some(0))?;
                 let location_m = scene.location_m.map_or(Ok(f64::NAN), Location::along)?;
                 let whole_m_n = scene.structure.static_compliance_m_n(scene.place())?;
@@ -178,7 +178,7 @@ impl<'a> Pose<'a> {
         self.striker.speed_m_s > 0.0
     }
 
-    /// Those of the first `count` modes that a force at the place excites and, as far as they are wanted and known,
+    /// Those of the first `count` modes that a force at the location excites and, as far as they are wanted and known,
     /// remainder modes for the modes beyond `count`; how many of these there are. A slow mode that is hardly excited is
     /// left out altogether: it stands still during the contact, and its static compliance is none of the remainder's.
     pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<(Structure, usize), InvalidInput> {
@@ -253,7 +253,7 @@ impl Source<'_> {
         }
     }
 
-    /// Static compliance of the whole structure at the place, if it is known (m/N).
+    /// Static compliance of the whole structure at the location, if it is known (m/N).
     pub fn whole_m_n(&self) -> Option<f64> {
         match self {
             Source::Beam { whole_m_n, .. } | Source::Computed { whole_m_n, .. } => Some(*whole_m_n),

@@ -1,4 +1,4 @@
-//! A place that cannot move: the restitution of the law at a wall, and a bound on what the structure may change.
+//! A location that cannot move: the restitution of the law at a wall, and a bound on what the structure may change.
 //!
 //! The structure at rest takes up energy `E = sum 1/2 phi_k^2 J_k^2` with `J_k = |int F exp(i omega_k t) dt|` (damping
 //! aside). For a force of one hump `J_k <= 2 F_max/omega_k`, and the elastic energy of the contact never exceeds that of
@@ -23,7 +23,7 @@ use crate::scene::{Contact, InvalidInput};
 
 /// How far below the tolerance `epsilon` has to be for a law that dissipates.
 const MARGIN: f64 = 1e-3;
-/// A rigid-body motion that moves the place by less than this share of the striker's inverse mass does not move it.
+/// A rigid-body motion that moves the location by less than this share of the striker's inverse mass does not move it.
 const STILL: f64 = 1e-12;
 
 /// How far the restitution can be from that at a wall; `Err` says why no bound is known.
@@ -79,7 +79,7 @@ pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     }
 }
 
-/// The wall, because it was asked for.
+/// The wall, because it was requested.
 pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
     if !pose.approaches() {
         return Ok(Err("another model where the striker does not approach".to_owned()));

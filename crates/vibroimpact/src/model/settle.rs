@@ -1,15 +1,15 @@
 //! Modes, as many as the restitution needs to converge.
 //!
 //! The number of modes begins at a guess (`guess.rs`) and is raised by steps of a factor of about 1.4. Restitutions
-//! alone may agree by accident while the courses of two impacts do not, and then differ again at the next number; so
+//! alone may agree by accident while the histories of two impacts do not, and then differ again at the next number; so
 //! the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
 //! number of modes is asked.
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
-//! same wrong course with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
+//! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
 //! from the third number on: its errors are part of the differences, and restitutions agree when both have become small.
 //!
-//! Only a difference between two *different* numbers of modes says anything of the modes left out. Where a list of modes
+//! Only a difference between two *different* numbers of modes says anything of the truncated modes. Where a list of modes
 //! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
 
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
@@ -27,7 +27,7 @@ use crate::scene::InvalidInput;
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.
 pub(super) const LEAST_RAISE: f64 = 1.25;
-/// Tolerance of the solver with the first two numbers of modes, as a share of the tolerance wanted; and its range. Below
+/// Tolerance of the solver with the first two numbers of modes, as a share of the requested tolerance; and its range. Below
 /// it, rounding is all that steps can show.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
@@ -41,10 +41,10 @@ const SOLVER_CHANGE: f64 = 0.1;
 /// one two steps before.
 const PATIENCE: usize = 400;
 const FALLING: f64 = 0.5;
-/// How many of the last results make up the spread where they do not settle.
+/// Number of the last results that make up the spread if they do not converge.
 const SPREAD: usize = 4;
 
-/// The solver's settings for a tolerance wanted, tightened so many times.
+/// The solver's settings for a requested tolerance, tightened so many times.
 fn settings(tolerance: f64, tightened: usize) -> Settings {
     let share = (0..tightened).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
     let tolerance = share.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1);
@@ -129,7 +129,7 @@ impl Rungs {
         sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
     }
 
-    /// What modes left out may change.
+    /// Estimated change by the truncated modes.
     fn left_out(&self) -> f64 {
         let mut changes = self.changes().map(|(change, _)| change);
         match changes.next() {
@@ -179,7 +179,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         momentum_n_s: pose.striker.mass_kg * pose.striker.speed_m_s,
         complete,
     };
-    // the same modes again tell of the solver only if it is asked for more
+    // the same modes again say something of the solver only at a tighter tolerance
     tightened += usize::from(first == count);
     loop {
         let before = rungs.last.solution.restitution;

@@ -67,7 +67,7 @@ fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, 
     Ok(solution)
 }
 
-/// What the modes left out would change; `Err` inside says why that is not known.
+/// What the truncated modes would change; `Err` inside says why that is not known.
 fn left_out(
     scene: &Scene,
     kept: &mut Kept,

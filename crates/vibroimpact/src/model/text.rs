@@ -73,7 +73,7 @@ pub fn answer_text(answer: &Answer) -> String {
     text
 }
 
-/// The result of a model that resolves no course in time.
+/// The result of a model that does not resolve the motion in time.
 pub fn net_text(answer: &Answer) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

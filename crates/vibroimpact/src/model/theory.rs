@@ -23,7 +23,7 @@ use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::{Impact, in_scene};
 use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure};
 
-/// As many modes as this tolerance needs are enough, and no more than that one is asked for.
+/// As many modes as this tolerance needs are enough, and no more than that one is requested.
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
 /// Tolerance of the solver.
 const SOLVER: f64 = 1e-6;

@@ -15,7 +15,7 @@ pub struct Uncertainty {
     /// How exactly the equations of the model are solved. For modes: against the exact motion of the modes that were
     /// integrated.
     pub solver: Option<f64>,
-    /// What the modes left out would change: the model against the same structure with all its modes. For the models
+    /// What the truncated modes would change: the model against the same structure with all its modes. For the models
     /// that put something else in the place of modes (`rigid`, `infinite-beam`, `emoc`): what that changes.
     pub modes_left_out: Option<f64>,
     /// How far the theory by which a beam has these modes may be off: what Euler-Bernoulli's and Timoshenko's theory differ

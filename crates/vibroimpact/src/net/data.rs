@@ -19,7 +19,7 @@ pub struct Datum {
     pub line: u64,
     /// Mass of the striker (kg).
     pub mass_kg: f64,
-    /// Place on the beam, from its left end (m).
+    /// Location on the beam, from its left end (m).
     pub location_m: f64,
     /// Net restitution.
     pub restitution: f64,
@@ -63,7 +63,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
 
 impl Scene {
     /// The impacts of a table on the scene's beam, as the law takes them. Striker, location and modes of the scene
-    /// itself are not used: the table's masses and places and `modes` take their place.
+    /// itself are not used: the table's masses and locations and `modes` take their place.
     ///
     /// # Errors
     /// A structure that is no beam, or a value out of range, with its line.

@@ -1,4 +1,4 @@
-//! Net restitution without its course in time: the law of energy minimisation under outward constraints
+//! Net restitution without integration in time: the law of energy minimisation under outward constraints
 //! ([`emoc`], thesis chapters 6 to 8) for a scene, and its three parameters from data.
 //!
 //! Modes of the structure enter with their shapes at the point of impact alone. Rigid-body modes are no vibration:

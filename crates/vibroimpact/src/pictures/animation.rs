@@ -23,7 +23,7 @@ const INTERVALS: usize = 200;
 /// How long the motion is shown (s).
 const SHOWN_S: f64 = 10.0;
 
-/// Beam or string with the ball that strikes it at the place `location_m`, above the contact force, in slow motion and again
+/// Beam or string with the ball that strikes it at the location `location_m`, above the contact force, in slow motion and again
 /// and again. The deflection is enlarged, by a factor that is told; both bodies by the same.
 ///
 /// The text in the picture is the title, the scales, and nothing of the user's beside it.

@@ -82,7 +82,7 @@ pub fn of_comparison(title: &str, comparison: &Comparison) -> Figure {
     self::comparison(title, &names, &restitution, &uncertainty, &[])
 }
 
-/// An answer of a model that resolves no course in time: the restitution and how well it is known.
+/// An answer of a model that does not resolve the motion in time: the restitution and how well it is known.
 pub fn of_answer(title: &str, answer: &Answer) -> Figure {
     let title = format!("{title}\n{}: the net result, without a course in time", answer.model.as_str());
     let value = |number: Option<f64>| [number.unwrap_or(f64::NAN)];

@@ -9,9 +9,9 @@ use crate::simulate::Resolved;
 use crate::summary::{Contact, Summary};
 use crate::text::{quantity, restitution};
 
-/// Equal intervals of the course, beside every step in contact.
+/// Equal intervals of the time, in addition to every step in contact.
 const INTERVALS: usize = 1000;
-/// Most points of the energies' course.
+/// Most points of the curves of energy.
 const ENERGY_POINTS: f64 = 1200.0;
 /// Contacts drawn over their own duration.
 const OVERLAID: usize = 6;

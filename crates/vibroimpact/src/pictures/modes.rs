@@ -24,7 +24,7 @@ const MAP_PX: f64 = 205.0;
 const HEIGHTS_PX: [f64; 2] = [40.0, 400.0];
 
 /// The shapes of the first thirty of `count` modes along a beam or string, or of the first twelve over a plate, each scaled to
-/// its largest displacement, with the location of impact; below, the mass-normalised shape at that place of all `count` modes
+/// its largest displacement, with the location of impact; below, the mass-normalised shape at that location of all `count` modes
 /// against frequency. Of a structure that is given by its modes only the latter is known.
 ///
 /// # Errors
@@ -83,7 +83,7 @@ struct Line {
     length_m: f64,
     location_m: f64,
     places_m: Vec<f64>,
-    /// Per place, the shapes of all modes.
+    /// Per location, the shapes of all modes.
     shapes: Vec<Vec<f64>>,
     /// Where the section changes.
     joints_m: Vec<f64>,
@@ -131,7 +131,7 @@ fn in_scene(fault: beam_modes::InvalidInput) -> InvalidInput {
     InvalidInput::from(fault).within("structure")
 }
 
-/// Places at which shapes are drawn, that of the impact among them.
+/// Locations at which shapes are drawn, that of the impact among them.
 fn places(length_m: f64, location_m: f64) -> Vec<f64> {
     let even = (0..=POINTS).map(|i| length_m * i as f64 / POINTS as f64);
     let mut places: Vec<f64> = even.chain([location_m]).collect();
@@ -139,7 +139,7 @@ fn places(length_m: f64, location_m: f64) -> Vec<f64> {
     places
 }
 
-/// Shapes above each other, the first at the bottom; `count` modes were asked for.
+/// Shapes above each other, the first at the bottom; `count` modes were requested.
 fn along(line: &Line, frequency_hz: &[f64], count: usize) -> Panel {
     let Line { name, places_m, shapes, location_m, .. } = line;
     let heights = |k: usize| -> Vec<f64> {

@@ -145,7 +145,7 @@ pub fn of_infinite_impact(
     Ok(report)
 }
 
-/// The report on an answer of a model that resolves no course in time.
+/// The report on an answer of a model that does not resolve the motion in time.
 ///
 /// # Errors
 /// Those of the figure.

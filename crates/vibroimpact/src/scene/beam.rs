@@ -122,7 +122,7 @@ impl Beam {
     /// The beam with all that the scene says of it, by the theory that [`solved_by`](Self::solved_by) tells.
     ///
     /// # Errors
-    /// As [`to_beam`](Self::to_beam), and a segment that lacks what Timoshenko's theory needs where that is asked for.
+    /// As [`to_beam`](Self::to_beam), and a segment that lacks what Timoshenko's theory needs where that is requested.
     pub fn to_system(&self) -> Result<beam_modes::BeamSystem, InvalidInput> {
         let beam = self.to_beam()?;
         let theory = self.solved_by()?;

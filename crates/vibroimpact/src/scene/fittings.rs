@@ -7,11 +7,11 @@ use super::error::InvalidInput;
 use super::fields;
 use super::json::number;
 
-/// Masses and springs fixed to a beam at one place; all but the place may be left out.
+/// Masses and springs fixed to a beam at one location; all fields but the location may be left out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Attachment {
-    /// Place on the beam from its left end (m).
+    /// Location on the beam from its left end (m).
     pub location_m: f64,
     /// Mass (kg); 0 when left out.
     #[serde(default)]
@@ -31,7 +31,7 @@ pub struct Attachment {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Place on the beam from its left end (m).
+    /// Location on the beam from its left end (m).
     pub location_m: f64,
 }
 

@@ -8,7 +8,7 @@ use super::fields;
 use super::json::number;
 use super::plate::Plate;
 
-/// The modes of the last beam and of the last plate, by how many were asked for: scenes of one structure share them.
+/// The modes of the last beam and of the last plate, by how many were requested: scenes of one structure share them.
 #[derive(Default)]
 pub(crate) struct KnownModes {
     pub(super) beams: Sets<Beam, BeamModes>,

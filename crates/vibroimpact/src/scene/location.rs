@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::error::InvalidInput;
 use super::json::number;
 
-/// A location on a structure (m): a distance from the left end of a beam or string, or the two coordinates of a place on a
+/// A location on a structure (m): a distance from the left end of a beam or string, or the two coordinates of a location on a
 /// plate, from a corner along length and width.
 ///
 /// ```

@@ -108,7 +108,7 @@ pub struct Scene {
     pub striker: Striker,
     /// The law of the contact.
     pub contact: Contact,
-    /// Place of the impact (m): from the left end of a beam or string; on a plate two numbers, `[x, y]` from a corner.
+    /// Location of the impact (m): from the left end of a beam or string; on a plate two numbers, `[x, y]` from a corner.
     /// Required for these; other structures have none.
     pub location_m: Option<Location>,
     /// Name of the point that is struck. Required for a modal structure with named points; other structures have none.

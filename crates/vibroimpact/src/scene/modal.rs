@@ -34,10 +34,10 @@ pub struct Modal {
     /// Angular frequencies (rad/s); 0 for a rigid-body mode.
     #[schemars(length(min = 1))]
     pub omega_rad_s: Vec<f64>,
-    /// Damping ratios, one a mode; all 0 when left out.
+    /// Damping ratios, one for each mode; all 0 when left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub damping_ratios: Vec<f64>,
-    /// Modal masses that go with the shapes (kg), one a mode. When left out, shapes are mass-normalised: 1 kg each.
+    /// Modal masses that go with the shapes (kg), one for each mode. When left out, shapes are mass-normalised: 1 kg each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub modal_mass_kg: Vec<f64>,
     /// Shapes at the point of impact: mass-normalised (kg^-1/2), or as they go with `modal_mass_kg`.

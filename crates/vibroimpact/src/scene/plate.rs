@@ -163,7 +163,7 @@ impl Plate {
         plate.static_compliance_with_uncertainty(x_m, y_m).map_err(in_structure)
     }
 
-    /// Frequency of mode `n` by Weyl's law (rad/s), and what `n` modes add to the inverse mass of a place inside, on
+    /// Frequency of mode `n` by Weyl's law (rad/s), and what `n` modes add to the inverse mass of a location inside, on
     /// average (1/kg).
     pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
         let area = self.length_m * self.width_m;

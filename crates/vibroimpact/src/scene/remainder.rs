@@ -1,4 +1,4 @@
-//! The modes left out of a structure, as a few remainder modes ([`beam_modes::remainder_modes`]).
+//! The truncated modes of a structure, as a few remainder modes ([`beam_modes::remainder_modes`]).
 //!
 //! Of a structure whose modes are computed, as many more are computed as tell where the tail begins; what lies beyond
 //! them, and all of the tail of a list, follows from the static compliance and from how the frequencies grow.

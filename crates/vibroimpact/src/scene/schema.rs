@@ -14,8 +14,8 @@ use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
 
 /// The JSON Schema (draft 2020-12) of scene files, those with `bodies` and those of one impact. What it lets pass has the
-/// right shape, a place where the structure needs one, and a mass, sections and loads each given in one way. It cannot
-/// compare different fields: that a place lies on the beam, that lists are equally long, and that a name is one of the
+/// right shape, a location where the structure needs one, and a mass, sections and loads each given in one way. It cannot
+/// compare different fields: that a location lies on the beam, that lists are equally long, and that a name is one of the
 /// points or bodies is left to [`Scene::impact`] and [`AssemblyScene::pose`].
 ///
 /// ```

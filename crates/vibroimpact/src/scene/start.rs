@@ -9,7 +9,7 @@ use super::json::{number, objects};
 use super::structure::Place;
 use super::{Location, Scene, fields};
 
-/// How the structure moves when the clock starts, and how far away the striker then is. Displacements and velocities
+/// How the structure moves at the start, and how far away the striker then is. Displacements and velocities
 /// are positive towards the striker. What is given adds up.
 ///
 /// The restitution of such an impact is, as always, the relative speed of separation over that of approach, both of
@@ -47,7 +47,7 @@ pub struct Start {
 pub struct MovingMode {
     /// Number of the mode, from 1 for the lowest (a rigid-body mode, where there is one).
     pub mode: usize,
-    /// Place on a beam, string or plate (m), as the scene's `location_m`; the point of impact when left out.
+    /// Location on a beam, string or plate (m), as the scene's `location_m`; the point of impact when left out.
     pub location_m: Option<Location>,
     /// Name of the point of a modal structure; the point of impact when left out.
     pub location: Option<String>,
@@ -59,7 +59,7 @@ pub struct MovingMode {
     pub velocity_m_s: f64,
 }
 
-/// A mode that moves less than this at the place, as a share of the mode that moves most there, has a node there.
+/// A mode that moves less than this at the location, as a share of the mode that moves most there, has a node there.
 const NODE: f64 = 1e-9;
 
 impl Scene {
@@ -120,7 +120,7 @@ impl MovingMode {
         }
     }
 
-    /// The mode's index, and its shape at the place from which `modes` are seen.
+    /// The mode's index, and its shape at the location from which `modes` are seen.
     pub(crate) fn shape(&self, modes: &[Mode]) -> Result<(usize, f64), InvalidInput> {
         for (field, value) in [("displacement_m", self.displacement_m), ("velocity_m_s", self.velocity_m_s)] {
             if !value.is_finite() {

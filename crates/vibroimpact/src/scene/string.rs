@@ -59,7 +59,7 @@ impl TautString {
         self.to_taut_string().static_compliance(location_m).map_err(in_structure)
     }
 
-    /// Frequency of mode `n` without stiffness (rad/s), and what `n` modes add to the inverse mass of a place, on
+    /// Frequency of mode `n` without stiffness (rad/s), and what `n` modes add to the inverse mass of a location, on
     /// average (1/kg).
     pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
         let mass = self.mass_per_length_kg_m * self.length_m;

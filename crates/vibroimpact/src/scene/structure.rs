@@ -55,7 +55,7 @@ macro_rules! from_kind {
 
 from_kind!(Beam, TautString, Plate, Modal, ModesFile, InfiniteBeam, InfinitePlate, DroppedRod);
 
-/// Where a structure is struck or seen from: a place on it, or the name of a point.
+/// Where a structure is struck or seen from: a location on it, or the name of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place<'a> {
     pub location_m: Option<Location>,
@@ -63,13 +63,13 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Passes a place that is not given; `why` says why it must not be.
+    /// Refuses a location that is given; `why` says why it must not be.
     pub(crate) fn require_none(&self, why: &str) -> Result<(), InvalidInput> {
         self.require_no_distance(why)?;
         self.require_no_name(why)
     }
 
-    /// The place on a structure that has places of its own.
+    /// The location on a structure that has locations of its own.
     fn on_structure(&self) -> Result<Location, InvalidInput> {
         self.require_no_name("left out: the location on this structure is location_m")?;
         let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
@@ -213,7 +213,7 @@ impl Structure {
 
     /// Largest number of modes that the program tries of a structure whose modes it computes.
     pub(crate) fn most_modes(&self) -> usize {
-        // slow to settle, and cheap; of a plate many do not move the place, and by Ritz's method more take many seconds
+        // slow to converge, and cheap; many modes of a plate do not move the location, and by Ritz's method more take many seconds
         const STRING: usize = 2000;
         const NAVIER: usize = 1600;
         const RITZ: usize = 500;
@@ -226,7 +226,7 @@ impl Structure {
         }
     }
 
-    /// Frequency of mode `n` of a string or plate (rad/s), and what `n` modes add to the inverse mass of a place (1/kg):
+    /// Frequency of mode `n` of a string or plate (rad/s), and what `n` modes add to the inverse mass of a location (1/kg):
     /// on average, before any is computed.
     pub(crate) fn estimate(&self, n: usize) -> Option<(f64, f64)> {
         match self {

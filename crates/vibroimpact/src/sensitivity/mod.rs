@@ -2,7 +2,7 @@
 //!
 //! The motion is differentiated along itself ([`vibroimpact_sim::modal::Solver::differentiate`] and, for scenes of bodies,
 //! [`vibroimpact_sim::assembly::Solver::differentiate`]). What a field does to the modes, the masses, the loads and the law is
-//! known by posing the scene at four neighbouring values of the field, so that every number of a scene can be asked for,
+//! known by posing the scene at four neighbouring values of the field, so that every number of a scene can be requested,
 //! and no motion is solved but the one that is differentiated. The model is chosen once, for the scene itself, and kept.
 //! Answers in closed form, those of a wall and of the net laws, are differentiated by their own values there.
 
@@ -38,11 +38,11 @@ const MODES: usize = 10;
 pub struct Sensitivity {
     /// Net restitution of the impact that was differentiated.
     pub restitution: f64,
-    /// Estimated error of it, for the modes kept.
+    /// Its estimated error, for the modes retained.
     pub restitution_uncertainty: Option<f64>,
     /// Number of separate contacts.
     pub sub_impact_count: usize,
-    /// Number of modes kept, and of remainder modes beside them.
+    /// Number of modes retained, and of remainder modes beside them.
     pub modes: usize,
     /// Remainder modes, which stand for all others.
     pub remainder_modes: usize,

@@ -135,7 +135,7 @@ impl Neighbours<Impact> {
     }
 }
 
-/// Slope of the polynomial through these places and values.
+/// Slope of the polynomial through these locations and values.
 fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
     Stencil::new(points.map(|point| point.0)).slope(points.map(|point| point.1))
 }

@@ -31,7 +31,7 @@ pub struct Field {
 pub struct Table {
     /// The fields, in the order asked for.
     pub fields: Vec<Field>,
-    /// Numbers of the scene that cannot change by a little, where all of its numbers were asked for.
+    /// Numbers of the scene that cannot change by a little, where all of its numbers were requested.
     pub left_out: Vec<String>,
     /// By output, then by field.
     pub derivatives: BTreeMap<String, BTreeMap<String, OfField>>,

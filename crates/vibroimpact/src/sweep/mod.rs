@@ -7,7 +7,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `results.csv` | one row a point: `index`, the varied fields, the result, its cost, `error` if there is none |
+//! | `results.csv` | one row for each point: `index`, the varied fields, the result, its cost, `error` if there is none |
 //! | `results.parquet` | the same, typed and compressed |
 //! | `report.html`, `report.md`, `figures/` | the varied fields, the results, pictures |
 //! | `distribution.csv` | of a sweep with uncertain fields: figures of the outputs at each grid point |

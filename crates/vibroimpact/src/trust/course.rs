@@ -32,16 +32,16 @@ pub(super) struct Pulse {
 pub(super) struct Course {
     /// The largest impulse first.
     pub pulses: Vec<Pulse>,
-    /// The modes that were kept.
+    /// The modes retained.
     pub modes: Vec<Mode>,
     /// From the first touch to the last separation (s); `None` where that is not known.
     pub interaction_s: Option<f64>,
-    /// Whether the place moves: whether waves run.
+    /// Whether the location moves: whether waves run.
     pub moves: bool,
 }
 
 impl Course {
-    /// Of a simulation; where that has no course, of the contact with an immovable place.
+    /// Of a simulation; where that does not resolve the motion in time, of the contact with an immovable location.
     pub fn of(scene: &Scene, simulation: &Simulation) -> Result<Course, InvalidInput> {
         Ok(match simulation {
             Simulation::Modal(found) => {

@@ -149,7 +149,7 @@ pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
     })
 }
 
-/// The distance to the nearest of some places.
+/// The distance to the nearest of some locations.
 fn nearest(here: f64, places: impl IntoIterator<Item = f64>) -> Option<f64> {
     places.into_iter().map(|place| (place - here).abs()).reduce(f64::min)
 }

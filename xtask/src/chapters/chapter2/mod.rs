@@ -41,7 +41,7 @@ struct Parameters {
     our_choice: Choice,
 }
 
-/// An impact whose course is drawn.
+/// An impact whose motion is drawn.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Motion {

@@ -1,4 +1,4 @@
-//! What the thesis could not see: the same studies with remainder modes for the modes left out, to
+//! What the thesis could not see: the same studies with remainder modes for the truncated modes, to
 //! N = 400.
 
 use super::Case;

@@ -29,7 +29,7 @@ fn heading(location_m: f64, solution: &Solution) -> String {
     )
 }
 
-/// Fig. 4.5: displacement, velocity and force at four places.
+/// Fig. 4.5: displacement, velocity and force at four locations.
 fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.section("Four impacts in detail (Fig. 4.5)");
     let p = &case.parameters.our_choice.detailed;
@@ -58,7 +58,7 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Figs. 4.10 and 4.11: displacements at several places.
+/// Figs. 4.10 and 4.11: displacements at several locations.
 fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), Failure> {
     let (beam, ball) = (case.beam(&p.beam)?, case.ball(p.diameter_m)?);
     study.section(&format!("{}: displacements at several places (Fig. {})", beam.title, p.figure));

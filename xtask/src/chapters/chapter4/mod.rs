@@ -1,4 +1,4 @@
-//! Chapter 4: four beams, twelve balls, twenty-five places.
+//! Chapter 4: four beams, twelve balls, twenty-five locations.
 
 mod courses;
 mod finite_elements;
@@ -187,7 +187,7 @@ impl Case {
         }
     }
 
-    /// Equally spaced places, both ends included.
+    /// Equally spaced locations, both ends included.
     pub(super) fn places(&self, beam: &Beam) -> Vec<f64> {
         let steps = self.parameters.places.max(2) - 1;
         let length = beam.model.beam.length_m();

@@ -9,7 +9,7 @@ use serde::Serialize;
 use vibroimpact::plot::{Axis, Figure};
 use vibroimpact::report::significant;
 
-/// One place and ball in four models.
+/// One location and ball in four models.
 #[derive(Serialize)]
 struct SettledRow {
     beam: String,
@@ -78,7 +78,7 @@ fn settled_row([truncated, residual, coarser, reference]: [&Row; 4]) -> SettledR
     }
 }
 
-/// Absolute differences of the restitution, place by place.
+/// Absolute differences of the restitution, location by location.
 fn distances(table: &Table, reference: &Table) -> Vec<f64> {
     table.all().zip(reference.all()).map(|(a, b)| (a.e() - b.e()).abs()).collect()
 }

@@ -1,4 +1,4 @@
-//! The restitution tables: every beam, place and ball. Figs. 4.6 to 4.9.
+//! The restitution tables: every beam, location and ball. Figs. 4.6 to 4.9.
 
 use super::Case;
 use crate::chapters::Failure;
@@ -8,7 +8,7 @@ use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 use vibroimpact_sim::modal::Solver;
 
-/// The table of one beam: rows of places, in each one result a ball.
+/// The table of one beam: rows of locations, in each one result a ball.
 pub(in crate::chapters) struct Table<'a> {
     pub beam: &'a Beam,
     pub places_m: Vec<f64>,
@@ -17,17 +17,17 @@ pub(in crate::chapters) struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// A number of every result as rows of balls over columns of places, as a map shows it.
+    /// A number of every result as rows of balls over columns of locations, as a map shows it.
     pub fn by_ball(&self, value: impl Fn(&Row) -> f64) -> Vec<Vec<f64>> {
         (0..self.balls.len()).map(|j| self.rows.iter().map(|place| value(&place[j])).collect()).collect()
     }
 
-    /// All results, place by place.
+    /// All results, location by location.
     pub fn all(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().flatten()
     }
 
-    /// A map over places and balls; balls are equally spaced and labelled with their mass.
+    /// A map over locations and balls; balls are equally spaced and labelled with their mass.
     pub fn map(&self, values: Vec<Vec<f64>>, value: Axis) -> Panel {
         let numbers: Vec<f64> = (0..self.balls.len()).map(|j| j as f64).collect();
         let ticks = self.balls.iter().zip(&numbers).map(|(ball, j)| (*j, format!("{:.4}", ball.mass_kg)));
@@ -65,7 +65,7 @@ pub(in crate::chapters) fn compute<'a>(
     of_beams(study, case, &case.beams, (modes, residual), |setup, solver| setup.solve_with(solver))
 }
 
-/// The same for other beams, each impact solved as told. Each place's structure is built once and serves all balls.
+/// The same for other beams, each impact solved as told. Each location's structure is built once and serves all balls.
 pub(in crate::chapters) fn of_beams<'a>(
     study: &mut Study,
     case: &Case,

@@ -102,7 +102,7 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
     trends
 }
 
-/// How much more the restitution changes from place to place, as a share of itself, where it is small.
+/// How much more the restitution changes from location to location, as a share of itself, where it is small.
 fn relative_variation(table: &Table, inner: impl Fn(&Row) -> bool) -> f64 {
     let mut pairs: Vec<(f64, f64)> = Vec::new();
     for places in table.rows.windows(2) {
@@ -122,7 +122,7 @@ const SUDDEN: &str = "there is a sudden rise in restitution very close to pinned
 const VERY_CLOSE: &str =
     "whether one place from the end, 42 mm, is very close to it; closer the rise is there, and e is 1 at the end";
 
-/// Rises still closer to held ends than the tables' places are; `closer` is a table of one such place for each held end.
+/// Rises still closer to held ends than the tables' locations are; `closer` is a table of one such location for each held end.
 pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) -> Vec<Trend> {
     let names = [
         "mean e a sixteenth of a place from the left, held end less that one place from it",
@@ -183,7 +183,7 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
     let heavy = "mean e on the slim part less that on the thick part, balls above 0.3 of the heaviest";
     trends.push(Trend::new(heavy, greater, RISES, slim(0.3 * heaviest_kg)));
 
-    // places just before and just beyond the step, but not at it
+    // locations just before and just beyond the step, but not at it
     let before = table.places_m.iter().copied().filter(|b| *b < step_m - 1e-9).fold(0.0, f64::max);
     let beyond = table.places_m.iter().copied().filter(|b| *b > step_m + 1e-9).fold(length, f64::min);
     let third = |k: usize| {

@@ -19,7 +19,7 @@ struct PointRow {
     restitution_of_the_law: f64,
 }
 
-/// Every fifth value: the rest would hide each other. Twelve balls follow each other at every place, so that every ball
+/// Every fifth value: the rest would hide each other. Twelve balls follow each other at every location, so that every ball
 /// comes in turn.
 fn thinned(values: &[f64]) -> Vec<f64> {
     values.iter().copied().step_by(5).collect()

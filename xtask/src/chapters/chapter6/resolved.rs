@@ -63,7 +63,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let mut cases = Vec::new();
     for beam in &case.beams {
         let places = case.places(beam);
-        // the first place is held, where no mode moves
+        // the first location is held, where no mode moves
         let inside: Vec<f64> = places.iter().copied().skip(1).step_by(if study.quick { 8 } else { 2 }).collect();
         cases.extend(inside.iter().flat_map(|&b| balls.iter().map(move |ball| (beam, *ball, b))));
     }

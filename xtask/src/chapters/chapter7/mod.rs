@@ -32,7 +32,7 @@ const SETTLED_MODES: usize = 100;
 pub(super) struct Dataset<'a> {
     pub beam: &'a Beam,
     table: &'a Table<'a>,
-    /// The results that have a restitution, place by place.
+    /// The results that have a restitution, location by location.
     pub rows: Vec<&'a Row>,
 }
 

@@ -27,7 +27,7 @@ the modes of the finest answer or more, of a list the beam that it was taken fro
 a tolerance of 1e-10; the same with fewer modes tells how well it is known itself. Where it is not known three times \
 better than the tolerance, the scene is listed and not counted.";
 
-/// What a study of the choice is asked for.
+/// Options of the study of the choice.
 #[derive(clap::Args)]
 pub struct RandomScenes {
     /// Fewer scenes through the same code

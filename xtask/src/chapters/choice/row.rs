@@ -15,7 +15,7 @@ const FEWEST_OF_REFERENCE: usize = 128;
 const REFERENCE_TOLERANCE: f64 = 1e-10;
 /// From one number of modes to the next, of the reference too.
 const RAISE: f64 = std::f64::consts::SQRT_2;
-/// The fewest modes that are tried for the cheapest model, and its tolerance as shares of the tolerance wanted: the first
+/// The fewest modes that are tried for the cheapest model, and its tolerance as shares of the requested tolerance: the first
 /// that is enough.
 const FEWEST: usize = 4;
 const SHARES: [f64; 3] = [0.1, 3e-3, 1e-4];

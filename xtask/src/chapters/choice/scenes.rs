@@ -1,4 +1,4 @@
-//! Random scenes: every structure with modes, every law, places near supports and tips, masses and speeds over decades.
+//! Random scenes: every structure with modes, every law, locations near supports and tips, masses and speeds over decades.
 
 use crate::chapters::Failure;
 use serde_json::{Value, json};
@@ -89,7 +89,7 @@ fn string(random: &mut Random, damping_ratio: f64) -> Struck {
     (string, length, length * mass_per_length)
 }
 
-/// A plate by its length; the place is on its diagonal.
+/// A plate by its length; the location is on its diagonal.
 fn plate(random: &mut Random, damping_ratio: f64) -> Struck {
     let (length, width) = (random.log(0.1, 1.0), 0.5 + 0.5 * random.share());
     let thickness = length * random.log(0.005, 0.05);

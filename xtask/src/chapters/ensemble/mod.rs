@@ -1,4 +1,4 @@
-//! What is our choice, varied: steps, slim parts, ball lists and places, and in how many of the choices a trend of the
+//! What is our choice, varied: steps, slim parts, ball lists and locations, and in how many of the choices a trend of the
 //! thesis holds.
 
 mod law;
@@ -105,7 +105,7 @@ fn balls(study: &Study, case: &Case, lists: &[Vec<u32>]) -> Result<Vec<Ball>, Fa
     kept.iter().map(|&mm| Ball::new(&case.parameters.material, 1e-3 * f64::from(mm))).collect()
 }
 
-/// A place at each held end, a sixteenth of the tables' distance between places from it.
+/// A location at each held end, a sixteenth of the tables' distance between locations from it.
 fn closer_places(case: &Case, beam: &Beam) -> Vec<f64> {
     let places = case.places(beam);
     let near = places.get(1).map_or(f64::NAN, |first| first / 16.0);
@@ -113,7 +113,7 @@ fn closer_places(case: &Case, beam: &Beam) -> Vec<f64> {
     [near, beam.model.beam.length_m() - near].into_iter().zip(held).filter_map(|(b, held)| held.then_some(b)).collect()
 }
 
-/// The tables of all variants at these places.
+/// The tables of all variants at these locations.
 fn tables<'a>(
     study: &mut Study,
     case: &'a Case,

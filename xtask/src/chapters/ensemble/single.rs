@@ -33,7 +33,7 @@ fn claim_each(study: &mut Study, trends: &[Vec<Trend>], beam: &str, figure: &str
     claim(study, &all, beam, figure);
 }
 
-/// The effect of the speed for one beam and place.
+/// The effect of the speed for one beam and location.
 #[derive(Serialize)]
 struct SpeedRow {
     step_m: f64,
@@ -42,7 +42,7 @@ struct SpeedRow {
     largest_change: f64,
 }
 
-/// Fig. 4.3 for all stepped cantilevers and places.
+/// Fig. 4.3 for all stepped cantilevers and locations.
 fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
     study.section("The speed, over steps, slim parts and places (Fig. 4.3)");
     let p = &case.parameters.our_choice.speed_study;
@@ -101,7 +101,7 @@ fn range(rows: &[Row], least: usize, value: fn(&Row) -> f64) -> (f64, f64) {
     chosen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// What the text reads off Fig. 4.4, the places in order and the free end last.
+/// What the text reads off Fig. 4.4, the locations in order and the free end last.
 fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
     let changes = places.iter().map(|rows| range(rows, 40, Row::e)).map(|(low, high)| high - low);
     let mut shares: Vec<(f64, f64)> =
@@ -140,7 +140,7 @@ fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
     ]
 }
 
-/// Fig. 4.5, whose places and ball are printed.
+/// Fig. 4.5, whose locations and ball are printed.
 fn detailed(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
     study.section("Four places, over steps and slim parts (Fig. 4.5)");
     let p = &case.parameters.our_choice.detailed;
@@ -159,7 +159,7 @@ fn detailed(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), 
 /// Times at which a displacement is read.
 const SAMPLES: u32 = 60;
 
-/// Figs. 4.10 and 4.11, over every other place of the beam.
+/// Figs. 4.10 and 4.11, over every other location of the beam.
 fn along_the_beam(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
     study.section("Displacements along the cantilevers (Figs. 4.10 and 4.11)");
     for p in &case.parameters.our_choice.histories {

@@ -54,7 +54,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     coefficients_in_use(study, case, &balls)
 }
 
-/// Restitution against the number of modes: a figure for each place, a column for each ball.
+/// Restitution against the number of modes: a figure for each location, a column for each ball.
 fn against_modes(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Result<(), Failure> {
     study.section("Restitution against the number of modes (chapter 3)");
     let counts = study.thin(&case.parameters.our_choice.residual_modes, 7);
@@ -96,7 +96,7 @@ fn restitutions(rows: &[Row]) -> Vec<f64> {
     rows.iter().map(Row::e).collect()
 }
 
-/// What both theories settle to, and how truncation, theory and shear coefficient compare.
+/// What both theories converge to, and how truncation, theory and shear coefficient compare.
 fn limits(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Result<(), Failure> {
     study.section("Truncation, theory and shear coefficient (chapter 3)");
     let material = &case.parameters.material;

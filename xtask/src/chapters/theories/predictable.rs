@@ -12,7 +12,7 @@ use vibroimpact::report::significant;
 
 /// Modes, with remainder modes for all others.
 const MODES: usize = 160;
-/// Places, equally spaced, on half of the beam, which is symmetric.
+/// Locations, equally spaced, on half of the beam, which is symmetric.
 const PLACES: u32 = 40;
 /// Diameters of the balls, mm.
 const DIAMETERS_MM: std::ops::RangeInclusive<u32> = 6..=60;
@@ -20,7 +20,7 @@ const EVERY_MM: usize = 3;
 /// A restitution that changes by less than this can be predicted.
 const PREDICTED: f64 = 0.02;
 
-/// One place and ball.
+/// One location and ball.
 #[derive(Serialize)]
 struct Cell {
     location_m: f64,

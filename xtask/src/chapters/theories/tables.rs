@@ -91,10 +91,10 @@ fn summary(beam: &str, kind: &str, changes: &[f64]) -> Vec<String> {
     names.into_iter().chain(numbers.map(|v| significant(v, 2))).chain([share]).collect()
 }
 
-/// What truncation, theory and coefficient change, place by place.
+/// What truncation, theory and coefficient change, location by location.
 type Kinds = [(&'static str, Vec<f64>); 3];
 
-/// Root mean square over the places, ball by ball.
+/// Root mean square over the locations, ball by ball.
 fn by_mass(study: &mut Study, tables: &[Table], curves: &[Kinds]) -> Result<(), Failure> {
     let looks = [(Marker::Plus, Colour::Grey), (Marker::Cross, Colour::Vermilion), (Marker::Circle, Colour::Blue)];
     let panel = |(k, (table, kinds)): (usize, (&Table, &Kinds))| {
