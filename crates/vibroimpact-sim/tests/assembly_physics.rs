@@ -177,6 +177,45 @@ fn newtons_cradle_hands_the_blow_on() {
     assert!(found.rate[4][0] / m.sqrt() > 0.9 && found.rate[0][0].abs() / m.sqrt() < 0.15);
 }
 
+/// Balls in a row that touch at the start, the last of them alone in motion or the first, and the contacts in either order.
+/// What a contact does before the wave comes to it is less than any tolerance: it costs no panels, and it ends no interval.
+#[test]
+fn contacts_without_force_cost_nothing_and_end_no_interval() {
+    let law = Law::from(Hertz::new(1e9).unwrap());
+    let masses = [0.1, 0.05, 0.2, 0.1, 0.01];
+    let speeds = |mirrored: bool, exchanged: bool, tolerance: f64| -> (Vec<f64>, u64) {
+        let (struck, velocity) = if mirrored { (4, -1.0) } else { (0, 1.0) };
+        let mass_kg = |i: usize| masses[if mirrored { 4 - i } else { i }];
+        let bodies = (0..5).map(|i| Body::mass(mass_kg(i), 0.0, if i == struck { velocity } else { 0.0 })).collect();
+        let side = |i: usize| mass(i, mass_kg(i));
+        let contact = |i: usize| Contact { sides: [side(i + 1), side(i)], gap_m: 0.0, law };
+        let mut contacts: Vec<_> = (0..4).map(contact).collect();
+        if exchanged {
+            contacts.reverse();
+        }
+        let (found, intervals) = solve(&Assembly { bodies, contacts, loads: vec![] }, 1e-3, tolerance);
+        for c in 0..4 {
+            let first = intervals.iter().find(|(contact, _)| *contact == c).unwrap().1;
+            assert!(first.start_s == 0.0 && first.end_s.unwrap() > 1e-4, "{mirrored} {tolerance:e}: {first:?}");
+        }
+        let speed = |i: usize| velocity * found.rate[i][0] / mass_kg(i).sqrt();
+        let speeds = (0..5).map(|i| speed(if mirrored { 4 - i } else { i })).collect();
+        (speeds, found.counts.newton_iterations)
+    };
+    let (exact, _) = speeds(false, false, 1e-12);
+    for (mirrored, exchanged) in [(false, false), (false, true), (true, false), (true, true)] {
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9] {
+            let (found, iterations) = speeds(mirrored, exchanged, tolerance);
+            for (found, exact) in found.iter().zip(&exact) {
+                assert!((found - exact).abs() < (0.1 * tolerance).max(1e-12), "{tolerance:e}: {found} {exact}");
+            }
+            // a panel asks for two, and their number grows with the ninth root of the accuracy
+            let panels = 16.0 * tolerance.powf(-1.0 / 9.0);
+            assert!((iterations as f64) < 4.0 * panels, "{tolerance:e}: {iterations}");
+        }
+    }
+}
+
 /// A clamped-free beam seen from some places.
 fn cantilever(n: usize, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
     let segment = Segment::rectangular(1.0, 2e11, 7800.0, 0.02, 0.01);

@@ -2,7 +2,8 @@
 //!
 //! On a panel the force of each closed contact is a polynomial. At each of its nodes the law must hold,
 //! `F = law(xi, xi')` with `xi_c = xi_c,free + sum_c' R_cc' F_c'`, `R` the exact responses. Newton's matrix
-//! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body.
+//! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body. The iteration ends when what is
+//! still missing changes the impulse of no contact by more than a hundredth of what a panel may get wrong.
 
 use super::solution::Counts;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
@@ -13,6 +14,8 @@ use contact_models::{Branch, ContactLaw, Force};
 const ITERATIONS_MAX: u32 = 16;
 /// A ratio of successive changes above this asks for a new matrix.
 const SLOW: f64 = 0.1;
+/// A contact whose force changes by less than this part of itself by what it moves the bodies is left out of the matrix.
+const SOFT: f64 = 1e-3;
 
 /// A closed contact on a panel, before its force is known.
 pub(crate) struct Unknown<'a> {
@@ -53,70 +56,89 @@ pub(crate) fn collocate<'r>(
     unknowns: &[Unknown],
     response: impl Fn(usize, usize) -> Option<&'r Matrix>,
     h: f64,
-    (Newton { values, change, blocks }, found): (&mut Newton, &mut Vec<Collocated>),
+    (newton, found): (&mut Newton, &mut Vec<Collocated>),
     counts: &mut Counts,
 ) -> bool {
-    let n = unknowns.len();
-    let start = |unknown: &Unknown| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
-    found.clear();
-    found.extend(unknowns.iter().map(start));
-    values.resize(n, [Force::ZERO; Q]);
-    change.resize(n, [0.0; Q]);
-    let mut factored = false;
-    let mut last: Option<f64> = None;
-    for _ in 0..ITERATIONS_MAX {
-        counts.newton_iterations += 1;
-        for (c, unknown) in unknowns.iter().enumerate() {
-            let mut moved = unknown.free;
-            for other in 0..n {
-                if let Some(response) = response(c, other) {
-                    let forced = apply(response, &found[other].force);
-                    for i in 0..Q {
-                        moved[i] += forced[i];
+    vectorized(
+        #[inline(always)]
+        || newton.solve(unknowns, &response, h, found, counts),
+    )
+}
+
+impl Newton {
+    #[inline(always)]
+    fn solve<'r>(
+        &mut self,
+        unknowns: &[Unknown],
+        response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
+        h: f64,
+        found: &mut Vec<Collocated>,
+        counts: &mut Counts,
+    ) -> bool {
+        let Newton { values, change, blocks } = self;
+        let n = unknowns.len();
+        let start = |unknown: &Unknown| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
+        found.clear();
+        found.extend(unknowns.iter().map(start));
+        values.resize(n, [Force::ZERO; Q]);
+        change.resize(n, [0.0; Q]);
+        let mut factored = false;
+        let mut last: Option<f64> = None;
+        for _ in 0..ITERATIONS_MAX {
+            counts.newton_iterations += 1;
+            for (c, unknown) in unknowns.iter().enumerate() {
+                let mut moved = unknown.free;
+                for other in 0..n {
+                    if let Some(response) = response(c, other) {
+                        let forced = apply(response, &found[other].force);
+                        for i in 0..Q {
+                            moved[i] += forced[i];
+                        }
                     }
                 }
+                if unknown.needs_rate {
+                    found[c].rate = slopes(0.0, &moved, h);
+                }
+                let compression = moved.map(|moved| unknown.start + moved);
+                found[c].compression = compression;
+                values[c] =
+                    std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
+                counts.law_evaluations += Q as u64;
+                change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
             }
-            if unknown.needs_rate {
-                found[c].rate = slopes(0.0, &moved, h);
+            if !factored {
+                blocks.factor_stiff(values, response, h);
+                factored = true;
             }
-            let compression = moved.map(|moved| unknown.start + moved);
-            found[c].compression = compression;
-            values[c] = std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
-            counts.law_evaluations += Q as u64;
-            change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
-        }
-        if !factored {
-            blocks.factor(values, &response, h);
-            factored = true;
-        }
-        blocks.solve(change);
-        // the change that is largest against the accuracy asked for
-        let (mut excess, mut converged) = (0.0f64, true);
-        for (c, unknown) in unknowns.iter().enumerate() {
-            let (mut largest, mut size) = (0.0f64, 0.0f64);
-            for i in 0..Q {
-                found[c].force[i] += change[c][i];
-                largest = largest.max(change[c][i].abs());
-                size = size.max(found[c].force[i].abs());
+            blocks.solve_here(change);
+            // the change that is largest against the accuracy asked for
+            let (mut excess, mut converged) = (0.0f64, true);
+            for (c, unknown) in unknowns.iter().enumerate() {
+                let (mut largest, mut size) = (0.0f64, 0.0f64);
+                for i in 0..Q {
+                    found[c].force[i] += change[c][i];
+                    largest = largest.max(change[c][i].abs());
+                    size = size.max(found[c].force[i].abs());
+                }
+                // a sum passes on what is not a number, the maxima do not
+                if !found[c].force.iter().sum::<f64>().is_finite() {
+                    return false;
+                }
+                converged &= largest <= 1e-15 * size;
+                excess = excess.max(largest / unknown.accuracy);
             }
-            // a sum passes on what is not a number, the maxima do not
-            if !found[c].force.iter().sum::<f64>().is_finite() {
-                return false;
+            // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
+            let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
+            if converged || ratio * excess <= 1.0 {
+                return true;
             }
-            converged &= largest <= 1e-15 * size;
-            excess = excess.max(largest / unknown.accuracy);
+            if ratio > SLOW && last.is_some() {
+                factored = false;
+            }
+            last = Some(excess);
         }
-        // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
-        let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
-        if converged || ratio * excess <= 1.0 {
-            return true;
-        }
-        if ratio > SLOW && last.is_some() {
-            factored = false;
-        }
-        last = Some(excess);
+        false
     }
-    false
 }
 
 /// Newton's matrix in blocks, factored. Off the diagonal of ones its size is `(h omega)^2` with `omega` the contacts' own
@@ -124,8 +146,10 @@ pub(crate) fn collocate<'r>(
 #[derive(Default)]
 pub(crate) struct Blocks {
     contacts: usize,
-    /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`. `None` is zero.
-    blocks: Vec<Option<Matrix>>,
+    /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`.
+    blocks: Vec<Matrix>,
+    /// Which of them are not zero; of those on the diagonal, which are not ones.
+    present: Vec<bool>,
 }
 
 impl Blocks {
@@ -135,37 +159,91 @@ impl Blocks {
         response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
         h: f64,
     ) {
+        vectorized(
+            #[inline(always)]
+            || self.factor_rows(values, response, h, |_| true),
+        );
+    }
+
+    /// Solves in place.
+    pub fn solve(&self, right: &mut [Nodal]) {
+        vectorized(
+            #[inline(always)]
+            || self.solve_here(right),
+        );
+    }
+
+    /// Of several contacts, without the rows of those that hardly push back on this panel: what the matrix lacks only slows
+    /// the iteration down, by no more than it was small.
+    #[inline(always)]
+    fn factor_stiff<'r>(
+        &mut self,
+        values: &[[Force; Q]],
+        response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
+        h: f64,
+    ) {
+        let stiff = |p: usize| {
+            let by_rate = values[p].iter().any(|value| value.per_rate_n_s_m != 0.0);
+            let stiffness = values[p].iter().fold(0.0f64, |most, value| most.max(value.per_compression_n_m.abs()));
+            let moved = |own: &Matrix| own.iter().flatten().fold(0.0f64, |most, moved| most.max(moved.abs()));
+            values.len() == 1 || by_rate || response(p, p).is_some_and(|own| stiffness * moved(own) > SOFT)
+        };
+        self.factor_rows(values, response, h, stiff);
+    }
+
+    #[inline(always)]
+    fn factor_rows<'r>(
+        &mut self,
+        values: &[[Force; Q]],
+        response: &impl Fn(usize, usize) -> Option<&'r Matrix>,
+        h: f64,
+        wanted: impl Fn(usize) -> bool,
+    ) {
         let n = values.len();
-        self.contacts = n;
-        let blocks = &mut self.blocks;
-        blocks.clear();
-        for p in 0..n {
+        let Blocks { contacts, blocks, present } = self;
+        *contacts = n;
+        blocks.resize(n * n, [[0.0; Q]; Q]);
+        present.clear();
+        present.resize(n * n, false);
+        for p in (0..n).filter(|p| wanted(*p)) {
             for q in 0..n {
-                blocks.push(response(p, q).map(|response| block(&values[p], response, h, p == q)));
+                if let Some(response) = response(p, q) {
+                    fill(&mut blocks[p * n + q], &values[p], response, h, p == q);
+                    present[p * n + q] = true;
+                }
             }
         }
         for p in 0..n {
-            let Some(mut diagonal) = blocks[p * n + p] else { continue };
-            vectorized(
-                #[inline(always)]
-                || {
-                    eliminate::<0>(&mut diagonal);
-                    eliminate::<{ Q / 2 }>(&mut diagonal);
-                },
-            );
-            blocks[p * n + p] = Some(diagonal);
+            if !present[p * n + p] {
+                continue;
+            }
+            let diagonal = &mut blocks[p * n + p];
+            eliminate::<0>(diagonal);
+            eliminate::<{ Q / 2 }>(diagonal);
+            let diagonal = *diagonal;
             for q in p + 1..n {
-                if let Some(block) = &mut blocks[p * n + q] {
-                    block.iter_mut().for_each(|column| substitute(&diagonal, column));
+                if present[p * n + q] {
+                    blocks[p * n + q].iter_mut().for_each(|column| substitute(&diagonal, column));
                 }
             }
             for i in p + 1..n {
-                let Some(left) = blocks[i * n + p] else { continue };
+                if !present[i * n + p] {
+                    continue;
+                }
                 for q in p + 1..n {
-                    let Some(right) = blocks[p * n + q] else { continue };
-                    let target = blocks[i * n + q].get_or_insert([[0.0; Q]; Q]);
-                    for (column, right) in target.iter_mut().zip(&right) {
-                        let product = apply(&left, right);
+                    if !present[p * n + q] {
+                        continue;
+                    }
+                    // row p lies above row i
+                    let (above, below) = blocks.split_at_mut(i * n);
+                    let (left, target) = below[..n].split_at_mut(q);
+                    let (left, target) = (&left[p], &mut target[0]);
+                    if !present[i * n + q] {
+                        *target = [[0.0; Q]; Q];
+                        present[i * n + q] = true;
+                    }
+                    for (column, right) in target.iter_mut().zip(&above[p * n + q]) {
+                        let product = apply(left, right);
                         for r in 0..Q {
                             column[r] -= product[r];
                         }
@@ -175,15 +253,15 @@ impl Blocks {
         }
     }
 
-    /// Solves in place.
-    pub fn solve(&self, right: &mut [Nodal]) {
+    #[inline(always)]
+    fn solve_here(&self, right: &mut [Nodal]) {
         let n = self.contacts;
         for p in 0..n {
             for q in 0..p {
                 self.subtract(p, q, right);
             }
-            if let Some(diagonal) = &self.blocks[p * n + p] {
-                substitute(diagonal, &mut right[p]);
+            if self.present[p * n + p] {
+                substitute(&self.blocks[p * n + p], &mut right[p]);
             }
         }
         for p in (0..n).rev() {
@@ -193,9 +271,10 @@ impl Blocks {
         }
     }
 
+    #[inline(always)]
     fn subtract(&self, p: usize, q: usize, right: &mut [Nodal]) {
-        if let Some(block) = &self.blocks[p * self.contacts + q] {
-            let product = apply(block, &right[q]);
+        if self.present[p * self.contacts + q] {
+            let product = apply(&self.blocks[p * self.contacts + q], &right[q]);
             for i in 0..Q {
                 right[p][i] -= product[i];
             }
@@ -204,8 +283,8 @@ impl Blocks {
 }
 
 /// `delta_pq - F_xi R - F_rate D R` of one pair.
-fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matrix {
-    let mut block = [[0.0; Q]; Q];
+#[inline(always)]
+fn fill(block: &mut Matrix, values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) {
     for j in 0..Q {
         for i in 0..Q {
             block[j][i] = -values[i].per_compression_n_m * response[j][i];
@@ -220,10 +299,10 @@ fn block(values: &[Force; Q], response: &Matrix, h: f64, diagonal: bool) -> Matr
             }
         }
     }
-    block
 }
 
 /// Solves in place with a factored matrix: unit lower and upper triangle in one, by columns, the diagonal inverted.
+#[inline(always)]
 fn substitute(a: &Matrix, b: &mut Nodal) {
     for j in 0..Q {
         for i in j + 1..Q {

@@ -210,12 +210,24 @@ fn first_root_of_parabola(u: f64, slope: f64, b: f64) -> f64 {
 
 /// The first time in `[0, window]` at which an overlap with this power series, approached from below, rises to zero, and
 /// `true`; or a time up to which it does not, and `false`. Its second derivative is at most `curvature`. Overlaps within
-/// `noise`, and within the rounding of the series, count as zero.
-pub(crate) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64, noise: f64) -> (f64, bool) {
+/// `noise`, and within the rounding of the series, count as zero, and so do rates within `rate_noise`.
+pub(crate) fn first_closing(
+    series: &[f64; TAYLOR],
+    curvature: f64,
+    window: f64,
+    (noise, rate_noise): (f64, f64),
+) -> (f64, bool) {
     const ITERATIONS_MAX: usize = 10_000;
     // a grazing touch leaves the surfaces together for so short a time that the overlap stays rounding
     let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
     let mut t = 0.0;
+    if series[0] >= -noise && series[1].abs() <= rate_noise {
+        match first_difference(series, window, (noise, rate_noise)) {
+            None => return (window, false),
+            Some((parted, overlap)) if overlap < 0.0 => t = parted,
+            Some((closed, _)) => return (closed, true),
+        }
+    }
     for _ in 0..ITERATIONS_MAX {
         let [overlap, rate, bend] = value(series, t);
         let size = series.iter().rev().fold(0.0, |sum, term| sum * t + term.abs());
@@ -242,6 +254,20 @@ pub(crate) fn first_closing(series: &[f64; TAYLOR], curvature: f64, window: f64,
         t = next;
     }
     (t, false)
+}
+
+/// Where surfaces that are together differ from that by more than rounding for the first time within `window`, and by how
+/// much. Within the reach of its series an overlap does not vibrate, so that it is enough to look at times that double.
+pub(crate) fn first_difference(
+    series: &[f64; TAYLOR],
+    window: f64,
+    (noise, rate_noise): (f64, f64),
+) -> Option<(f64, f64)> {
+    let at = |k: u32| {
+        let t = window * 0.5f64.powi(k as i32);
+        (t, value(series, t)[0])
+    };
+    (0..f64::MANTISSA_DIGITS).rev().map(at).find(|(t, overlap)| overlap.abs() > noise + rate_noise * t)
 }
 
 /// By how much the loads may bend the overlap of a contact within `lasting_s` (m/s^2).

@@ -7,7 +7,16 @@
 //!
 //! A branch may begin on its boundary, where `m(0) = 0` to rounding. Then `(m(s) - m(0))/s`, a polynomial too, is asked
 //! in place of `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. Where
-//! that is zero too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is asked.
+//! that is zero too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is asked. If what is asked
+//! falls below zero before it was ever above, the branch ends where it begins.
+//!
+//! Such a beginning asks for the sign of a small number. Surfaces that touch without speed and without force part or press
+//! each other by what the forces of other contacts are about to do. These forces are polynomials, which miss them by their
+//! truncation `e`, and so leave the second derivative of the overlap open by `sum_c' W_cc' e_c'`, `W` the inverse mass of an
+//! impulse of `c'` at the contact. No shorter panel would tell more, because a force that begins like a power of time is
+//! missed by the same part of itself on all of them. This counts as rounding does: what lies within it is zero, and the
+//! forces that the contact may have meanwhile are smaller than those errors by one more power of its stiffness times the
+//! square of the panel.
 
 use crate::panel::legendre::{BASIS, Nodal, Q};
 use std::sync::LazyLock;
@@ -41,15 +50,24 @@ pub(crate) enum Verdict {
     Meets(f64),
 }
 
+/// An event function where a panel begins (panel length 1).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Beginning {
+    pub slope: f64,
+    /// The slope of that, where it is known.
+    pub bend: Option<f64>,
+    /// By how much what the forces' polynomials miss may bend it.
+    pub unresolved: f64,
+}
+
 impl EventFunction {
-    /// `at_start` gives the slope at the start (panel length 1), and the slope of that where it is known; it is asked only where
-    /// the function begins at zero.
-    pub fn verdict(&self, at_start: impl FnOnce() -> (f64, Option<f64>)) -> Verdict {
-        self.question(at_start).map_or(Verdict::Meets(0.0), |question| question.verdict())
+    /// `beginning` is asked for only where the function begins at zero.
+    pub fn verdict(&self, beginning: impl FnOnce() -> Beginning) -> Verdict {
+        self.question(beginning).map_or(Verdict::Meets(0.0), |question| question.verdict())
     }
 
     /// What has to stay positive; `None` where that is not so from the start.
-    fn question(&self, at_start: impl FnOnce() -> (f64, Option<f64>)) -> Option<Question> {
+    fn question(&self, beginning: impl FnOnce() -> Beginning) -> Option<Question> {
         // the polynomial passes through the start: there rounding alone counts
         let known = self.noise + self.residue;
         if self.start < -known {
@@ -57,20 +75,20 @@ impl EventFunction {
         }
         let [rho, rho_slope, rho_bend] = self.rho;
         if self.start > known {
-            return Some(Question::new(&with(self.start, &self.nodal), rho + self.noise, rho <= self.noise));
+            return Some(Question::new(&with(self.start, &self.nodal), rho, self.noise, false));
         }
         // rounding of a value is one of the slope from the start, largest at the first node
         let slopes: Nodal = std::array::from_fn(|i| (self.nodal[i] - self.start) / BASIS.nodes[i]);
         let noise = 2.0 * self.noise / BASIS.nodes[0] + self.slope_residue;
-        let (slope, bend) = at_start();
+        let Beginning { slope, bend, unresolved } = beginning();
         Some(match bend {
             // the slope at the start is better known than those that are quotients
             Some(bend) if slope.abs() <= self.noise + self.slope_residue => {
                 let bends = std::array::from_fn(|i| (slopes[i] - slope) / BASIS.nodes[i]);
-                let (rho, noise) = (0.5 * rho_bend, noise / BASIS.nodes[0]);
-                Question::new(&with(0.5 * bend, &bends), rho + noise, rho <= noise)
+                let noise = noise / BASIS.nodes[0] + unresolved;
+                Question::new(&with(0.5 * bend, &bends), 0.5 * rho_bend, noise, true)
             }
-            _ => Question::new(&with(slope, &slopes), rho_slope + noise, rho_slope <= noise),
+            _ => Question::new(&with(slope, &slopes), rho_slope, noise + unresolved, true),
         })
     }
 }
@@ -82,23 +100,27 @@ fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
     values
 }
 
-/// A polynomial of which it is asked whether it stays above a slack.
+/// A polynomial of which it is asked whether it stays positive.
 struct Question {
     bernstein: [f64; POINTS],
+    /// What it is known within, and the part of that which no shorter panel would reduce.
     slack: f64,
-    /// That what lies within the slack is rounding, and no shorter panel would tell more.
+    noise: f64,
+    /// That what lies within the slack is noise.
     certain: bool,
+    /// Whether the event function begins at zero; then the value at the start is known to the noise.
+    from_zero: bool,
 }
 
 impl Question {
-    fn new(values: &[f64; POINTS], slack: f64, certain: bool) -> Question {
+    fn new(values: &[f64; POINTS], rho: f64, noise: f64, from_zero: bool) -> Question {
         let mut bernstein = [0.0; POINTS];
         for (column, value) in TO_BERNSTEIN.iter().zip(values) {
             for i in 0..POINTS {
                 bernstein[i] += column[i] * value;
             }
         }
-        Question { bernstein, slack, certain }
+        Question { bernstein, slack: rho + noise, noise, certain: rho <= noise, from_zero }
     }
 
     fn verdict(&self) -> Verdict {
@@ -106,11 +128,24 @@ impl Question {
         if first > self.slack && last > self.slack && self.first_at_or_below(self.slack).is_none() {
             return Verdict::Clear;
         }
+        if self.from_zero && first < -self.noise {
+            return Verdict::Meets(0.0);
+        }
         match self.first_at_or_below(if self.certain { -self.slack } else { 0.0 }) {
+            Some(place) if self.from_zero && !self.rises_before(place) => match self.certain {
+                true => Verdict::Meets(0.0),
+                false => Verdict::Doubtful,
+            },
             Some(place) => Verdict::Meets(place),
             None if self.certain => Verdict::Clear,
             None => Verdict::Doubtful,
         }
+    }
+
+    /// Whether it rises above the slack before this place.
+    fn rises_before(&self, place: f64) -> bool {
+        let above = first_at_or_below(&self.bernstein.map(|b| -b), -self.slack, 0.0, 1.0);
+        above.is_some_and(|above| above < place)
     }
 
     /// The first place at which it is at most `level`, to [`FINEST`].
@@ -188,7 +223,7 @@ mod tests {
 
     fn verdict(f: impl Fn(f64) -> f64, rho: f64) -> Verdict {
         let slope = (f(1e-6) - f(-1e-6)) / 2e-6;
-        function(f, rho).verdict(|| (slope, None))
+        function(f, rho).verdict(|| Beginning { slope, bend: None, unresolved: 0.0 })
     }
 
     #[test]
@@ -232,8 +267,27 @@ mod tests {
 
     #[test]
     fn a_branch_may_begin_at_a_turning_point() {
-        let turning = |bend: f64| function(|s| bend * s * s * (1.0 + s), 1e-3).verdict(|| (0.0, Some(2.0 * bend)));
+        let turning = |bend: f64| {
+            let beginning = Beginning { slope: 0.0, bend: Some(2.0 * bend), unresolved: 0.0 };
+            function(|s| bend * s * s * (1.0 + s), 1e-3).verdict(|| beginning)
+        };
         assert_eq!(turning(1.0), Verdict::Clear);
         assert_eq!(turning(-1.0), Verdict::Meets(0.0));
+    }
+
+    /// Surfaces at rest against each other, which the force of another contact, `t^(3/2)`, begins to press or to part: the
+    /// polynomial of that force starts on the wrong side of zero.
+    #[test]
+    fn a_branch_may_begin_from_nothing() {
+        let begins = |sign: f64, wrong: f64, unresolved: f64, rho: f64| {
+            let moved = |s: f64| sign * (s.powf(3.5) - wrong * s * s * (1.0 - 20.0 * s));
+            let beginning = Beginning { slope: 0.0, bend: Some(0.0), unresolved };
+            EventFunction { noise: 1e-18, ..function(moved, rho) }.verdict(|| beginning)
+        };
+        assert_eq!(begins(1.0, 1e-4, 1e-3, 0.0), Verdict::Clear);
+        assert_eq!(begins(-1.0, 1e-4, 1e-3, 0.0), Verdict::Meets(0.0));
+        // vibrations that the panel does not resolve leave both open
+        assert_eq!(begins(1.0, 1e-4, 1e-3, 1e-2), Verdict::Doubtful);
+        assert_eq!(begins(-1.0, 1e-4, 1e-3, 1e-2), Verdict::Doubtful);
     }
 }

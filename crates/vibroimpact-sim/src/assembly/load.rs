@@ -10,8 +10,21 @@
 
 use super::problem::{Force, Load};
 use super::system::{Link, Span, System};
-use crate::panel::legendre::TAYLOR;
+use crate::panel::legendre::{BASIS, Q, TAYLOR};
 use num_complex::Complex64;
+
+/// How the harmonic loads turn on a panel, for all contacts: `e^{i Omega t}` at its start, and `e^{i Omega (t' - t)} - 1` at the
+/// nodes and at the end.
+#[derive(Default)]
+pub(crate) struct Turns {
+    start: Vec<Complex64>,
+    swept: [Vec<Complex64>; Q + 1],
+}
+
+/// The part of a panel of `h` up to a node, by its number, or all of it.
+fn part(place: usize, h: f64) -> f64 {
+    BASIS.nodes.get(place).map_or(h, |node| node * h)
+}
 
 /// Loads of one frequency.
 #[derive(Clone)]
@@ -252,6 +265,36 @@ impl Loads {
     /// By how much the loads move the overlap of a contact within `h` seconds from `time_s` on, and what they add to its rate
     /// then, beyond what the modes carry at `time_s`.
     pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
+        let turns = self.harmonics.iter().map(|harmonic| (harmonic.turn(time_s), swept(harmonic.omega_rad_s * h)));
+        self.moved_by(contact, time_s, h, turns)
+    }
+
+    /// How the harmonic loads turn on a panel of `h`.
+    pub fn turn(&self, time_s: f64, h: f64, turns: &mut Turns) {
+        if self.harmonics.is_empty() {
+            return;
+        }
+        turns.start.clear();
+        turns.start.extend(self.harmonics.iter().map(|harmonic| harmonic.turn(time_s)));
+        for (place, swept_to) in turns.swept.iter_mut().enumerate() {
+            swept_to.clear();
+            swept_to.extend(self.harmonics.iter().map(|harmonic| swept(harmonic.omega_rad_s * part(place, h))));
+        }
+    }
+
+    /// [`Loads::moved`] up to a node of a panel of `h`, by its number, or to its end.
+    pub fn moved_on(&self, contact: usize, (time_s, h): (f64, f64), turns: &Turns, place: usize) -> (f64, f64) {
+        let turns = turns.start.iter().copied().zip(turns.swept[place].iter().copied());
+        self.moved_by(contact, time_s, part(place, h), turns)
+    }
+
+    fn moved_by(
+        &self,
+        contact: usize,
+        time_s: f64,
+        h: f64,
+        turns: impl Iterator<Item = (Complex64, Complex64)>,
+    ) -> (f64, f64) {
         if self.is_empty() {
             return (0.0, 0.0);
         }
@@ -259,9 +302,9 @@ impl Loads {
         let acceleration = self.acceleration(contact, time_s);
         let mut moved = h * (line.shift_rate + h * (0.5 * acceleration + h * line.jerk / 6.0));
         let mut rate = line.shift_rate + h * (acceleration + 0.5 * h * line.jerk);
-        for harmonic in &self.harmonics {
-            let now = harmonic.contacts[contact] * harmonic.turn(time_s);
-            let swept = now * swept(harmonic.omega_rad_s * h);
+        for (harmonic, (turn, swept)) in self.harmonics.iter().zip(turns) {
+            let now = harmonic.contacts[contact] * turn;
+            let swept = now * swept;
             moved += swept.re;
             rate -= harmonic.omega_rad_s * (now + swept).im;
         }

@@ -7,10 +7,10 @@
 
 use super::collocate::{Collocated, Newton, Unknown, collocate};
 use super::dense::{Event, Panel, Seen, Stretch};
-use super::enclosure::{FlightBounds, Held, Pull, bend_of_loads, first_closing, of_panel};
-use super::event::{EventFunction, Verdict};
+use super::enclosure::{FlightBounds, Held, Pull, bend_of_loads, first_closing, first_difference, of_panel};
+use super::event::{Beginning, EventFunction, Verdict};
 use super::ledger::{Account, Moment};
-use super::load::Loads;
+use super::load::{Loads, Turns};
 use super::problem::{Posed, Settings};
 use super::rest;
 use super::solution::{Counts, Interval, Observer, Outcome, Reason};
@@ -38,6 +38,8 @@ const LANDING: f64 = 2.5;
 const CARRIED: f64 = 0.05;
 /// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
 const SINGULAR: f64 = 1e-4;
+/// The sum of all coefficients that a polynomial misses of `t^(3/2)`, in parts of the estimate of the next two, is less.
+const TAIL: f64 = 10.0;
 /// A flight is followed by power series once the next safe step is this many levels finer than the series reach.
 const WINDOW: i32 = 2;
 /// Number of successive events without progress in time that counts as chatter.
@@ -77,6 +79,7 @@ struct Trial<'a> {
     /// All contacts' overlaps at the nodes, and at the end with their rates.
     overlap: Vec<Nodal>,
     end: Vec<(f64, f64)>,
+    turns: Turns,
 }
 
 pub(crate) struct March<'a> {
@@ -304,7 +307,10 @@ impl<'a> March<'a> {
             self.states[c].inverse_mass = self.system.inverse_mass(c);
             self.states[c].momentum = self.momentum_of_loads(c);
         }
-        for c in 0..self.states.len() {
+        // the fastest first, whose speed is the measure for those that touch without one
+        let mut order: Vec<usize> = (0..self.states.len()).collect();
+        order.sort_by(|&one, &other| self.states[other].rate.total_cmp(&self.states[one].rate));
+        for c in order {
             let noise = self.noise(c);
             if self.states[c].overlap > noise {
                 self.touch(c, self.states[c].overlap);
@@ -314,19 +320,15 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether surfaces that touch begin to part: the first derivative that is not zero says so.
+    /// Whether surfaces that touch begin to part.
     fn parts_from_here(&self, c: usize) -> bool {
         let reach = self.reach.min(self.settings.end_s);
         // rigid bodies alone have no time of their own
         let reach = if reach.is_finite() { reach } else { 1.0 };
-        let series = series_of(self.system, &self.loads, c, self.moment(), reach);
-        let mut power = 1.0;
-        let terms = series.map(|term| {
-            power *= reach;
-            term * power / reach
-        });
-        let size = terms[1..].iter().fold(0.0f64, |size, term| size.max(term.abs()));
-        terms[1..].iter().find(|term| term.abs() > 1e-12 * size).is_some_and(|term| *term < 0.0)
+        let mut series = series_of(self.system, &self.loads, c, self.moment(), reach);
+        series[0] = 0.0;
+        let differs = first_difference(&series, reach, (self.noise(c), self.rate_noise(c)));
+        differs.is_some_and(|(_, overlap)| overlap < 0.0)
     }
 
     fn moment(&self) -> (f64, &[f64], &[f64]) {
@@ -348,6 +350,15 @@ impl<'a> March<'a> {
         };
         let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         4.0 * f64::EPSILON * (moved + self.states[c].reference.abs())
+    }
+
+    /// The same of its rate (m/s).
+    fn rate_noise(&self, c: usize) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [sum] = sum_over([psi, &self.rate[modes.clone()]], |[psi, b]| [(psi * b).abs()]);
+            sum
+        };
+        4.0 * f64::EPSILON * self.system.links[c].spans.iter().map(of).sum::<f64>()
     }
 
     /// Rounding of an overlap as it is summed up over a panel of `h` (m).
@@ -451,9 +462,10 @@ impl<'a> March<'a> {
             if inverse > 0.0 { speed / inverse + (approach_speed_m_s - rigid).abs() / mobility } else { 0.0 };
         state.phase = Phase::Closed(Box::new(touch));
         state.momentum = state.momentum.max(momentum);
-        let of_others = |states: &[State]| states.iter().map(|state| state.momentum).fold(0.0, f64::max);
-        if state.momentum == 0.0 {
-            self.states[c].momentum = of_others(&self.states);
+        if state.momentum == 0.0 && inverse > 0.0 {
+            // what it will pass on comes from the others
+            let speed = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
+            self.states[c].momentum = speed / inverse;
         }
         let alone = self.states.iter().filter(|state| state.is_closed()).count() == 1;
         let branch = self.states[c].touch().map(|touch| touch.branch);
@@ -576,7 +588,7 @@ impl<'a> March<'a> {
                     + bend_of_loads(&self.loads, c, self.time_s, lasting);
                 let mut series = series_of(self.system, &self.loads, c, self.moment(), window);
                 series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
-                let (time, meets) = first_closing(&series, curvature, window, self.noise(c));
+                let (time, meets) = first_closing(&series, curvature, window, (self.noise(c), self.rate_noise(c)));
                 if !meets {
                     clear = clear.min(time);
                 } else if first.is_none_or(|(_, earlier)| time < earlier) {
@@ -800,11 +812,12 @@ impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
-        let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end } = trial;
+        let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end, turns } = trial;
         let (contacts, closed) = (contacts.as_slice(), *closed);
         self.tables.prepare(self.system, level, contacts, &contacts[..closed]);
+        self.loads.turn(self.time_s, h, turns);
         overlap.clear();
-        overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c)));
+        overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
         for (&c, overlap) in contacts[closed..].iter().zip(&mut overlap[closed..]) {
@@ -821,7 +834,7 @@ impl<'a> March<'a> {
         for (i, &c) in contacts.iter().enumerate() {
             let nodal = &mut overlap[i];
             let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
-            let (by_loads, rate_of_loads) = self.loads.moved(c, self.time_s, h);
+            let (by_loads, rate_of_loads) = self.loads.moved_on(c, (self.time_s, h), turns, Q);
             let mut forced = 0.0;
             for (j, solved) in solved.iter().enumerate() {
                 if let Some(response) = response(i, j) {
@@ -846,10 +859,10 @@ impl<'a> March<'a> {
     }
 
     /// By how much the overlap of a contact would have grown at the nodes if there were no contact force.
-    fn free_at_nodes(&self, level: i32, c: usize) -> Nodal {
-        let h = step_s(level);
+    fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> Nodal {
+        let panel = (self.time_s, step_s(level));
         let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
-        std::array::from_fn(|i| moved[i] + self.loads.moved(c, self.time_s, BASIS.nodes[i] * h).0)
+        std::array::from_fn(|i| moved[i] + self.loads.moved_on(c, panel, turns, i).0)
     }
 
     /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
@@ -894,12 +907,15 @@ impl<'a> March<'a> {
                     residue: 2.0 * residue,
                     slope_residue: 2.0 * per_overlap * rate_residue * h,
                 };
-                let at_start = || {
+                let beginning = || {
                     let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
-                    let slope = (per.0 * state.rate + per.1 * acceleration) * h;
-                    (slope, (per.1 == 0.0).then_some(per.0 * acceleration * h * h))
+                    Beginning {
+                        slope: (per.0 * state.rate + per.1 * acceleration) * h,
+                        bend: (per.1 == 0.0).then_some(per.0 * acceleration * h * h),
+                        unresolved: (per_overlap + per_rate) * h * h * self.unresolved(c, &contacts[..closed], solved),
+                    }
                 };
-                match function.verdict(at_start) {
+                match function.verdict(beginning) {
                     Verdict::Clear => {}
                     Verdict::Doubtful => doubtful = true,
                     Verdict::Meets(place) => {
@@ -949,6 +965,19 @@ impl<'a> March<'a> {
             weight * state.touch().map_or(0.0, force)
         };
         free - closed.iter().map(pull).sum::<f64>()
+    }
+
+    /// By how much the acceleration of the overlap of a contact is left open by what the polynomials of the closed contacts'
+    /// forces miss (m/s^2).
+    fn unresolved(&self, c: usize, closed: &[usize], solved: &[Collocated]) -> f64 {
+        let links = &self.system.links;
+        let of = |(other, solved): (&usize, &Collocated)| {
+            // no product of weights is larger
+            let weight = (links[c].mobility * links[*other].mobility).sqrt();
+            weight * TAIL * truncation(&BASIS.coefficients(&solved.force))
+        };
+        let shares = |(other, _): &(&usize, &Collocated)| self.system.neighbours[c].contains(other);
+        closed.iter().zip(solved).filter(shares).map(of).sum()
     }
 
     /// The forces of closed contacts at the start of a panel.

@@ -129,6 +129,7 @@ pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
 }
 
 /// A matrix, kept by columns, times a vector.
+#[inline(always)]
 pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
     let mut product = [0.0; Q];
     for j in 0..Q {
@@ -140,6 +141,7 @@ pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {
 }
 
 /// Rates at the nodes of a polynomial on a step of `h`, by its values at the start and at the nodes.
+#[inline(always)]
 pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     let basis = &*BASIS;
     let from_nodes = apply(&basis.slope_from_nodes, nodal);
