@@ -61,7 +61,7 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
 /// Figs. 4.10 and 4.11: displacements at several locations.
 fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), Failure> {
     let (beam, ball) = (case.beam(&p.beam)?, case.ball(p.diameter_m)?);
-    study.section(&format!("{}: displacements at several places (Fig. {})", beam.title, p.figure));
+    study.section(&format!("{}: displacements at several locations (Fig. {})", beam.title, p.figure));
     let setups: Vec<Setup> = p.locations_m.iter().map(|&b| case.setup(beam, ball, b)).collect();
     let found = study.sweep(&setups, 1, Setup::record)?;
     let mut figure = Figure::new(format!("Fig. {}  {}, m = {:.3} kg", p.figure, beam.title, ball.mass_kg)).width(860.0);
@@ -77,6 +77,6 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
     study.figure(
         &format!("fig-{}", slug(&p.figure)),
         &figure,
-        "Beam at the contact and ball. The more compliant the place, the deeper the beam yields.",
+        "Beam at the contact and ball. The more compliant the location, the deeper the beam yields.",
     )
 }

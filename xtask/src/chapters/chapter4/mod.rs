@@ -231,7 +231,7 @@ fn numbers(study: &mut Study, case: &Case) -> Result<(), Failure> {
         omega[39] / omega[0],
     ));
     study.claim(Statement::identity(
-        "smallest place other than 0 (m)",
+        "smallest location other than 0 (m)",
         ["4.2", "0.04166…", "1/24, as printed"],
         (0.04166, 0.04167),
         case.places(pinned)[1],

@@ -32,7 +32,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
     study.text(&format!(
         "Reference: {fine} modes with remainder modes for all others. What it has not \
          settled itself shows in its difference from the same model with {coarse} modes. Differences of the restitution \
-         over all places and balls:"
+         over all locations and balls:"
     ));
 
     let (mut rows, mut panels) = (Vec::new(), Vec::new());
@@ -62,7 +62,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
     for pair in panels.chunks(2) {
         figure = figure.row(pair.to_vec());
     }
-    study.figure("settled", &figure, "Absolute difference of the restitution, place by place and ball by ball.")
+    study.figure("settled", &figure, "Absolute difference of the restitution for each location and ball.")
 }
 
 fn settled_row([truncated, residual, coarser, reference]: [&Row; 4]) -> SettledRow {

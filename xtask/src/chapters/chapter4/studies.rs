@@ -39,7 +39,7 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let axis = Axis::new("speed of the ball").unit("m/s").log();
     let title = format!("Fig. 4.3  {}, m = {:.3} kg, N = 40", beam.title, ball.mass_kg);
     let figure = restitution_and_sub_impacts(&title, &axis, |r| r.speed_m_s, &columns);
-    let caption = "Above: restitution; below: sub-impacts; against the speed of the ball. The step and the places are \
+    let caption = "Above: restitution; below: sub-impacts; against the speed of the ball. The step and the locations are \
                    our choice, so the thesis's small effect can be looked for in kind only.";
     study.figure("fig-4-03", &figure.width(620.0), caption)?;
     study.csv("fig-4-03.csv", &found.concat())?;
@@ -53,9 +53,9 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     }
     study.text(
         "The footnote of 4.1 says that changing the speed up or down by a factor of 15 has only a small effect. For our \
-         step and places (the ensemble counts how often it holds):",
+         step and locations (the ensemble counts how often it holds):",
     );
-    study.table(&["place", "e at 1 m/s", "largest change of it, 1/15 to 15 m/s"], &lines);
+    study.table(&["location", "e at 1 m/s", "largest change of it, 1/15 to 15 m/s"], &lines);
     Ok(())
 }
 

@@ -91,13 +91,13 @@ pub(in crate::chapters) fn of_beams<'a>(
 }
 
 pub(super) fn run<'a>(study: &mut Study, case: &'a Case) -> Result<Vec<Table<'a>>, Failure> {
-    study.section("The tables: four beams, every place and ball, N = 40, ζ = 0.02");
+    study.section("The tables: four beams, every location and ball, N = 40, ζ = 0.02");
     let tables = compute(study, case, case.parameters.modes, false)?;
-    study.section("Restitution against place and ball (Figs. 4.6 to 4.9)");
+    study.section("Restitution against location and ball (Figs. 4.6 to 4.9)");
     for (table, number) in tables.iter().zip(6..) {
         let rows: Vec<Row> = table.all().cloned().collect();
         study.csv(&format!("restitution-{}.csv", table.beam.name), &rows)?;
-        let caption = "Above: restitution and number of sub-impacts over place and ball. Below: restitution of every other \
+        let caption = "Above: restitution and number of sub-impacts over location and ball. Below: restitution of every other \
                        ball along the beam.";
         study.main_figure(&format!("fig-4-{number:02}"), &figure(table, number), caption)?;
     }

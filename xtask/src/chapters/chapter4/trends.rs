@@ -90,7 +90,7 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
         ),
     ];
     trends.push(Trend::new(
-        "mean share of change of e to the next place where e is below its median, over that elsewhere, away from the ends",
+        "mean relative change of e to the next location where e is below its median, over that elsewhere, away from the ends",
         "the percentage variation in the restitution value is significantly larger when the restitution itself is smaller",
         TWICE,
         relative_variation(table, inner),
@@ -116,17 +116,16 @@ fn relative_variation(table: &Table, inner: impl Fn(&Row) -> bool) -> f64 {
 }
 
 /// The quantity that depends most on the list of balls.
-pub(in crate::chapters) const FREE_END: &str = "mean e at the free end less that two places before";
+pub(in crate::chapters) const FREE_END: &str = "mean e at the free end less that two locations before";
 
 const SUDDEN: &str = "there is a sudden rise in restitution very close to pinned or fixed ends";
-const VERY_CLOSE: &str =
-    "whether one place from the end, 42 mm, is very close to it; closer the rise is there, and e is 1 at the end";
+const VERY_CLOSE: &str = "whether one location from the end, 42 mm, is very close to it; closer to the end there is a rise, and e is 1 at the end itself";
 
 /// Rises still closer to held ends than the tables' locations are; `closer` is a table of one such location for each held end.
 pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) -> Vec<Trend> {
     let names = [
-        "mean e a sixteenth of a place from the left, held end less that one place from it",
-        "mean e a sixteenth of a place from the right, held end less that one place from it",
+        "mean e a sixteenth of a spacing from the left, held end less that one location from it",
+        "mean e a sixteenth of a spacing from the right, held end less that one location from it",
     ];
     let nearest = |place_m: f64| {
         let inside = table.places_m.iter().copied().filter(|b| *b > 0.0 && *b < table.beam.model.beam.length_m());
@@ -148,7 +147,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
     let at = |place_m: f64| table.mean(Row::e, |r| r.location_m == place_m);
     let one_place = |quantity, ours| Trend { otherwise: VERY_CLOSE, ..Trend::new(quantity, SUDDEN, VISIBLY, ours) };
     if let [_, near, further, ..] = table.places_m.as_slice() {
-        let quantity = "mean e one place from the left, held end less two places from it";
+        let quantity = "mean e one location from the left, held end less that two locations from it";
         trends.push(one_place(quantity, at(*near) - at(*further)));
     }
     match (table.places_m.as_slice(), table.beam.model.beam.ends[1]) {
@@ -161,7 +160,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
             ));
         }
         ([.., further, near, _], _) => {
-            let quantity = "mean e one place from the right, held end less two places from it";
+            let quantity = "mean e one location from the right, held end less that two locations from it";
             trends.push(one_place(quantity, at(*near) - at(*further)));
         }
         _ => {}

@@ -20,7 +20,7 @@ const SMALL: Limits = ((0.0, 0.1), "a tenth of the range from 0 to 1");
 const CLOSE: Limits = ((0.0, 0.05), "a twentieth of the range from 0 to 1");
 const LARGE: Limits = ((20.0, f64::INFINITY), "more than most impacts of chapter 3 have");
 const FAR_MORE: Limits = ((10.0, f64::INFINITY), "ten times");
-const NONE: Limits = ((0.0, 0.0), "three places, in order");
+const NONE: Limits = ((0.0, 0.0), "three locations, in order");
 const SEVERAL: Limits = ((2.0, f64::INFINITY), "more than one");
 const COARSELY: Limits = ((0.5, 1.0), "1 is strict order, 0 none; the text says \"very coarsely\"");
 
@@ -44,7 +44,7 @@ struct SpeedRow {
 
 /// Fig. 4.3 for all stepped cantilevers and locations.
 fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
-    study.section("The speed, over steps, slim parts and places (Fig. 4.3)");
+    study.section("The speed, over steps, slim parts and locations (Fig. 4.3)");
     let p = &case.parameters.our_choice.speed_study;
     let ball = Ball::new(&case.parameters.material, p.diameter_m)?;
     let places: Vec<(&Variant, f64)> = of_beam(variants, &p.beam)
@@ -69,7 +69,7 @@ fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Fa
     })?;
     study.csv("speeds.csv", &rows)?;
     let trend = |row: &SpeedRow| {
-        let quantity = "largest change of e from that at 1 m/s, speeds from 1/15 to 15 m/s, one place";
+        let quantity = "largest change of e from that at 1 m/s, speeds from 1/15 to 15 m/s, one location";
         let words = "changing the velocity up or down by a factor of 15 has only a small effect";
         vec![Trend { source: "footnote, 4.1", ..Trend::new(quantity, words, SMALL, row.largest_change) }]
     };
@@ -114,13 +114,13 @@ fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
     let (low, high) = range(tip, 0, Row::e);
     vec![
         Trend::new(
-            "largest change of e at three places from 40 modes on, damped",
+            "largest change of e at three locations from 40 modes on, damped",
             "reasonable convergence is achieved for N ≈ 40",
             CLOSE,
             changes.fold(0.0, f64::max),
         ),
         Trend::new(
-            "places where e is higher and its share of change from 20 modes on no smaller, damped",
+            "locations where e is higher and its relative change from 20 modes on no smaller, damped",
             "convergence is more rapid where restitution is higher",
             NONE,
             slower as f64,
@@ -142,7 +142,7 @@ fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
 
 /// Fig. 4.5, whose locations and ball are printed.
 fn detailed(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
-    study.section("Four places, over steps and slim parts (Fig. 4.5)");
+    study.section("Four locations, over steps and slim parts (Fig. 4.5)");
     let p = &case.parameters.our_choice.detailed;
     let ball = Ball::new(&case.parameters.material, p.diameter_m)?;
     let beams = of_beam(variants, &p.beam);
@@ -177,13 +177,13 @@ fn along_the_beam(study: &mut Study, case: &Case, variants: &[Variant]) -> Resul
             }
             Ok(vec![
                 Trend::new(
-                    "rank correlation of place and deepest displacement",
+                    "rank correlation of location and deepest displacement",
                     "for the larger b's, the magnitudes of the displacements of the beam-contact-point increase",
                     COARSELY,
                     rank_correlation(&places, &depths),
                 ),
                 Trend::new(
-                    "rank correlation of place and number of sub-impacts",
+                    "rank correlation of location and number of sub-impacts",
                     "for the larger b's, more than one subsequent impacts occur",
                     COARSELY,
                     rank_correlation(&places, &counts),
