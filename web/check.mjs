@@ -92,7 +92,7 @@ try {
 
   // for readers of screens: the tree that they read
   const tree = await page.locator("body").ariaSnapshot();
-  for (const wanted of [/main/, /heading "Play with an impact" \[level=1\]/, /slider "Place of impact"/, /group "Beam and ball"/,
+  for (const wanted of [/main/, /heading "Play with an impact" \[level=1\]/, /slider "Location of impact"/, /group "Beam and ball"/,
     /button "(Play|Pause)"/, /form "Ball and beam"/, /status/, /row "Restitution/, /img "Contact force over time: \d+ contacts/]) {
     if (!wanted.test(tree)) throw new Error(`a reader of screens does not find ${wanted} in\n${tree}`);
   }

@@ -14,10 +14,10 @@ use crate::errors::Fault;
 use crate::input::Source;
 use crate::output;
 
-/// How often it is looked whether Ctrl-C was pressed.
+/// Time between two checks for Ctrl-C.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// Looks for signals now and then.
+/// Checks for signals from time to time.
 struct Signals {
     looked: Instant,
     found: Option<PyErr>,
@@ -37,7 +37,7 @@ impl Signals {
         self.found.is_some()
     }
 
-    /// What was found in the meantime, unless a signal came.
+    /// The result so far, unless a signal came.
     fn unless<T>(self, found: Result<T, Fault>) -> PyResult<T> {
         match self.found {
             Some(signal) => Err(signal),
@@ -79,8 +79,8 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 /// `periods` of them. Returns what `vibroimpact orbit --json` prints, with `points` as a structured array and
 /// `floquet_multipliers` as a complex one.
 ///
-/// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (the scene's own value
-/// when left out) to `to`; `step` is the first step as a part of that range. The entry `columns` then holds a
+/// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value
+/// in the scene) to `to`; `step` is the first step as a share of that range. The entry `columns` then holds a
 /// dictionary of arrays, a value for each of the `orbits`: those of the table that `--csv` writes.
 ///
 /// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends a branch.

@@ -14,8 +14,8 @@ use crate::output;
 
 /// Net restitution without integration in time: energy minimisation under outward constraints.
 ///
-/// Returns what `vibroimpact emoc --json` prints. `modes` is the number of modes in the law; the scene's own when left
-/// out. Parameters for a beam come from `fit`.
+/// Returns what `vibroimpact emoc --json` prints. `modes` is the number of modes in the law, by default that of
+/// the scene. Parameters for a beam come from `fit`.
 #[pyfunction]
 #[pyo3(signature = (scene, *, mu0 = 1.0, alpha0 = 1.0, alpha1 = 1.0, modes = None))]
 pub fn emoc(
@@ -92,7 +92,7 @@ fn restitution(
 
 /// Fit the three parameters of `emoc` to observed restitutions on the scene's beam.
 ///
-/// `mass_kg`, `location_m` and `restitution` are arrays of one length, at least three; masses and places of the scene
+/// `mass_kg`, `location_m` and `restitution` are arrays of one length, at least three; mass and location of the scene
 /// itself are not used. Returns what `vibroimpact fit --json` prints; `intervals`, an array of shape (3, 2), is `None`
 /// where the observations do not determine the parameters.
 #[pyfunction]
@@ -126,7 +126,7 @@ pub fn fit<'py>(
     output::result(py, &json)
 }
 
-/// A fault in a line of the table as one in an element of an array.
+/// An error in a line of the table as one in an element of an array.
 fn of_element(fault: InvalidInput) -> InvalidInput {
     let element = fault.field.strip_prefix("line ").and_then(|rest| rest.split_once(", "));
     match element {

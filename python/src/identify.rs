@@ -26,11 +26,11 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FreeFields {
 /// `data` holds a measured impact in each row: columns under their names (a dictionary of arrays, or a data frame of pandas),
 /// or the path of a CSV file. Columns are fields of the scene, such as `"striker.speed_m_s"`, which take the place of the
 /// scene's own; what was measured, such as `"restitution"` or `"first_contact_s"`; and standard deviations of that, such
-/// as `"restitution_sd"`. NaN stands for what was not measured.
+/// as `"restitution_sd"`. NaN marks what was not measured.
 ///
-/// `free` lists the fields that are sought, each within a factor of three of the scene's value; or maps each to the two
+/// `free` lists the fields to find, each within a factor of three of the scene's value; or maps each to the two
 /// limits of its search. `level` is the probability with which an interval holds its field, `starts` the number of
-/// starting points of the search. `candidates` holds experiments that could be made, of which the most telling is sought.
+/// starting points of the search. `candidates` holds possible experiments, which are ranked by how much they would tell.
 ///
 /// Returns what `vibroimpact identify --json` prints.
 #[pyfunction]

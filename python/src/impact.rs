@@ -20,9 +20,9 @@ use crate::output;
 /// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (the `contacts` of an infinite structure, the
 /// `intervals` of each contact between bodies, and `points`) as structured arrays and energies of modes as an array.
 ///
-/// With `history=True` two entries more. Of one impact: `history`, motion and force over time as a dictionary of arrays;
+/// `history=True` adds two entries. For one impact: `history`, motion and force over time as a dictionary of arrays;
 /// and `modal_energies`, a dictionary of `time_s` and `energy_j`, the latter with a row for each time and a column for
-/// each mode; either is `None` where the model has no such course. Of bodies: `history`, and `section`, the same once in
+/// each mode; either is `None` if the model does not resolve it. For bodies: `history`, and `section`, the same once in
 /// each period of a harmonic load, `None` without one.
 ///
 /// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact,
@@ -59,16 +59,16 @@ pub fn plan(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
     output::result(py, &json)
 }
 
-/// Answer a scene by every model, side by side.
+/// Solve a scene with every model, side by side.
 ///
-/// Returns what `vibroimpact compare --json` prints: differences are from the model that is known best.
+/// Returns what `vibroimpact compare --json` prints: differences are from the model with the smallest uncertainty.
 #[pyfunction]
 pub fn compare(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
     let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.compare()?)?))?;
     output::result(py, &json)
 }
 
-/// Differentiate a scene, of one impact or of bodies, by its fields, such as `"striker.mass_kg"`; by every number of it where
+/// Differentiate a scene, of one impact or of bodies, by its fields, such as `"striker.mass_kg"`; by every number of it if
 /// none is named.
 ///
 /// Returns what `vibroimpact sensitivity --json` prints: `derivatives[output][field]` has a `value` and its `uncertainty`,
@@ -100,10 +100,10 @@ pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, 
     Ok(table)
 }
 
-/// Solve the impact on an infinite beam, posed by its one number S = C^10 k_H^2 m^8 v.
+/// Solve the impact on an infinite beam, given by its single parameter S = C^10 k_H^2 m^8 v.
 ///
 /// Returns what `vibroimpact infinite-beam --json` prints, with `contacts` as a structured array. Times are in units
-/// of T, speeds of v, forces of F (thesis Eqs. 2.9 and 2.10). With `history=True` an entry more, `history`: motion and
+/// of T, speeds of v, forces of F (thesis Eqs. 2.9 and 2.10). `history=True` adds the entry `history`: motion and
 /// force over time as a dictionary of arrays.
 #[pyfunction]
 #[pyo3(signature = (s, *, history = false))]

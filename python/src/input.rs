@@ -1,4 +1,4 @@
-//! What Python gives: mappings, and names of files.
+//! Input from Python: mappings, and names of files.
 
 use std::path::{Path, PathBuf};
 

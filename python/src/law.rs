@@ -1,4 +1,4 @@
-//! Laws of contact made to measure.
+//! Laws of contact for a requested restitution.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -10,9 +10,9 @@ use crate::output;
 
 /// Parameters of the laws of contact that have a restitution (0.001 to 1) for a mass and a speed of approach.
 ///
-/// Returns what `vibroimpact law --json` prints. `other_mass_kg` is the mass of the other body, immovable when left out;
-/// `compression_m` how deep the bodies press; `step_s` the step of an engine that steps by semi-implicit Euler, for which
-/// each law tells what the step makes of it, and parameters that make up for it. `law` names one alone: `mujoco`,
+/// Returns what `vibroimpact law --json` prints. `other_mass_kg` is the mass of the other body, which is immovable by default;
+/// `compression_m` is the largest compression. `step_s` is the step of an engine that steps by semi-implicit Euler: each law
+/// then states its restitution with this step, and parameters that correct for the step. `law` selects a single law: `mujoco`,
 /// `kelvin-voigt`, `hunt-crossley`, `flores`, `lankarani-nikravesh`.
 #[pyfunction]
 #[pyo3(signature = (restitution, mass_kg, speed_m_s, *, other_mass_kg = None, compression_m = None, step_s = None, law = None))]

@@ -1,4 +1,4 @@
-//! What Python gets: dictionaries and arrays.
+//! Output for Python: dictionaries and arrays.
 
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;

@@ -48,14 +48,14 @@ _INTERVALS = [
         "separation_speed_m_s",
     ]
 ]
-# results that know more than their entries, by an entry that no other has
+# classes of results, by an entry that only this kind of result has
 _KINDS: dict[str, type[Result]] = {"striker_velocity_m_s": Impact, "steady_motion": Motion, "profiles": Identification}
 _WHOLE = ("n", "side", "intervals_per_period")
 _ARRAYS = ("modes_j", "intervals")
 
 
 def to_json(tree: Mapping[str, Any]) -> str:
-    """A scene or a sweep as JSON text; arrays and numbers of numpy are welcome in it."""
+    """A scene or a sweep as JSON text; it may hold arrays and numbers of numpy."""
     return json.dumps(dict(tree), default=_plain)
 
 
@@ -70,7 +70,7 @@ def _plain(value: object) -> object:
 
 
 def to_csv(table: SupportsKeysAndGetItem[str, Any]) -> str:
-    """Columns as a table of comma-separated values; a number that is not there (NaN) becomes an empty cell."""
+    """Columns as a table of comma-separated values; a missing number (NaN) becomes an empty cell."""
     cells = {str(name): [_cell(value) for value in table[name]] for name in table.keys()}
     lengths = {name: len(column) for name, column in cells.items()}
     for name, length in lengths.items():
@@ -102,14 +102,14 @@ def to_free(free: Mapping[str, Any] | Iterable[str]) -> list[str]:
 
 
 def from_json(text: str) -> Result:
-    """A result, with its tables as arrays, as what it is of."""
+    """A result of the class of its kind, with its tables as arrays."""
     tree = json.loads(text, object_hook=_with_arrays)
     kind = next((kind for entry, kind in _KINDS.items() if entry in tree), Result)
     return kind(tree)
 
 
 def columns(table: str) -> dict[str, Any]:
-    """The columns of a table of comma-separated numbers and truths."""
+    """The columns of a table of comma-separated numbers and truth values."""
     names, *rows = csv.reader(table.splitlines())
     cells = list(zip(*rows)) or [()] * len(names)
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 
 class Part(Mapping[str, Any]):
-    """A part of a scene is a mapping as well: that which stands in the scene file, without the fields left out.
+    """A part of a scene is a mapping as well: the content of the scene file, without the fields left out.
 
     Functions take it as they take a dictionary; ``dataclasses.replace`` makes another with some fields changed.
     """

@@ -1,4 +1,4 @@
-"""Results: dictionaries that also know their most asked-for entries, and draw themselves."""
+"""Results: dictionaries with their most frequent entries as attributes, which draw themselves."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Impact(Result):
 
     @property
     def outcome(self) -> str:
-        """``"rebound"``, ``"sustained"``, ``"no contact"``, or how else it ended."""
+        """``"rebound"``, ``"sustained"``, ``"no contact"``, or another outcome."""
         return str(self["outcome"])
 
     @property
@@ -40,7 +40,7 @@ class Impact(Result):
 
     @property
     def restitution_uncertainty(self) -> float | None:
-        """How far off the restitution may be; ``None`` where that is not known."""
+        """Uncertainty of the restitution; ``None`` where it is not known."""
         return self["restitution_uncertainty"]  # type: ignore[no-any-return]
 
     @property
@@ -51,11 +51,11 @@ class Impact(Result):
 
     @property
     def history(self) -> Columns | None:
-        """Motion and force over time, a column by its name; ``None`` unless it was asked for and the model has it."""
+        """Motion and force over time, a column by its name; ``None`` unless it was requested and the model resolves it."""
         return self.get("history")
 
     def plot(self) -> Figure:
-        """Draws motion and contact force over time. Where no history was asked for, the impact is solved once more."""
+        """Draws motion and contact force over time. If no history was requested, the impact is solved once more."""
         history = _solved_again(self)["history"]
         if history is None:
             raise ValueError(f"nothing to plot: the model {self['choice']['model']} has no course in time")
@@ -91,11 +91,11 @@ class Motion(Result):
 
     @property
     def history(self) -> Columns | None:
-        """Gaps, forces and motions over time, a column by its name; ``None`` unless it was asked for."""
+        """Gaps, forces and motions over time, a column by its name; ``None`` unless it was requested."""
         return self.get("history")
 
     def plot(self) -> Figure:
-        """Draws the gap and the force of each contact over time. Where no history was asked for, the scene is solved once more."""
+        """Draws the gap and the force of each contact over time. If no history was requested, the scene is solved once more."""
         history = _solved_again(self)["history"]
         figure, (gaps, forces) = _subplots(2, 1, sharex=True)
         for name in self.contacts:

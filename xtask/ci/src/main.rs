@@ -18,10 +18,16 @@ struct Step {
 }
 
 /// Every step but the first takes the workspace's features: all but `mpi`, which needs more than Rust.
-const STEPS: [Step; 5] = [
+const STEPS: [Step; 6] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
-        name: "clippy",
+        // without the tests, whose further dependencies would come first
+        name: "lints",
+        arguments: &["clippy", "--workspace", "--locked", "FEATURES", "--", "-D", "warnings"],
+        rustdocflags: "",
+    },
+    Step {
+        name: "lints of tests, examples and benches",
         arguments: &["clippy", "--workspace", "--all-targets", "--locked", "FEATURES", "--", "-D", "warnings"],
         rustdocflags: "",
     },
@@ -31,7 +37,7 @@ const STEPS: [Step; 5] = [
         rustdocflags: "-D warnings",
     },
     Step {
-        // that each crate can be packed; the job `alone` of ci.yml builds the packages as well
+        // checks that each crate can be packed; the job `alone` of ci.yml also builds the packages
         name: "packages",
         arguments: &[
             "package",
@@ -68,7 +74,7 @@ fn run() -> Result<(), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).ok_or("no workspace above xtask/ci")?;
     let mpi = MPI_PROGRAMS.into_iter().all(is_installed);
     if !mpi {
-        eprintln!("== sweeps over MPI: left out, {} are not all installed", MPI_PROGRAMS.join(", "));
+        eprintln!("== sweeps over MPI: not tested, since {} are not all installed", MPI_PROGRAMS.join(", "));
     }
     STEPS.iter().try_for_each(|step| timed(step.name, || carry_out(step, root, mpi)))
 }
