@@ -130,7 +130,7 @@ impl Tables {
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
         let (expanded, found) = match expanded {
             Some(expanded) => {
-                let found = expanded.forced.responses(system, step_s(j), &weights);
+                let found = expanded.forced.again(system, step_s(j), &weights);
                 (expanded, found)
             }
             None => {
@@ -139,7 +139,9 @@ impl Tables {
             }
         };
         expanded.responses.resize_with(count * count, || None);
-        for ((c, other), elastic) in pairs.into_iter().zip(found) {
+        for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
+            let (end, end_rate) = expanded.forced.end(system, weights);
+            let elastic = Response { nodes, end, end_rate };
             let whole = elastic.with_rigid(system.links[c].shared_rigid(&system.links[other]), step_s(j));
             expanded.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
         }
@@ -230,9 +232,9 @@ fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usiz
 }
 
 impl Forced {
-    /// Every mode on a panel of `h`, with responses summed over the modes with these weights, gathered in one pass;
-    /// `half` is free motion over half of it. Rigid modes take no part in the responses.
-    pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<Response>) {
+    /// Every mode on a panel of `h`, with responses at the nodes summed over the modes with these weights, gathered in one
+    /// pass; `half` is free motion over half of it. Rigid modes take no part in the responses.
+    pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<[Nodal; Q]>) {
         let n = system.modes.len();
         let mut at_nodes = Vec::with_capacity(n);
         let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
@@ -248,15 +250,14 @@ impl Forced {
                     amplitude[n][k] = part.end.0[n];
                     rate[n][k] = part.end.1[n];
                 }
-                sums.add_end(&part.end);
             }
         }
-        (Forced { at_nodes, amplitude, rate }, sums.responses(h))
+        (Forced { at_nodes, amplitude, rate }, sums.at_nodes(h))
     }
 
-    /// Responses summed over the modes with other weights, of a panel of `h` again: to the last bit those of
+    /// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
     /// [`Forced::new`].
-    fn responses(&self, system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<Response> {
+    fn again(&self, system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<[Nodal; Q]> {
         let mut sums = Sums::new(weights);
         for body in &system.bodies {
             let mut terms = Terms::default();
@@ -264,10 +265,21 @@ impl Forced {
                 let mode = &system.modes[k];
                 sums.turn_to(mode, k);
                 gather(mode, &sums.of_mode, h, &mut terms, &mut sums.compliances);
-                sums.add_end(&(self.amplitude.each_ref().map(|row| row[k]), self.rate.each_ref().map(|row| row[k])));
             }
         }
-        sums.responses(h)
+        sums.at_nodes(h)
+    }
+
+    /// What the modes with these weights do at the end.
+    fn end(&self, system: &System, weights: &[f64]) -> (Nodal, Nodal) {
+        let (mut end, mut end_rate) = ([0.0; Q], [0.0; Q]);
+        for (k, weight) in weights.iter().enumerate().filter(|(k, _)| !system.modes[*k].is_rigid()) {
+            for n in 0..Q {
+                end[n] -= weight * self.amplitude[n][k];
+                end_rate[n] -= weight * self.rate[n][k];
+            }
+        }
+        (end, end_rate)
     }
 
     /// How far free motion moves `sum_k psi_k a_k` at the nodes.
@@ -309,14 +321,13 @@ struct Sums<'a> {
     weights: &'a [Vec<f64>],
     of_mode: Vec<f64>,
     compliances: Vec<Compliance>,
-    ends: Vec<(Nodal, Nodal)>,
 }
 
 impl Sums<'_> {
     fn new(weights: &[Vec<f64>]) -> Sums<'_> {
         let count = weights.len();
         let compliances = weights.iter().map(|_| Compliance::new()).collect();
-        Sums { weights, of_mode: vec![0.0; count], compliances, ends: vec![([0.0; Q], [0.0; Q]); count] }
+        Sums { weights, of_mode: vec![0.0; count], compliances }
     }
 
     /// Turns to a mode; rigid ones take no part.
@@ -326,34 +337,26 @@ impl Sums<'_> {
         }
     }
 
-    /// Adds what the mode does at the end.
-    fn add_end(&mut self, (amplitude, rate): &(Nodal, Nodal)) {
-        for (weight, (end, end_rate)) in self.of_mode.iter().zip(&mut self.ends) {
-            for n in 0..Q {
-                end[n] -= weight * amplitude[n];
-                end_rate[n] -= weight * rate[n];
-            }
-        }
+    fn at_nodes(self, h: f64) -> Vec<[Nodal; Q]> {
+        self.compliances.into_iter().map(|compliance| compliance.at_nodes(h)).collect()
     }
+}
 
-    fn responses(self, h: f64) -> Vec<Response> {
-        let response = |(compliance, (end, end_rate)): (Compliance, (Nodal, Nodal))| Response {
-            nodes: compliance.at_nodes(h),
-            end,
-            end_rate,
-        };
-        self.compliances.into_iter().zip(self.ends).map(response).collect()
+/// Responses at the nodes with those of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
+pub(crate) fn with_rigid_modes(mut nodes: [Nodal; Q], inverse_mass: f64, h: f64) -> [Nodal; Q] {
+    let moved = inverse_mass * h * h;
+    for (row, twice) in nodes.iter_mut().zip(&BASIS.power[1]) {
+        row.iter_mut().zip(twice).for_each(|(value, integral)| *value -= moved * integral);
     }
+    nodes
 }
 
 impl Response {
     /// With that of rigid modes of this inverse mass (1/kg) added, on a panel of `h`.
     pub fn with_rigid(&self, inverse_mass: f64, h: f64) -> Response {
-        let Response { mut nodes, mut end, mut end_rate } = *self;
+        let Response { nodes, mut end, mut end_rate } = *self;
+        let nodes = with_rigid_modes(nodes, inverse_mass, h);
         let moved = inverse_mass * h * h;
-        for (row, twice) in nodes.iter_mut().zip(&BASIS.power[1]) {
-            row.iter_mut().zip(twice).for_each(|(value, integral)| *value -= moved * integral);
-        }
         // int (1-s) P_n ds is 1/2, -1/6 and 0 from then on
         end[0] -= moved / 2.0;
         end[1] += moved / 6.0;

@@ -42,8 +42,8 @@ use super::dense::{Event, Stretch};
 use super::load::Loads;
 use super::load_change::LoadChange;
 use super::problem::Posed;
-use super::system::{Link, Span, System};
-use super::tables::{Forced, Response};
+use super::system::{Span, System};
+use super::tables::{Forced, with_rigid_modes};
 use crate::panel::dyadic::{Rotation, level_within, step_s};
 use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
 use crate::panel::vector::vectorized;
@@ -121,9 +121,9 @@ struct Expansion {
     rotation: Rotation,
     forced: Forced,
     /// `[p n + q]` over the closed contacts.
-    own: Vec<Response>,
+    own: Vec<[Nodal; Q]>,
     /// The same for each change: the weights of `F`, and of `t F` and `t F'` where modes change.
-    changed: Vec<Vec<[Option<Response>; 3]>>,
+    changed: Vec<Vec<[Option<[Nodal; Q]>; 3]>>,
 }
 
 /// Expansions of panels whose length comes again, by that length and the contacts that are closed: for one system and the
@@ -146,7 +146,12 @@ struct Solved {
     compression: Nodal,
     rate: Nodal,
     law: [Force; Q],
+    /// What a unit of weight would make of all modes by the end of the panel: by `F`, `t F` and `t F' + 2 F`.
+    driven: [Motion; 3],
 }
+
+/// Amplitudes and rates of all modes.
+type Motion = [Vec<f64>; 2];
 
 /// A panel of the record, from one stretch to the next, with what all changes need of it.
 struct Passage<'a> {
@@ -194,9 +199,9 @@ struct Walk<'a> {
     posed: &'a Posed<'a>,
     system: &'a System,
     changes: &'a [Change<'a>],
-    /// `c_1 psi` and `c_2 psi` of each change and contact.
-    faded: Vec<Vec<Vec<Span>>>,
-    stretched: Vec<Vec<Vec<Span>>>,
+    /// A weight of -1 for each mode that a contact sees, and whether any change moves modes.
+    units: Vec<Vec<Span>>,
+    modes_move: bool,
     /// The loads on the panel at hand, and how they change.
     loads: Loads,
     load_changes: Vec<Option<LoadChange>>,
@@ -240,14 +245,6 @@ pub(crate) fn tangents(
     walk.tangents.iter().all(finite).then_some(Tangents { tangents: walk.tangents, amplitude, rate, nearest_graze })
 }
 
-fn scaled(link: &Link, factors: &[f64]) -> Vec<Span> {
-    let of = |span: &Span| {
-        let psi = span.psi.iter().zip(&factors[span.modes.clone()]).map(|(psi, factor)| psi * factor).collect();
-        Span { modes: span.modes.clone(), psi }
-    };
-    link.spans.iter().map(of).collect()
-}
-
 fn sum(spans: &[Span], values: &[f64]) -> f64 {
     spans.iter().map(|span| span.sum(values)).sum()
 }
@@ -267,10 +264,7 @@ impl<'a> Walk<'a> {
         changes: &'a [Change<'a>],
         expansions: &'a mut Expansions,
     ) -> Walk<'a> {
-        let weighted = |factors: fn(&'a Change<'a>) -> &'a [f64]| {
-            let of = |change| system.links.iter().map(|link| scaled(link, factors(change))).collect();
-            changes.iter().map(of).collect()
-        };
+        let unit = |span: &Span| Span { modes: span.modes.clone(), psi: vec![-1.0; span.psi.len()] };
         let followed = |gap: &f64| Followed {
             branch: None,
             memory: Memory::default(),
@@ -291,8 +285,8 @@ impl<'a> Walk<'a> {
             posed,
             system,
             changes,
-            faded: weighted(|change| &change.fade),
-            stretched: weighted(|change| &change.stretch),
+            units: system.links.iter().map(|link| link.spans.iter().map(unit).collect()).collect(),
+            modes_move: changes.iter().any(|change| change.moves_modes),
             loads: Loads::new(posed.loads, system),
             load_changes: changes.iter().map(|change| change.loads.clone()).collect(),
             expansions,
@@ -417,7 +411,7 @@ impl<'a> Walk<'a> {
             let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
             let n = closed.len();
             let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
-            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q].nodes);
+            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q]);
             self.blocks.factor(&values, &response, h);
         }
         let from = [stretch.amplitude.as_slice(), &stretch.rate];
@@ -511,12 +505,12 @@ impl<'a> Walk<'a> {
         // a flight needs nothing but free motion
         let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
         let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
-        let whole: Vec<Response> = elastic
+        let whole: Vec<[Nodal; Q]> = elastic
             .iter()
             .zip(&weights)
             .map(|(elastic, weights)| {
                 let rigid = system.modes.iter().zip(weights).filter(|(mode, _)| mode.is_rigid());
-                elastic.with_rigid(rigid.map(|(_, weight)| weight).sum(), h)
+                with_rigid_modes(*elastic, rigid.map(|(_, weight)| weight).sum(), h)
             })
             .collect();
         let pick = |place: &[Option<usize>; 3]| place.map(|place| place.map(|i| whole[i]));
@@ -540,19 +534,29 @@ impl<'a> Walk<'a> {
             compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
             for (q, (_, other)) in stretch.forces.iter().enumerate() {
                 let nodal = BASIS.nodes.map(|s| evaluate(other, s));
-                add(&mut compression, 1.0, &apply(&expansion.own[p * n + q].nodes, &nodal));
+                add(&mut compression, 1.0, &apply(&expansion.own[p * n + q], &nodal));
             }
             let rate = slopes(followed.overlap, &compression, h);
             let law = self.posed.laws[*c];
             let nodal = BASIS.nodes.map(|s| evaluate(force, s));
             let slope = derivative(force);
             let force_rate = BASIS.nodes.map(|s| evaluate(&slope, s) / h);
+            let (timed, timed_rate) = (times(&place, &nodal), times(&place, &force_rate));
+            let driven = |nodal: &Nodal| {
+                let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; self.system.modes.len()]);
+                let force = BASIS.coefficients(nodal);
+                expansion.forced.push(&self.units[*c], &force, &mut amplitude, &mut rate);
+                [amplitude, rate]
+            };
+            let driven_by_timed = |nodal: &Nodal| if self.modes_move { driven(nodal) } else { Motion::default() };
+            let again: Nodal = array::from_fn(|i| timed_rate[i] + 2.0 * nodal[i]);
             Some(Solved {
                 contact: *c,
                 branch,
                 force: *force,
-                timed: times(&place, &nodal),
-                timed_rate: times(&place, &force_rate),
+                driven: [driven(&nodal), driven_by_timed(&timed), driven_by_timed(&again)],
+                timed,
+                timed_rate,
                 nodal,
                 force_rate,
                 start: followed.overlap,
@@ -612,15 +616,15 @@ impl<'a> Walk<'a> {
             for (q, other) in solved.iter().enumerate() {
                 let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
                 if let Some(response) = of_force {
-                    add(&mut found, 1.0, &apply(&response.nodes, &other.nodal));
+                    add(&mut found, 1.0, &apply(response, &other.nodal));
                 }
                 if let Some(response) = of_timed {
-                    add(&mut found, 1.0, &apply(&response.nodes, &other.timed));
-                    add(&mut timed, -1.0, &apply(&response.nodes, &other.nodal));
+                    add(&mut found, 1.0, &apply(response, &other.timed));
+                    add(&mut timed, -1.0, &apply(response, &other.nodal));
                 }
                 if let Some(response) = of_timed_rate {
-                    add(&mut found, -1.0, &apply(&response.nodes, &other.timed_rate));
-                    add(&mut timed, 1.0, &apply(&response.nodes, &other.force_rate));
+                    add(&mut found, -1.0, &apply(response, &other.timed_rate));
+                    add(&mut timed, 1.0, &apply(response, &other.force_rate));
                 }
             }
             for i in 0..Q {
@@ -644,7 +648,7 @@ impl<'a> Walk<'a> {
         }
         for (p, found) in overlap.iter_mut().enumerate() {
             for (q, force) in force.iter().enumerate() {
-                add(found, 1.0, &apply(&expansion.own[p * n + q].nodes, force));
+                add(found, 1.0, &apply(&expansion.own[p * n + q], force));
             }
         }
         // y at the end
@@ -652,16 +656,14 @@ impl<'a> Walk<'a> {
         for (own, force) in solved.iter().zip(&force) {
             let c = own.contact;
             let link = &system.links[c];
-            let mut push = |spans: &[Span], nodal: &Nodal, factor: f64| {
-                let force = BASIS.coefficients(nodal).map(|value| factor * value);
-                expansion.forced.push(spans, &force, &mut amplitude, &mut rate);
-            };
-            push(&link.spans, force, 1.0);
-            push(&change.psi[c], &own.nodal, 1.0);
-            if modes_move {
-                push(&self.faded[d][c], &own.timed, 1.0);
-                let driven: Nodal = array::from_fn(|i| own.timed_rate[i] + 2.0 * own.nodal[i]);
-                push(&self.stretched[d][c], &driven, -1.0);
+            expansion.forced.push(&link.spans, &BASIS.coefficients(force), &mut amplitude, &mut rate);
+            for (Span { modes, psi }, Span { psi: by, .. }) in link.spans.iter().zip(&change.psi[c]) {
+                for (order, moved) in [&mut amplitude, &mut rate].into_iter().enumerate() {
+                    let driven = own.driven.each_ref().map(|motion| motion[order].get(modes.clone()).unwrap_or(&[]));
+                    let moved = &mut moved[modes.clone()];
+                    let factors = modes_move.then(|| [&change.fade, &change.stretch].map(|row| &row[modes.clone()]));
+                    add_driven(moved, (psi, by), factors, driven);
+                }
             }
         }
         let rigid = (0..a.len()).filter(|&k| system.modes[k].is_rigid());
@@ -716,7 +718,7 @@ impl<'a> Walk<'a> {
         let mut overlap = vec![[0.0; Q]; n];
         for p in 0..n {
             for (q, force) in force.iter().enumerate() {
-                add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q].nodes, force));
+                add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q], force));
             }
             let spans = &self.system.links[solved[p].contact].spans;
             expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
@@ -1042,6 +1044,25 @@ impl<'a> Walk<'a> {
         };
         solved.iter().map(of).collect()
     }
+}
+
+/// `moved -= by F + c_1 psi (t F) - c_2 psi (t F' + 2 F)`, of what these forces make of the modes; the latter two where modes
+/// change.
+fn add_driven(moved: &mut [f64], (psi, by): (&[f64], &[f64]), factors: Option<[&[f64]; 2]>, driven: [&[f64]; 3]) {
+    let n = moved.len();
+    let [by_force, by_timed, by_again] = driven;
+    vectorized(
+        #[inline(always)]
+        || {
+            let (by, by_force) = (&by[..n], &by_force[..n]);
+            (0..n).for_each(|k| moved[k] -= by[k] * by_force[k]);
+            if let Some([fade, stretch]) = factors {
+                let [psi, fade, stretch, by_timed, by_again] =
+                    [psi, fade, stretch, by_timed, by_again].map(|row| &row[..n]);
+                (0..n).for_each(|k| moved[k] -= psi[k] * (fade[k] * by_timed[k] - stretch[k] * by_again[k]));
+            }
+        },
+    );
 }
 
 /// How far free motion moves the sum of all modes at the nodes, and that sum at the start: of each mode from the amplitude and
