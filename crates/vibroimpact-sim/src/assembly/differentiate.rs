@@ -94,7 +94,9 @@ pub struct Differentiated {
 pub(crate) const COARSER: f64 = 32.0;
 /// Uncertainty divided by the difference from them.
 const TIMES: f64 = 10.0;
-/// Digits that differences of the neighbours lose: what a derivative may miss of its size in any case.
+/// What a derivative may miss of its size in any case, in tolerances of the run: two motions can agree by chance.
+const BY_CHANCE: f64 = 5.0;
+/// Digits that differences of the neighbours lose: what a derivative may miss of its size besides.
 const ROUNDING: f64 = 1e-10;
 
 /// Accepts offsets of a parameter through which a slope can be taken.
@@ -104,16 +106,39 @@ pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), 
     InvalidInput::unless(different, field, format!("{offsets:?}"), "four different finite numbers")
 }
 
-/// A derivative, with that along the coarser motion.
-pub(crate) fn beside(value: f64, coarse: Option<f64>) -> Derivative {
-    let uncertainty = coarse.map(|coarse| TIMES * (coarse - value).abs() + ROUNDING * value.abs());
-    Derivative { value, uncertainty }
+/// How well derivatives by one parameter are known, apart from what the coarser motion tells.
+#[derive(Clone, Copy)]
+pub(crate) struct Known {
+    /// What they may miss, in parts of themselves and of the output.
+    relative: f64,
+    rounding: f64,
+}
+
+impl Known {
+    /// At this tolerance of the run, from neighbours with these offsets, which magnify the rounding of what poses it.
+    pub fn new(tolerance: f64, offsets: &[f64; 4]) -> Known {
+        let nearest = offsets.iter().map(|offset| offset.abs()).filter(|offset| *offset > 0.0).fold(f64::MAX, f64::min);
+        Known { relative: BY_CHANCE * tolerance + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
+    }
+
+    /// A derivative of this output, with that along the coarser motion.
+    pub fn beside(self, value: f64, coarse: Option<f64>, output: f64) -> Derivative {
+        let floor = self.relative * value.abs() + self.rounding * output.abs();
+        Derivative { value, uncertainty: coarse.map(|coarse| TIMES * (coarse - value).abs() + floor) }
+    }
 }
 
 /// The changes along one run with one parameter: by contact the intervals, and displacement and velocity of both sides.
 struct Changes {
     intervals: Vec<Vec<IntervalChange>>,
-    sides: Vec<[[f64; 2]; 2]>,
+    sides: Vec<[[Changed; 2]; 2]>,
+}
+
+/// An output and its change.
+#[derive(Clone, Copy, Default)]
+struct Changed {
+    value: f64,
+    change: f64,
 }
 
 /// Gathers the intervals.
@@ -188,7 +213,8 @@ impl Solver<'_> {
         let (_, _, coarse, _) = self.along(&coarser, (&around, &changes, &ends), &mut expansions);
         let derivatives = fine.iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
             let coarse = coarse.as_ref().map(|coarse| &coarse[i]);
-            Derivatives { end_s, contacts: changes.beside(&intervals, coarse) }
+            let known = Known::new(settings.tolerance, &parameters[i].offsets);
+            Derivatives { end_s, contacts: changes.beside(&intervals, coarse, known) }
         });
         let derivatives = Some(derivatives.collect());
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
@@ -288,9 +314,9 @@ fn sides(
     tangent: &Tangent,
     posed: &[Posed; 4],
     change: &Change,
-) -> [[f64; 2]; 2] {
+) -> [[Changed; 2]; 2] {
     array::from_fn(|i| {
-        let Some(side) = &system.links[c].sides[i] else { return [0.0; 2] };
+        let Some(side) = &system.links[c].sides[i] else { return [Changed::default(); 2] };
         let spans = posed.each_ref().map(|posed| match &posed.sides[c][i] {
             Point::Ground => None,
             Point::OfBody { body, shape } => Some(system.span(*body, shape)),
@@ -299,35 +325,49 @@ fn sides(
             change.stencil.slope(spans.each_ref().map(|span| span.as_ref().map_or(0.0, |span| span.sum(values))))
         };
         let changes = [&tangent.amplitude, &tangent.rate];
-        array::from_fn(|order| by_shape(state[order]) + side.sum(changes[order]))
+        array::from_fn(|order| Changed {
+            value: side.sum(state[order]),
+            change: by_shape(state[order]) + side.sum(changes[order]),
+        })
     })
 }
 
 impl Changes {
-    fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<&Changes>) -> Vec<ContactDerivatives> {
+    /// As derivatives, with those along the coarser motion.
+    fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<&Changes>, known: Known) -> Vec<ContactDerivatives> {
+        let same = coarse.filter(|coarse| {
+            let counts = |changes: &Changes| changes.intervals.iter().map(Vec::len).collect::<Vec<_>>();
+            counts(coarse) == counts(self)
+        });
         let contact = |(c, own): (usize, &Vec<IntervalChange>)| {
             let interval = |(j, change): (usize, &IntervalChange)| {
-                let with = |get: fn(&IntervalChange) -> f64| {
+                let found = intervals[c].get(j);
+                let with = |get: fn(&IntervalChange) -> f64, output: fn(&Interval) -> Option<f64>| {
                     let there = coarse.and_then(|coarse| coarse.intervals[c].get(j)).map(get);
-                    beside(get(change), there)
+                    known.beside(get(change), there, found.and_then(output).unwrap_or(0.0))
                 };
-                let over = intervals[c].get(j).is_some_and(|interval| interval.end_s.is_some());
+                let over = found.is_some_and(|interval| interval.end_s.is_some());
                 IntervalDerivatives {
-                    start_s: with(|change| change.start_s),
-                    end_s: over.then(|| with(|change| change.end_s)),
-                    impulse_n_s: with(|change| change.impulse_n_s),
-                    peak_force_n: with(|change| change.peak_force_n),
-                    peak_compression_m: with(|change| change.peak_compression_m),
-                    approach_speed_m_s: with(|change| change.approach_speed_m_s),
-                    separation_speed_m_s: over.then(|| with(|change| change.separation_speed_m_s)),
+                    start_s: with(|change| change.start_s, |found| Some(found.start_s)),
+                    end_s: over.then(|| with(|change| change.end_s, |found| found.end_s)),
+                    impulse_n_s: with(|change| change.impulse_n_s, |found| Some(found.impulse_n_s)),
+                    peak_force_n: with(|change| change.peak_force_n, |found| Some(found.peak_force_n)),
+                    peak_compression_m: with(
+                        |change| change.peak_compression_m,
+                        |found| Some(found.peak_compression_m),
+                    ),
+                    approach_speed_m_s: with(
+                        |change| change.approach_speed_m_s,
+                        |found| Some(found.approach_speed_m_s),
+                    ),
+                    separation_speed_m_s: over
+                        .then(|| with(|change| change.separation_speed_m_s, |found| found.separation_speed_m_s)),
                 }
             };
-            let same = coarse.filter(|coarse| {
-                let counts = |changes: &Changes| changes.intervals.iter().map(Vec::len).collect::<Vec<_>>();
-                counts(coarse) == counts(self)
-            });
-            let side =
-                |i: usize, order: usize| beside(self.sides[c][i][order], same.map(|coarse| coarse.sides[c][i][order]));
+            let side = |i: usize, order: usize| {
+                let Changed { value, change } = self.sides[c][i][order];
+                known.beside(change, same.map(|coarse| coarse.sides[c][i][order].change), value)
+            };
             ContactDerivatives {
                 intervals: own.iter().enumerate().map(interval).collect(),
                 displacement_m: [side(0, 0), side(1, 0)],

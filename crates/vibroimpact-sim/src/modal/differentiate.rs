@@ -2,13 +2,13 @@
 
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
-use super::solution::{Outcome, Solution};
+use super::solution::{Outcome, Solution, SubImpact};
 use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
 use crate::InvalidInput;
 pub use crate::assembly::Derivative;
 use crate::assembly::change::Change;
 pub use crate::assembly::change::Stencil;
-use crate::assembly::differentiate::{COARSER, beside, check_offsets};
+use crate::assembly::differentiate::{COARSER, Known, check_offsets};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -180,7 +180,8 @@ impl Solver {
         let coarse = along.changes(&coarse, &mut expansions).map(|(changes, _)| changes);
         let of = |(i, fine): (usize, &Changes)| {
             let coarse = coarse.as_ref().map(|changes| &changes[i]);
-            fine.beside(coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len()))
+            let coarse = coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len());
+            fine.beside(coarse, &solution, Known::new(settings.tolerance, &parameters[i].offsets))
         };
         let derivatives = changes.iter().enumerate().map(of).collect();
         Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze })
@@ -261,24 +262,24 @@ fn restitution_change(
 
 impl Changes {
     /// As derivatives, with those along the coarser motion.
-    fn beside(&self, coarse: Option<&Changes>) -> Derivatives {
-        let with = |of: &dyn Fn(&Changes) -> f64| beside(of(self), coarse.map(of));
-        let number = |i: usize| with(&|changes| changes.numbers[i]);
-        let interval = |i: usize| {
-            let of = |get: fn(&IntervalChange) -> f64| with(&|changes| get(&changes.intervals[i]));
+    fn beside(&self, coarse: Option<&Changes>, solution: &Solution, known: Known) -> Derivatives {
+        let with = |of: &dyn Fn(&Changes) -> f64, output: f64| known.beside(of(self), coarse.map(of), output);
+        let number = |i: usize, output: f64| with(&|changes| changes.numbers[i], output);
+        let interval = |(i, sub): (usize, &SubImpact)| {
+            let of = |get: fn(&IntervalChange) -> f64, output: f64| with(&|changes| get(&changes.intervals[i]), output);
             SubImpactDerivatives {
-                start_s: of(|change| change.start_s),
-                end_s: of(|change| change.end_s),
-                impulse_n_s: of(|change| change.impulse_n_s),
-                peak_force_n: of(|change| change.peak_force_n),
-                peak_compression_m: of(|change| change.peak_compression_m),
+                start_s: of(|change| change.start_s, sub.start_s),
+                end_s: of(|change| change.end_s, sub.end_s),
+                impulse_n_s: of(|change| change.impulse_n_s, sub.impulse_n_s),
+                peak_force_n: of(|change| change.peak_force_n, sub.peak_force_n),
+                peak_compression_m: of(|change| change.peak_compression_m, sub.peak_compression_m),
             }
         };
         Derivatives {
-            restitution: number(0),
-            end_s: number(1),
-            striker_velocity_m_s: number(2),
-            sub_impacts: (0..self.intervals.len()).map(interval).collect(),
+            restitution: number(0, solution.restitution.unwrap_or(0.0)),
+            end_s: number(1, solution.end_s),
+            striker_velocity_m_s: number(2, solution.striker_velocity_m_s),
+            sub_impacts: solution.sub_impacts.iter().take(self.intervals.len()).enumerate().map(interval).collect(),
             amplitude: self.amplitude.clone(),
             rate: self.rate.clone(),
         }
