@@ -4,8 +4,8 @@ mod common;
 
 use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring};
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, Derivative, Differentiated, Force, Interval, Load, Observer, Outcome, Parameter,
-    Point, Run, Settings, Solver, run,
+    Assembly, Body, BodyMode, Contact, Derivative, Differentiated, Force, Interval, Load, NoDerivative, Observer,
+    Outcome, Parameter, Point, Run, Settings, Solver, run,
 };
 
 /// An assembly and the end of its run as functions of some numbers.
@@ -267,7 +267,8 @@ fn contacts_that_touch_together_keep_their_own_times() {
 #[test]
 fn forces_that_jump_together_have_a_derivative_only_if_they_stay_together() {
     let [speed, gap] = by_speed_and_gap(KelvinVoigt::new(1e6, 30.0).unwrap().into());
-    assert!(speed.derivatives.is_some() && gap.derivatives.is_none());
+    assert!(speed.derivatives.is_ok());
+    assert!(matches!(gap.derivatives, Err(NoDerivative::Together { contact: 1, .. })), "{:?}", gap.derivatives);
 }
 
 #[test]
@@ -282,4 +283,41 @@ fn bad_parameters_are_named() {
     assert_eq!(field([1.0, 1.0, 2.0, 3.0], &assembly, 1.0), "parameters[0].offsets");
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &assembly, f64::NAN), "parameters[0].end_s");
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other, 1.0), "parameters[0].neighbours[0]");
+}
+
+/// A row of balls that touch at rest, struck by another: `[mass of the second ball, speed, stiffness]`.
+fn cradle(numbers: &[f64]) -> (Assembly<Law>, f64) {
+    let [mass, speed, stiffness] = numbers.try_into().unwrap();
+    let masses = [0.1, mass, 0.1];
+    let between = |left: usize| Contact {
+        sides: [of_mass(left + 1, masses[left + 1]), of_mass(left, masses[left])],
+        gap_m: 0.0,
+        law: Hertz::new(stiffness).unwrap().into(),
+    };
+    let bodies = vec![Body::mass(0.1, 0.0, speed), Body::mass(mass, 0.0, 0.0), Body::mass(0.1, 0.0, 0.0)];
+    (Assembly { bodies, contacts: vec![between(0), between(1)], loads: Vec::new() }, 1e-3)
+}
+
+#[test]
+fn balls_that_rest_against_each_other_do_not_graze() {
+    let case = Case { pose: cradle, numbers: vec![0.13, 1.0, 1e9] };
+    assert!(case.differentiate(1e-10).nearest_graze > 0.0);
+    let (compared, covered) = case.check(1e-6);
+    assert!(compared > 20);
+    assert_eq!(covered, compared);
+}
+
+/// Another gap between them: they may touch later, or press each other at once.
+#[test]
+fn balls_that_touch_without_speed_have_no_derivative_by_their_gap() {
+    let (assembly, end_s) = cradle(&[0.1, 1.0, 1e9]);
+    let offsets = STEPS.map(|place| 1e-9 * place);
+    let near = offsets.map(|gap_m| {
+        let mut near = cradle(&[0.1, 1.0, 1e9]).0;
+        near.contacts[1].gap_m += gap_m;
+        near
+    });
+    let parameter = Parameter { offsets, neighbours: near.each_ref(), end_s: [end_s; 4], changes_laws: false };
+    let found = Solver::new(&assembly).unwrap().differentiate(&Settings::until(end_s), &[parameter]).unwrap();
+    assert!(matches!(found.derivatives, Err(NoDerivative::Graze { contact: 1, .. })), "{:?}", found.derivatives);
 }

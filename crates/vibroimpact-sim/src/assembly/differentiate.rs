@@ -1,6 +1,7 @@
 //! How a run of an assembly changes with the numbers that pose it.
 
 use super::change::{Change, Stencil};
+use super::no_derivative::NoDerivative;
 use super::problem::{Assembly, Point, Posed, Settings};
 use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Solver, follow};
@@ -83,9 +84,8 @@ pub struct Differentiated {
     pub run: Run,
     /// Its intervals, contact by contact.
     pub intervals: Vec<Vec<Interval>>,
-    /// By parameter, in the order given; `None` where there are none: the run stopped before its end, a contact only
-    /// grazes, contacts whose force jumps touch at the same time, or a mode whose damping changes is damped critically.
-    pub derivatives: Option<Vec<Derivatives>>,
+    /// By parameter, in the order given, or why there are none.
+    pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
     /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
     pub nearest_graze: f64,
 }
@@ -140,6 +140,9 @@ struct Changed {
     value: f64,
     change: f64,
 }
+
+/// By parameter, with the slowest touch in parts of the fastest.
+type AllChanges = Result<(Vec<Changes>, f64), NoDerivative>;
 
 /// Gathers the intervals.
 struct Intervals(Vec<Vec<Interval>>);
@@ -197,10 +200,10 @@ impl Solver<'_> {
             .collect();
         let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
         let mut expansions = Expansions::default();
-        let (run, intervals, fine, nearest_graze) = self.along(settings, (&around, &changes, &asked), &mut expansions);
-        let none = |run, intervals| Differentiated { run, intervals, derivatives: None, nearest_graze: 1.0 };
-        let Some(fine) = fine else {
-            return Ok(none(run, intervals));
+        let (run, intervals, fine) = self.along(settings, (&around, &changes, &asked), &mut expansions);
+        let (fine, nearest_graze) = match fine {
+            Ok(found) => found,
+            Err(why) => return Ok(Differentiated { run, intervals, derivatives: Err(why), nearest_graze: 1.0 }),
         };
         // the coarser run ends where this one did, which is a fixed time unless that is the one asked for
         let (end_s, ends) = match run.outcome {
@@ -210,24 +213,27 @@ impl Solver<'_> {
         };
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
-        let (_, _, coarse, _) = self.along(&coarser, (&around, &changes, &ends), &mut expansions);
+        let (_, _, coarse) = self.along(&coarser, (&around, &changes, &ends), &mut expansions);
         let derivatives = fine.iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
-            let coarse = coarse.as_ref().map(|coarse| &coarse[i]);
+            let coarse = coarse.as_ref().ok().map(|(coarse, _)| &coarse[i]);
             let known = Known::new(settings.tolerance, &parameters[i].offsets);
             Derivatives { end_s, contacts: changes.beside(&intervals, coarse, known) }
         });
-        let derivatives = Some(derivatives.collect());
+        let derivatives = Ok(derivatives.collect());
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
     }
 
     /// How all modes at the end, amplitudes and then rates, change with all of them at the start, body by body: `[at the start]
     /// [at the end]`, with how the run ended. `None` where there is no derivative.
-    pub(crate) fn monodromy(&mut self, settings: &Settings) -> Result<(Outcome, Option<Monodromy>), InvalidInput> {
+    pub(crate) fn monodromy(
+        &mut self,
+        settings: &Settings,
+    ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
         let (run, stretches) = follow(posed, (system, tables), settings, &mut (), true);
         if run.outcome != Outcome::End {
-            return Ok((run.outcome, None));
+            return Ok((run.outcome, Err(NoDerivative::Outcome)));
         }
         let places = || system.place.iter().flatten().copied();
         let of = |of_rate: bool| places().map(move |place| (place, of_rate));
@@ -278,7 +284,7 @@ impl Solver<'_> {
         settings: &Settings,
         (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
         expansions: &mut Expansions,
-    ) -> (Run, Vec<Vec<Interval>>, Option<Vec<Changes>>, f64) {
+    ) -> (Run, Vec<Vec<Interval>>, AllChanges) {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
         let (run, stretches) = follow(posed, (system, tables), settings, &mut watch, true);
@@ -289,8 +295,10 @@ impl Solver<'_> {
             _ => Some(zeros.as_slice()),
         };
         let stopped = matches!(run.outcome, Outcome::Stopped(_));
-        let found = if stopped { None } else { tangents(posed, system, &stretches, (changes, fixed), expansions) };
-        let nearest_graze = found.as_ref().map_or(1.0, |found| found.nearest_graze);
+        let found = match stopped {
+            true => Err(NoDerivative::Outcome),
+            false => tangents(posed, system, &stretches, (changes, fixed), expansions),
+        };
         let changes = found.map(|found| {
             let state = [found.amplitude.as_slice(), &found.rate];
             let of = |((tangent, posed), change): ((Tangent, &[Posed; 4]), &Change)| {
@@ -300,9 +308,9 @@ impl Solver<'_> {
                 tangent.intervals.into_iter().for_each(|interval| intervals[interval.contact].push(interval));
                 Changes { intervals, sides }
             };
-            found.tangents.into_iter().zip(around).zip(changes).map(of).collect()
+            (found.tangents.into_iter().zip(around).zip(changes).map(of).collect(), found.nearest_graze)
         });
-        (run, watch.0, changes, nearest_graze)
+        (run, watch.0, changes)
     }
 }
 

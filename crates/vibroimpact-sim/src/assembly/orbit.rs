@@ -328,8 +328,8 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
     pub fn derivative(&self, state: &DVector<f64>, scales: &DVector<f64>) -> Reached<DMatrix<f64>> {
         let assembly = self.posed(state);
         match Solver::new(&assembly)?.monodromy(&self.settings)? {
-            (Outcome::End, Some(columns)) => Ok(Ok(DMatrix::from_fn(state.len(), state.len(), |i, j| columns[j][i]))),
-            (Outcome::End, None) => self.differences(state, scales),
+            (Outcome::End, Ok(columns)) => Ok(Ok(DMatrix::from_fn(state.len(), state.len(), |i, j| columns[j][i]))),
+            (Outcome::End, Err(_)) => self.differences(state, scales),
             (outcome, _) => Ok(Err(outcome)),
         }
     }

@@ -5,13 +5,13 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
 use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
 use crate::InvalidInput;
-pub use crate::assembly::Derivative;
 use crate::assembly::change::Change;
 pub use crate::assembly::change::Stencil;
 use crate::assembly::differentiate::{COARSER, Known, check_offsets};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
+pub use crate::assembly::{Derivative, NoDerivative};
 use contact_models::ContactLaw;
 use std::array;
 
@@ -78,9 +78,8 @@ pub struct Derivatives {
 pub struct Differentiated {
     /// The impact.
     pub solution: Solution,
-    /// By parameter, in the order given; `None` where there are none: the impact did not end with a rebound, a contact
-    /// only grazes, or a mode whose damping changes is damped critically.
-    pub derivatives: Option<Vec<Derivatives>>,
+    /// By parameter, in the order given, or why there are none.
+    pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
     /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
     pub nearest_graze: f64,
 }
@@ -153,9 +152,9 @@ impl Solver {
         let Impact { striker, law, start, settings } = *impact;
         let (solution, fine) = self.solve_into(striker, law, Some(start), settings, Keep::Motion)?;
         let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
-        let none = |solution| Differentiated { solution, derivatives: None, nearest_graze: 1.0 };
+        let none = |solution, why| Differentiated { solution, derivatives: Err(why), nearest_graze: 1.0 };
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
-            return Ok(none(solution));
+            return Ok(none(solution, NoDerivative::Outcome));
         }
         let (modes, moved) = (self.modes(), self.moved());
         let pose = |modes: &[Mode], striker: &Striker, start: &Start| posed::assembly(modes, moved, striker, start);
@@ -174,17 +173,18 @@ impl Solver {
         }
         let along = Along { modes, moved, impact, parameters, posed: &posed, system: &system, changes, sides };
         let mut expansions = Expansions::default();
-        let Some((changes, nearest_graze)) = along.changes(&fine, &mut expansions) else {
-            return Ok(none(solution));
+        let (changes, nearest_graze) = match along.changes(&fine, &mut expansions) {
+            Ok(found) => found,
+            Err(why) => return Ok(none(solution, why)),
         };
-        let coarse = along.changes(&coarse, &mut expansions).map(|(changes, _)| changes);
+        let coarse = along.changes(&coarse, &mut expansions).ok().map(|(changes, _)| changes);
         let of = |(i, fine): (usize, &Changes)| {
             let coarse = coarse.as_ref().map(|changes| &changes[i]);
             let coarse = coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len());
             fine.beside(coarse, &solution, Known::new(settings.tolerance, &parameters[i].offsets))
         };
         let derivatives = changes.iter().enumerate().map(of).collect();
-        Ok(Differentiated { solution, derivatives: Some(derivatives), nearest_graze })
+        Ok(Differentiated { solution, derivatives: Ok(derivatives), nearest_graze })
     }
 
     /// The modes that move the contact, here or at a neighbour.
@@ -212,12 +212,12 @@ struct Along<'a> {
 
 impl Along<'_> {
     /// The changes along the motion of one run, and how nearly it grazes.
-    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Option<(Vec<Changes>, f64)> {
+    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Result<(Vec<Changes>, f64), NoDerivative> {
         if run.outcome != Outcome::Rebound {
-            return None;
+            return Err(NoDerivative::Outcome);
         }
         let found = tangents(self.posed, self.system, &run.stretches, (&self.changes, None), expansions)?;
-        let end = run.stretches.last()?.rate.as_slice();
+        let end = run.stretches.last().ok_or(NoDerivative::Outcome)?.rate.as_slice();
         let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
         let striker = &self.system.links[0].sides[0];
         let pick = |values: &[f64]| {
@@ -235,7 +235,7 @@ impl Along<'_> {
             Changes { numbers, intervals: tangent.intervals, amplitude, rate }
         };
         let changes = found.tangents.into_iter().zip(self.parameters).zip(&self.sides).map(of).collect();
-        Some((changes, found.nearest_graze))
+        Ok((changes, found.nearest_graze))
     }
 }
 

@@ -36,7 +36,9 @@ mod solution;
 mod solve;
 mod time_unit;
 
-pub use differentiate::{Derivative, Derivatives, Differentiated, Parameter, Posing, Stencil, SubImpactDerivatives};
+pub use differentiate::{
+    Derivative, Derivatives, Differentiated, NoDerivative, Parameter, Posing, Stencil, SubImpactDerivatives,
+};
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};
 pub use solution::{Counts, Outcome, Solution, SubImpact};

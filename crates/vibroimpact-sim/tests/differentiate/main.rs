@@ -186,9 +186,7 @@ fn derivatives_of_random_impacts_meet_differences_in_32_digits() {
         if found.solution.outcome != Outcome::Rebound {
             continue;
         }
-        let (Some(derivatives), Some(end_s)) = (found.derivatives, found.solution.end_s.into()) else {
-            continue;
-        };
+        let (derivatives, end_s) = (found.derivatives.unwrap(), found.solution.end_s);
         impacts += 1;
         let count = found.solution.sub_impacts.len();
         for (which, derivatives) in derivatives.iter().enumerate() {

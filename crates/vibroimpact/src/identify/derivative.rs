@@ -110,7 +110,7 @@ fn tangent(
     let Impact { striker, law, start, settings, structure, .. } = &here;
     let solver = kept.solver(structure).ok()?;
     let found = solver.differentiate(striker, law, start.as_ref(), settings, &by).ok()?;
-    let changes = found.derivatives?;
+    let changes = found.derivatives.ok()?;
     let columns = |(quantity, ..): &(Quantity, f64, Option<f64>)| {
         changes.iter().map(|change| quantity.change(&found.solution, change)).collect::<Option<Vec<f64>>>()
     };

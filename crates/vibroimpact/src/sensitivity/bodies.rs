@@ -4,12 +4,13 @@ use contact_models::Law;
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, ContactDerivatives, Derivative, Derivatives, Differentiated, Load, Outcome,
-    Parameter, Point, Settings, Solver,
+    Assembly, Body, BodyMode, Contact, ContactDerivatives, Derivative, Derivatives, Differentiated, Load, NoDerivative,
+    Outcome, Parameter, Point, Settings, Solver,
 };
 
 use super::MODES;
 use super::neighbours::{Neighbours, around};
+use super::refusal::refusal;
 use super::table::Table;
 use crate::assembly::{AssemblyScene, Posed};
 use crate::same_modes::{Seen, matched};
@@ -73,16 +74,9 @@ impl AssemblyScene {
                 take_modes_of(&mut near.assembly, &base.assembly)
             })?;
         let found = differentiate(&base, &around)?;
-        let Some(derivatives) = &found.derivatives else {
-            let allowed = "a run that ends, and in which no contact grazes, no contacts whose forces jump touch at the \
-                           same time, and no mode whose damping changes is critically damped: elsewhere there is no \
-                           derivative";
-            return Err(InvalidInput::new(
-                "scene",
-                format!("a run that came to {}", found.run.outcome.as_str()),
-                allowed,
-            ));
-        };
+        let name = |contact: usize| format!("contact {:?}", base.contacts[contact]);
+        let refused = |why: &NoDerivative| refusal(*why, found.run.outcome.as_str(), name);
+        let derivatives = found.derivatives.as_ref().map_err(refused)?;
         let outputs = |derivatives| outputs(&base, derivatives);
         let by_errors = derivatives.last().map(outputs).unwrap_or_default();
         let mut table = Table::new(&around, left_out);

@@ -11,18 +11,20 @@ mod closed_form;
 mod neighbours;
 #[cfg(feature = "files")]
 mod picture;
+mod refusal;
 mod table;
 mod text;
 
 use serde::Serialize;
 use serde_json::Value;
-use vibroimpact_sim::modal::{Derivative, Derivatives, Parameter, Settings, Solver, Start};
+use vibroimpact_sim::modal::{Derivative, Derivatives, NoDerivative, Parameter, Settings, Solver, Start};
 
 use crate::impact::{Impact, in_scene};
 use crate::model::Model;
 use crate::scene::json::quote;
 use crate::scene::{InvalidInput, Scene};
 use neighbours::Neighbours;
+use refusal::refusal;
 
 pub use bodies::BodiesSensitivity;
 #[cfg(feature = "files")]
@@ -133,11 +135,9 @@ fn differentiate(
     let settings = Settings { tolerance: base.settings.tolerance, ..Settings::default() };
     let found = solver.differentiate(striker, law, start.as_ref(), &settings, &parameters).map_err(in_scene)?;
     let solution = &found.solution;
-    let (Some(derivatives), Some(restitution)) = (&found.derivatives, solution.restitution) else {
-        let allowed = "an impact that ends with a rebound and does not only graze: elsewhere there is no derivative";
-        let outcome = solution.outcome.as_str();
-        return Err(InvalidInput::new("scene", format!("an impact whose outcome is \"{outcome}\""), allowed));
-    };
+    let refused = |why| refusal(why, solution.outcome.as_str(), |_| "the contact".to_owned());
+    let derivatives = found.derivatives.as_ref().map_err(|why| refused(*why))?;
+    let restitution = solution.restitution.ok_or_else(|| refused(NoDerivative::Outcome))?;
     let mut table = Table::new(around, left_out);
     let by_errors = derivatives.last().map(outputs).unwrap_or_default();
     for (neighbours, derivatives) in around.iter().zip(derivatives) {

@@ -1,0 +1,220 @@
+//! An event: by how much later it comes after a change, and how the law's transition there changes.
+
+use super::panel::Moved;
+use super::walk::{IntervalChange, LAW_STEP, Tangent, Walk, shifted, size_of, sum};
+use crate::assembly::change::Stencil;
+use crate::assembly::dense::Event;
+use crate::assembly::no_derivative::NoDerivative;
+use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
+
+/// Two events stay together if their times shift by the same to this part.
+const TOGETHER: f64 = 1e-6;
+
+/// By how much later an event function with this rate of change falls to zero when it changes.
+pub(super) fn later(changes: f64, slope: f64) -> Option<f64> {
+    if changes == 0.0 {
+        return Some(0.0);
+    }
+    let later = -changes / slope;
+    later.is_finite().then_some(later)
+}
+
+impl Walk<'_> {
+    /// Rate of an overlap, and the rate of that, at the end of a panel that becomes longer.
+    pub fn speed(&self, c: usize, time_s: f64, slide: &Moved) -> [f64; 2] {
+        let link = &self.system.links[c];
+        let (_, by_loads) = self.loads.overlap(c, time_s);
+        [link.sum(&slide.amplitude) + by_loads, link.sum(&slide.rate) + self.loads.bend(c, time_s)]
+    }
+
+    /// By how much later than the event that ended the panel another event at the same time comes after a change. A contact
+    /// whose force jumps at first touch then has no tangent here.
+    pub fn apart(
+        &self,
+        c: usize,
+        event: Event,
+        (time_s, state): (f64, [&[f64]; 2]),
+        overlap: [f64; 2],
+        slide: &Moved,
+    ) -> Result<Vec<f64>, NoDerivative> {
+        let speed = self.speed(c, time_s, slide);
+        let jumps = match event {
+            Event::Touch { .. } => {
+                let law = self.posed.laws[c];
+                let branch = law.touch(&self.contacts[c].memory, overlap[1].max(0.0));
+                law.force(&branch, overlap[0], overlap[1]).force_n != 0.0
+            }
+            Event::Cross(_) => false,
+        };
+        let of = |(d, tangent): (usize, &Tangent)| {
+            let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
+            let (changes, slope) = self.event_function(d, c, event, overlap, change, speed);
+            let later = later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?;
+            // what cancels where both shift alike
+            let parts =
+                sum(&self.changes[d].psi[c], state[0]).abs() + self.system.links[c].sum(&tangent.amplitude).abs();
+            let known = TOGETHER * (parts / slope).abs().max(tangent.time_s.abs());
+            match later {
+                _ if later.abs() <= known => Ok(0.0),
+                _ if jumps => Err(NoDerivative::Together { contact: c, time_s }),
+                _ => Ok(later),
+            }
+        };
+        self.tangents.iter().enumerate().map(of).collect()
+    }
+
+    /// Change of an event function at the end of an unchanged panel, and its rate of change with the length.
+    pub fn event_function(
+        &self,
+        d: usize,
+        c: usize,
+        event: Event,
+        [overlap, rate]: [f64; 2],
+        change: [f64; 2],
+        speed: [f64; 2],
+    ) -> (f64, f64) {
+        let carried = &self.tangents[d].contacts[c];
+        let (Event::Cross(which), Some(branch)) = (event, self.contacts[c].branch) else {
+            return (change[0] - carried.memory[0], speed[0]);
+        };
+        let law = self.posed.laws[c];
+        let boundary = law.boundaries(&branch)[which];
+        let along = |[xi, rate]: [f64; 2]| boundary.per_compression * xi + boundary.per_rate * rate;
+        let margin = |law: &dyn ContactLaw, branch: &Branch| {
+            let boundary: Boundary = law.boundaries(branch)[which];
+            boundary.margin(overlap, rate)
+        };
+        let mut changes = along(change);
+        if let Some(laws) = &self.changes[d].laws {
+            changes += self.changes[d].stencil.slope(laws[c].map(|law| margin(law, &branch)));
+        }
+        for (which, by) in carried.branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
+            let stencil = Stencil::central(LAW_STEP * size_of(&branch, which, &self.contacts[c]));
+            let margins = stencil.offsets.map(|offset| margin(law, &shifted(&branch, which, offset)));
+            changes += by * stencil.slope(margins);
+        }
+        (changes, along(speed))
+    }
+
+    /// The law's own transition.
+    pub fn transition(
+        &mut self,
+        (c, event): (usize, Event),
+        (at_s, state): (f64, [&[f64]; 2]),
+        [overlap, rate]: [f64; 2],
+        apart: &[f64],
+    ) -> Result<(), NoDerivative> {
+        let law = self.posed.laws[c];
+        let followed = self.contacts[c];
+        let sizes = followed.sizes;
+        // the numbers that the law makes, of the four that it is given
+        type Given = [f64; 4];
+        let (given, sizes): (Given, Given) = match (event, followed.branch) {
+            (Event::Cross(_), Some(branch)) => {
+                let own = [0, 1].map(|which| size_of(&branch, which, &followed));
+                ([branch.anchor_m, branch.internal, overlap, rate], [own[0], own[1], sizes[0], sizes[1]])
+            }
+            _ => {
+                let Memory { touch_m, internal } = followed.memory;
+                let own = [sizes[0].max(touch_m.abs()), if internal == 0.0 { 1.0 } else { internal.abs() }];
+                ([touch_m, internal, rate.max(0.0), 0.0], [own[0], own[1], rate.abs(), 1.0])
+            }
+        };
+        let made = |law: &dyn ContactLaw, given: &Given| -> After {
+            match (event, followed.branch) {
+                (Event::Cross(which), Some(branch)) => {
+                    let branch = Branch { anchor_m: given[0], internal: given[1], ..branch };
+                    law.cross(&branch, which, given[2], given[3])
+                }
+                _ => {
+                    let memory = Memory { touch_m: given[0], internal: given[1] };
+                    After::Continue(law.touch(&memory, given[2]))
+                }
+            }
+        };
+        let after = made(law, &given);
+        let number = |after: &After, which: usize| match (after, which) {
+            (After::Continue(branch), 0) => branch.anchor_m,
+            (After::Continue(branch), _) => branch.internal,
+            (After::Release(memory), 0) => memory.touch_m,
+            (After::Release(memory), _) => memory.internal,
+        };
+        let kind = |after: &After| match after {
+            After::Continue(branch) => Some(branch.stage),
+            After::Release(_) => None,
+        };
+        // a law that takes another course nearby has no derivative here
+        let difference = |found: [After; 4], stencil: &Stencil<4>, which: usize| {
+            if found.iter().any(|found| kind(found) != kind(&after)) {
+                return Err(NoDerivative::Fork { contact: c, time_s: at_s });
+            }
+            Ok(stencil.slope(found.each_ref().map(|found| number(found, which))))
+        };
+        // how these numbers change with a number given
+        let by_given = |i: usize| {
+            let stencil = Stencil::central(LAW_STEP * sizes[i]);
+            let found = stencil.offsets.map(|offset| {
+                let mut shifted = given;
+                shifted[i] += offset;
+                made(law, &shifted)
+            });
+            Ok([difference(found, &stencil, 0)?, difference(found, &stencil, 1)?])
+        };
+        let mut known: [Option<[f64; 2]>; 4] = [None; 4];
+        for d in 0..self.changes.len() {
+            let tangent = &self.tangents[d];
+            let carried = tangent.contacts[c];
+            let [by_overlap, by_rate] = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
+            let changes: Given = match event {
+                Event::Cross(_) => [carried.branch[0], carried.branch[1], by_overlap, by_rate],
+                Event::Touch { .. } => [carried.memory[0], carried.memory[1], by_rate, 0.0],
+            };
+            let mut made_change = [0.0; 2];
+            for i in (0..4).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
+                let slopes = match known[i] {
+                    Some(slopes) => slopes,
+                    None => *known[i].insert(by_given(i)?),
+                };
+                (0..2).for_each(|which| made_change[which] += slopes[which] * changes[i]);
+            }
+            if let Some(laws) = &self.changes[d].laws {
+                for (which, made_change) in made_change.iter_mut().enumerate() {
+                    *made_change += difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil, which)?;
+                }
+            }
+            let tangent = &mut self.tangents[d];
+            let time_s = tangent.time_s + apart[d];
+            match (event, &after) {
+                (Event::Touch { .. }, _) => {
+                    let start = IntervalChange { contact: c, start_s: time_s, end_s: time_s, ..Default::default() };
+                    tangent.intervals.push(IntervalChange { approach_speed_m_s: by_rate, ..start });
+                    tangent.contacts[c].branch = made_change;
+                }
+                (_, After::Continue(_)) => tangent.contacts[c].branch = made_change,
+                (_, After::Release(_)) => {
+                    tangent.contacts[c].memory = made_change;
+                    if let Some(interval) = tangent.intervals.get_mut(followed.interval) {
+                        (interval.end_s, interval.separation_speed_m_s) = (time_s, -by_rate);
+                    }
+                }
+            }
+        }
+        if let Event::Touch { overlaps } = event {
+            // bodies that rest against each other from the start do not graze
+            let rests = at_s == 0.0 && rate <= 0.0;
+            let speed = rate.max(0.0);
+            self.touches =
+                [if rests { self.touches[0] } else { self.touches[0].min(speed) }, self.touches[1].max(speed)];
+            let followed = &mut self.contacts[c];
+            followed.interval = self.begun;
+            self.begun += 1;
+            followed.peaks = [0.0; 2];
+            followed.overlap = if overlaps { overlap } else { followed.memory.touch_m };
+        }
+        match after {
+            After::Continue(branch) => self.contacts[c].branch = Some(branch),
+            After::Release(memory) => (self.contacts[c].branch, self.contacts[c].memory) = (None, memory),
+        }
+        Ok(())
+    }
+}

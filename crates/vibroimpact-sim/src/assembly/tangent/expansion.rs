@@ -1,0 +1,100 @@
+//! All modes on one length of panels, with responses weighed as the changes need them.
+
+use crate::assembly::change::Change;
+use crate::assembly::system::{Span, System};
+use crate::assembly::tables::{Forced, with_rigid_modes};
+use crate::panel::dyadic::{Rotation, level_within, step_s};
+use crate::panel::legendre::{Nodal, Q};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// Free motion and responses of all modes on one length of panels, with what the changes weigh them by.
+pub(super) struct Expansion {
+    pub rotation: Rotation,
+    pub forced: Forced,
+    /// `[p n + q]` over the closed contacts.
+    pub own: Vec<[Nodal; Q]>,
+    /// The same for each change: the weights of `F`, and of `t F` and `t F'` where modes change.
+    pub changed: Vec<Vec<[Option<[Nodal; Q]>; 3]>>,
+}
+
+/// Expansions of panels whose length comes again, by that length and the contacts that are closed: for one system and the
+/// same changes.
+#[derive(Default)]
+pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
+
+impl Expansions {
+    /// Of panels of this length with these contacts closed.
+    pub(super) fn of(&mut self, system: &System, changes: &[Change], h: f64, closed: &[usize]) -> Rc<Expansion> {
+        let key = (h.to_bits(), closed.to_vec());
+        if let Some(kept) = self.0.get(&key) {
+            return kept.clone();
+        }
+        let rotation = Rotation::new(&system.modes, h);
+        let n = closed.len();
+        // all weights in one list, so that each mode is expanded once
+        let mut weights: Vec<Vec<f64>> = Vec::new();
+        for &p in closed {
+            for &q in closed {
+                weights.push(system.shared(p, q));
+            }
+        }
+        let mut places = Vec::new();
+        for change in changes {
+            let modes_move = change.moves_modes;
+            for pair in 0..n * n {
+                let [with, by] = [closed[pair / n], closed[pair % n]];
+                let product = &weights[pair];
+                let mut of_force = vec![0.0; product.len()];
+                let [own, other] = [with, by].map(|c| &system.links[c]);
+                let mut gather = |one: &[Span], two: &[Span]| {
+                    for span in one {
+                        for partner in two.iter().filter(|partner| partner.modes == span.modes) {
+                            for (k, (a, b)) in span.modes.clone().zip(span.psi.iter().zip(&partner.psi)) {
+                                of_force[k] += a * b;
+                            }
+                        }
+                    }
+                };
+                gather(&change.psi[with], &other.spans);
+                gather(&own.spans, &change.psi[by]);
+                let by_mode = |factors: &[f64]| product.iter().zip(factors).map(|(w, factor)| w * factor).collect();
+                let mut place = [Some(weights.len()), None, None];
+                if modes_move {
+                    of_force
+                        .iter_mut()
+                        .zip(product.iter().zip(&change.stretch))
+                        .for_each(|(w, (p, c))| *w -= 2.0 * p * c);
+                    let timed = [by_mode(&change.fade), by_mode(&change.stretch)];
+                    place = [Some(weights.len()), Some(weights.len() + 1), Some(weights.len() + 2)];
+                    weights.push(of_force);
+                    weights.extend(timed);
+                } else if of_force.iter().any(|weight| *weight != 0.0) {
+                    weights.push(of_force);
+                } else {
+                    place[0] = None;
+                }
+                places.push(place);
+            }
+        }
+        // a flight needs nothing but free motion
+        let expand = || Forced::new(system, h, &Rotation::new(&system.modes, 0.5 * h), &weights);
+        let (forced, elastic) = if closed.is_empty() { Default::default() } else { expand() };
+        let whole: Vec<[Nodal; Q]> = elastic
+            .iter()
+            .zip(&weights)
+            .map(|(elastic, weights)| {
+                let rigid = system.modes.iter().zip(weights).filter(|(mode, _)| mode.is_rigid());
+                with_rigid_modes(*elastic, rigid.map(|(_, weight)| weight).sum(), h)
+            })
+            .collect();
+        let pick = |place: &[Option<usize>; 3]| place.map(|place| place.map(|i| whole[i]));
+        let changed = places.chunks(n.max(1) * n.max(1)).map(|places| places.iter().map(pick).collect()).collect();
+        let own = whole[..n * n].to_vec();
+        let expansion = Rc::new(Expansion { rotation, forced, own, changed });
+        if step_s(level_within(h)) == h {
+            self.0.insert(key, expansion.clone());
+        }
+        expansion
+    }
+}

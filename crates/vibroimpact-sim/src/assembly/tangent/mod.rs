@@ -1,0 +1,354 @@
+//! The tangent of a motion: how all of it changes with a parameter, to first order.
+//!
+//! The recorded panels are gone through once more. On each of them three things are differentiated.
+//!
+//! # A mode
+//! With `L a = a'' + 2 beta a' + omega^2 a = f`, `beta = zeta omega`, and `t` the time since the start of the panel,
+//!
+//! ```text
+//! L (t a)  = t f + 2 a' + 2 beta a
+//! L (t a') = t f' + 2 f - 2 beta a' - 2 omega^2 a
+//! ```
+//!
+//! so that what a change of frequency and damping does to a mode is its own motion times the time. The change `da` obeys
+//! `L da = df - d(omega^2) a - 2 d(beta) a'`, and with `c_1 = omega dzeta/(1 - zeta^2)`, `c_2 = domega/omega - zeta
+//! dzeta/(1 - zeta^2)`
+//!
+//! ```text
+//! da = y - c_1 t a + c_2 t a',      L y = df + c_1 t f - c_2 (t f' + 2 f)
+//! ```
+//!
+//! where `y` is the motion of the same mode under other forces, for which the propagators and responses of the panel
+//! serve. Nothing is integrated numerically. At critical damping, `zeta = 1`, a change of damping has no such form.
+//!
+//! # The forces
+//! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
+//! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces.
+//!
+//! # The loads
+//! Modes are carried relative to their steady motion under the loads, which is known in closed form and with it its change.
+//! What is carried moves freely, so that all of the above holds for it. A break of a load lies at a fixed time: the panel
+//! before it is shorter by as much as its start is later.
+//!
+//! # The events
+//! A panel that ends at an event changes its length by `dh = -dG/G'`, so that the event function `G` stays zero, and what
+//! follows begins at the shifted time: every change is that at the event, wherever it has moved. Touches so stay
+//! touches, and forces begin and end as `t^(3/2)` does after the change as before it. Where `G' = 0`, at a graze, there is
+//! no derivative.
+
+mod event;
+mod expansion;
+mod panel;
+mod walk;
+
+use super::change::Change;
+use super::dense::{Event, Stretch};
+use super::load::Loads;
+use super::load_change::LoadChange;
+use super::no_derivative::NoDerivative;
+use super::problem::Posed;
+use super::system::System;
+use crate::panel::legendre::{BASIS, Nodal, Q, derivative, evaluate};
+use contact_models::Force;
+use event::later;
+pub(crate) use expansion::Expansions;
+use panel::{Moved, Passage, Solved, add};
+use walk::Walk;
+pub(crate) use walk::{IntervalChange, Tangent};
+
+/// All tangents of a record, and how the events met.
+pub(crate) struct Tangents {
+    pub tangents: Vec<Tangent>,
+    /// The motion itself at the end.
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// The slowest touch, in parts of the fastest: the derivatives do not exist where it is zero.
+    pub nearest_graze: f64,
+}
+
+/// What fixes where a panel ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ending {
+    /// Its length.
+    Length,
+    /// An event of this contact.
+    Event(usize, Event),
+    /// A break of the loads.
+    Break,
+    /// The end of the time asked for.
+    Run,
+}
+
+/// Where a panel ends.
+struct Arrival<'a> {
+    length_s: f64,
+    ending: Ending,
+    /// What is carried of the modes there.
+    state: [&'a [f64]; 2],
+    /// How the time of the end changes, where that is what fixes it.
+    end_s: Option<&'a [f64]>,
+    /// What follows.
+    next: &'a Stretch,
+}
+
+/// The tangents of a recorded motion. A record that ends at a fixed time ends with a stretch of no length, and `end_s` has how
+/// that time changes with each parameter.
+pub(crate) fn tangents(
+    posed: &Posed,
+    system: &System,
+    stretches: &[Stretch],
+    (changes, end_s): (&[Change], Option<&[f64]>),
+    expansions: &mut Expansions,
+) -> Result<Tangents, NoDerivative> {
+    let mut walk = Walk::new(posed, system, changes, expansions);
+    for (i, stretch) in stretches.iter().enumerate() {
+        // events that begin the record are met on a panel of no length
+        if i == 0 && !stretch.events.is_empty() {
+            walk.begin(stretch)?;
+        }
+        if let Some(next) = stretches.get(i + 1) {
+            let is_last = i + 2 == stretches.len();
+            walk.advance(stretch, next, end_s.filter(|_| is_last))?;
+        }
+    }
+    let (amplitude, rate) = walk.end(stretches.last().ok_or(NoDerivative::Outcome)?);
+    let finite = |tangent: &Tangent| {
+        let motion = tangent.amplitude.iter().chain(&tangent.rate);
+        motion.sum::<f64>().is_finite() && tangent.time_s.is_finite()
+    };
+    let [slowest, fastest] = walk.touches;
+    let nearest_graze = if fastest > 0.0 { slowest / fastest } else { 1.0 };
+    if !walk.tangents.iter().all(finite) {
+        return Err(NoDerivative::Infinite);
+    }
+    Ok(Tangents { tangents: walk.tangents, amplitude, rate, nearest_graze })
+}
+
+impl Walk<'_> {
+    fn begin(&mut self, first: &Stretch) -> Result<(), NoDerivative> {
+        let moved = self.tangents.iter().map(|tangent| Moved {
+            amplitude: tangent.amplitude.clone(),
+            rate: tangent.rate.clone(),
+            force: Vec::new(),
+            overlap: Vec::new(),
+        });
+        let moved = moved.collect();
+        let state = [first.amplitude.as_slice(), &first.rate];
+        let bend = self.acceleration(first.start_s, state, &[], 0.0);
+        let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
+        let end = Arrival { length_s: 0.0, ending: ending(first), state, end_s: None, next: first };
+        self.arrive(&end, &[], moved, Some(&slide))
+    }
+
+    /// From the start of a stretch to that of the next one; `end_s` has the changes of that time if the record ends there.
+    fn advance(&mut self, stretch: &Stretch, next: &Stretch, end_s: Option<&[f64]>) -> Result<(), NoDerivative> {
+        let h = stretch.length_s;
+        // what is carried jumps at a break
+        let mut after = None;
+        let (mut end_a, mut end_b) = (next.amplitude.clone(), next.rate.clone());
+        while next.start_s >= after.as_ref().unwrap_or(&self.loads).next_break_s() {
+            let loads = after.get_or_insert_with(|| self.loads.clone());
+            let [mut jump, mut jump_rate] = [(); 2].map(|()| vec![0.0; end_a.len()]);
+            loads.pass_break(self.system, next.start_s, &mut jump, &mut jump_rate);
+            end_a.iter_mut().zip(&jump).for_each(|(end, jump)| *end -= jump);
+            end_b.iter_mut().zip(&jump_rate).for_each(|(end, jump)| *end -= jump);
+        }
+        let state = [end_a.as_slice(), &end_b];
+        let ending = match (ending(next), end_s) {
+            // an event just at a break has no place of its own
+            (Ending::Event(..), _) if after.is_some() => return Err(NoDerivative::Break { time_s: next.start_s }),
+            (Ending::Length, _) if after.is_some() => Ending::Break,
+            (Ending::Length, Some(_)) => Ending::Run,
+            (ending, _) => ending,
+        };
+        let closed: Vec<usize> = stretch.forces.iter().map(|(c, _)| *c).collect();
+        let expansion = self.expansions.of(self.system, self.changes, h, &closed);
+        let solved = self.solved(stretch, &expansion);
+        if !closed.is_empty() {
+            let values: Vec<[Force; Q]> = solved.iter().map(|solved| solved.law).collect();
+            let n = closed.len();
+            let shares = |p: usize, q: usize| self.system.neighbours[closed[p]].contains(&closed[q]);
+            let response = |p: usize, q: usize| shares(p, q).then(|| &expansion.own[p * n + q]);
+            self.blocks.factor(&values, &response, h);
+        }
+        let from = [stretch.amplitude.as_slice(), &stretch.rate];
+        let bends = [
+            self.acceleration(stretch.start_s, from, &solved, 0.0),
+            self.acceleration(stretch.start_s + h, state, &solved, 1.0),
+        ];
+        let passage = Passage { from: stretch, to: state, expansion: &expansion, solved: &solved, bends };
+        let moved = (0..self.changes.len()).map(|d| self.moved(d, &passage)).collect();
+        let slide = (ending != Ending::Length).then(|| self.slide(&passage));
+        for solved in &solved {
+            let (c, followed) = (solved.contact, &mut self.contacts[solved.contact]);
+            let moved = state[0].iter().zip(&stretch.amplitude).map(|(after, before)| after - before);
+            followed.overlap += self.system.links[c].sum(&moved.collect::<Vec<f64>>());
+            followed.overlap += self.loads.overlap(c, next.start_s).0 - self.loads.overlap(c, stretch.start_s).0;
+            followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
+        }
+        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, moved, slide.as_ref())?;
+        if let Some(after) = after {
+            self.pass_breaks(after);
+        }
+        Ok(())
+    }
+
+    /// To the loads after a break, or several at once.
+    fn pass_breaks(&mut self, after: Loads) {
+        for (tangent, loads) in self.tangents.iter_mut().zip(&mut self.load_changes) {
+            let Some(loads) = loads else { continue };
+            for _ in 0..after.breaks_since(&self.loads) {
+                let (jump, jump_rate) = loads.pass_break(self.system);
+                tangent.amplitude.iter_mut().zip(&jump).for_each(|(change, jump)| *change += jump);
+                tangent.rate.iter_mut().zip(&jump_rate).for_each(|(change, jump)| *change += jump);
+            }
+        }
+        self.loads = after;
+    }
+
+    /// The end of a panel: how far it moves, what is booked, and the events there.
+    fn arrive(
+        &mut self,
+        end: &Arrival,
+        solved: &[Solved],
+        moved: Vec<Moved>,
+        slide: Option<&Moved>,
+    ) -> Result<(), NoDerivative> {
+        let Arrival { length_s: h, ending, state, end_s, next } = *end;
+        let time_s = next.start_s;
+        let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
+            .map(|c| {
+                let (link, followed) = (&self.system.links[c], &self.contacts[c]);
+                let (shift, shift_rate) = self.loads.overlap(c, time_s);
+                let overlap = match followed.branch {
+                    Some(_) => followed.overlap,
+                    None => next.contacts[c].reference + link.sum(state[0]) + shift,
+                };
+                [overlap, link.sum(state[1]) + shift_rate]
+            })
+            .collect();
+        for (followed, [_, rate]) in self.contacts.iter_mut().zip(&overlaps) {
+            followed.rate = *rate;
+            followed.sizes[1] = followed.sizes[1].max(rate.abs());
+        }
+        let peaks = self.peaks(solved);
+        for (d, mut moved) in moved.into_iter().enumerate() {
+            let mut longer = 0.0;
+            if let Some(slide) = slide {
+                longer = match ending {
+                    Ending::Length => 0.0,
+                    Ending::Event(c, event) => {
+                        let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate]);
+                        let (changes, slope) =
+                            self.event_function(d, c, event, overlaps[c], change, self.speed(c, time_s, slide));
+                        later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?
+                    }
+                    Ending::Break => {
+                        let later = self.load_changes[d].as_ref().map_or(0.0, LoadChange::next_break_s);
+                        later - self.tangents[d].time_s
+                    }
+                    Ending::Run => end_s.map_or(0.0, |changes| changes[d]) - self.tangents[d].time_s,
+                };
+                for k in 0..moved.amplitude.len() {
+                    moved.amplitude[k] += longer * slide.amplitude[k];
+                    moved.rate[k] += longer * slide.rate[k];
+                }
+            }
+            for (p, own) in solved.iter().enumerate() {
+                if let Some(slide) = slide {
+                    add(&mut moved.force[p], longer, &slide.force[p]);
+                    add(&mut moved.overlap[p], longer, &slide.overlap[p]);
+                }
+                let interval = self.contacts[own.contact].interval;
+                let force = BASIS.coefficients(&moved.force[p]);
+                let overlap = BASIS.coefficients(&moved.overlap[p]);
+                let Some(interval) = self.tangents[d].intervals.get_mut(interval) else { continue };
+                interval.impulse_n_s += h * force[0] + longer * evaluate(&own.force, 1.0);
+                let end = |place: f64, slope: f64| if place == 1.0 { longer * slope } else { 0.0 };
+                let [by_force, by_compression] = &peaks[p];
+                if let Some((place, slope)) = by_force {
+                    interval.peak_force_n = evaluate(&force, *place) + end(*place, slope / h);
+                }
+                if let Some((place, slope)) = by_compression {
+                    interval.peak_compression_m = evaluate(&overlap, *place) + end(*place, slope / h);
+                }
+            }
+            let tangent = &mut self.tangents[d];
+            (tangent.amplitude, tangent.rate) = (moved.amplitude, moved.rate);
+            tangent.time_s += longer;
+        }
+        for (i, (c, event)) in next.events.iter().enumerate() {
+            let apart = match slide {
+                Some(slide) if i > 0 => self.apart(*c, *event, (time_s, state), overlaps[*c], slide)?,
+                _ => vec![0.0; self.changes.len()],
+            };
+            self.transition((*c, *event), (time_s, state), overlaps[*c], &apart)?;
+        }
+        for (followed, seen) in self.contacts.iter_mut().zip(&next.contacts) {
+            followed.branch = seen.branch;
+        }
+        Ok(())
+    }
+
+    /// Where on this panel force and compression of each contact exceed all before, with their slope there.
+    fn peaks(&mut self, solved: &[Solved]) -> Vec<[Option<(f64, f64)>; 2]> {
+        let of = |own: &Solved| {
+            let compression = BASIS.coefficients(&own.compression);
+            let followed = &mut self.contacts[own.contact];
+            [(&own.force, 0), (&compression, 1)].map(|(coefficients, which)| {
+                let (place, value) = highest(coefficients);
+                (value > followed.peaks[which]).then(|| {
+                    followed.peaks[which] = value;
+                    (place, evaluate(&derivative(coefficients), place))
+                })
+            })
+        };
+        solved.iter().map(of).collect()
+    }
+
+    /// From what is carried to the whole motion at the end of the record.
+    fn end(&mut self, last: &Stretch) -> (Vec<f64>, Vec<f64>) {
+        let (time_s, loads) = (last.start_s, &self.loads);
+        let (mut amplitude, mut rate) = (last.amplitude.clone(), last.rate.clone());
+        loads.shift_modes(self.system, time_s, 1.0, &mut amplitude, &mut rate);
+        for (tangent, changed) in self.tangents.iter_mut().zip(&self.load_changes) {
+            let later = tangent.time_s;
+            if let Some(changed) = changed {
+                let (steady, steady_rate) = changed.steady(self.system, time_s);
+                tangent.amplitude.iter_mut().zip(&steady).for_each(|(change, steady)| *change += steady);
+                tangent.rate.iter_mut().zip(&steady_rate).for_each(|(change, steady)| *change += steady);
+            }
+            for k in 0..amplitude.len() {
+                tangent.amplitude[k] += later * (rate[k] - last.rate[k]);
+            }
+            loads.add_accelerations(time_s, later, &mut tangent.rate);
+        }
+        (amplitude, rate)
+    }
+}
+
+/// What fixes where the panel before a stretch ends, loads apart: the first event at its start.
+fn ending(next: &Stretch) -> Ending {
+    match next.events.first() {
+        Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,
+        Some((c, event)) => Ending::Event(*c, *event),
+    }
+}
+
+/// Place and value of the maximum of a polynomial on [0, 1].
+fn highest(coefficients: &Nodal) -> (f64, f64) {
+    const GRID: u32 = 16;
+    let value = |place: f64| evaluate(coefficients, place);
+    let grid = (0..=GRID).map(|i| f64::from(i) / f64::from(GRID));
+    let (mut place, mut best) = grid.map(|s| (s, value(s))).fold((0.0, f64::MIN), |a, b| if b.1 > a.1 { b } else { a });
+    let slope = derivative(coefficients);
+    let bend = derivative(&slope);
+    for _ in 0..8 {
+        let next = place - evaluate(&slope, place) / evaluate(&bend, place);
+        if !((0.0..=1.0).contains(&next) && value(next) >= best) {
+            break;
+        }
+        (place, best) = (next, value(next));
+    }
+    (place, best)
+}

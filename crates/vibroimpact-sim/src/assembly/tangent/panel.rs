@@ -1,0 +1,380 @@
+//! One panel: the change of the modes and of the forces while no event moves.
+
+use super::expansion::Expansion;
+use super::walk::{LAW_STEP, Walk, shifted, size_of};
+use crate::assembly::change::Stencil;
+use crate::assembly::dense::Stretch;
+use crate::assembly::system::Span;
+use crate::assembly::tables::Forced;
+use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
+use crate::panel::vector::vectorized;
+use contact_models::{Branch, ContactLaw, Force};
+use std::array;
+
+/// The closed contacts of a panel, as the record has them.
+pub(super) struct Solved {
+    pub contact: usize,
+    pub branch: Branch,
+    /// Force by coefficients; at the nodes the force, `F'`, `t F` and `t F'`.
+    pub force: Nodal,
+    pub nodal: Nodal,
+    pub force_rate: Nodal,
+    pub timed: Nodal,
+    pub timed_rate: Nodal,
+    /// Compression and its rate at the nodes, with the law there.
+    pub start: f64,
+    pub compression: Nodal,
+    pub rate: Nodal,
+    pub law: [Force; Q],
+    /// What a unit of weight would make of all modes by the end of the panel: by `F`, `t F` and `t F' + 2 F`.
+    pub driven: [Motion; 3],
+}
+
+/// Amplitudes and rates of all modes.
+pub(super) type Motion = [Vec<f64>; 2];
+
+/// A panel of the record, from one stretch to the next, with what all changes need of it.
+pub(super) struct Passage<'a> {
+    pub from: &'a Stretch,
+    /// Amplitudes and rates at its end.
+    pub to: [&'a [f64]; 2],
+    pub expansion: &'a Expansion,
+    pub solved: &'a [Solved],
+    /// Accelerations of all modes at its start and at its end.
+    pub bends: [Vec<f64>; 2],
+}
+
+/// What one change does on one panel.
+pub(super) struct Moved {
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    /// By the panel's closed contacts: change of force and overlap at the nodes.
+    pub force: Vec<Nodal>,
+    pub overlap: Vec<Nodal>,
+}
+
+/// What a contact sees of a change by free motion: at the start and at the nodes, and what is multiplied by the time.
+#[derive(Default)]
+pub(super) struct Seen {
+    pub start: f64,
+    pub moved: Nodal,
+    pub timed_start: f64,
+    pub timed: Nodal,
+}
+
+pub(super) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
+}
+
+fn times(one: &Nodal, other: &Nodal) -> Nodal {
+    array::from_fn(|i| one[i] * other[i])
+}
+
+impl Walk<'_> {
+    pub fn solved(&self, stretch: &Stretch, expansion: &Expansion) -> Vec<Solved> {
+        let (h, n) = (stretch.length_s, stretch.forces.len());
+        let place = BASIS.nodes.map(|s| s * h);
+        let of = |(p, (c, force)): (usize, &(usize, Nodal))| {
+            let (link, followed) = (&self.system.links[*c], &self.contacts[*c]);
+            let branch = stretch.contacts[*c].branch?;
+            let mut compression = expansion.forced.free_at_nodes(&link.spans, &stretch.amplitude, &stretch.rate);
+            let moved = |i: usize| self.loads.moved(*c, stretch.start_s, BASIS.nodes[i] * h).0;
+            compression.iter_mut().enumerate().for_each(|(i, value)| *value += followed.overlap + moved(i));
+            for (q, (_, other)) in stretch.forces.iter().enumerate() {
+                let nodal = BASIS.nodes.map(|s| evaluate(other, s));
+                add(&mut compression, 1.0, &apply(&expansion.own[p * n + q], &nodal));
+            }
+            let rate = slopes(followed.overlap, &compression, h);
+            let law = self.posed.laws[*c];
+            let nodal = BASIS.nodes.map(|s| evaluate(force, s));
+            let slope = derivative(force);
+            let force_rate = BASIS.nodes.map(|s| evaluate(&slope, s) / h);
+            let (timed, timed_rate) = (times(&place, &nodal), times(&place, &force_rate));
+            let driven = |nodal: &Nodal| {
+                let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; self.system.modes.len()]);
+                let force = BASIS.coefficients(nodal);
+                expansion.forced.push(&self.units[*c], &force, &mut amplitude, &mut rate);
+                [amplitude, rate]
+            };
+            let driven_by_timed = |nodal: &Nodal| if self.modes_move { driven(nodal) } else { Motion::default() };
+            let again: Nodal = array::from_fn(|i| timed_rate[i] + 2.0 * nodal[i]);
+            Some(Solved {
+                contact: *c,
+                branch,
+                force: *force,
+                driven: [driven(&nodal), driven_by_timed(&timed), driven_by_timed(&again)],
+                timed,
+                timed_rate,
+                nodal,
+                force_rate,
+                start: followed.overlap,
+                law: array::from_fn(|i| law.force(&branch, compression[i], rate[i])),
+                compression,
+                rate,
+            })
+        };
+        stretch.forces.iter().enumerate().filter_map(of).collect()
+    }
+
+    /// Acceleration of what is carried of all modes in a state, under these forces at a place of their panel.
+    pub fn acceleration(&self, time_s: f64, [a, b]: [&[f64]; 2], solved: &[Solved], place: f64) -> Vec<f64> {
+        let system = self.system;
+        let mut bend: Vec<f64> =
+            (0..system.modes.len()).map(|k| -system.drag[k] * b[k] - system.square[k] * a[k]).collect();
+        self.loads.rigid.iter().for_each(|&k| bend[k] += self.loads.line(k, time_s).0);
+        for solved in solved {
+            let force = evaluate(&solved.force, place);
+            for span in &system.links[solved.contact].spans {
+                span.modes.clone().zip(&span.psi).for_each(|(k, psi)| bend[k] -= psi * force);
+            }
+        }
+        bend
+    }
+
+    /// A panel of unchanged length.
+    pub fn moved(&self, d: usize, passage: &Passage) -> Moved {
+        let (system, change, tangent) = (self.system, &self.changes[d], &self.tangents[d]);
+        let Passage { from, expansion, solved, .. } = passage;
+        let (h, n) = (from.length_s, solved.len());
+        let (a, b) = (from.amplitude.as_slice(), from.rate.as_slice());
+        let modes_move = change.moves_modes;
+        let (fade, stretches) = (&change.fade, &change.stretch);
+        // y and y' at the start
+        let mut amplitude = tangent.amplitude.clone();
+        let mut rate = tangent.rate.clone();
+        if modes_move {
+            vectorized(
+                #[inline(always)]
+                || {
+                    let held = fade.iter().zip(a).zip(stretches.iter().zip(b));
+                    for (rate, ((fade, a), (stretch, b))) in rate.iter_mut().zip(held) {
+                        *rate += fade * a - stretch * b;
+                    }
+                },
+            );
+        }
+        let (mut force, mut overlap) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for (p, own) in solved.iter().enumerate() {
+            let c = own.contact;
+            let Seen { start, moved: mut found, timed_start, mut timed } =
+                self.seen(d, c, &expansion.forced, [&amplitude, &rate], [a, b, &passage.bends[0]]);
+            let start = start + self.beyond(d, c, from.start_s)[0];
+            found.iter_mut().for_each(|value| *value += start);
+            timed.iter_mut().for_each(|value| *value += timed_start);
+            for (q, other) in solved.iter().enumerate() {
+                let [of_force, of_timed, of_timed_rate] = &expansion.changed[d][p * n + q];
+                if let Some(response) = of_force {
+                    add(&mut found, 1.0, &apply(response, &other.nodal));
+                }
+                if let Some(response) = of_timed {
+                    add(&mut found, 1.0, &apply(response, &other.timed));
+                    add(&mut timed, -1.0, &apply(response, &other.nodal));
+                }
+                if let Some(response) = of_timed_rate {
+                    add(&mut found, -1.0, &apply(response, &other.timed_rate));
+                    add(&mut timed, 1.0, &apply(response, &other.force_rate));
+                }
+            }
+            for i in 0..Q {
+                found[i] += BASIS.nodes[i] * h * timed[i];
+            }
+            for (found, s) in found.iter_mut().zip(BASIS.nodes).filter(|_| !self.loads.is_empty()) {
+                *found += tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
+            }
+            if let Some(loads) = &self.load_changes[d] {
+                found.iter_mut().zip(BASIS.nodes).for_each(|(found, s)| *found += loads.moved(c, from.start_s, s * h));
+            }
+            let slope = slopes(start, &found, h);
+            let by_law = self.force_change(d, own);
+            force.push(array::from_fn(|i| {
+                own.law[i].per_compression_n_m * found[i] + own.law[i].per_rate_n_s_m * slope[i] + by_law[i]
+            }));
+            overlap.push(found);
+        }
+        if n > 0 {
+            self.blocks.solve(&mut force);
+        }
+        for (p, found) in overlap.iter_mut().enumerate() {
+            for (q, force) in force.iter().enumerate() {
+                add(found, 1.0, &apply(&expansion.own[p * n + q], force));
+            }
+        }
+        // y at the end
+        expansion.rotation.apply(&mut amplitude, &mut rate);
+        for (own, force) in solved.iter().zip(&force) {
+            let c = own.contact;
+            let link = &system.links[c];
+            expansion.forced.push(&link.spans, &BASIS.coefficients(force), &mut amplitude, &mut rate);
+            for (Span { modes, psi }, Span { psi: by, .. }) in link.spans.iter().zip(&change.psi[c]) {
+                for (order, moved) in [&mut amplitude, &mut rate].into_iter().enumerate() {
+                    let driven = own.driven.each_ref().map(|motion| motion[order].get(modes.clone()).unwrap_or(&[]));
+                    let moved = &mut moved[modes.clone()];
+                    let factors = modes_move.then(|| [&change.fade, &change.stretch].map(|row| &row[modes.clone()]));
+                    add_driven(moved, (psi, by), factors, driven);
+                }
+            }
+        }
+        let rigid = (0..a.len()).filter(|&k| system.modes[k].is_rigid());
+        if !self.loads.is_empty() || self.load_changes[d].is_some() {
+            for k in rigid {
+                let changes = self.load_changes[d].as_ref();
+                let (push, slope) = changes.map_or((0.0, 0.0), |loads| loads.line(k, system, from.start_s));
+                let push = push + tangent.time_s * self.loads.line(k, from.start_s).1;
+                amplitude[k] += h * h * (0.5 * push + h * slope / 6.0);
+                rate[k] += h * (push + 0.5 * h * slope);
+            }
+        }
+        if modes_move {
+            let ([a, b], bend) = (passage.to, &passage.bends[1]);
+            vectorized(
+                #[inline(always)]
+                || {
+                    let motion = a.iter().zip(b).zip(bend).zip(fade.iter().zip(stretches));
+                    for ((amplitude, rate), (((a, b), bend), (fade, stretch))) in
+                        amplitude.iter_mut().zip(&mut rate).zip(motion)
+                    {
+                        let moving = stretch * b - fade * a;
+                        *amplitude += h * moving;
+                        *rate += moving + h * (stretch * bend - fade * b);
+                    }
+                },
+            );
+        }
+        Moved { amplitude, rate, force, overlap }
+    }
+
+    /// How free motion from `y` and from the state moves what a contact sees of the change: in one pass over the modes.
+    fn seen(&self, d: usize, c: usize, forced: &Forced, y: [&[f64]; 2], [a, b, bend]: [&[f64]; 3]) -> Seen {
+        let change = &self.changes[d];
+        let mut seen = Seen::default();
+        for (Span { modes, psi }, Span { psi: by, .. }) in self.system.links[c].spans.iter().zip(&change.psi[c]) {
+            let at_nodes = &forced.at_nodes[modes.clone()];
+            let [ya, yb] = y.map(|values| &values[modes.clone()]);
+            let [a, b, bend] = [a, b, bend].map(|values| &values[modes.clone()]);
+            let (start, moved) = swept(at_nodes, [psi, by, ya, yb, a, b], |[psi, by, ya, yb, a, b]| {
+                (psi * ya + by * a, psi * yb + by * b)
+            });
+            seen.start += start;
+            add(&mut seen.moved, 1.0, &moved);
+            if change.moves_modes {
+                let [fade, stretch] = [&change.fade, &change.stretch].map(|values| &values[modes.clone()]);
+                let (start, timed) =
+                    swept(at_nodes, [psi, fade, stretch, a, b, bend], |[psi, fade, stretch, a, b, bend]| {
+                        (psi * (stretch * b - fade * a), psi * (stretch * bend - fade * b))
+                    });
+                seen.timed_start += start;
+                add(&mut seen.timed, 1.0, &timed);
+            }
+        }
+        seen
+    }
+
+    /// Change of a contact's force at the nodes where the overlap does not change: by its law and its branch.
+    fn force_change(&self, d: usize, own: &Solved) -> Nodal {
+        let (change, c) = (&self.changes[d], own.contact);
+        let mut found = [0.0; Q];
+        let at = |law: &dyn ContactLaw, branch: &Branch, i: usize| {
+            law.force(branch, own.compression[i], own.rate[i]).force_n
+        };
+        if let Some(laws) = &change.laws {
+            for i in 0..Q {
+                found[i] += change.stencil.slope(laws[c].map(|law| at(law, &own.branch, i)));
+            }
+        }
+        let law = self.posed.laws[c];
+        for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
+            let stencil = Stencil::central(LAW_STEP * size_of(&own.branch, which, &self.contacts[c]));
+            let branches = stencil.offsets.map(|offset| shifted(&own.branch, which, offset));
+            for i in 0..Q {
+                found[i] += by * stencil.slope(branches.each_ref().map(|branch| at(law, branch, i)));
+            }
+        }
+        found
+    }
+
+    /// What a panel longer by a second would change at its end. The nodes move along with the end: forces there are those
+    /// of the law, of which the polynomial's own slope may miss a little.
+    pub fn slide(&self, passage: &Passage) -> Moved {
+        let Passage { from, to, expansion, solved, bends } = passage;
+        let (h, n) = (from.length_s, solved.len());
+        let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; to[0].len()]);
+        let mut force: Vec<Nodal> = solved
+            .iter()
+            .map(|own| {
+                let bend = slopes(slope_at_start(own.start, &own.compression, h), &own.rate, h);
+                array::from_fn(|i| {
+                    let law = &own.law[i];
+                    let by_law = law.per_compression_n_m * own.rate[i] + law.per_rate_n_s_m * bend[i];
+                    BASIS.nodes[i] * (by_law - own.force_rate[i])
+                })
+            })
+            .collect();
+        if n > 0 {
+            self.blocks.solve(&mut force);
+        }
+        let mut overlap = vec![[0.0; Q]; n];
+        for p in 0..n {
+            for (q, force) in force.iter().enumerate() {
+                add(&mut overlap[p], 1.0, &apply(&expansion.own[p * n + q], force));
+            }
+            let spans = &self.system.links[solved[p].contact].spans;
+            expansion.forced.push(spans, &BASIS.coefficients(&force[p]), &mut amplitude, &mut rate);
+        }
+        for k in 0..amplitude.len() {
+            amplitude[k] += to[1][k];
+            rate[k] += bends[1][k];
+        }
+        Moved { amplitude, rate, force, overlap }
+    }
+}
+
+/// `moved -= by F + c_1 psi (t F) - c_2 psi (t F' + 2 F)`, of what these forces make of the modes; the latter two where modes
+/// change.
+fn add_driven(moved: &mut [f64], (psi, by): (&[f64], &[f64]), factors: Option<[&[f64]; 2]>, driven: [&[f64]; 3]) {
+    let n = moved.len();
+    let [by_force, by_timed, by_again] = driven;
+    vectorized(
+        #[inline(always)]
+        || {
+            let (by, by_force) = (&by[..n], &by_force[..n]);
+            (0..n).for_each(|k| moved[k] -= by[k] * by_force[k]);
+            if let Some([fade, stretch]) = factors {
+                let [psi, fade, stretch, by_timed, by_again] =
+                    [psi, fade, stretch, by_timed, by_again].map(|row| &row[..n]);
+                (0..n).for_each(|k| moved[k] -= psi[k] * (fade[k] * by_timed[k] - stretch[k] * by_again[k]));
+            }
+        },
+    );
+}
+
+/// How far free motion moves the sum of all modes at the nodes, and that sum at the start: of each mode from the amplitude and
+/// the rate that are made of its numbers.
+fn swept<const N: usize>(
+    at_nodes: &[(Nodal, Nodal)],
+    rows: [&[f64]; N],
+    motion: impl Fn([f64; N]) -> (f64, f64),
+) -> (f64, Nodal) {
+    vectorized(
+        #[inline(always)]
+        || {
+            let n = at_nodes.len();
+            let rows = rows.map(|row| &row[..n]);
+            let (mut start, mut moved) = (0.0, [0.0; Q]);
+            for k in 0..n {
+                let (a, b) = motion(rows.map(|row| row[k]));
+                let (from_a, from_b) = &at_nodes[k];
+                start += a;
+                for i in 0..Q {
+                    moved[i] += from_a[i] * a + from_b[i] * b;
+                }
+            }
+            (start, moved)
+        },
+    )
+}
+
+/// Rate at the start of a polynomial by its values at the start and at the nodes.
+fn slope_at_start(start: f64, nodal: &Nodal, h: f64) -> f64 {
+    let rates = slopes(start, nodal, h);
+    evaluate(&BASIS.coefficients(&rates), 0.0)
+}

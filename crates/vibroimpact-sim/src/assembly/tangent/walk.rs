@@ -1,0 +1,167 @@
+//! What is carried from panel to panel: the motion of the contacts, and how it changes.
+
+use super::expansion::Expansions;
+use crate::assembly::change::Change;
+use crate::assembly::collocate::Blocks;
+use crate::assembly::load::Loads;
+use crate::assembly::load_change::LoadChange;
+use crate::assembly::problem::Posed;
+use crate::assembly::system::{Span, System};
+use contact_models::{Branch, Memory};
+use std::array;
+
+/// Step, relative to the size of a variable, with which a law's own functions are differenced.
+pub(super) const LAW_STEP: f64 = 1e-6;
+
+/// How an interval of contact changes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct IntervalChange {
+    pub contact: usize,
+    pub start_s: f64,
+    pub end_s: f64,
+    pub impulse_n_s: f64,
+    pub peak_force_n: f64,
+    pub peak_compression_m: f64,
+    pub approach_speed_m_s: f64,
+    pub separation_speed_m_s: f64,
+}
+
+/// The change of a motion with one parameter.
+#[derive(Clone)]
+pub(crate) struct Tangent {
+    /// Of the modes when the record ends, in the order of [`System`], and of that time; before, of what is carried of them.
+    pub amplitude: Vec<f64>,
+    pub rate: Vec<f64>,
+    pub time_s: f64,
+    pub intervals: Vec<IntervalChange>,
+    pub(super) contacts: Vec<Carried>,
+}
+
+/// What a contact carries from panel to panel: the change of ...
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Carried {
+    /// ... its overlap beyond that of the modes (m),
+    pub reference: f64,
+    /// the numbers of its branch: where it began (m), and the law's internal variable,
+    pub branch: [f64; 2],
+    /// and of the memory of an open one.
+    pub memory: [f64; 2],
+}
+
+/// A contact along the record itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Followed {
+    pub branch: Option<Branch>,
+    pub memory: Memory,
+    pub overlap: f64,
+    pub rate: f64,
+    /// Sizes of overlap and rate so far.
+    pub sizes: [f64; 2],
+    /// Which interval is under way, its largest force and compression.
+    pub interval: usize,
+    pub peaks: [f64; 2],
+}
+
+pub(super) struct Walk<'a> {
+    pub posed: &'a Posed<'a>,
+    pub system: &'a System,
+    pub changes: &'a [Change<'a>],
+    /// A weight of -1 for each mode that a contact sees, and whether any change moves modes.
+    pub units: Vec<Vec<Span>>,
+    pub modes_move: bool,
+    /// The loads on the panel at hand, and how they change.
+    pub loads: Loads,
+    pub load_changes: Vec<Option<LoadChange>>,
+    pub expansions: &'a mut Expansions,
+    pub blocks: Blocks,
+    pub contacts: Vec<Followed>,
+    pub tangents: Vec<Tangent>,
+    /// Intervals begun so far, the slowest touch and the fastest.
+    pub begun: usize,
+    pub touches: [f64; 2],
+}
+
+pub(super) fn sum(spans: &[Span], values: &[f64]) -> f64 {
+    spans.iter().map(|span| span.sum(values)).sum()
+}
+
+impl<'a> Walk<'a> {
+    pub fn new(
+        posed: &'a Posed<'a>,
+        system: &'a System,
+        changes: &'a [Change<'a>],
+        expansions: &'a mut Expansions,
+    ) -> Walk<'a> {
+        let unit = |span: &Span| Span { modes: span.modes.clone(), psi: vec![-1.0; span.psi.len()] };
+        let followed = |gap: &f64| Followed {
+            branch: None,
+            memory: Memory::default(),
+            overlap: -gap,
+            rate: 0.0,
+            sizes: [0.0; 2],
+            interval: 0,
+            peaks: [0.0; 2],
+        };
+        let tangent = |change: &Change| Tangent {
+            amplitude: change.amplitude.clone(),
+            rate: change.rate.clone(),
+            time_s: 0.0,
+            intervals: Vec::new(),
+            contacts: change.gap_m.iter().map(|gap| Carried { reference: -gap, ..Carried::default() }).collect(),
+        };
+        Walk {
+            posed,
+            system,
+            changes,
+            units: system.links.iter().map(|link| link.spans.iter().map(unit).collect()).collect(),
+            modes_move: changes.iter().any(|change| change.moves_modes),
+            loads: Loads::new(posed.loads, system),
+            load_changes: changes.iter().map(|change| change.loads.clone()).collect(),
+            expansions,
+            blocks: Blocks::default(),
+            contacts: posed.gaps_m.iter().map(followed).collect(),
+            tangents: changes.iter().map(tangent).collect(),
+            begun: 0,
+            touches: [f64::INFINITY, 0.0],
+        }
+    }
+
+    /// Change of an overlap and its rate at a time, for a state and its change.
+    pub fn overlap(&self, d: usize, c: usize, time_s: f64, state: [&[f64]; 2], change: [&[f64]; 2]) -> [f64; 2] {
+        let (link, psi) = (&self.system.links[c], &self.changes[d].psi[c]);
+        let beyond = self.beyond(d, c, time_s);
+        array::from_fn(|i| sum(psi, state[i]) + link.sum(change[i]) + beyond[i])
+    }
+
+    /// The part of it that is not seen of the modes as they are carried.
+    pub fn beyond(&self, d: usize, c: usize, time_s: f64) -> [f64; 2] {
+        let mut found = [self.tangents[d].contacts[c].reference, 0.0];
+        if !self.loads.is_empty() {
+            let later = self.tangents[d].time_s;
+            found[0] += later * self.loads.overlap(c, time_s).1;
+            found[1] += later * self.loads.bend(c, time_s);
+        }
+        if let Some(loads) = &self.load_changes[d] {
+            let by_loads = loads.overlap(c, time_s);
+            (0..2).for_each(|i| found[i] += by_loads[i]);
+        }
+        found
+    }
+}
+
+/// The size that a number of a branch is differenced by.
+pub(super) fn size_of(branch: &Branch, which: usize, followed: &Followed) -> f64 {
+    match which {
+        0 if branch.anchor_m != 0.0 => branch.anchor_m.abs(),
+        0 => followed.sizes[0],
+        _ if branch.internal != 0.0 => branch.internal.abs(),
+        _ => 1.0,
+    }
+}
+
+pub(super) fn shifted(branch: &Branch, which: usize, by: f64) -> Branch {
+    match which {
+        0 => Branch { anchor_m: branch.anchor_m + by, ..*branch },
+        _ => Branch { internal: branch.internal + by, ..*branch },
+    }
+}
