@@ -9,6 +9,9 @@ use super::problem::Posed;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
+/// Nearer to critical damping, in `|1 - zeta^2|`, a change of the damping has no digits.
+const CRITICAL: f64 = 1e-6;
+
 /// Neighbouring values of a parameter, and what they say about the slope at the value between them or beside them: that of
 /// the polynomial through them.
 ///
@@ -69,6 +72,8 @@ pub(crate) struct Change<'a> {
     pub stencil: Stencil<4>,
     /// Whether frequencies or dampings change.
     pub moves_modes: bool,
+    /// The damping ratio of a mode whose damping changes and is next to critical, where `c_1` and `c_2` have no digits.
+    pub critical: Option<f64>,
 }
 
 impl<'a> Change<'a> {
@@ -86,6 +91,7 @@ impl<'a> Change<'a> {
             loads: LoadChange::new(posed, stencil),
             stencil,
             moves_modes: false,
+            critical: None,
         };
         for (body, places) in system.place.iter().enumerate() {
             let bodies = posed.map(|posed| &posed.bodies[body]);
@@ -97,7 +103,11 @@ impl<'a> Change<'a> {
                     let zeta = mode.damping_ratio;
                     let by_omega = stencil.slope(bodies.map(|body| body.modes[k].omega_rad_s)) / mode.omega_rad_s;
                     let by_zeta = stencil.slope(bodies.map(|body| body.modes[k].damping_ratio));
-                    let by_zeta = if by_zeta == 0.0 { 0.0 } else { by_zeta / ((1.0 - zeta) * (1.0 + zeta)) };
+                    let to_critical = (1.0 - zeta) * (1.0 + zeta);
+                    let by_zeta = if by_zeta == 0.0 { 0.0 } else { by_zeta / to_critical };
+                    if by_zeta != 0.0 && to_critical.abs() < CRITICAL {
+                        change.critical = Some(zeta);
+                    }
                     change.fade[place] = mode.omega_rad_s * by_zeta;
                     change.stretch[place] = by_omega - zeta * by_zeta;
                 }
@@ -132,6 +142,7 @@ impl<'a> Change<'a> {
             loads: None,
             stencil: Stencil::central(1.0),
             moves_modes: false,
+            critical: None,
         };
         let started = if of_rate { &mut change.rate } else { &mut change.amplitude };
         started[place] = 1.0;

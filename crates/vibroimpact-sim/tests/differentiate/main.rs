@@ -13,8 +13,8 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use vibroimpact_sim::modal::{
-    Derivative, Differentiated, Mode, Outcome, Parameter, Posing, Settings, Solution, Solver, Start, Striker,
-    Structure, SubImpact,
+    Derivative, Differentiated, Mode, NoDerivative, Outcome, Parameter, Posing, Settings, Solution, Solver, Start,
+    Striker, Structure, SubImpact,
 };
 
 /// A law whose force is so many times that of another.
@@ -305,4 +305,12 @@ fn bad_parameters_are_named() {
     assert_eq!(field([1.0, 1.0, 2.0, 3.0], &posed), "parameters[0].offsets");
     assert_eq!(field([1.0, f64::NAN, 2.0, 3.0], &posed), "parameters[0].offsets");
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other), "parameters[0].neighbours[0].structure.modes");
+}
+
+#[test]
+fn critical_damping_is_named() {
+    let mut posed = Posed::new(&pinned(3, 0.02, 0.3), ball(), hertz());
+    posed.structure.modes[1].damping_ratio = 1.0;
+    let Err(why) = posed.differentiate(1e-9).derivatives else { panic!("all damping ratios change") };
+    assert_eq!(why, NoDerivative::CriticalDamping { damping_ratio: 1.0 });
 }

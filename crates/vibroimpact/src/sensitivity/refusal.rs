@@ -17,6 +17,9 @@ pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> 
             format!("{}, whose law takes either of two courses at {time_s:.6e} s", name(contact))
         }
         NoDerivative::Break { time_s } => format!("an event just where a load breaks, at {time_s:.6e} s"),
+        NoDerivative::CriticalDamping { damping_ratio } => {
+            format!("a mode whose damping changes, damped critically ({damping_ratio})")
+        }
         NoDerivative::Infinite => "a run whose derivatives are no finite numbers".to_owned(),
         _ => "a run without derivatives".to_owned(),
     };

@@ -100,6 +100,9 @@ pub(crate) fn tangents(
     (changes, end_s): (&[Change], Option<&[f64]>),
     expansions: &mut Expansions,
 ) -> Result<Tangents, NoDerivative> {
+    if let Some(damping_ratio) = changes.iter().find_map(|change| change.critical) {
+        return Err(NoDerivative::CriticalDamping { damping_ratio });
+    }
     let mut walk = Walk::new(posed, system, changes, expansions);
     for (i, stretch) in stretches.iter().enumerate() {
         // events that begin the record are met on a panel of no length
