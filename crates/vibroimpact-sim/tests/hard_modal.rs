@@ -1,4 +1,5 @@
-//! What breaks codes for impacts on modal structures, each case with what is to come of it.
+//! What breaks codes for impacts on modal structures, each case with what is to come of it. Bounds on what is known are at
+//! least five times the worst that was measured at the tolerance 1e-9, rounded up to a power of ten.
 
 mod common;
 
@@ -55,14 +56,14 @@ fn hold(cases: &[Case]) {
         match expect {
             Expect::Restitution(expected, allowance) => {
                 assert!((e - expected).abs() <= stated + allowance, "{name}: {e} +- {stated:e}, not {expected}");
-                assert!(stated < 1e-3, "{name}: known to {stated:e}");
+                assert!(stated < 1e-7, "{name}: known to {stated:e}");
             }
             Expect::Same(other) => {
                 let other = run(other, striker, law);
                 let allowed = stated + other.restitution_uncertainty.unwrap();
                 let difference = (e - other.restitution.unwrap()).abs();
                 assert!(difference <= allowed, "{name}: differs by {difference:e}, stated {allowed:e}");
-                assert!(allowed < 1e-3, "{name}: known to {allowed:e}");
+                assert!(allowed < 1e-7, "{name}: known to {allowed:e}");
             }
             Expect::Rebound(known) => {
                 assert_eq!(solution.outcome, Outcome::Rebound, "{name}");
@@ -71,7 +72,7 @@ fn hold(cases: &[Case]) {
             Expect::Sound => assert_ne!(solution.outcome, Outcome::NoContact, "{name}"),
         }
         let kept = energy_kept(structure, striker, &solution);
-        let allowed = 1.0 + 1e-8 * (1.0 + solution.sub_impacts.len() as f64);
+        let allowed = 1.0 + 1e-10 * (1.0 + solution.sub_impacts.len() as f64);
         assert!(kept <= allowed, "{name}: energy times {kept}");
         assert!(solution.sub_impacts.windows(2).all(|pair| pair[0].end_s <= pair[1].start_s), "{name}");
     }
@@ -99,7 +100,7 @@ fn places() {
     odd.modes = odd.modes.into_iter().step_by(2).collect();
     cases.push(case("on the node of 20 modes", pinned(41, 0.02, 0.5), ball(), hertz(), Expect::Same(odd)));
     let free = beam([End::Clamped, End::Free]);
-    cases.push(case("free end", seen_from(&free, 1.0, 40, 0.02), ball(), hertz(), Expect::Rebound(1e-5)));
+    cases.push(case("free end", seen_from(&free, 1.0, 40, 0.02), ball(), hertz(), Expect::Rebound(1e-8)));
     let inside = seen_from(&free, 1.0 - 1e-12, 40, 0.02);
     cases.push(case("1e-12 of a free end", seen_from(&free, 1.0, 40, 0.02), ball(), hertz(), Expect::Same(inside)));
     // on a step, and within rounding of it on either side
@@ -111,7 +112,7 @@ fn places() {
         let on = seen_from(&stepped, 0.5, 40, 0.02);
         cases.push(case(format!("on a step and {aside:e} m aside"), on, ball(), hertz(), Expect::Same(beside)));
     }
-    cases.push(case("N = 1000", pinned(1000, 0.02, 0.4), ball(), hertz(), Expect::Rebound(1e-4)));
+    cases.push(case("N = 1000", pinned(1000, 0.02, 0.4), ball(), hertz(), Expect::Rebound(1e-6)));
     hold(&cases);
 }
 
@@ -129,8 +130,8 @@ fn numbers_of_modes() {
             assert!(last.is_none() || change < 30.0 / f64::from(n).powi(2), "N = {n}: {e}, changed by {change:e}");
             last = Some(e);
         }
-        cases.push(case(format!("N = {n}"), pinned(n.into(), 0.02, 0.3), ball(), hertz(), Expect::Rebound(1e-4)));
-        cases.push(case(format!("N = {n}, remainder"), structure, ball(), hertz(), Expect::Rebound(1e-4)));
+        cases.push(case(format!("N = {n}"), pinned(n.into(), 0.02, 0.3), ball(), hertz(), Expect::Rebound(1e-6)));
+        cases.push(case(format!("N = {n}, remainder"), structure, ball(), hertz(), Expect::Rebound(1e-6)));
     }
     hold(&cases);
 }
@@ -141,20 +142,20 @@ fn twelve_decades() {
     for power in -6..=6 {
         let striker = Striker { mass_kg: 10f64.powi(power), ..ball() };
         // a striker a million times the beam's mass is in contact for many thousands of steps
-        let expect = if power <= 2 { Expect::Rebound(1e-3) } else { Expect::Sound };
+        let expect = if power <= 4 { Expect::Rebound(1e-7) } else { Expect::Sound };
         cases.push(case(format!("mass 1e{power} kg"), pinned(40, 0.02, GOLDEN), striker, hertz(), expect));
     }
     for power in 2..=14 {
         let law = Law::from(Hertz::new(10f64.powi(power)).unwrap());
         let name = format!("stiffness 1e{power}");
         // bodies that hard tell apart motions of the beam that are very close to each other
-        let known = if power < 13 { 1e-3 } else { 1e-2 };
+        let known = if power < 14 { 1e-5 } else { 1e-2 };
         cases.push(case(name, pinned(40, 0.02, GOLDEN), ball(), law, Expect::Rebound(known)));
     }
     for power in -6..=3 {
         let striker = Striker { speed_m_s: 10f64.powi(power), ..ball() };
         let name = format!("speed 1e{power} m/s");
-        cases.push(case(name, pinned(40, 0.02, GOLDEN), striker, hertz(), Expect::Rebound(1e-3)));
+        cases.push(case(name, pinned(40, 0.02, GOLDEN), striker, hertz(), Expect::Rebound(1e-5)));
     }
     hold(&cases);
     // with a linear contact the speed is no more than a factor
@@ -172,7 +173,8 @@ fn twelve_decades() {
 #[test]
 fn damping_and_frequencies() {
     let mut cases = Vec::new();
-    for (damping, known) in [(0.0, 1e-2), (1e-12, 1e-2), (0.5, 1e-6), (1.0, 1e-6), (1.0 + 1e-12, 1e-6), (5.0, 1e-6)] {
+    for (damping, known) in [(0.0, 1e-6), (1e-12, 1e-6), (0.5, 1e-10), (1.0, 1e-10), (1.0 + 1e-12, 1e-10), (5.0, 1e-10)]
+    {
         let structure = pinned(20, damping, GOLDEN);
         cases.push(case(format!("damping ratio {damping}"), structure, ball(), hertz(), Expect::Rebound(known)));
     }
@@ -377,7 +379,7 @@ fn contacts_that_come_and_go() {
         let mut solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
         solver.solve(&ball(), &hertz(), None, &once).unwrap().sub_impacts.len()
     };
-    let places: Vec<f64> = (0..=20).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
+    let places: Vec<f64> = (0..=40).map(|i| 0.3 + 0.01 * f64::from(i)).collect();
     let mut found = 0;
     for pair in places.windows(2) {
         let (mut low, mut high) = (pair[0], pair[1]);
@@ -404,7 +406,7 @@ fn contacts_that_come_and_go() {
         assert!(few.abs_diff(other) <= 2, "at b = {low}: {few} and {other}");
         found += 1;
     }
-    assert!(found >= 5, "only {found} places");
+    assert!(found >= 25, "only {found} places");
 }
 
 /// Between the contacts found, the surfaces never overlap: no contact was missed.
@@ -471,7 +473,7 @@ fn few_modes_and_a_stiff_remainder_at_loose_tolerances() {
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9] {
         let solution = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
         assert_eq!(solution.outcome, Outcome::Rebound, "{tolerance:e}");
-        assert!(solution.counts.contact_steps < 10_000, "{tolerance:e}: {:?}", solution.counts);
+        assert!(solution.counts.contact_steps < 5_000, "{tolerance:e}: {:?}", solution.counts);
         let (error, stated) =
             ((solution.restitution.unwrap() - expected).abs(), solution.restitution_uncertainty.unwrap());
         assert!(error <= stated + 5e-9 && stated < 1.0, "{tolerance:e}: {error:e}, stated {stated:e}");

@@ -102,12 +102,12 @@ fn ordinary_impacts() {
         EdgeImpact { structure, striker, law, start: None }
     };
     let impacts: Vec<EdgeImpact> = draw(ordinary_impact(), 150).into_iter().map(as_edge).collect();
-    modal_restitution("ordinary", &impacts, 250.0);
+    modal_restitution("ordinary", &impacts, 150.0);
 }
 
 #[test]
 fn impacts_from_the_edges() {
-    modal_restitution("edges", &draw(edge_impact(), 100), 250.0);
+    modal_restitution("edges", &draw(edge_impact(), 100), 150.0);
 }
 
 /// Two impacts that amplify errors, by the double-double Taylor series of their equations.
