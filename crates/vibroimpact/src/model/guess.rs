@@ -10,6 +10,8 @@
 //! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the location). The guess is
 //! the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
 
+use vibroimpact_sim::modal::Mode;
+
 use super::Cost;
 use super::pose::{Pose, Source};
 use super::theory::theory_of;
@@ -110,6 +112,17 @@ pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<
     };
     // room for two further steps: a single change would not tell whether the restitution has converged
     Ok(found.min(most.div_ceil(2)))
+}
+
+/// `R` at a number of modes, beside these remainder modes.
+pub(super) fn resolution_of(
+    pose: &mut Pose,
+    count: usize,
+    remainder: &[Mode],
+    cost: &mut Cost,
+) -> Result<f64, InvalidInput> {
+    let omega = pose.first(count, cost)?.last().map_or(0.0, |mode| mode.omega_rad_s);
+    Ok(resolution(pose, omega, 3.0 * compliance(remainder) * omega * omega))
 }
 
 /// A number of modes one step above.

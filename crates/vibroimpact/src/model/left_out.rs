@@ -4,14 +4,25 @@
 //! change and `d_2` the one before,
 //!
 //! ```text
-//! u = max( 2 d_1, d_2, 10 E_r / E, d_s ) + d_c.
+//! u = max( 2 d_1, d_2, e_r, d_s ) + d_c,      e_r = 10 E_r / E max(1, R^(-1/2)).
 //! ```
 //!
 //! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact. They answer slow forces as
 //! the truncated modes do; if they vibrate, the force was too fast for that. This share is known from one impact alone, and
-//! detects most accidents. `d_s`, for lists, is the change with a single remainder mode in place of several, because the
+//! detects most accidents. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
+//! remainder modes; the modes within its spectrum are then more by a factor of up to `R^(-1/2)`. `d_s`, for lists, is the change with a single remainder mode in place of several, because the
 //! extrapolation of a list is an assumption. `d_c` is the change if the static compliance, which all of them share, is
 //! greater by its uncertainty; it is zero if that has a closed form.
+//!
+//! Where a list of modes ends before that, its last remainder modes answer forces for which they are not made, and their energy
+//! is part of the motion. With the last three changes,
+//!
+//! ```text
+//! u = max( 2 d_1, 2 d_2, 2 d_3, d_s ) + d_c,
+//! ```
+//!
+//! and `e_r` counts only if `d_1` is the largest, or `R < 0.1`: changes that grow, or between numbers of modes that are all
+//! far too small, tell nothing of their limit.
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
@@ -23,6 +34,8 @@ const CAUTION: f64 = 2.0;
 const OF_ENERGY: f64 = 10.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
+/// `R` from which on changes at the end of a list tell of their limit.
+const RESOLVED: f64 = 0.1;
 /// Weight of the change before the last.
 const EARLIER: f64 = 0.5;
 
@@ -55,6 +68,19 @@ impl Change {
     pub fn left_out(self, before: Option<Change>) -> f64 {
         CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
     }
+}
+
+/// How many times more a contact moves that hardly moves the remainder modes.
+pub(super) fn too_short(resolution: f64) -> f64 {
+    if resolution < 1.0 { resolution.max(f64::MIN_POSITIVE).powf(-0.5) } else { 1.0 }
+}
+
+/// What truncated modes may change at the end of a list, from its changes, the latest first.
+pub(super) fn at_the_end(changes: &[f64], energy: f64, resolution: f64) -> f64 {
+    let Some((latest, before)) = changes.split_first() else { return 1.0 };
+    let before = before.iter().take(2).copied().fold(0.0, f64::max);
+    let changed = CAUTION * latest.max(before);
+    if *latest < before && resolution >= RESOLVED { changed } else { changed.max(energy) }
 }
 
 /// Impulse up to each separation, over the striker's momentum.
@@ -127,6 +153,17 @@ mod tests {
         // a third contact that changes nothing in the end
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
         assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
+    }
+
+    #[test]
+    fn changes_at_the_end_of_a_list_count_where_they_fall() {
+        assert_eq!(at_the_end(&[], 0.0, 1.0), 1.0);
+        assert_eq!(at_the_end(&[0.1, 0.2, 0.3, 0.9], 7.0, 1.0), 0.6);
+        assert_eq!(at_the_end(&[0.1, 0.2], 7.0, 0.01), 7.0);
+        assert_eq!(at_the_end(&[0.2, 0.1], 7.0, 1.0), 7.0);
+        assert_eq!(at_the_end(&[0.2, 0.1], 0.1, 1.0), 0.4);
+        assert_eq!((too_short(4.0), too_short(0.25)), (1.0, 2.0));
+        assert!([0.0, -1.0].into_iter().all(|r| too_short(r).is_finite()) && too_short(f64::NAN) == 1.0);
     }
 
     #[test]

@@ -198,7 +198,8 @@ fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Estimate, InvalidInput> {
     }
     let (first, second) = guess(pose, cost)?;
     let reason = format!(
-        "begins with {first} and {second} modes and raises their number until the restitution converges within {}",
+        "begins with {second} modes, which it compares with {first}, and raises their number until the restitution converges \
+         within {}",
         small(pose.tolerance)
     );
     let (structure, _) = pose.structure((second / PILOT_PART).max(PILOT_FEWEST), cost)?;

@@ -1,13 +1,16 @@
 //! Modes, as many as the restitution needs to converge.
 //!
-//! The number of modes begins at a guess (`guess.rs`) and is raised by steps of a factor of about 1.4. Restitutions
-//! alone may agree by accident while the histories of two impacts do not, and then differ again at the next number; so
-//! the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
+//! The number of modes begins at a guess (`guess.rs`). One impact is enough to see that its modes are too few: its remainder
+//! modes then hold too much energy (`left_out.rs`), and the number is raised by a factor of about 1.4. If they hold little, the
+//! same impact with fewer modes, or the one solved before, tells what the last modes have changed.
+//!
+//! Restitutions alone may agree by accident while the histories of two impacts do not, and then differ again at the next number;
+//! so the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
 //! number of modes is asked.
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
-//! from the third number on: its errors are part of the differences, and restitutions agree when both have become small.
+//! with every further number: its errors are part of the differences, and restitutions agree when both have become small.
 //!
 //! Only a difference between two *different* numbers of modes says anything of the truncated modes. Where a list of modes
 //! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
@@ -15,8 +18,10 @@
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
-use super::guess::{fewer, guess, more};
-use super::left_out::{Change, energy_of_remainder, with_one_remainder_mode, with_softer_remainder};
+use super::guess::{fewer, guess, more, resolution_of};
+use super::left_out::{
+    Change, at_the_end, energy_of_remainder, too_short, with_one_remainder_mode, with_softer_remainder,
+};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::Known;
@@ -26,12 +31,14 @@ use crate::scene::InvalidInput;
 
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.
-pub(super) const LEAST_RAISE: f64 = 1.25;
-/// Tolerance of the solver with the first two numbers of modes, as a share of the requested tolerance; and its range. Below
-/// it, rounding is all that steps can show.
+const LEAST_RAISE: f64 = 1.25;
+/// Only changes from at least this share of the number of modes tell what further ones would change.
+const NEAR: f64 = 0.5;
+/// Tolerance of the solver with the first numbers of modes, as a share of the requested tolerance; and its range. Below it,
+/// rounding is all that steps can show.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
-/// From the third on, where there are several contacts: as a share of the tolerance with the number before.
+/// Where the number is raised and there are several contacts: as a share of the tolerance with the number before.
 const TIGHTER: f64 = 1.0 / 30.0;
 /// The solver's own part: this share of its tolerance, and of the change that a tolerance thirty times as wide was part
 /// of.
@@ -59,8 +66,19 @@ struct Rung {
     remainder_modes: usize,
     settings: Settings,
     solution: Solution,
-    /// What the shape of the tail may change that is not seen by other numbers of modes.
-    tail: f64,
+    /// How fast the last mode is against the contact, `R(N)` (`guess.rs`).
+    resolution: f64,
+    /// What the energy of the remainder modes says that they may be off.
+    energy: f64,
+    /// What no other number of modes shows; found once all else has converged.
+    tail: Option<Tail>,
+}
+
+/// What the remainder modes of one number of modes share with those of all others.
+#[derive(Clone, Copy, Default)]
+struct Tail {
+    /// What their assumed shape may change.
+    shape: f64,
     /// What a static compliance that is off may change.
     compliance: f64,
 }
@@ -68,28 +86,52 @@ struct Rung {
 impl Rung {
     fn new(pose: &mut Pose, count: usize, settings: Settings, cost: &mut Cost) -> Result<Rung, InvalidInput> {
         let (structure, remainder_modes) = pose.structure(count, cost)?;
-        let (striker, law, kept) = (pose.striker, pose.law, &mut *pose.kept);
-        let mut solve = |structure: &Structure| {
-            let solver = kept.solver(structure)?;
-            let solution = solver.solve(&striker, &law, None, &settings).map_err(in_scene)?;
-            cost.add(&solution.counts, structure.modes.len());
-            Ok::<_, InvalidInput>(solution)
-        };
-        let solution = solve(&structure)?;
-        let mut tail = energy_of_remainder(&structure, remainder_modes, &solution, &pose.striker);
-        let momentum_n_s = pose.striker.mass_kg * pose.striker.speed_m_s;
-        if matches!(pose.source, Source::Listed { .. }) && remainder_modes > 1 {
-            // of a list the shape of the tail is assumed: another one tells what that matters
-            let other = solve(&with_one_remainder_mode(&structure, remainder_modes))?;
-            tail = tail.max(Change::between(&other, &solution, momentum_n_s).size());
-        }
-        let mut compliance = 0.0;
-        if pose.scene.residual_compliance != Some(false) && pose.source.uncertain_m_n() > 0.0 {
-            let other = solve(&with_softer_remainder(&structure, remainder_modes, pose.source.uncertain_m_n()))?;
-            compliance = Change::between(&other, &solution, momentum_n_s).size();
-        }
-        Ok(Rung { count, structure, remainder_modes, settings, solution, tail, compliance })
+        let solution = solve(pose, &structure, &settings, cost)?;
+        let resolution = resolution_of(pose, count, &structure.modes[structure.modes.len() - remainder_modes..], cost)?;
+        let energy = energy_of_remainder(&structure, remainder_modes, &solution, &pose.striker) * too_short(resolution);
+        Ok(Rung { count, structure, remainder_modes, settings, solution, resolution, energy, tail: None })
     }
+
+    /// What other remainder modes would change.
+    fn find_tail(&mut self, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
+        let listed = matches!(pose.source, Source::Listed { .. });
+        let wanted = pose.scene.residual_compliance != Some(false);
+        let uncertain_m_n = if wanted { pose.source.uncertain_m_n() } else { 0.0 };
+        let mut changed = |other: Structure| {
+            let other = solve(pose, &other, &self.settings, cost)?;
+            Ok::<_, InvalidInput>(Change::between(&other, &self.solution, momentum_n_s(pose)).size())
+        };
+        let mut tail = Tail::default();
+        if listed && self.remainder_modes > 1 {
+            // of a list the shape of the tail is assumed: another one tells what that matters
+            tail.shape = changed(with_one_remainder_mode(&self.structure, self.remainder_modes))?;
+        }
+        if uncertain_m_n > 0.0 {
+            tail.compliance = changed(with_softer_remainder(&self.structure, self.remainder_modes, uncertain_m_n))?;
+        }
+        self.tail = Some(tail);
+        Ok(())
+    }
+
+    fn has_several_contacts(&self) -> bool {
+        self.solution.sub_impacts.len() > 1
+    }
+}
+
+fn solve(
+    pose: &mut Pose,
+    structure: &Structure,
+    settings: &Settings,
+    cost: &mut Cost,
+) -> Result<Solution, InvalidInput> {
+    let solver = pose.kept.solver(structure)?;
+    let solution = solver.solve(&pose.striker, &pose.law, None, settings).map_err(in_scene)?;
+    cost.add(&solution.counts, structure.modes.len());
+    Ok(solution)
+}
+
+fn momentum_n_s(pose: &Pose) -> f64 {
+    pose.striker.mass_kg * pose.striker.speed_m_s
 }
 
 /// The numbers of modes tried so far.
@@ -111,32 +153,53 @@ impl Rungs {
         std::iter::once(&self.last).chain(self.earlier.iter().rev())
     }
 
+    /// Those, the latest first, each of which has about as many modes as the one before.
+    fn near(&self) -> impl Iterator<Item = &Rung> {
+        let mut last = self.last.count;
+        self.all().take_while(move |rung| {
+            let before = std::mem::replace(&mut last, rung.count);
+            (1 + rung.count.min(before)) as f64 >= NEAR * (1 + rung.count.max(before)) as f64
+        })
+    }
+
     fn is_complete(&self) -> bool {
         self.complete == Some(self.last.count)
     }
 
     /// Changes between neighbours with different numbers of modes, the latest first.
     fn changes(&self) -> impl Iterator<Item = (Change, [usize; 2])> {
-        let pairs = self.all().zip(self.all().skip(1)).filter(|(next, last)| next.count != last.count);
+        let pairs = self.near().zip(self.near().skip(1)).filter(|(next, last)| next.count != last.count);
         pairs.map(|(next, last)| {
             (Change::between(&last.solution, &next.solution, self.momentum_n_s), [last.count, next.count])
         })
     }
 
+    /// Their sizes.
+    fn sizes(&self) -> Vec<f64> {
+        self.changes().map(|(change, _)| change.size()).collect()
+    }
+
     /// Whether changes fall as the number of modes rises, as far as there are enough to tell.
     fn falls(&self) -> bool {
-        let sizes: Vec<f64> = self.changes().take(3).map(|(change, _)| change.size()).collect();
+        let sizes = self.sizes();
         sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
     }
 
-    /// Estimated change by the truncated modes.
+    /// Estimated change by the truncated modes, as far as it is known.
     fn left_out(&self) -> f64 {
+        let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
         let mut changes = self.changes().map(|(change, _)| change);
         match changes.next() {
             _ if self.is_complete() => 0.0,
             None => 1.0,
-            Some(latest) => latest.left_out(changes.next()).max(self.last.tail) + self.last.compliance,
+            Some(latest) => latest.left_out(changes.next()).max(self.last.energy).max(shape) + compliance,
         }
+    }
+
+    /// The same where a list ends before the restitution has converged.
+    fn left_out_at_the_end(&self) -> f64 {
+        let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
+        at_the_end(&self.sizes(), self.last.energy, self.last.resolution).max(shape) + compliance
     }
 
     /// What the solver may be off with the last number of modes.
@@ -144,7 +207,7 @@ impl Rungs {
         let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
         let change = match wider {
             Some(wider) => Change::between(&wider.solution, &self.last.solution, self.momentum_n_s).size(),
-            None if self.earlier.len() > 1 => self.changes().next().map_or(1.0, |(change, _)| change.size()),
+            None if self.near().count() > 2 => self.sizes().first().copied().unwrap_or(1.0),
             None => 0.0,
         };
         SOLVER_FLOOR * self.last.settings.tolerance + SOLVER_CHANGE * change
@@ -159,7 +222,7 @@ impl Rungs {
 
     /// Largest less smallest of the last restitutions, and how many they are.
     fn spread(&self) -> Option<(f64, usize)> {
-        let values: Vec<f64> = self.all().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
+        let values: Vec<f64> = self.near().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
         (values.len() > 1).then_some((high - low, values.len()))
     }
@@ -167,70 +230,79 @@ impl Rungs {
 
 /// Raises the number of modes until the restitution has converged, or there are no more.
 pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    let most = pose.source.most();
-    let (first, mut count) = guess(pose, cost)?;
+    let (most, tolerance) = (pose.source.most(), pose.tolerance);
+    let (_, expected) = guess(pose, cost)?;
     let listed = matches!(pose.source, Source::Listed { .. });
     let complete = (listed && pose.is_complete()).then_some(most);
     let mut tightened = 0;
-    let first = if complete == Some(count) { count } else { first };
-    let mut rungs = Rungs {
-        last: Rung::new(pose, first, settings(pose.tolerance, tightened), cost)?,
-        earlier: Vec::new(),
-        momentum_n_s: pose.striker.mass_kg * pose.striker.speed_m_s,
-        complete,
-    };
-    // the same modes again say something of the solver only at a tighter tolerance
-    tightened += usize::from(first == count);
+    let first = Rung::new(pose, expected, settings(tolerance, tightened), cost)?;
+    let mut rungs = Rungs { last: first, earlier: Vec::new(), momentum_n_s: momentum_n_s(pose), complete };
     loop {
-        let before = rungs.last.solution.restitution;
-        rungs.push(Rung::new(pose, count, settings(pose.tolerance, tightened), cost)?);
-        let (solver, left_out) = (rungs.solver(), rungs.left_out());
-        let next = &rungs.last;
-        let both = before.is_some() && next.solution.restitution.is_some();
-        // after several contacts, two impacts may agree and lack the same further contact: ask a third
-        let several = next.solution.sub_impacts.len() > 1 && rungs.earlier.len() < 2;
-        let settled = solver + left_out <= pose.tolerance && both && !several;
-        let limit = matches!(next.solution.outcome, Outcome::Stopped(_));
-        if settled || limit {
-            return Ok(finish(pose, rungs, settled));
+        let count = rungs.last.count;
+        let ends = LEAST_RAISE * count as f64 > most as f64;
+        // the energy of one impact tells that its modes are too few; otherwise a change has to
+        let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
+        if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
+            rungs.earlier.push(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
         }
-        let tighter = next.settings.tolerance > SOLVER_RANGE.0;
-        if count >= PATIENCE && !rungs.falls() {
-            return Ok(finish(pose, rungs, false));
-        } else if LEAST_RAISE * count as f64 <= most as f64 {
+        if rungs.solver() + rungs.left_out() <= tolerance && rungs.last.tail.is_none() {
+            rungs.last.find_tail(pose, cost)?;
+        }
+        let (solver, left_out) = (rungs.solver(), rungs.left_out());
+        let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
+        // after several contacts, two impacts may agree and lack the same further contact: ask a third
+        let several = rungs.last.has_several_contacts() && rungs.near().count() < 3;
+        let settled = solver + left_out <= tolerance && both && !several && !rungs.earlier.is_empty();
+        let limit = matches!(rungs.last.solution.outcome, Outcome::Stopped(_));
+        if settled || limit {
+            return finish(pose, rungs, settled, cost);
+        }
+        let tighter = rungs.last.settings.tolerance > SOLVER_RANGE.0;
+        let next = if count >= PATIENCE && !rungs.falls() {
+            return finish(pose, rungs, false, cost);
+        } else if !ends {
             let raised = more(count);
-            tightened += usize::from(next.solution.sub_impacts.len() > 1);
-            count = if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised };
-        } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(pose.tolerance)) {
+            tightened += usize::from(rungs.last.has_several_contacts());
+            if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised }
+        } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(tolerance)) {
             // the list is at its end, and the solver's error may be part of what changed
             tightened += 1;
             if !rungs.is_complete() {
-                rungs.push(Rung::new(pose, fewer(most), settings(pose.tolerance, tightened), cost)?);
+                rungs.push(Rung::new(pose, fewer(most), settings(tolerance, tightened), cost)?);
             }
+            most
         } else {
-            return Ok(finish(pose, rungs, false));
-        }
+            return finish(pose, rungs, false, cost);
+        };
+        rungs.push(Rung::new(pose, next, settings(tolerance, tightened), cost)?);
     }
 }
 
-fn finish(pose: &mut Pose, rungs: Rungs, settled: bool) -> Choice {
-    let (solver, left_out) = (rungs.solver(), rungs.left_out());
+fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> Result<Choice, InvalidInput> {
+    if rungs.last.tail.is_none() && rungs.last.solution.restitution.is_some() {
+        rungs.last.find_tail(pose, cost)?;
+    }
+    let exhausted = matches!(pose.source, Source::Listed { .. }) && rungs.last.count == pose.source.most();
     let spread = rungs.spread().filter(|_| !settled);
-    let reason = reason(pose, &rungs, settled, spread);
+    let reason = reason(pose, &rungs, settled, exhausted, spread);
     let spread = spread.map(|(spread, _)| spread);
-    let left_out = if rungs.is_complete() { 0.0 } else { left_out.max(spread.unwrap_or(0.0)) };
+    let left_out = match spread {
+        _ if rungs.is_complete() => 0.0,
+        Some(spread) if exhausted => rungs.left_out_at_the_end().max(spread),
+        spread => rungs.left_out().max(spread.unwrap_or(0.0)),
+    };
+    let solver = rungs.solver();
     let Rung { structure, remainder_modes, settings, solution, .. } = rungs.last;
     let impact = Impact { structure, remainder_modes, striker: pose.striker, law: pose.law, start: None, settings };
     let known = Known::new(pose.scene, Some(solver.min(1.0)), Ok(left_out.min(1.0)));
-    Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason })
+    Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason }))
 }
 
 /// Which numbers of modes were tried, and what came of it.
-fn reason(pose: &Pose, rungs: &Rungs, settled: bool, spread: Option<(f64, usize)>) -> String {
+fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Option<(f64, usize)>) -> String {
     let counts = rungs.counts();
     let reached = rungs.last.count;
     let (wanted, damping) = (small(pose.tolerance), lightly_damped(pose));
-    let exhausted = matches!(pose.source, Source::Listed { .. }) && reached == pose.source.most();
     let changed = match rungs.changes().next() {
         _ if rungs.is_complete() => "they make up the whole static compliance".to_owned(),
         Some((change, [from, to])) => format!(
