@@ -1,16 +1,17 @@
 //! A benchmark of impact for any code.
 //!
-//! `cargo xtask impactbench` runs this package; `docs/impactbench.md` is what came out, and tells how to add a code.
+//! `cargo xtask impactbench` runs this package; `docs/impactbench.md` shows the results and how to add a code.
 //!
-//! A problem is a file in `problems`: bodies in their modes, contacts between them, and what is requested, with its
-//! reference. All bodies together obey
+//! A problem is a file in `problems`: bodies by their modes, contacts between them, and the requested quantities with
+//! their references. All bodies together obey
 //!
 //! ```text
 //! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = sum phi_k F                                             (1)
 //! ```
 //!
-//! over the forces of contacts, loads and gravity, with mass-normalised modes: a free mass has one, of frequency 0 and shape `m^(-1/2)`. A contact pushes its upper body up
-//! and its lower one, if it is not the ground, down, with the force of its law at the compression
+//! over the forces of contacts, loads and gravity, with mass-normalised modes: a free mass has one, of frequency 0 and
+//! shape `m^(-1/2)`. A contact pushes its upper body up and its lower one, if it is not the ground, down, with the force of
+//! its law at the compression
 //!
 //! ```text
 //! xi = sum phi_k a_k (lower) - sum phi_k a_k (upper) - gap.                                              (2)

@@ -29,7 +29,7 @@ pub struct Problem {
     /// Further forces on the bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
-    /// The one number of an impact on an infinite beam, which then has no bodies.
+    /// The single parameter `S` of an impact on an infinite beam, which then has no bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infinite_beam_s: Option<f64>,
     /// When the quantities are read (s).
@@ -180,17 +180,17 @@ pub struct Quantity {
     /// Shapes of its modes at the point that is meant, if not its own (kg^-1/2).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<Vec<f64>>,
-    /// What of its point.
+    /// The quantity of its point.
     pub what: What,
     /// The answer.
     pub value: f64,
-    /// How far the answer may be off.
+    /// Uncertainty of the answer.
     pub uncertainty: f64,
-    /// What an error is divided by.
+    /// The number by which an error is divided.
     pub scale: f64,
 }
 
-/// What of a body's point is requested at the end.
+/// The quantity of a body's point that is requested at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum What {
@@ -311,7 +311,7 @@ impl Problem {
         Ok(problems)
     }
 
-    /// How far the answer itself may be off, as an error counts.
+    /// Uncertainty of the answer itself, divided by its scale.
     pub fn floor(&self) -> f64 {
         self.quantities.iter().map(|quantity| quantity.uncertainty / quantity.scale).fold(1e-16, f64::max)
     }

@@ -1,4 +1,4 @@
-//! Whether a beam under compression stands.
+//! Whether a beam under compression is stable.
 
 use crate::chain::Chain;
 use crate::error::InvalidInput;

@@ -1,4 +1,4 @@
-//! Natural modes, and what can be asked of them.
+//! Natural modes, and their evaluation.
 
 use crate::error::InvalidInput;
 use crate::piece::Piece;

@@ -1,6 +1,6 @@
-//! What is fixed to a beam at one place.
+//! What is fixed to a beam at one location.
 
-/// Springs, masses and a support at one place, dimensionless.
+/// Springs, masses and a support at one location, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Node {
     /// Against displacement and against rotation.

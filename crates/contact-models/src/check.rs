@@ -1,8 +1,8 @@
-//! What a law promises to whoever integrates it, tried along motions.
+//! What a law promises to an integrator, tested along motions.
 //!
 //! | promise | why an integrator needs it |
 //! |---|---|
-//! | numbers are finite, wherever the law is asked | an iteration may step beyond a branch |
+//! | numbers are finite everywhere | an iteration may step beyond a branch |
 //! | no pull within a branch | surfaces part where the law says so, and nowhere else |
 //! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
 //! | [`depends_on_rate`](ContactLaw::depends_on_rate) says whether it does | the rate is computed only where it is requested |
@@ -27,7 +27,7 @@ pub struct Breach {
     pub rate_m_s: f64,
 }
 
-/// What a law has not kept.
+/// The promise that a law has not kept.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Promise {

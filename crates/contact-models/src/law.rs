@@ -1,4 +1,4 @@
-//! The contract between a law and whoever integrates it.
+//! The contract between a law and an integrator.
 
 /// A half plane of the `(xi, xi_dot)` plane in which a branch is valid:
 /// `per_compression * xi + per_rate * xi_dot >= level`.
@@ -62,7 +62,7 @@ pub struct Branch {
     pub stage: Stage,
     /// Compression at which the branch began (m), where the law needs it.
     pub anchor_m: f64,
-    /// The law's internal variable at that place; each law states its meaning.
+    /// The law's internal variable at that compression; each law states its meaning.
     pub internal: f64,
 }
 

@@ -11,12 +11,12 @@
 
 use crate::{After, ContactLaw, InvalidInput, Law, Memory};
 
-/// Places of the first touch within a step, spread evenly.
+/// Phases of the first touch within a step, evenly spaced.
 const PHASES: u32 = 64;
 /// Longest contact that is followed (steps).
 const MOST_STEPS: u32 = 100_000;
 
-/// Restitutions of a law at a fixed step, over all places of the first touch within a step.
+/// Restitutions of a law at a fixed step, over all phases of the first touch within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stepped {
     /// The least.

@@ -6,7 +6,7 @@ use crate::{InvalidInput, matrix};
 use alloc::vec;
 use alloc::vec::Vec;
 
-/// What Lemke's method found.
+/// The result of Lemke's method.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lcp {
     /// `z >= 0` with `w = M z + q >= 0` and `z . w = 0`.

@@ -11,7 +11,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// Passes a list of `length` finite numbers, none so large that products of two of them overflow.
+/// Accepts a list of `length` finite numbers, none so large that products of two of them overflow.
 pub(crate) fn require_finite(field: &'static str, values: &[f64], length: usize) -> Result<(), InvalidInput> {
     if values.len() != length {
         let allowed = "a length that fits the number of contact coordinates (or velocities)";
@@ -26,7 +26,7 @@ pub(crate) fn require_finite(field: &'static str, values: &[f64], length: usize)
     }
 }
 
-/// Passes a matrix symmetric up to rounding.
+/// Accepts a matrix symmetric up to rounding.
 pub(crate) fn require_symmetric(field: &'static str, a: &[f64], n: usize) -> Result<(), InvalidInput> {
     let largest = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     for i in 0..n {

@@ -1,4 +1,4 @@
-//! One striker at one place of a structure that moves already: the program of several contacts, solved without a quadratic
+//! One striker at one point of a structure that moves already: the program of several contacts, solved without a quadratic
 //! program, an allocator or a library.
 //!
 //! With the modal speeds `a_k'(0)` before the impact, the speed of closing `u = sum phi_k a_k'(0) - v_i` and the impulse
@@ -44,7 +44,7 @@ const LARGEST: f64 = 1e60;
 /// Impulse beyond which none is looked for, and which no product of the program overflows with.
 const FARTHEST: f64 = 1e200;
 
-/// A striker that meets a structure at one place.
+/// A striker that meets a structure at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingImpact<'a> {
     /// Mass of the striker (kg).
@@ -59,7 +59,7 @@ pub struct MovingImpact<'a> {
     pub rates: &'a [f64],
 }
 
-/// What the impact leaves behind.
+/// The result of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingRebound {
     /// Velocity of the striker, positive away from the structure (m/s).

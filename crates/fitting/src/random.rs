@@ -16,7 +16,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A place among `n`, each as likely as the other up to `n / 2^64`. `n` is at least 1.
+    /// An index below `n`, each as likely as the other up to `n / 2^64`. `n` is at least 1.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
     }

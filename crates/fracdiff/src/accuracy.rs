@@ -1,4 +1,4 @@
-//! Solving to an accuracy asked for, with settings of the program's choice.
+//! Solving to a requested accuracy, with settings of the program's choice.
 
 use crate::collocation::Collocation;
 use crate::error::InvalidInput;
@@ -29,7 +29,7 @@ const SMALLEST: f64 = 1e-14;
 const ACCIDENT: f64 = 0.02;
 /// What rounding may hide of a difference between two solutions, relative to their size.
 const ROUNDING: f64 = 3e-14;
-/// Places in a panel where two solutions are compared, besides its end.
+/// Points of a panel at which two solutions are compared, besides its end.
 const PLACES: [f64; 3] = [0.03, 0.35, 0.75];
 
 impl Volterra<'_> {

@@ -43,7 +43,7 @@
 //! | [`L1`](Method::L1) | 1; `2 - a` if smooth | `O(n log^2 n)` | `O(n)` | comparison |
 //! | [`GrunwaldLetnikov`](Method::GrunwaldLetnikov) | 1 | `O(n log^2 n)` | `O(n)` | comparison |
 //!
-//! [`Volterra::solve_to`] chooses the settings for an accuracy asked for and estimates the error.
+//! [`Volterra::solve_to`] chooses the settings for a requested accuracy and estimates the error.
 //!
 //! *Convolution methods* replace the integral by `h^a sum_j w_(n-j) f_j` on equal steps. Gruenwald-Letnikov: `w` are the
 //! coefficients of `(1-z)^-a`. L1: those of the inverse of the L1 formula for the derivative of the fractional order,

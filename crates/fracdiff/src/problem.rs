@@ -146,7 +146,7 @@ impl<'a> Volterra<'a> {
         self
     }
 
-    /// Solves the problem on `[0, t_end]` and lands exactly on `t_end`.
+    /// Solves the problem on `[0, t_end]` and ends exactly at `t_end`.
     ///
     /// What the run met on its way (a terminal event, a value that is not finite, a limit) is the
     /// [`stop`](Solution::stop) of the solution, which then reaches as far as it could be computed.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Costs may grow by this share, and by [`COST_COUNTS`] at least: the last digits of `sin` and `exp` differ between
-/// machines, and now and then one of them decides about a step.
+/// machines, and from time to time one of them decides about a step.
 pub const COST_MARGIN: f64 = 0.05;
 /// See [`COST_MARGIN`].
 pub const COST_COUNTS: u64 = 2;

@@ -121,7 +121,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
                     shape: signed(random) * decades(random, -30.0, 20.0),
                 };
             }
-            // powers of k: equal, evenly spread, or a beam's frequencies; now and then two that nearly agree
+            // powers of k: equal, evenly spread, or a beam's frequencies; from time to time two that nearly agree
             let split = if once_in(random, 10) { 1.0 + decades(random, -16.0, -3.0) } else { 1.0 };
             Mode {
                 omega_rad_s: first * split * (k as f64).powi(power),

@@ -6,7 +6,7 @@ use crate::problem::{Family, Problem};
 use emoc::{Impact, Parameters, Site};
 use work_precision::measure::Effort;
 
-/// All runs: one a model, since they have no setting.
+/// All runs: one for each model, since they have no setting.
 pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     let [contact] = problem.contacts.as_slice() else { return Vec::new() };
     let named = |name: &Option<String>| Some(problem.body(name.as_deref()?).ok()?.1);

@@ -1,5 +1,5 @@
-//! Semi-implicit Euler with a fixed step, as engines step, with the law of the problem as a penalty. It is no product: it
-//! shows what a code of a page does that knows the law and takes no care of its events.
+//! Semi-implicit Euler with a fixed step, as engines step, with the law of the problem as a penalty. It is not a product: it
+//! shows what a page of code can do that knows the law and does not locate its events.
 
 use super::{Answer, TOO_SLOW, laws, sweep};
 use crate::outcome::Outcome;

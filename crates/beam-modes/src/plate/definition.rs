@@ -113,7 +113,7 @@ impl Plate {
         self.edges == [Edge::Pinned; 4]
     }
 
-    /// Passes a plate that can be computed.
+    /// Accepts a plate that can be computed.
     ///
     /// # Errors
     /// A length, modulus or density that is not positive, a Poisson's ratio out of range, Mindlin's theory for a plate

@@ -111,7 +111,7 @@ impl Newton {
                 factored = true;
             }
             blocks.solve_here(change);
-            // the change that is largest against the accuracy asked for
+            // the change that is largest against the requested accuracy
             let (mut excess, mut converged) = (0.0f64, true);
             for (c, unknown) in unknowns.iter().enumerate() {
                 let (mut largest, mut size) = (0.0f64, 0.0f64);

@@ -71,7 +71,7 @@ pub struct ContactDerivatives {
 /// How a run changes with one parameter, per unit of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// Of the end of the run (s): that of the time asked for, and zero where the run ended at rest.
+    /// Of the end of the run (s): that of the requested time, and zero where the run ended at rest.
     pub end_s: f64,
     /// By contact.
     pub contacts: Vec<ContactDerivatives>,
@@ -278,7 +278,7 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run with its changes, and how nearly it grazes; `end_s` has the changes of the time asked for.
+    /// One run with its changes, and how nearly it grazes; `end_s` has the changes of the requested time.
     fn along(
         &mut self,
         settings: &Settings,

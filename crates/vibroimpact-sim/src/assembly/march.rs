@@ -184,7 +184,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// From the start to the end of the time asked for.
+    /// From the start to the end of the requested time.
     pub fn follow(&mut self) -> Outcome {
         self.begin();
         if self.observer.wants_energy() {

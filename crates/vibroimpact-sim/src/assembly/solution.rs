@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
-    /// The end of the time asked for was reached.
+    /// The end of the requested time was reached.
     End,
     /// The energy above the static equilibrium under the loads is too small to open a contact that is closed or to close
     /// one that is open. What still vibrates goes on.

@@ -10,7 +10,7 @@ use super::tables::Tables;
 use crate::InvalidInput;
 use contact_models::ContactLaw;
 
-/// Follows an assembly from its start to the end of the time asked for, and tells the observer what happens.
+/// Follows an assembly from its start to the end of the requested time, and tells the observer what happens.
 ///
 /// # Errors
 /// Names the field, its value and what would be allowed, for input that poses no problem.
@@ -72,7 +72,7 @@ impl<'a> Solver<'a> {
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
     /// [`COARSER`] times as large, finds each of them at a time that differs by less than its own tolerance of the time
     /// since the start. `intervals` are those of the run to be judged, contact by contact, in order; the run ended at
-    /// `end_s`. Beyond that time only statistics mean anything. `None` if `stop`, which is asked now and then, ended the
+    /// `end_s`. Beyond that time only statistics mean anything. `None` if `stop`, which is asked from time to time, ended the
     /// second run.
     ///
     /// # Errors

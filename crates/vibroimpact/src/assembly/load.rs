@@ -143,7 +143,7 @@ impl Course<'_> {
     }
 }
 
-/// Passes a number that the solver can work with.
+/// Accepts a number that the solver can work with.
 pub(super) fn require_finite(field: &str, value: f64) -> Result<(), InvalidInput> {
     const LARGEST: f64 = 1e30;
     if value.abs() <= LARGEST {

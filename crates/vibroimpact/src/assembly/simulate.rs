@@ -26,7 +26,7 @@ pub struct Wanted<'a> {
     pub take: Option<Sink<'a>>,
     /// Ends the run when it becomes true; what was found is kept.
     pub stop: &'a AtomicBool,
-    /// Hears now and then how far the run has come (s).
+    /// Hears from time to time how far the run has come (s).
     pub tell: &'a mut dyn FnMut(f64),
 }
 

@@ -64,7 +64,7 @@ impl KnownModes {
     }
 }
 
-/// Passes a damping ratio of a structure.
+/// Accepts a damping ratio of a structure.
 pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
     if (0.0..=fields::MOST_DAMPING).contains(&damping_ratio) {
         return Ok(());

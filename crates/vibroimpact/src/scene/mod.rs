@@ -175,7 +175,7 @@ impl Scene {
         }
     }
 
-    /// Passes a yield strength that can be one.
+    /// Accepts a yield strength that can be one.
     pub(crate) fn require_yield_strength(&self) -> Result<(), InvalidInput> {
         self.yield_strength_pa.map_or(Ok(()), |strength| InvalidInput::require_positive("yield_strength_pa", strength))
     }

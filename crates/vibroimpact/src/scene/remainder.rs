@@ -11,7 +11,7 @@ use super::structure::MOST_MODES;
 use super::{BeamTheory, Edge, Structure};
 use crate::impact::compliance;
 
-/// Passes a structure whose modes beyond those kept can be told from them: a list by at least one elastic mode.
+/// Accepts a structure whose modes beyond those kept can be told from them: a list by at least one elastic mode.
 pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), InvalidInput> {
     if whole_m_n == 0.0 || kept.iter().any(|mode| mode.omega_rad_s > 0.0) {
         return Ok(());

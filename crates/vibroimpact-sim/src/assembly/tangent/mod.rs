@@ -75,7 +75,7 @@ enum Ending {
     Event(usize, Event),
     /// A break of the loads.
     Break,
-    /// The end of the time asked for.
+    /// The end of the requested time.
     Run,
 }
 
