@@ -104,8 +104,7 @@ pub fn orbit(
     };
     let mut signals = Signals::new();
     let found = py.detach(|| {
-        let needed =
-            || InvalidInput { field: "to".into(), value: None, allowed: "needed beside over: a finite number".into() };
+        let needed = || InvalidInput::missing("to", "needed beside over: a finite number");
         let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step };
         let branch = scene.bodies()?.orbit_branch(&over, &settings, |_| !signals.look())?;
         let table = branch.csv().map_err(export::Failure::from)?;

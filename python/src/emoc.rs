@@ -5,8 +5,9 @@ use numpy::{AllowTypeChange, IntoPyArray, PyArrayLike1, PyArrayLikeDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use vibroimpact::emoc::{Impact, Parameters, Site};
+use vibroimpact::export;
+use vibroimpact::invalid_input::{InvalidInput, Path, Step};
 use vibroimpact::net::{Datum, FitSummary};
-use vibroimpact::{InvalidInput, export};
 
 use crate::errors::Fault;
 use crate::input::Source;
@@ -48,10 +49,8 @@ pub fn emoc_restitution<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (mass_kg, shapes) = (mass_kg.as_array().to_owned(), shapes.as_array().to_owned());
     let Some((_, places)) = shapes.shape().split_last() else {
-        let allowed = "an array whose last axis holds the modes".to_owned();
-        return Err(
-            Fault::from(InvalidInput { field: "shapes".into(), value: Some("a number".into()), allowed }).into()
-        );
+        let allowed = "an array whose last axis holds the modes";
+        return Err(Fault::from(InvalidInput::new("shapes", "a number", allowed)).into());
     };
     let common = py
         .import("numpy")?
@@ -69,13 +68,13 @@ fn restitution(
     common: &[usize],
     parameters: &Parameters,
 ) -> Result<ArrayD<f64>, Fault> {
-    parameters.validate().map_err(InvalidInput::from)?;
+    parameters.validate()?;
     let last = Axis(shapes.ndim().saturating_sub(1));
     let mut fault = None;
     let mut keep = |found: InvalidInput| {
         fault.get_or_insert(found);
     };
-    let sites = shapes.map_axis(last, |phi| Site::new(&phi.to_vec()).map_err(|found| keep(found.into())).ok());
+    let sites = shapes.map_axis(last, |phi| Site::new(&phi.to_vec()).map_err(|found| keep(found)).ok());
     let mut restitution = ArrayD::from_elem(common, f64::NAN);
     // numpy has found the common shape, to which both can be spread
     if let (Some(mass_kg), Some(sites)) = (mass_kg.broadcast(common), sites.broadcast(common)) {
@@ -83,7 +82,7 @@ fn restitution(
             let Some(site) = site else { return };
             match Impact::new(mass_kg, site).and_then(|impact| parameters.rebound(&impact)) {
                 Ok(rebound) => *e = rebound.restitution,
-                Err(found) => keep(found.into()),
+                Err(found) => keep(found),
             }
         });
     }
@@ -109,9 +108,9 @@ pub fn fit<'py>(
         [mass_kg, location_m, restitution].map(|values| values.as_array().to_vec());
     for (field, values) in [("location_m", &location_m), ("restitution", &restitution)] {
         if values.len() != mass_kg.len() {
-            let value = Some(format!("{} numbers", values.len()));
+            let value = format!("{} numbers", values.len());
             let allowed = format!("as many as of mass_kg, {}", mass_kg.len());
-            return Err(Fault::from(InvalidInput { field: field.to_owned(), value, allowed }).into());
+            return Err(Fault::from(InvalidInput::new(field, value, allowed)).into());
         }
     }
     let table: Vec<Datum> = (0u64..)
@@ -128,9 +127,11 @@ pub fn fit<'py>(
 
 /// An error in a line of the table as one in an element of an array.
 fn of_element(fault: InvalidInput) -> InvalidInput {
-    let element = fault.field.strip_prefix("line ").and_then(|rest| rest.split_once(", "));
-    match element {
-        Some((line, field)) => InvalidInput { field: format!("{field}[{line}]"), ..fault },
-        None => fault,
+    match fault.field.steps() {
+        [Step::Line(line), field @ ..] => {
+            let element = (Path::from(field), *line as usize);
+            fault.under(element)
+        }
+        _ => fault,
     }
 }

@@ -23,7 +23,8 @@ impl From<Fault> for PyErr {
 
 impl From<InvalidInput> for Fault {
     fn from(fault: InvalidInput) -> Fault {
-        Fault(python::InvalidInput::new_err((fault.to_string(), fault.field, fault.value, fault.allowed)))
+        let value = fault.value.as_ref().map(ToString::to_string);
+        Fault(python::InvalidInput::new_err((fault.to_string(), fault.field.to_string(), value, fault.allowed)))
     }
 }
 
@@ -33,7 +34,7 @@ impl From<SceneError> for Fault {
         match fault {
             SceneError::Invalid(fault) => fault.into(),
             SceneError::Syntax { field, reason, .. } => {
-                Fault(python::InvalidInput::new_err((said, field, None::<String>, reason)))
+                Fault(python::InvalidInput::new_err((said, field.to_string(), None::<String>, reason)))
             }
             SceneError::Read { source, .. } => of_system(source, said),
         }

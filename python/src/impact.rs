@@ -109,7 +109,7 @@ pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, 
 #[pyo3(signature = (s, *, history = false))]
 pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_, PyDict>> {
     let (json, course) = py.detach(|| {
-        let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
+        let solution = solve(Structure::Beam, s, &Settings::default())?;
         let course = history.then(|| infinite::history(&solution, None, None));
         Ok::<_, Fault>((export::json(&Summary::new(&solution, None))?, course))
     })?;

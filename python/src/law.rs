@@ -30,7 +30,7 @@ pub fn law<'py>(
     let kind = law.map(|name| {
         Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
             let names = Kind::ALL.map(Kind::name).join(", ");
-            Fault::from(InvalidInput { field: "law".into(), value: Some(name.to_owned()), allowed: names })
+            Fault::from(InvalidInput::new("law", name, names))
         })
     });
     let law = kind.transpose()?;

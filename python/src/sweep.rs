@@ -25,9 +25,7 @@ const MOST_THREADS: usize = 1024;
 pub fn sweep(py: Python<'_>, definition: Source, threads: Option<usize>) -> PyResult<Bound<'_, PyDict>> {
     if let Some(threads) = threads.filter(|threads| !(1..=MOST_THREADS).contains(threads)) {
         let allowed = format!("a whole number from 1 to {MOST_THREADS}");
-        return Err(
-            Fault::from(InvalidInput { field: "threads".into(), value: Some(threads.to_string()), allowed }).into()
-        );
+        return Err(Fault::from(InvalidInput::new("threads", threads, allowed)).into());
     }
     let stop = AtomicBool::new(false);
     let mut interrupted = None;

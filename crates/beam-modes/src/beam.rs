@@ -1,8 +1,8 @@
 //! The beam as the user poses it.
 
 use crate::compliance::green;
-use crate::error::InvalidInput;
 use crate::flexure::Flexure;
+use crate::location::require_on;
 use crate::modes::{Modes, require_count};
 use crate::node::Node;
 use crate::piece::Piece;
@@ -10,6 +10,7 @@ use crate::roots::elastic_roots;
 use crate::shapes::shapes;
 use crate::span::{Span, Units, nondimensional_beam};
 use crate::uniform;
+use invalid_input::InvalidInput;
 
 /// A uniform stretch of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,8 +156,8 @@ impl Beam {
     /// As for [`static_compliance`](Self::static_compliance).
     pub fn static_green(&self, x_m: f64, y_m: f64) -> Result<f64, InvalidInput> {
         let (spans, units) = self.checked()?;
-        let x = InvalidInput::require_on("x_m", x_m, units.length_m)? / units.length_m;
-        let y = InvalidInput::require_on("y_m", y_m, units.length_m)? / units.length_m;
+        let x = require_on("x_m", x_m, units.length_m)? / units.length_m;
+        let y = require_on("y_m", y_m, units.length_m)? / units.length_m;
         let motions = rigid_motions(&spans, self.ends, &[]);
         let deflection = green(&spans, self.ends, &motions, x, y);
         Ok(deflection * units.length_m.powi(3) / units.rigidity)

@@ -1,9 +1,9 @@
 //! Whether a beam under compression is stable.
 
 use crate::chain::Chain;
-use crate::error::InvalidInput;
 use crate::flexure::Flexure;
 use crate::roots::Characteristic;
+use invalid_input::InvalidInput;
 
 /// A trial `q = sqrt(omega)` below every natural frequency of a beam that stands.
 const STILL: f64 = 1e-3;

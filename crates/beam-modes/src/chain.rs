@@ -1,11 +1,12 @@
 //! A beam system as a dimensionless chain of uniform spans with nodes between them.
 
 use crate::beam::End;
-use crate::error::InvalidInput;
+use crate::location::require_on;
 use crate::node::Node;
 use crate::span::{Span, Units, nondimensional_beam};
 use crate::system::{BeamSystem, held};
 use crate::waves::SHORT;
+use invalid_input::InvalidInput;
 
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
@@ -44,7 +45,7 @@ impl Chain {
     fn nodes_between(system: &BeamSystem, place: Option<f64>) -> Result<Self, InvalidInput> {
         let (mut spans, units) = nondimensional_beam(&system.beam, system.shear.as_deref())?;
         let Units { length_m, rigidity, mass_per_length_kg_m } = units;
-        let scaled = |field: &str, value: f64, unit: f64| {
+        let scaled = |field: &'static str, value: f64, unit: f64| {
             if value.is_finite() && (value * unit).abs() <= 1e18 {
                 Ok(value * unit)
             } else {
@@ -67,13 +68,13 @@ impl Chain {
         let mut chain = Self { nodes: vec![Node::default(); spans.len() + 1], spans, ends: system.beam.ends, units };
         let mass = mass_per_length_kg_m * length_m;
         for (i, attachment) in system.attachments.iter().enumerate() {
-            let path = |field: &str| format!("attachments[{i}].{field}");
-            let not_negative = |field: &str, value: f64, unit: f64| {
-                let value = scaled(&path(field), value, unit)?;
+            let attached = |fault: InvalidInput| fault.at(i).within("attachments");
+            let not_negative = |field: &'static str, value: f64, unit: f64| {
+                let value = scaled(field, value, unit).map_err(attached)?;
                 if value >= 0.0 {
                     Ok(value)
                 } else {
-                    Err(InvalidInput::new(path(field), value / unit, "a finite number, at least 0"))
+                    Err(attached(InvalidInput::new(field, value / unit, "a finite number, at least 0")))
                 }
             };
             let node = Node {
@@ -95,12 +96,11 @@ impl Chain {
                 ],
                 support: false,
             };
-            let x_m = InvalidInput::require_on(&path("location_m"), attachment.location_m, length_m)?;
+            let x_m = require_on(("attachments", i, "location_m"), attachment.location_m, length_m)?;
             chain.node_at(x_m / length_m).add(&node);
         }
         for (i, support) in system.supports.iter().enumerate() {
-            let path = format!("supports[{i}].location_m");
-            let x = InvalidInput::require_on(&path, support.location_m, length_m)? / length_m;
+            let x = require_on(("supports", i, "location_m"), support.location_m, length_m)? / length_m;
             chain.node_at(x).support = true;
         }
         if let Some(x) = place {

@@ -5,9 +5,10 @@
 //! above with the fourth power of the element length.
 
 use crate::beam::{Beam, End};
-use crate::error::InvalidInput;
+use crate::location::require_on;
 use faer::linalg::solvers::{Llt, SelfAdjointEigen};
 use faer::{Mat, Side};
+use invalid_input::InvalidInput;
 
 /// What a degree of freedom measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -167,7 +168,7 @@ impl ModelModes {
     /// [`InvalidInput`] for a mode that is not there or a location off the beam.
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         let length_m = self.nodes_m.last().copied().unwrap_or(0.0);
-        let x_m = InvalidInput::require_on("x_m", x_m, length_m)?;
+        let x_m = require_on("x_m", x_m, length_m)?;
         let Some(nodal) = self.nodal.get(k) else {
             return Err(InvalidInput::new("k", k, "the number of a mode, from 0"));
         };

@@ -75,9 +75,9 @@ mod beam;
 mod buckling;
 mod chain;
 mod compliance;
-mod error;
 pub mod fem;
 mod flexure;
+mod location;
 mod modes;
 mod node;
 mod piece;
@@ -97,7 +97,7 @@ mod waves;
 
 pub use axial::RodEnd;
 pub use beam::{Beam, End, Segment};
-pub use error::InvalidInput;
+pub use invalid_input::InvalidInput;
 pub use modes::Modes;
 pub use plate::{Edge, Plate, PlateModes, PlateTheory};
 pub use remainder::{

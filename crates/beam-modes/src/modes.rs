@@ -1,8 +1,9 @@
 //! Natural modes, and their evaluation.
 
-use crate::error::InvalidInput;
+use crate::location::require_on;
 use crate::piece::Piece;
 use crate::span::{Span, Units, locate};
+use invalid_input::InvalidInput;
 
 /// Natural modes of a beam or a rod, in ascending order of frequency.
 ///
@@ -168,7 +169,7 @@ impl Modes {
     }
 
     fn place(&self, x_m: f64) -> Result<(usize, f64), InvalidInput> {
-        let x_m = InvalidInput::require_on("x_m", x_m, self.units.length_m)?;
+        let x_m = require_on("x_m", x_m, self.units.length_m)?;
         Ok(locate(&self.spans, x_m / self.units.length_m))
     }
 

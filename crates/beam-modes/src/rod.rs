@@ -1,12 +1,13 @@
 //! Rods in axial vibration.
 
 use crate::axial::{Axial, RodEnd};
-use crate::error::InvalidInput;
+use crate::location::require_on;
 use crate::modes::{Modes, require_count};
 use crate::piece::{Piece, gauss};
 use crate::roots::elastic_roots;
 use crate::shapes::shapes;
 use crate::span::{Span, Units, nondimensional};
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// A uniform stretch of a rod.
@@ -74,7 +75,7 @@ impl Rod {
     /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the rod.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         let (spans, units) = self.checked()?;
-        let x = InvalidInput::require_on("x_m", x_m, units.length_m)? / units.length_m;
+        let x = require_on("x_m", x_m, units.length_m)? / units.length_m;
         Ok(strain_energy(&spans, self.ends, x) * units.length_m / units.rigidity)
     }
 

@@ -3,8 +3,8 @@
 //! Lengths are measured in the total length, rigidity and mass per length in those of the first segment.
 
 use crate::beam::Beam;
-use crate::error::InvalidInput;
 use crate::system::ShearSection;
+use invalid_input::InvalidInput;
 
 /// One uniform stretch, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,16 +66,16 @@ pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<
     let Some(first) = raw.first() else {
         return Err(InvalidInput::new("segments", "[]", "at least one segment"));
     };
-    for (property, name) in names.iter().enumerate() {
+    for (property, name) in names.into_iter().enumerate() {
         let (mut low, mut high) = (first[property], first[property]);
         for (i, segment) in raw.iter().enumerate() {
-            let value = InvalidInput::require_positive(format!("segments[{i}].{name}"), segment[property])?;
+            let value = InvalidInput::require_positive(("segments", i, name), segment[property])?;
             if !(1e-60..=1e60).contains(&value) {
-                return Err(InvalidInput::new(format!("segments[{i}].{name}"), value, SCALE));
+                return Err(InvalidInput::new(("segments", i, name), value, SCALE));
             }
             (low, high) = (low.min(value), high.max(value));
             if high / low > MAX_CONTRAST {
-                return Err(InvalidInput::new(format!("segments[{i}].{name}"), value, CONTRAST));
+                return Err(InvalidInput::new(("segments", i, name), value, CONTRAST));
             }
         }
     }
@@ -97,7 +97,7 @@ pub(crate) fn nondimensional_beam(
     let Units { length_m, rigidity, mass_per_length_kg_m } = bare.1;
     let mut sections = Vec::with_capacity(shear.len());
     for (i, section) in shear.iter().enumerate() {
-        let path = |field: &str| format!("segments[{i}].{field}");
+        let path = |field| ("segments", i, field);
         let stiffness = InvalidInput::require_positive(path("shear_rigidity_n"), section.shear_rigidity_n)?;
         let inertia = section.rotary_inertia_kg_m;
         let scaled = [rigidity / length_m / length_m / stiffness, inertia / mass_per_length_kg_m / length_m / length_m];

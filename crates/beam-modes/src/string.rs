@@ -1,7 +1,8 @@
 //! Strings under tension.
 
-use crate::error::InvalidInput;
+use crate::location::require_on;
 use crate::modes::require_count;
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// A uniform string between two pinned ends, with bending stiffness if it has any.
@@ -92,7 +93,7 @@ impl TautString {
     /// As [`TautString::modes`], and for a location off the string.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.checked()?;
-        let x = InvalidInput::require_on("x_m", x_m, self.length_m)?;
+        let x = require_on("x_m", x_m, self.length_m)?;
         let rest = self.length_m - x;
         if x == 0.0 || rest == 0.0 {
             return Ok(0.0);
@@ -129,7 +130,7 @@ impl TautStringModes {
     /// # Errors
     /// [`InvalidInput`] for a location off the string.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
-        let share = InvalidInput::require_on("x_m", x_m, self.string.length_m)? / self.string.length_m;
+        let share = require_on("x_m", x_m, self.string.length_m)? / self.string.length_m;
         let size = (2.0 / (self.string.mass_per_length_kg_m * self.string.length_m)).sqrt();
         Ok((1..=self.omega_rad_s.len()).map(|n| size * sine_of(n, share)).collect())
     }

@@ -3,14 +3,15 @@
 use crate::beam::{Beam, End, rigid_motions, rigid_shape};
 use crate::buckling::require_stable;
 use crate::chain::Chain;
-use crate::error::InvalidInput;
 use crate::flexure::Flexure;
+use crate::location::require_on;
 use crate::modes::{Modes, require_count};
 use crate::piece::Piece;
 use crate::roots::elastic_roots;
 use crate::shapes::shapes;
 use crate::span::Units;
 use crate::statics;
+use invalid_input::InvalidInput;
 
 /// What Timoshenko's theory needs of a segment beside its rigidity and mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -173,8 +174,8 @@ impl BeamSystem {
         }
         let length_m = self.beam.length_m();
         Chain::of(self)?;
-        let x = InvalidInput::require_on("x_m", x_m, length_m)? / length_m;
-        let y = InvalidInput::require_on("y_m", y_m, length_m)? / length_m;
+        let x = require_on("x_m", x_m, length_m)? / length_m;
+        let y = require_on("y_m", y_m, length_m)? / length_m;
         let chain = Chain::for_statics(self, y)?;
         if self.axial_force_n < 0.0 {
             require_stable(&Chain::of(self)?)?;

@@ -1,6 +1,6 @@
 //! What the elastic laws `F = k <xi>^n` have in common: one branch, nothing lost, released at `xi = 0`.
 
-use crate::error::bounded;
+use crate::range::bounded;
 
 /// What tells one of these laws from another.
 pub(crate) trait Conservative {

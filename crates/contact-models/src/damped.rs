@@ -16,8 +16,9 @@
 //! It follows that `alpha e < 1`: a free striker never reaches the tensile tail.
 
 use crate::conservative::power_of;
-use crate::error::bounded;
-use crate::{After, Boundary, Branch, Force, InvalidInput, Memory, Stage};
+use crate::range::{bounded, require_positive, require_restitution};
+use crate::{After, Boundary, Branch, Force, Memory, Stage};
+use invalid_input::InvalidInput;
 
 /// What tells one of these laws from another.
 pub(crate) trait Damped {
@@ -78,8 +79,8 @@ pub(crate) const LOWEST_APPROACH_SPEED_M_S: f64 = 1e-6;
 
 /// The damping factor `D` (s/m) from a rule `alpha(e)`, with `e` and the speed checked.
 pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> Result<f64, InvalidInput> {
-    InvalidInput::require_restitution("restitution", e)?;
-    InvalidInput::require_positive("speed_m_s", speed_m_s)?;
+    require_restitution("restitution", e)?;
+    require_positive("speed_m_s", speed_m_s)?;
     Ok(alpha(e) / speed_m_s)
 }
 

@@ -1,9 +1,10 @@
 //! Felt of piano hammers: a power law with retarded recovery.
 
 use crate::conservative::power_of;
-use crate::error::bounded;
 use crate::kelvin_voigt::{cross_recovering, recovering_boundaries};
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
+use crate::range::{bounded, require_positive};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use invalid_input::InvalidInput;
 
 /// `F = Q0 (u^p + alpha d(u^p)/dt)` while that pushes, with `u = <xi>`.
 ///
@@ -51,9 +52,9 @@ impl Felt {
     /// # Errors
     /// As [`Felt::new`].
     pub fn validated(self) -> Result<Felt, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
-        InvalidInput::require("exponent", self.exponent, (2.0..=6.0).contains(&self.exponent), "a number from 2 to 6")?;
-        InvalidInput::require_positive("retardation_time_s", self.retardation_time_s)?;
+        require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
+        InvalidInput::unless((2.0..=6.0).contains(&self.exponent), "exponent", self.exponent, "a number from 2 to 6")?;
+        require_positive("retardation_time_s", self.retardation_time_s)?;
         Ok(self)
     }
 

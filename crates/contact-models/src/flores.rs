@@ -1,7 +1,8 @@
 //! Flores, Machado, Silva and Martins's law.
 
-use crate::InvalidInput;
 use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::range::{require_positive, require_restitution};
+use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 8 (1 - e) / (5 e v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -44,7 +45,7 @@ impl Flores {
     /// # Errors
     /// As [`Flores::new`].
     pub fn with_restitution(stiffness_n_m1_5: f64, restitution: f64) -> Result<Flores, InvalidInput> {
-        InvalidInput::require_restitution("restitution", restitution)?;
+        require_restitution("restitution", restitution)?;
         // D v0 = 8 (1 - e) / (5 e), solved for e
         Flores::new(stiffness_n_m1_5, 1.6 / (1.6 + damped::damping_ratio(restitution)))
     }
@@ -54,9 +55,9 @@ impl Flores {
     /// # Errors
     /// As [`Flores::new`], and a lowest approach speed that is not positive.
     pub fn validated(self) -> Result<Flores, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
-        InvalidInput::require_restitution("restitution", self.restitution)?;
-        InvalidInput::require_positive("lowest_approach_speed_m_s", self.lowest_approach_speed_m_s)?;
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        require_restitution("restitution", self.restitution)?;
+        require_positive("lowest_approach_speed_m_s", self.lowest_approach_speed_m_s)?;
         Ok(self)
     }
 }

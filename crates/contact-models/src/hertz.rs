@@ -1,8 +1,9 @@
 //! Hertz: elastic contact of curved, frictionless bodies. Conservative.
 
-use crate::InvalidInput;
 use crate::conservative::{Conservative, conservative_law, power_of};
 use crate::pair::{Body, effective_modulus_pa, effective_radius_m};
+use crate::range::require_positive;
+use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2)` (thesis Eqs. 3.12 to 3.14).
 ///
@@ -49,7 +50,7 @@ impl Hertz {
     /// # Errors
     /// As [`Hertz::new`].
     pub fn validated(self) -> Result<Hertz, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         Ok(self)
     }
 }

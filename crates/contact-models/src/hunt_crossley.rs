@@ -1,7 +1,8 @@
 //! Hunt and Crossley's damped power law.
 
-use crate::InvalidInput;
 use crate::damped::{self, Damped, damped_law};
+use crate::range::{require_not_negative, require_positive};
+use invalid_input::InvalidInput;
 
 /// `F = k <xi>^n (1 + D xi_dot)` with any exponent; `D` is the same for every contact.
 ///
@@ -70,9 +71,9 @@ impl HuntCrossley {
     /// # Errors
     /// As [`HuntCrossley::new`].
     pub fn validated(self) -> Result<HuntCrossley, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
-        InvalidInput::require("exponent", self.exponent, (1.0..=6.0).contains(&self.exponent), "a number from 1 to 6")?;
-        InvalidInput::require_not_negative("damping_s_m", self.damping_s_m)?;
+        require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
+        InvalidInput::unless((1.0..=6.0).contains(&self.exponent), "exponent", self.exponent, "a number from 1 to 6")?;
+        require_not_negative("damping_s_m", self.damping_s_m)?;
         Ok(self)
     }
 }

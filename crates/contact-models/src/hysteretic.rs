@@ -1,8 +1,9 @@
 //! The thesis's rate-independent contact hysteresis.
 
-use crate::error::{LARGEST, SMALLEST, bounded};
 use crate::quadrature::power_moment;
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
+use crate::range::{LARGEST, SMALLEST, bounded, require_not_negative, require_positive};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2) (1 + theta)` (thesis Eq. 3.16), where the internal variable moves between
 /// `theta_m - beta` and `theta_m + beta`.
@@ -71,13 +72,13 @@ impl Hysteretic {
     /// # Errors
     /// As [`Hysteretic::new`].
     pub fn validated(self) -> Result<Hysteretic, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
-        InvalidInput::require_positive("theta_m", self.theta_m)?;
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        require_positive("theta_m", self.theta_m)?;
         let pushes = (0.0..=1.0 + self.theta_m).contains(&self.beta);
-        InvalidInput::require("beta", self.beta, pushes, "a number from 0 to 1 + theta_m")?;
+        InvalidInput::unless(pushes, "beta", self.beta, "a number from 0 to 1 + theta_m")?;
         let in_range = (SMALLEST..=1000.0).contains(&self.k_bar);
-        InvalidInput::require("k_bar", self.k_bar, in_range, "a number greater than 0 (from 1e-30 to 1000)")?;
-        InvalidInput::require_not_negative("epsilon_m", self.epsilon_m)?;
+        InvalidInput::unless(in_range, "k_bar", self.k_bar, "a number greater than 0 (from 1e-30 to 1000)")?;
+        require_not_negative("epsilon_m", self.epsilon_m)?;
         Ok(self)
     }
 

@@ -1,7 +1,8 @@
 //! Spring and dashpot in parallel.
 
-use crate::error::bounded;
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
+use crate::range::{bounded, require_positive};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use invalid_input::InvalidInput;
 
 /// `F = k xi + c xi_dot` while that pushes.
 ///
@@ -39,10 +40,10 @@ impl KelvinVoigt {
     /// # Errors
     /// A restitution outside 0.001 to 1 or equal to 1, a stiffness or mass that is not positive.
     pub fn with_restitution(stiffness_n_m: f64, restitution: f64, mass_kg: f64) -> Result<KelvinVoigt, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m", stiffness_n_m)?;
-        InvalidInput::require_positive("mass_kg", mass_kg)?;
+        require_positive("stiffness_n_m", stiffness_n_m)?;
+        require_positive("mass_kg", mass_kg)?;
         let allowed = "a coefficient of restitution from 0.001 to below 1";
-        InvalidInput::require("restitution", restitution, (0.001..1.0).contains(&restitution), allowed)?;
+        InvalidInput::unless((0.001..1.0).contains(&restitution), "restitution", restitution, allowed)?;
         KelvinVoigt::new(stiffness_n_m, 2.0 * damping_ratio(restitution) * (stiffness_n_m * mass_kg).sqrt())
     }
 
@@ -51,8 +52,8 @@ impl KelvinVoigt {
     /// # Errors
     /// As [`KelvinVoigt::new`].
     pub fn validated(self) -> Result<KelvinVoigt, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m", self.stiffness_n_m)?;
-        InvalidInput::require_positive("damping_n_s_m", self.damping_n_s_m)?;
+        require_positive("stiffness_n_m", self.stiffness_n_m)?;
+        require_positive("damping_n_s_m", self.damping_n_s_m)?;
         Ok(self)
     }
 

@@ -1,7 +1,8 @@
 //! Lankarani and Nikravesh's law.
 
-use crate::InvalidInput;
 use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
+use crate::range::{require_positive, require_restitution};
+use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 3 (1 - e^2) / (4 v0)` set anew by each
 /// contact's approach speed `v0`.
@@ -47,12 +48,12 @@ impl LankaraniNikravesh {
     /// # Errors
     /// A stiffness that is not positive, a restitution that the law cannot reach, as its damping ends at `D v0 = 3/4`.
     pub fn with_restitution(stiffness_n_m1_5: f64, restitution: f64) -> Result<LankaraniNikravesh, InvalidInput> {
-        InvalidInput::require_restitution("restitution", restitution)?;
+        require_restitution("restitution", restitution)?;
         // D v0 = 3 (1 - e^2) / 4, solved for e
         let squared = 1.0 - damped::damping_ratio(restitution) / 0.75;
         let allowed =
             "a coefficient of restitution from 0.663 to 1, as the damping of Lankarani and Nikravesh ends there";
-        InvalidInput::require("restitution", restitution, squared >= 1e-6, allowed)?;
+        InvalidInput::unless(squared >= 1e-6, "restitution", restitution, allowed)?;
         LankaraniNikravesh::new(stiffness_n_m1_5, squared.sqrt())
     }
 
@@ -61,9 +62,9 @@ impl LankaraniNikravesh {
     /// # Errors
     /// As [`LankaraniNikravesh::new`], and a lowest approach speed that is not positive.
     pub fn validated(self) -> Result<LankaraniNikravesh, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
-        InvalidInput::require_restitution("restitution", self.restitution)?;
-        InvalidInput::require_positive("lowest_approach_speed_m_s", self.lowest_approach_speed_m_s)?;
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        require_restitution("restitution", self.restitution)?;
+        require_positive("lowest_approach_speed_m_s", self.lowest_approach_speed_m_s)?;
         Ok(self)
     }
 }

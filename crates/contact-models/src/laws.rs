@@ -1,10 +1,13 @@
 //! Every law behind one type.
 
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Memory};
+
+use crate::range::require_positive;
 use crate::{
     Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, LinearSpring, Power, Thornton,
     Viscous,
 };
+use invalid_input::InvalidInput;
 
 /// Writes the enum, its name table and its dispatch from one list of laws.
 macro_rules! laws {
@@ -79,8 +82,8 @@ impl Law {
     /// # Errors
     /// A mass or speed that is not positive.
     pub fn wall_restitution(&self, mass_kg: f64, speed_m_s: f64) -> Result<f64, InvalidInput> {
-        InvalidInput::require_positive("mass_kg", mass_kg)?;
-        InvalidInput::require_positive("speed_m_s", speed_m_s)?;
+        require_positive("mass_kg", mass_kg)?;
+        require_positive("speed_m_s", speed_m_s)?;
         Ok(each!(self, law => law.wall_restitution(mass_kg, speed_m_s)))
     }
 }

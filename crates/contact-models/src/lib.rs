@@ -72,7 +72,6 @@
 mod check;
 mod conservative;
 mod damped;
-mod error;
 mod felt;
 mod flores;
 mod hertz;
@@ -86,6 +85,7 @@ mod linear;
 mod pair;
 mod power;
 mod quadrature;
+mod range;
 mod stepped;
 mod thornton;
 mod trace;
@@ -97,12 +97,12 @@ mod wanted;
 mod readme {}
 
 pub use check::{Breach, Promise, check_contract, check_contract_along};
-pub use error::{InvalidInput, LARGEST};
 pub use felt::Felt;
 pub use flores::Flores;
 pub use hertz::Hertz;
 pub use hunt_crossley::HuntCrossley;
 pub use hysteretic::Hysteretic;
+pub use invalid_input::InvalidInput;
 pub use kelvin_voigt::KelvinVoigt;
 pub use lankarani_nikravesh::LankaraniNikravesh;
 pub use law::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
@@ -110,6 +110,7 @@ pub use laws::Law;
 pub use linear::LinearSpring;
 pub use pair::{Body, effective_modulus_pa, effective_radius_m};
 pub use power::Power;
+pub use range::LARGEST;
 pub use stepped::{Stepped, stepped_restitution};
 pub use thornton::Thornton;
 pub use trace::{TracePoint, trace};

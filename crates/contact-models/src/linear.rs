@@ -1,8 +1,8 @@
 //! The linear spring. Conservative.
 
-use crate::InvalidInput;
 use crate::conservative::{Conservative, conservative_law};
-use crate::error::bounded;
+use crate::range::{bounded, require_positive};
+use invalid_input::InvalidInput;
 
 /// `F = k <xi>`.
 ///
@@ -28,7 +28,7 @@ impl LinearSpring {
     /// # Errors
     /// As [`LinearSpring::new`].
     pub fn validated(self) -> Result<LinearSpring, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m", self.stiffness_n_m)?;
+        require_positive("stiffness_n_m", self.stiffness_n_m)?;
         Ok(self)
     }
 }

@@ -1,7 +1,7 @@
 //! Two bodies in contact: effective modulus and radius.
 
-use crate::InvalidInput;
-use crate::error::LARGEST;
+use crate::range::{LARGEST, require_positive};
+use invalid_input::InvalidInput;
 
 /// One of two elastic bodies where they touch: an isotropic material and a sphere's curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,11 +29,11 @@ impl Body {
     /// `(1 - nu^2) / E` (1/Pa).
     fn compliance_per_pa(&self) -> Result<f64, InvalidInput> {
         if self.youngs_modulus_pa != f64::INFINITY {
-            InvalidInput::require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
+            require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
         }
         let nu = self.poissons_ratio;
         let allowed = "a number greater than -1 and not greater than 0.5";
-        InvalidInput::require("poissons_ratio", nu, nu > -1.0 && nu <= 0.5, allowed)?;
+        InvalidInput::unless(nu > -1.0 && nu <= 0.5, "poissons_ratio", nu, allowed)?;
         Ok((1.0 - nu * nu) / self.youngs_modulus_pa)
     }
 
@@ -42,7 +42,7 @@ impl Body {
         if self.radius_m != f64::INFINITY {
             let allowed = "a radius other than 0, positive for a ball, infinite for a flat, negative for a seat";
             let holds = self.radius_m.abs() >= 1.0 / LARGEST && self.radius_m.abs() <= LARGEST;
-            InvalidInput::require("radius_m", self.radius_m, holds, allowed)?;
+            InvalidInput::unless(holds, "radius_m", self.radius_m, allowed)?;
         }
         Ok(1.0 / self.radius_m)
     }
@@ -54,7 +54,7 @@ impl Body {
 /// A modulus that is not positive, a Poisson's ratio outside `(-1, 0.5]`, or two rigid bodies.
 pub fn effective_modulus_pa(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
     let modulus = 1.0 / (first.compliance_per_pa()? + second.compliance_per_pa()?);
-    InvalidInput::require("youngs_modulus_pa", modulus, modulus.is_finite(), "at most one rigid body in a pair")?;
+    InvalidInput::unless(modulus.is_finite(), "youngs_modulus_pa", modulus, "at most one rigid body in a pair")?;
     Ok(modulus)
 }
 
@@ -67,6 +67,6 @@ pub fn effective_radius_m(first: &Body, second: &Body) -> Result<f64, InvalidInp
     let radius = 1.0 / (first.curvature_per_m()? + second.curvature_per_m()?);
     let holds = radius > 0.0 && radius <= LARGEST;
     let allowed = "1/R1 + 1/R2 greater than 0, so that the bodies meet at a point";
-    InvalidInput::require("radius_m", radius, holds, allowed)?;
+    InvalidInput::unless(holds, "radius_m", radius, allowed)?;
     Ok(radius)
 }

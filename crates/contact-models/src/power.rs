@@ -1,7 +1,8 @@
 //! A power of the compression. Conservative.
 
-use crate::InvalidInput;
 use crate::conservative::{Conservative, conservative_law, power_of};
+use crate::range::require_positive;
+use invalid_input::InvalidInput;
 
 /// `F = k <xi>^n` with any exponent from 1 to 6.
 ///
@@ -41,8 +42,8 @@ impl Power {
     /// # Errors
     /// As [`Power::new`].
     pub fn validated(self) -> Result<Power, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
-        InvalidInput::require("exponent", self.exponent, (1.0..=6.0).contains(&self.exponent), "a number from 1 to 6")?;
+        require_positive("stiffness_n_m_n", self.stiffness_n_m_n)?;
+        InvalidInput::unless((1.0..=6.0).contains(&self.exponent), "exponent", self.exponent, "a number from 1 to 6")?;
         Ok(self)
     }
 }

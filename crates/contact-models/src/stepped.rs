@@ -9,7 +9,10 @@
 //! The contact is noticed in the first step that ends with `xi > 0`, somewhere between nothing and `h v0` deep. Where in
 //! that range is chance, so that one law has many restitutions at one step.
 
-use crate::{After, ContactLaw, InvalidInput, Law, Memory};
+use crate::{After, ContactLaw, Law, Memory};
+
+use crate::range::require_positive;
+use invalid_input::InvalidInput;
 
 /// Phases of the first touch within a step, evenly spaced.
 const PHASES: u32 = 64;
@@ -35,9 +38,9 @@ pub struct Stepped {
 /// # Errors
 /// A mass, speed or step that is not positive.
 pub fn stepped_restitution(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64) -> Result<Stepped, InvalidInput> {
-    InvalidInput::require_positive("mass_kg", mass_kg)?;
-    InvalidInput::require_positive("speed_m_s", speed_m_s)?;
-    InvalidInput::require_positive("step_s", step_s)?;
+    require_positive("mass_kg", mass_kg)?;
+    require_positive("speed_m_s", speed_m_s)?;
+    require_positive("step_s", step_s)?;
     let mut found = Stepped { lowest: f64::INFINITY, mean: 0.0, highest: 0.0, steps: 0.0 };
     for phase in 0..PHASES {
         let depth_m = (f64::from(phase) + 0.5) / f64::from(PHASES) * speed_m_s * step_s;

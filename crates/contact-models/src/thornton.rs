@@ -1,8 +1,9 @@
 //! Thornton's elastic, perfectly plastic contact.
 
-use crate::error::bounded;
 use crate::pair::{Body, effective_modulus_pa, effective_radius_m};
-use crate::{After, Boundary, Branch, ContactLaw, Force, InvalidInput, Memory, Stage};
+use crate::range::{bounded, require_positive};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// Hertz up to yield, a straight line beyond, and Hertz with a flattened radius on the way back,
@@ -60,9 +61,9 @@ impl Thornton {
     /// # Errors
     /// As [`Thornton::new`].
     pub fn validated(self) -> Result<Thornton, InvalidInput> {
-        InvalidInput::require_positive("effective_modulus_pa", self.effective_modulus_pa)?;
-        InvalidInput::require_positive("effective_radius_m", self.effective_radius_m)?;
-        InvalidInput::require_positive("yield_pressure_pa", self.yield_pressure_pa)?;
+        require_positive("effective_modulus_pa", self.effective_modulus_pa)?;
+        require_positive("effective_radius_m", self.effective_radius_m)?;
+        require_positive("yield_pressure_pa", self.yield_pressure_pa)?;
         Ok(self)
     }
 
@@ -82,7 +83,7 @@ impl Thornton {
     /// # Errors
     /// A mass that is not positive.
     pub fn yield_speed_m_s(&self, mass_kg: f64) -> Result<f64, InvalidInput> {
-        InvalidInput::require_positive("mass_kg", mass_kg)?;
+        require_positive("mass_kg", mass_kg)?;
         Ok((0.8 * self.yield_force_n() / mass_kg * self.yield_compression_m()).sqrt())
     }
 

@@ -1,7 +1,8 @@
 //! A law driven by a prescribed motion.
 
 use crate::quadrature::between_events;
-use crate::{After, Boundary, Branch, ContactLaw, InvalidInput, Memory};
+use crate::{After, Boundary, Branch, ContactLaw, Memory};
+use invalid_input::InvalidInput;
 
 /// The contact at one moment of a prescribed motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -101,10 +102,10 @@ pub fn trace(
     let mut previous: Option<f64> = None;
     for &end in times_s {
         let increases = end.is_finite() && previous.is_none_or(|t| t < end);
-        InvalidInput::require("times_s", end, increases, "finite times that increase")?;
+        InvalidInput::unless(increases, "times_s", end, "finite times that increase")?;
         let (xi, rate) = motion(end);
-        InvalidInput::require("compression_m", xi, xi.is_finite(), "a motion with finite compression")?;
-        InvalidInput::require("rate_m_s", rate, rate.is_finite(), "a motion with finite rate")?;
+        InvalidInput::unless(xi.is_finite(), "compression_m", xi, "a motion with finite compression")?;
+        InvalidInput::unless(rate.is_finite(), "rate_m_s", rate, "a motion with finite rate")?;
         let mut start = previous.unwrap_or(end);
         for _ in 0..MOST_EVENTS {
             let met = first_met(&state.boundaries(law), start, end, &motion);

@@ -1,7 +1,8 @@
 //! The thesis's viscous contact dissipation.
 
-use crate::InvalidInput;
 use crate::damped::{self, Damped, damped_law};
+use crate::range::{require_not_negative, require_positive};
+use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2) (1 + c xi_dot)` (thesis Eq. 3.15), `c` the same for every contact.
 ///
@@ -41,8 +42,8 @@ impl Viscous {
     /// # Errors
     /// As [`Viscous::new`].
     pub fn validated(self) -> Result<Viscous, InvalidInput> {
-        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
-        InvalidInput::require_not_negative("damping_s_m", self.damping_s_m)?;
+        require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        require_not_negative("damping_s_m", self.damping_s_m)?;
         Ok(self)
     }
 }

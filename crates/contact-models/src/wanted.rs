@@ -31,8 +31,11 @@
 //! The field's formula `e = exp(-pi zeta / sqrt(1 - zeta^2))` lets the dashpot pull until the gap opens
 //! ([`damping_ratio_if_it_pulled`]).
 
-use crate::{Flores, HuntCrossley, InvalidInput, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
+use crate::{Flores, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
+
+use crate::range::{require_positive, require_restitution};
 use crate::{damped, kelvin_voigt};
+use invalid_input::InvalidInput;
 
 /// What a contact shall do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,11 +71,11 @@ pub fn reduced_mass_kg(first_kg: f64, second_kg: f64) -> Result<f64, InvalidInpu
     let immovable = |mass_kg: f64| mass_kg == f64::INFINITY;
     for mass_kg in [first_kg, second_kg] {
         if !immovable(mass_kg) {
-            InvalidInput::require_positive("mass_kg", mass_kg)?;
+            require_positive("mass_kg", mass_kg)?;
         }
     }
     let one_moves = !(immovable(first_kg) && immovable(second_kg));
-    InvalidInput::require("mass_kg", second_kg, one_moves, "a finite mass for one body of the two")?;
+    InvalidInput::unless(one_moves, "mass_kg", second_kg, "a finite mass for one body of the two")?;
     Ok(1.0 / (1.0 / first_kg + 1.0 / second_kg))
 }
 
@@ -82,7 +85,7 @@ pub fn reduced_mass_kg(first_kg: f64, second_kg: f64) -> Result<f64, InvalidInpu
 /// # Errors
 /// A restitution outside 0.001 to 1.
 pub fn damping_ratio_if_it_pulled(restitution: f64) -> Result<f64, InvalidInput> {
-    InvalidInput::require_restitution("restitution", restitution)?;
+    require_restitution("restitution", restitution)?;
     let decrement = -restitution.ln();
     Ok(decrement / std::f64::consts::PI.hypot(decrement))
 }
@@ -92,7 +95,7 @@ pub fn damping_ratio_if_it_pulled(restitution: f64) -> Result<f64, InvalidInput>
 /// # Errors
 /// A restitution outside 0.001 to 1.
 pub fn damping_ratio(restitution: f64) -> Result<f64, InvalidInput> {
-    InvalidInput::require_restitution("restitution", restitution)?;
+    require_restitution("restitution", restitution)?;
     Ok(kelvin_voigt::damping_ratio(restitution))
 }
 
@@ -102,10 +105,10 @@ impl Wanted {
     /// # Errors
     /// A restitution outside 0.001 to 1; a mass, speed or compression that is not positive.
     pub fn validated(self) -> Result<Wanted, InvalidInput> {
-        InvalidInput::require_restitution("restitution", self.restitution)?;
-        InvalidInput::require_positive("mass_kg", self.mass_kg)?;
-        InvalidInput::require_positive("speed_m_s", self.speed_m_s)?;
-        InvalidInput::require_positive("compression_m", self.compression_m)?;
+        require_restitution("restitution", self.restitution)?;
+        require_positive("mass_kg", self.mass_kg)?;
+        require_positive("speed_m_s", self.speed_m_s)?;
+        require_positive("compression_m", self.compression_m)?;
         Ok(self)
     }
 

@@ -7,7 +7,7 @@ use contact_models::{effective_modulus_pa, effective_radius_m, trace};
 const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e31, 1e-320];
 
 fn field<T: std::fmt::Debug>(result: Result<T, InvalidInput>) -> String {
-    result.unwrap_err().field
+    result.unwrap_err().field.to_string()
 }
 
 #[test]

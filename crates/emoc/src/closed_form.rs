@@ -1,7 +1,8 @@
 //! The minimum of problem P_0 in closed form.
 
-use crate::error::{require, require_fraction, require_non_negative};
-use crate::{InvalidInput, Real};
+use crate::Real;
+use crate::require::{require, require_fraction, require_non_negative};
+use invalid_input::InvalidInput;
 
 /// The three coefficients of the model's inequalities (thesis Eqs. 6.6 and 6.7).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +69,12 @@ impl<T: Real> Rebound<T> {
     /// An error if the lists differ in length or a number is not finite.
     pub fn modal_rates(&self, speed_m_s: T, phi: &[T], rates: &mut [T]) -> Result<(), InvalidInput> {
         require_non_negative("speed_m_s", speed_m_s)?;
-        require(phi.len() == rates.len(), "rates.len()", T::from_count(rates.len()), "as many rates as mode shapes")?;
+        require(
+            phi.len() == rates.len(),
+            ["rates", "len()"],
+            T::from_count(rates.len()),
+            "as many rates as mode shapes",
+        )?;
         let sum = sum_of_squares(phi)?;
         let s = if sum > T::ZERO { self.recoil * speed_m_s / sum } else { T::ZERO };
         for (rate, &phi_k) in rates.iter_mut().zip(phi) {
@@ -179,8 +185,7 @@ pub(crate) fn sum_of_squares<T: Real>(phi: &[T]) -> Result<T, InvalidInput> {
         sum = sum + phi_k * phi_k;
         // false for NaN and for overflow alike
         let finite = sum <= T::MAX;
-        require(finite, "phi", phi_k, "finite mode shapes whose sum of squares is finite")
-            .map_err(|error| InvalidInput { index: Some(index), ..error })?;
+        require(finite, ("phi", index), phi_k, "finite mode shapes whose sum of squares is finite")?;
     }
     Ok(sum)
 }

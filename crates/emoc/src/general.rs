@@ -2,12 +2,13 @@
 
 use crate::program::Engine;
 use crate::scaled::Scaled;
-use crate::{InvalidInput, Outcome, Problem, Solution};
+use crate::{Outcome, Problem, Solution};
 use alloc::vec;
 use core::fmt;
+use invalid_input::InvalidInput;
 
 /// Why a contact problem has no solution to report.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum SolveError {
     /// The input is outside the model's range.

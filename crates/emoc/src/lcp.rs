@@ -1,10 +1,11 @@
 //! The linear complementarity baseline for simultaneous impacts.
 
+use crate::matrix;
 use crate::matrix::require_finite;
 use crate::problem::{Outcome, Problem, Solution};
-use crate::{InvalidInput, matrix};
 use alloc::vec;
 use alloc::vec::Vec;
+use invalid_input::InvalidInput;
 
 /// The result of Lemke's method.
 #[derive(Debug, Clone, PartialEq)]

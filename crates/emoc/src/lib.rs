@@ -75,7 +75,7 @@
 //!   vibrates already, friction; `Solver::least_energy` is Todorov's rule (5.3). `SingleImpact`: P_1 and its
 //!   reduced form as quadratic programs.
 //!
-//! Without features the crate depends on nothing and needs neither `std` nor an allocator. `qp` (default) brings
+//! Without features the crate depends on no third party and needs neither `std` nor an allocator. `qp` (default) brings
 //! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel); `scatter` brings [libm](https://docs.rs/libm), which needs
 //! neither.
 //!
@@ -139,7 +139,6 @@ extern crate std;
 #[cfg(feature = "qp")]
 mod active_set;
 mod closed_form;
-mod error;
 #[cfg(feature = "qp")]
 mod general;
 #[cfg(feature = "alloc")]
@@ -154,6 +153,7 @@ mod problem;
 #[cfg(feature = "qp")]
 mod program;
 mod real;
+mod require;
 #[cfg(feature = "qp")]
 mod scaled;
 #[cfg(feature = "scatter")]
@@ -162,9 +162,9 @@ mod scatter;
 mod single;
 
 pub use closed_form::{Branch, CoefficientGradient, Coefficients, Rebound};
-pub use error::InvalidInput;
 #[cfg(feature = "qp")]
 pub use general::{SolveError, Solver};
+pub use invalid_input::InvalidInput;
 pub use moving::{MovingImpact, MovingRebound};
 pub use newton::newton_restitution;
 pub use parameters::{Impact, ParameterGradient, Parameters, Site};

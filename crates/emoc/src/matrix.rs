@@ -1,8 +1,8 @@
 //! The little dense linear algebra that the contact problem needs, on slices, row by row.
 
-use crate::InvalidInput;
-use crate::error::require;
+use crate::require::require;
 use alloc::vec::Vec;
+use invalid_input::InvalidInput;
 
 /// Relative size below which a pivot or a residual counts as rounding.
 const ROUNDING: f64 = 1e-10;
@@ -15,12 +15,12 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) fn require_finite(field: &'static str, values: &[f64], length: usize) -> Result<(), InvalidInput> {
     if values.len() != length {
         let allowed = "a length that fits the number of contact coordinates (or velocities)";
-        return Err(InvalidInput { field, index: None, value: values.len() as f64, allowed });
+        return Err(InvalidInput::new(field, values.len(), allowed));
     }
     match values.iter().position(|value| value.is_nan() || value.abs() > 1e100) {
         Some(index) => {
             let allowed = "a number of magnitude up to 1e100";
-            Err(InvalidInput { field, index: Some(index), value: values[index], allowed })
+            Err(InvalidInput::new((field, index), values[index], allowed))
         }
         None => Ok(()),
     }
@@ -33,7 +33,7 @@ pub(crate) fn require_symmetric(field: &'static str, a: &[f64], n: usize) -> Res
         for j in 0..i {
             if (a[i * n + j] - a[j * n + i]).abs() > ROUNDING * largest {
                 let allowed = "a symmetric matrix";
-                return Err(InvalidInput { field, index: Some(i * n + j), value: a[i * n + j], allowed });
+                return Err(InvalidInput::new((field, i * n + j), a[i * n + j], allowed));
             }
         }
     }
@@ -117,14 +117,14 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
             if w[i * n + j].abs() > 100.0 * ROUNDING * largest {
                 let allowed = "a positive semidefinite matrix";
                 let field = "inverse_inertia_per_kg";
-                return Err(InvalidInput { field, index: Some(i * n + j), value: w[i * n + j], allowed });
+                return Err(InvalidInput::new((field, i * n + j), w[i * n + j], allowed));
             }
         }
         // `W = B B^T` and `v = B u` let `v_i^2` be `W_ii u.u`, however small
         let unexplained = v[i] * v[i] > 100.0 * w[i * n + i].max(0.0) * energy;
         if v[i].abs() > 100.0 * ROUNDING * fastest && unexplained {
             let allowed = "velocities in the range of inverse_inertia_per_kg (an immovable body does not move)";
-            return Err(InvalidInput { field: "velocity_m_s", index: Some(i), value: v[i], allowed });
+            return Err(InvalidInput::new(("velocity_m_s", i), v[i], allowed));
         }
     }
     Ok(())

@@ -30,8 +30,9 @@
 //! The solution is the least `p` at which (1) can be met, (2) is met and (5) is not negative: a bisection again. If the
 //! energy then grows, or numbers run out, all demands are lowered by a common share, as for several contacts.
 
-use crate::error::{require, require_positive};
-use crate::{Coefficients, InvalidInput};
+use crate::Coefficients;
+use crate::require::{require, require_positive};
+use invalid_input::InvalidInput;
 
 /// Share of the energy at hand by which rounding may exceed it.
 const ENERGY_ROUNDING: f64 = 1e-10;
@@ -144,16 +145,15 @@ impl MovingImpact<'_> {
         self.coefficients.validate()?;
         require_positive("mass_kg", self.mass_kg)?;
         let count = self.rates.len();
-        require(count == self.phi.len(), "rates.len()", count as f64, "as many rates as mode shapes")?;
+        require(count == self.phi.len(), ["rates", "len()"], count as f64, "as many rates as mode shapes")?;
         let allowed = "a number from -1e60 to 1e60";
-        let bounded = |field, value: f64| require(value.abs() <= LARGEST, field, value, allowed);
         let inverse = 1.0 / self.mass_kg;
         require(self.mass_kg.max(inverse) <= LARGEST, "mass_kg", self.mass_kg, "a number from 1e-60 to 1e60")?;
         require(self.coefficients.beta0 <= LARGEST, "beta0", self.coefficients.beta0, "a number from 0 to 1e60")?;
-        bounded("velocity_m_s", self.velocity_m_s)?;
+        require(self.velocity_m_s.abs() <= LARGEST, "velocity_m_s", self.velocity_m_s, allowed)?;
         for (field, list) in [("phi", self.phi), ("rates", self.rates)] {
             for (index, &value) in list.iter().enumerate() {
-                bounded(field, value).map_err(|error| InvalidInput { index: Some(index), ..error })?;
+                require(value.abs() <= LARGEST, (field, index), value, allowed)?;
             }
         }
         Ok(())

@@ -1,7 +1,8 @@
 //! Newton's restitution at the contact points, with the modes struck by a single impulse.
 
-use crate::error::{require_fraction, require_non_negative};
-use crate::{InvalidInput, Real};
+use crate::Real;
+use crate::require::{require_fraction, require_non_negative};
+use invalid_input::InvalidInput;
 
 /// Net restitution when the striker and a structure at rest exchange one impulse after which the contact
 /// points part at `restitution` times the speed of approach: `(restitution - Z) / (1 + Z)`.

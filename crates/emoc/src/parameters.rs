@@ -1,8 +1,9 @@
 //! The three-parameter form of chapter 7.
 
 use crate::closed_form::sum_of_squares;
-use crate::error::{require_fraction, require_non_negative, require_positive};
-use crate::{Coefficients, InvalidInput, Real, Rebound};
+use crate::require::{require_fraction, require_non_negative, require_positive};
+use crate::{Coefficients, Real, Rebound};
+use invalid_input::InvalidInput;
 
 /// What the model needs to know of a location on a structure: three numbers out of its mode shapes there.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,9 +1,10 @@
 //! Several contacts at once, posed in the space of the contacts.
 
+use crate::Coefficients;
 use crate::matrix::{self, symmetric_consistent};
-use crate::{Coefficients, InvalidInput};
 use alloc::vec;
 use alloc::vec::Vec;
+use invalid_input::InvalidInput;
 
 /// Friction at a contact, which also says how many coordinates the contact has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -137,22 +138,22 @@ impl Problem {
     /// its range: outside it an immovable body would be moving, with energy without end.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         for (index, contact) in self.contacts.iter().enumerate() {
-            let at = |error: InvalidInput| InvalidInput { index: Some(index), ..error };
-            contact.coefficients.validate().map_err(at)?;
+            let within = |error: InvalidInput| error.at(index).within("contacts");
+            contact.coefficients.validate().map_err(|error| within(error.within("coefficients")))?;
             let mu = contact.friction.coefficient();
-            crate::error::require_non_negative("friction.coefficient", mu).map_err(at)?;
+            crate::require::require_non_negative("coefficient", mu)
+                .map_err(|error| within(error.within("friction")))?;
             if let Friction::Spatial { facets, .. } = contact.friction {
                 let holds = (3..=64).contains(&facets);
-                crate::error::require(holds, "friction.facets", facets as f64, "3 to 64 facets").map_err(at)?;
+                InvalidInput::unless(holds, ("contacts", index, ["friction", "facets"]), facets, "3 to 64 facets")?;
             }
         }
         let d = self.coordinates();
         matrix::require_finite("inverse_inertia_per_kg", &self.inverse_inertia_per_kg, d * d)?;
         matrix::require_finite("velocity_m_s", &self.velocity_m_s, d)?;
         for (index, mode) in self.modes.iter().enumerate() {
-            matrix::require_finite("modes.shape", &mode.shape, d)?;
-            crate::error::require(mode.rate.is_finite(), "modes.rate", mode.rate, "a finite number")
-                .map_err(|error| InvalidInput { index: Some(index), ..error })?;
+            matrix::require_finite("shape", &mode.shape, d).map_err(|error| error.at(index).within("modes"))?;
+            InvalidInput::require_finite(("modes", index, "rate"), mode.rate)?;
         }
         symmetric_consistent(&self.inverse_inertia_per_kg, &self.velocity_m_s)
     }

@@ -1,9 +1,10 @@
 //! The quadratic programs of a contact problem, in units in which everything is of order one.
 
 use crate::program::{Engine, Failure, Program};
-use crate::{Friction, InvalidInput, Mode, Outcome, Problem, Solution};
+use crate::{Friction, Mode, Outcome, Problem, Solution};
 use alloc::vec::Vec;
 use core::f64::consts::PI;
+use invalid_input::InvalidInput;
 
 /// Share of the energy at hand by which a numerical solution may exceed it.
 const ENERGY_ROUNDING: f64 = 1e-10;

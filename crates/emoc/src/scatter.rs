@@ -13,8 +13,9 @@
 //! (2) are closed, and it narrows of itself where `m` comes near 1: at a small `Z` a single contact leaves nothing to chance
 //! but a share of `1 - e`. At a `Z` above `1/z_s` sub-impacts follow each other, and the scatter grows from `s_0` to `s_0 + s_1`.
 
-use crate::error::{require, require_fraction, require_non_negative, require_positive};
-use crate::{Impact, InvalidInput, Parameters};
+use crate::require::{require, require_fraction, require_non_negative, require_positive};
+use crate::{Impact, Parameters};
+use invalid_input::InvalidInput;
 
 /// The law's parameters and those of its scatter (3).
 #[derive(Debug, Clone, Copy, PartialEq)]

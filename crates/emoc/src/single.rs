@@ -1,10 +1,11 @@
 //! Problem P_1 of section 6.3 and its reduced form, for one striker and a structure at rest.
 
 use crate::closed_form::sum_of_squares;
-use crate::error::require_positive;
 use crate::program::{Engine, Failure, Minimum, Program};
-use crate::{Coefficients, InvalidInput, SolveError};
+use crate::require::require_positive;
+use crate::{Coefficients, SolveError};
 use alloc::vec::Vec;
+use invalid_input::InvalidInput;
 
 /// One striker and a structure at rest, as chapter 6 poses it. The speed of approach is the unit of velocity.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,7 +95,7 @@ impl SingleImpact<'_> {
         self.coefficients.validate()?;
         let z = self.mass_kg * sum_of_squares(self.phi)?;
         let allowed = "a moderated mass ratio up to 1e13";
-        if z <= 1e13 { Ok(z) } else { Err(InvalidInput { field: "z", index: None, value: z, allowed }) }
+        if z <= 1e13 { Ok(z) } else { Err(InvalidInput::new("z", z, allowed)) }
     }
 
     fn solution(&self, restitution: f64, modal_rates_per_speed: Vec<f64>) -> SingleSolution {

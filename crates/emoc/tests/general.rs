@@ -344,18 +344,21 @@ fn bad_input_names_field_value_and_what_is_allowed() {
             other => panic!("{other:?}"),
         }
     };
-    assert_eq!(field(&|p| p.velocity_m_s[0] = f64::NAN), "velocity_m_s");
+    assert_eq!(field(&|p| p.velocity_m_s[0] = f64::NAN), "velocity_m_s[0]");
     assert_eq!(field(&|p| p.velocity_m_s.push(0.0)), "velocity_m_s");
-    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = -1.0), "inverse_inertia_per_kg");
-    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = f64::INFINITY), "inverse_inertia_per_kg");
-    assert_eq!(field(&|p| p.modes[1].shape.clear()), "modes.shape");
-    assert_eq!(field(&|p| p.modes[0].rate = f64::NAN), "modes.rate");
-    assert_eq!(field(&|p| p.contacts[0].coefficients.ebar = 1.1), "ebar");
-    assert_eq!(field(&|p| p.contacts[0].friction = Friction::Planar { coefficient: -1.0 }), "friction.coefficient");
+    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = -1.0), "inverse_inertia_per_kg[0]");
+    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = f64::INFINITY), "inverse_inertia_per_kg[0]");
+    assert_eq!(field(&|p| p.modes[1].shape.clear()), "modes[1].shape");
+    assert_eq!(field(&|p| p.modes[0].rate = f64::NAN), "modes[0].rate");
+    assert_eq!(field(&|p| p.contacts[0].coefficients.ebar = 1.1), "contacts[0].coefficients.ebar");
+    assert_eq!(
+        field(&|p| p.contacts[0].friction = Friction::Planar { coefficient: -1.0 }),
+        "contacts[0].friction.coefficient"
+    );
     let pyramid = Friction::Spatial { coefficient: 0.1, facets: 2 };
-    assert_eq!(field(&|p| p.contacts[0].friction = pyramid), "friction.facets");
+    assert_eq!(field(&|p| p.contacts[0].friction = pyramid), "contacts[0].friction.facets");
     // an immovable body that moves
-    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = 0.0), "velocity_m_s");
+    assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = 0.0), "velocity_m_s[0]");
     let bodies = |mass: &[f64]| Problem::from_bodies(good().contacts, mass, &[1.0], &[-1.0], vec![]);
     assert_eq!(bodies(&[0.0]).unwrap_err().field, "mass_matrix");
     assert_eq!(bodies(&[1.0, 2.0]).unwrap_err().field, "mass_matrix");

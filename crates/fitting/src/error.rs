@@ -1,22 +1,6 @@
-//! Errors.
+//! Why there is no fit.
 
-/// An input that cannot be worked with: which, its value, and what is allowed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{field} = {value} is not allowed: {allowed}")]
-pub struct InvalidInput {
-    /// Name of the field, as in the public structs.
-    pub field: String,
-    /// The value given, as text.
-    pub value: String,
-    /// What would be allowed.
-    pub allowed: &'static str,
-}
-
-impl InvalidInput {
-    pub(crate) fn new(field: impl Into<String>, value: impl ToString, allowed: &'static str) -> InvalidInput {
-        InvalidInput { field: field.into(), value: value.to_string(), allowed }
-    }
-}
+use invalid_input::InvalidInput;
 
 /// Why there is no fit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

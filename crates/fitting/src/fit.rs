@@ -3,7 +3,8 @@
 use crate::intervals::covariance;
 use crate::objective::Objective;
 use crate::random::halton;
-use crate::{FitError, InvalidInput, Parameter, Residuals, gradient_method, simplex};
+use crate::{FitError, Parameter, Residuals, gradient_method, simplex};
+use invalid_input::InvalidInput;
 
 /// Residuals as a function of the parameters: reads the parameters, writes every residual.
 pub type ResidualsFn<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
@@ -114,7 +115,7 @@ impl Problem<'_> {
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let n = self.parameters.len();
         if n == 0 || n > 100 {
-            return Err(InvalidInput::new("parameters.len()", n, "1 to 100 parameters"));
+            return Err(InvalidInput::new(["parameters", "len()"], n, "1 to 100 parameters"));
         }
         if self.count < n {
             return Err(InvalidInput::new("count", self.count, "at least as many residuals as parameters"));

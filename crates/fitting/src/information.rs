@@ -10,7 +10,7 @@
 //! observations do not determine the combination. A further observation with the row `a` of its Jacobian gives
 //! `M + a^T a`, and the volume of the confidence region shrinks by `sqrt(det M / det(M + a^T a))`.
 
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Entries of `M` below this share of the largest are rounding.
@@ -49,10 +49,10 @@ impl Information {
     pub fn of(rows: &[f64], n: usize) -> Result<Information, InvalidInput> {
         if n == 0 || !rows.len().is_multiple_of(n) {
             let allowed = "rows of as many numbers as there are coordinates, of which there is at least one";
-            return Err(InvalidInput::new("rows.len()", rows.len(), allowed));
+            return Err(InvalidInput::new(["rows", "len()"], rows.len(), allowed));
         }
         if let Some(entry) = rows.iter().find(|entry| entry.is_nan() || entry.abs() >= 1e150) {
-            return Err(InvalidInput::new("rows", entry, "numbers of magnitude below 1e150"));
+            return Err(InvalidInput::new("rows", *entry, "numbers of magnitude below 1e150"));
         }
         let jacobian = DMatrix::from_row_slice(rows.len() / n, n, rows);
         Ok(Information { matrix: jacobian.transpose() * jacobian })

@@ -1,10 +1,11 @@
 //! How well the parameters are known.
 
+use crate::FitError;
 use crate::distributions::two_sided_quantile;
 use crate::fit::{Fit, Problem, Settings, fit_weighted};
 use crate::objective::Objective;
 use crate::random::Random;
-use crate::{FitError, InvalidInput};
+use invalid_input::InvalidInput;
 use nalgebra::DMatrix;
 
 /// An interval for a parameter, in its own unit.
@@ -70,7 +71,7 @@ pub fn bootstrap(
     let n = problem.parameters.len();
     if fit.parameters.len() != n {
         let allowed = "a fit of the same problem";
-        return Err(InvalidInput::new("fit.parameters.len()", fit.parameters.len(), allowed).into());
+        return Err(InvalidInput::new(["fit", "parameters", "len()"], fit.parameters.len(), allowed).into());
     }
     let mut local = Problem { parameters: problem.parameters.clone(), ..*problem };
     for (parameter, &found) in local.parameters.iter_mut().zip(&fit.parameters) {

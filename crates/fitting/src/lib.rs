@@ -62,10 +62,11 @@ mod simplex;
 mod validation;
 
 pub use distributions::{chi_square_tail, fisher_tail, two_sided_quantile};
-pub use error::{FitError, InvalidInput};
+pub use error::FitError;
 pub use fit::{Fit, Method, Outcome, Problem, ResidualsFn, Settings, Start, fit};
 pub use information::{Direction, Information};
 pub use intervals::{Interval, bootstrap};
+pub use invalid_input::InvalidInput;
 pub use parameter::{Parameter, Range};
 pub use profile::{Profile, profile};
 pub use report::Residuals;

@@ -1,6 +1,6 @@
 //! Parameters and the coordinates in which they are sought.
 
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// The numbers that a parameter may take. A restricted parameter is sought in a coordinate `u` without
 /// restriction, so that no method can leave the range.

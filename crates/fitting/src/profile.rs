@@ -7,7 +7,8 @@
 
 use crate::fit::{Method, Problem, Settings};
 use crate::objective::{HUGE, Objective};
-use crate::{InvalidInput, Parameter, Range, ResidualsFn, gradient_method};
+use crate::{Parameter, Range, ResidualsFn, gradient_method};
+use invalid_input::InvalidInput;
 
 /// Doublings of the step after which an end is taken to be open.
 const MOST_DOUBLINGS: usize = 6;

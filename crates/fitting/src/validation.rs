@@ -2,7 +2,8 @@
 
 use crate::fit::{Outcome, Problem, Settings, fit_weighted};
 use crate::random::Random;
-use crate::{FitError, InvalidInput, Residuals};
+use crate::{FitError, Residuals};
+use invalid_input::InvalidInput;
 
 /// One group left out.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +65,7 @@ pub fn cross_validate(problem: &Problem, settings: &Settings, labels: &[usize]) 
     problem.validate()?;
     settings.validate()?;
     if labels.len() != problem.count {
-        return Err(InvalidInput::new("labels.len()", labels.len(), "one label a residual").into());
+        return Err(InvalidInput::new(["labels", "len()"], labels.len(), "one label a residual").into());
     }
     let mut groups = labels.to_vec();
     groups.sort_unstable();

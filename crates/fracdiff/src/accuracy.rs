@@ -1,11 +1,11 @@
 //! Solving to a requested accuracy, with settings of the program's choice.
 
 use crate::collocation::Collocation;
-use crate::error::InvalidInput;
 use crate::ivp::InitialValueProblem;
 use crate::method::Method;
 use crate::problem::Volterra;
 use crate::solution::{Solution, Stop};
+use invalid_input::InvalidInput;
 
 /// A solution with what is known of its error.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ impl Volterra<'_> {
     /// [`InvalidInput`] for a problem that no run could start from, or a tolerance out of range.
     pub fn solve_to(&self, tolerance: f64, t_end: f64) -> Result<Estimated, InvalidInput> {
         let allowed = (1e-12..=0.1).contains(&tolerance);
-        InvalidInput::require(allowed, "tolerance", tolerance, "a number from 1e-12 to 0.1")?;
+        InvalidInput::unless(allowed, "tolerance", tolerance, "a number from 1e-12 to 0.1")?;
         let segments = 1 + self.breaks.iter().filter(|&&t| t > 0.0 && t < t_end).count();
         // fewer nodes for fewer digits; 3 nodes more and a shorter first panel for the finer one of the two
         let nodes = 6 + (-0.75 * tolerance.log10()) as usize;

@@ -1,9 +1,9 @@
 //! Fractional initial value problems, reduced to Volterra equations.
 
-use crate::error::InvalidInput;
 use crate::method::Method;
 use crate::problem::{Density, Event, Term, Volterra};
 use crate::solution::Solution;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 
 /// The left-hand side and start of one equation: `D^order y + sum of coefficient D^lower y = rhs`, Caputo derivatives.
@@ -29,21 +29,20 @@ impl Equation {
         self
     }
 
-    fn check(&self, index: usize) -> Result<(), InvalidInput> {
-        let field = |name: &str| format!("equations[{index}].{name}");
+    fn check(&self) -> Result<(), InvalidInput> {
         let order_ok = self.order >= 0.01 && self.order <= 16.0;
-        InvalidInput::require(order_ok, &field("order"), self.order, "a number from 0.01 to 16")?;
+        InvalidInput::unless(order_ok, "order", self.order, "a number from 0.01 to 16")?;
         let count = self.initial.len();
         let count_ok = count == self.order.ceil() as usize;
-        InvalidInput::require(count_ok, &field("initial.len()"), count, "the order rounded up")?;
+        InvalidInput::unless(count_ok, ["initial", "len()"], count, "the order rounded up")?;
         for (k, &value) in self.initial.iter().enumerate() {
-            InvalidInput::require_finite(&field(&format!("initial[{k}]")), value)?;
+            InvalidInput::require_finite(("initial", k), value)?;
         }
         for (k, &(coefficient, lower)) in self.lower.iter().enumerate() {
-            InvalidInput::require_finite(&field(&format!("lower[{k}].0")), coefficient)?;
+            InvalidInput::require_finite(("lower", k, "0"), coefficient)?;
             let lower_ok = lower >= 0.0 && lower <= self.order - 0.01;
             let allowed = "a number from 0 to the equation's order less 0.01";
-            InvalidInput::require(lower_ok, &field(&format!("lower[{k}].1")), lower, allowed)?;
+            InvalidInput::unless(lower_ok, ("lower", k, "1"), lower, allowed)?;
         }
         Ok(())
     }
@@ -115,7 +114,7 @@ impl<'a> InitialValueProblem<'a> {
         // Densities: the right-hand sides, then every unknown that has lower terms.
         let mut copied = Vec::new();
         for (i, equation) in self.equations.iter().enumerate() {
-            equation.check(i)?;
+            equation.check().map_err(|fault| fault.at(i).within("equations"))?;
             terms.push(Term::riemann_liouville(i, i, equation.order, 1.0));
             if !equation.lower.is_empty() {
                 let lower = equation.lower.iter();

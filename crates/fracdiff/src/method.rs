@@ -2,11 +2,11 @@
 
 use crate::collocation::Collocation;
 use crate::convolution::Convolution;
-use crate::error::InvalidInput;
 use crate::exponential::{GalerkinStates, SumOfExponentials};
 use crate::problem::Volterra;
 use crate::solution::Solution;
 use crate::system::System;
+use invalid_input::InvalidInput;
 
 /// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,8 @@ impl Method {
 
 /// Checks a number of steps, and that the samples of the solution and the density fit into a sensible memory.
 pub(crate) fn require_steps(steps: usize, system: &System<'_, '_>) -> Result<usize, InvalidInput> {
-    InvalidInput::require((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
+    InvalidInput::unless((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
     let samples = steps * (system.unknowns + system.densities);
-    InvalidInput::require(samples <= 1 << 28, "steps", steps, "few enough for 2^28 values of solution and density")
+    InvalidInput::unless(samples <= 1 << 28, "steps", steps, "few enough for 2^28 values of solution and density")
+        .map(|()| steps)
 }

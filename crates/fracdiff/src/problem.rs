@@ -1,8 +1,8 @@
 //! The problem: a system of weakly singular Volterra equations of the second kind.
 
-use crate::error::InvalidInput;
 use crate::method::Method;
 use crate::solution::Solution;
+use invalid_input::InvalidInput;
 
 /// One memory term: `coefficient * integral_0^t (t-s)^(order-1) f_density(s, y(s)) ds` in the equation of `y_unknown`.
 #[derive(Debug, Clone, Copy, PartialEq)]

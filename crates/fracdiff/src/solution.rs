@@ -1,7 +1,7 @@
 //! The solution: values at any time, events, what stopped the run and what it cost.
 
 use crate::dense::Dense;
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// What ended a run.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! A checked problem as the methods see it: counted evaluations, segments between breaks, kernels by order.
 
-use crate::error::InvalidInput;
 use crate::problem::Volterra;
 use crate::solution::Stop;
+use invalid_input::InvalidInput;
 
 /// Largest number of unknowns or densities: a bound on memory, far above what the dense Newton systems can serve.
 const MOST_COMPONENTS: usize = 2000;
@@ -93,18 +93,18 @@ impl<'p, 'a> System<'p, 'a> {
     pub fn new(problem: &'p Volterra<'a>, t_end: f64) -> Result<Self, InvalidInput> {
         let components = "a number from 1 to 2000";
         let within = |n: usize| (1..=MOST_COMPONENTS).contains(&n);
-        InvalidInput::require(within(problem.unknowns), "unknowns", problem.unknowns, components)?;
-        InvalidInput::require(within(problem.densities), "densities", problem.densities, components)?;
+        InvalidInput::unless(within(problem.unknowns), "unknowns", problem.unknowns, components)?;
+        InvalidInput::unless(within(problem.densities), "densities", problem.densities, components)?;
         InvalidInput::require_positive("t_end", t_end)?;
         let (mut orders, mut pairs) = (Vec::<f64>::new(), Vec::<Pair>::new());
         for (i, term) in problem.terms.iter().enumerate() {
-            let field = |name: &str| format!("terms[{i}].{name}");
+            let field = |name| ("terms", i, name);
             let (u, d) = (term.unknown, term.density);
-            InvalidInput::require(u < problem.unknowns, &field("unknown"), u, "less than the number of unknowns")?;
-            InvalidInput::require(d < problem.densities, &field("density"), d, "less than the number of densities")?;
-            InvalidInput::require_finite(&field("coefficient"), term.coefficient)?;
+            InvalidInput::unless(u < problem.unknowns, field("unknown"), u, "less than the number of unknowns")?;
+            InvalidInput::unless(d < problem.densities, field("density"), d, "less than the number of densities")?;
+            InvalidInput::require_finite(field("coefficient"), term.coefficient)?;
             let in_range = term.order >= 0.01 && term.order <= 16.0;
-            InvalidInput::require(in_range, &field("order"), term.order, "a number from 0.01 to 16")?;
+            InvalidInput::unless(in_range, field("order"), term.order, "a number from 0.01 to 16")?;
             let index = orders.iter().position(|&o| o == term.order).unwrap_or_else(|| {
                 orders.push(term.order);
                 orders.len() - 1
@@ -146,7 +146,7 @@ fn finite(values: &[f64], t: f64) -> Result<(), Fault> {
 
 fn segments(breaks: &[f64], t_end: f64) -> Result<Vec<Segment>, InvalidInput> {
     for (i, &t) in breaks.iter().enumerate() {
-        InvalidInput::require_finite(&format!("breaks[{i}]"), t)?;
+        InvalidInput::require_finite(("breaks", i), t)?;
     }
     let mut inner: Vec<f64> = breaks.iter().copied().filter(|&t| t > 0.0 && t < t_end).collect();
     inner.sort_by(f64::total_cmp);

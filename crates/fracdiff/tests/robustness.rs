@@ -25,7 +25,7 @@ fn assert_finite(solution: &Solution) {
 }
 
 fn field(result: Result<Solution, InvalidInput>) -> String {
-    result.unwrap_err().field
+    result.unwrap_err().field.to_string()
 }
 
 #[test]

@@ -35,12 +35,12 @@
 //! # Ok::<(), vibroimpact_sim::InvalidInput>(())
 //! ```
 
-use crate::InvalidInput;
 use crate::modal::{Mode, Start, Striker, Structure};
 use beam_modes::{
     Beam, End, MOST_REMAINDER_MODES, PointMode, Rod, RodEnd, RodSegment, Segment, enough_for_remainder, remainder_modes,
 };
 use contact_models::{Body, Hertz};
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// A rod of circular cross-section with hemispherical ends, about to touch the surface.

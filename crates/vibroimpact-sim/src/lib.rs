@@ -20,13 +20,12 @@
 
 pub mod assembly;
 pub mod dropped_rod;
-mod error;
 pub mod infinite;
 pub mod modal;
 mod panel;
 mod stop;
 
-pub use error::InvalidInput;
+pub use invalid_input::InvalidInput;
 pub use stop::StopReason;
 
 #[cfg(doctest)]

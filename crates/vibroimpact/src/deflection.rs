@@ -145,6 +145,6 @@ fn modes(scene: &Scene, count: usize) -> Result<Option<Line>, InvalidInput> {
     })
 }
 
-fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
-    InvalidInput::from(fault).within("structure")
+fn in_structure(fault: InvalidInput) -> InvalidInput {
+    fault.within("structure")
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::assembly::{AnyScene, AssemblyScene};
 use crate::input::read_all;
-use crate::scene::{A_SCENE, FieldPath, InvalidInput, Scene, SceneError, json, read_tree, told, toml, utf8};
+use crate::scene::{A_SCENE, FieldPath, InvalidInput, Scene, SceneError, json, read_tree, toml, utf8};
 
 /// The fields of a scene before they are checked.
 ///
@@ -72,11 +72,7 @@ impl Draft {
     /// No `=`, no path of a field, a list that is shorter, or broken JSON after a bracket or quotation mark. A name that
     /// no scene has is found when the scene is read.
     pub fn set(&mut self, assignment: &str) -> Result<(), InvalidInput> {
-        let fault = |allowed: &str| InvalidInput {
-            field: "--set".to_owned(),
-            value: Some(told::shorten(assignment)),
-            allowed: allowed.to_owned(),
-        };
+        let fault = |allowed: &str| InvalidInput::new("--set", assignment, allowed);
         let (field, text) = assignment.split_once('=').ok_or_else(|| fault(ASSIGNMENT))?;
         let field = FieldPath::parse(field.trim()).ok_or_else(|| fault(ASSIGNMENT))?;
         let text = text.trim();

@@ -1,6 +1,7 @@
 //! From the fields of a scene to the terms of the solver, and back again in its errors.
 
 use contact_models::Law;
+use invalid_input::Step;
 use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
 use crate::model::{self, Kept};
@@ -85,22 +86,19 @@ impl Impact {
 }
 
 /// The solver's error under the names that scenes use.
-pub(crate) fn in_scene(fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
-    let fault = InvalidInput::from(fault);
-    match fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("].")) {
+pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
+    match fault.field.steps() {
         // lists of modes have been checked by their names; these modes were computed
-        Some((k, quantity)) => {
-            let mode = k.parse().map_or(0, |k: usize| k + 1);
-            let value = fault.value.unwrap_or_default();
+        [_, Step::Index(k), Step::Field(quantity)] => {
+            let mode = k + 1;
+            let value = fault.value.as_ref().map_or_else(String::new, ToString::to_string);
             let allowed = format!("a structure whose modes have a {quantity} of {}", fault.allowed);
             InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
         }
-        None if ["mass_kg", "speed_m_s"].contains(&fault.field.as_str()) => fault.within("striker"),
+        [Step::Field(name)] if ["mass_kg", "speed_m_s"].contains(&name.as_str()) => fault.within("striker"),
         // an amplitude or rate out of range may come from any of the ways in which a scene states the start
-        None if ["gap_m", "amplitude", "rate"].iter().any(|field| fault.field.starts_with(field)) => {
-            fault.within("start")
-        }
-        None => fault,
+        [Step::Field(name), ..] if ["gap_m", "amplitude", "rate"].contains(&name.as_str()) => fault.within("start"),
+        _ => fault,
     }
 }
 

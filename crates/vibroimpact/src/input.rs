@@ -5,8 +5,9 @@ use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
+use invalid_input::Step;
 
-use crate::scene::told::{counted, shorten};
+use crate::scene::told::counted;
 use crate::scene::{InvalidInput, SceneError};
 
 /// Largest file that is read (bytes).
@@ -49,8 +50,9 @@ impl Table {
     /// Splits the text of a table; `needed` tells in messages what the table should be.
     pub fn parse(bytes: &[u8], needed: &str) -> Result<Table, InvalidInput> {
         let unreadable = |fault: csv::Error| {
-            let line = fault.position().map_or_else(|| "the table".to_owned(), |at| format!("line {}", at.line()));
-            InvalidInput::new(line, "text that is not UTF-8", needed)
+            let place =
+                fault.position().map_or_else(|| Step::Place("the table".to_owned()), |at| Step::Line(at.line()));
+            InvalidInput::new(place, "text that is not UTF-8", needed)
         };
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut table = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
@@ -63,7 +65,7 @@ impl Table {
         if let Some(row) = rows.iter().find(|row| row.cells.len() != header.len()) {
             let allowed = format!("as many as the line of names has, which is {}", header.len());
             return Err(InvalidInput::new(
-                format!("line {}", row.line),
+                Step::Line(row.line),
                 counted(row.cells.len() as u64, "cell", "cells"),
                 allowed,
             ));
@@ -90,11 +92,15 @@ impl Row {
 
     /// The finite number in the column at `place`, whose name is for messages.
     pub fn number(&self, place: usize, name: &str) -> Result<f64, InvalidInput> {
-        let field = format!("line {}, {name}", self.line);
         let text = self.cells.get(place).filter(|text| !text.is_empty());
-        let text = text.ok_or_else(|| InvalidInput::missing(&field, "a finite number"))?;
+        let text = text.ok_or_else(|| self.fault(InvalidInput::missing(name, "a finite number")))?;
         let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-        number.ok_or_else(|| InvalidInput::new(field, shorten(text), "a finite number"))
+        number.ok_or_else(|| self.fault(InvalidInput::new(name, text, "a finite number")))
+    }
+
+    /// A fault in this row, by its line.
+    pub fn fault(&self, fault: InvalidInput) -> InvalidInput {
+        fault.in_line(self.line)
     }
 }
 

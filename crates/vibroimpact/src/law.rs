@@ -13,11 +13,11 @@
 
 use std::fmt::Write as _;
 
+use contact_models::{self, Flores, HuntCrossley, LankaraniNikravesh, Law, Solref, Stepped, Wanted};
+use contact_models::{damping_ratio_if_it_pulled, reduced_mass_kg, stepped_restitution};
 use serde::Serialize;
 
 use crate::InvalidInput;
-use contact_models::{self, Flores, HuntCrossley, LankaraniNikravesh, Law, Solref, Stepped, Wanted};
-use contact_models::{damping_ratio_if_it_pulled, reduced_mass_kg, stepped_restitution};
 
 /// The requested restitution and what it refers to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -267,7 +267,7 @@ impl Request {
         ] {
             if let Some(value) = value.filter(|value| !(1e-30..=1e30).contains(value)) {
                 let (field, allowed) = (field.to_owned(), POSITIVE.to_owned());
-                return Err(InvalidInput { field, value: Some(value.to_string()), allowed });
+                return Err(InvalidInput::new(field, value.to_string(), allowed));
             }
         }
         let mass_kg = reduced_mass_kg(mass_kg, other_mass_kg.unwrap_or(f64::INFINITY))?;

@@ -43,7 +43,7 @@
 //! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
 //!
 //! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
-//! [`fitting`], [`fracdiff`].
+//! [`fitting`], [`fracdiff`], [`invalid_input`].
 //!
 //! Without default features the crate reads scenes and solves them, and leaves out the program (feature `program`) and all
 //! that becomes files: tables, pictures, reports, sweeps (feature `files`). It then also runs on `wasm32-unknown-unknown`.
@@ -92,6 +92,7 @@ pub use emoc;
 pub use fitting;
 pub use fracdiff;
 pub use impact::Impact;
+pub use invalid_input;
 pub use result_file::{ResultFile, SubImpact};
 pub use scene::{InvalidInput, Scene, SceneError};
 pub use vibroimpact_sim;

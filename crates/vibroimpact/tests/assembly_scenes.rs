@@ -312,7 +312,7 @@ fn a_load_at_an_undamped_frequency_is_refused_with_the_reason() {
     let fault = pose(&scene).unwrap_err();
     assert_eq!(fault.field, "loads[2].frequency_hz");
     assert!(fault.allowed.contains("undamped mode"), "{fault}");
-    let shown: f64 = fault.value.unwrap().parse().unwrap();
+    let shown: f64 = fault.value.unwrap().to_string().parse().unwrap();
     assert!((shown - 100.0 / TAU).abs() < 1e-9);
     // a node of that mode, or a damped mode, takes it
     scene["bodies"]["rig"]["damping_ratios"] = json!([0, 0.01]);

@@ -1,6 +1,7 @@
 //! What a plate is made of and how it is held.
 
-use crate::error::InvalidInput;
+use crate::location::require_on;
+use invalid_input::InvalidInput;
 
 /// How an edge of a plate is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -156,8 +157,8 @@ impl Plate {
 
     /// A location as shares of length and width.
     pub(super) fn place(&self, x_m: f64, y_m: f64) -> Result<(f64, f64), InvalidInput> {
-        let x_m = InvalidInput::require_on("x_m", x_m, self.length_m)?;
-        let y_m = InvalidInput::require_on("y_m", y_m, self.width_m)?;
+        let x_m = require_on("x_m", x_m, self.length_m)?;
+        let y_m = require_on("y_m", y_m, self.width_m)?;
         Ok((x_m / self.length_m, y_m / self.width_m))
     }
 }

@@ -13,7 +13,7 @@ mod ritz;
 pub use definition::{Edge, Plate, PlateTheory};
 pub use modes::PlateModes;
 
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 use ritz::Ritz;
 
 /// Largest number of modes that may be requested.

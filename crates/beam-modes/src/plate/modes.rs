@@ -2,8 +2,8 @@
 
 use super::definition::Plate;
 use super::line::Line;
-use crate::error::InvalidInput;
 use crate::string::{sine_mean, sine_of};
+use invalid_input::InvalidInput;
 
 /// Natural modes of a plate, in ascending order of frequency; rigid-body ones first, with `omega = 0`.
 ///

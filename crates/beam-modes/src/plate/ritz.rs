@@ -15,7 +15,7 @@ use super::block::{Block, Found, Rigid};
 use super::definition::{Edge, Plate};
 use super::line::{Line, Products};
 use super::modes::{Kind, PlateModes, Product, lines};
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// More functions than this are not taken in one block.

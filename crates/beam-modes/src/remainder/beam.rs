@@ -2,9 +2,9 @@
 
 use super::{PointMode, PointsMode, remainder_at_points, remainder_modes};
 use crate::beam::Beam;
-use crate::error::InvalidInput;
 use crate::modes::Modes;
 use crate::system::BeamSystem;
+use invalid_input::InvalidInput;
 
 /// How many modes to compute so that what lies beyond them hardly tells in the remainder of the first `kept`: twice as
 /// many, and at least 64 more. Restitutions of chapter 3's beam with 64 to 240 modes and their remainder then change by less

@@ -25,7 +25,7 @@ pub use beam::enough_for_remainder;
 pub use points::{PointsMode, remainder_at_points};
 pub use trend::remainder_from_trend;
 
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 use quadrature::{Atom, gauss_quadrature, power_law_atoms};
 
 /// A mode as seen from one point of the structure.
@@ -70,10 +70,10 @@ pub const MOST_REMAINDER_MODES: usize = 4;
 pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
     require_count(count)?;
     for (k, mode) in tail.iter().enumerate() {
-        require_mode(&format!("tail[{k}]"), mode.omega_rad_s, &[mode.shape])?;
+        require_mode(mode.omega_rad_s, &[mode.shape]).map_err(|fault| fault.at(k).within("tail"))?;
     }
     let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
-        return match require_compliance(static_rest_m_n)? {
+        return match require_compliance("static_rest_m_n", static_rest_m_n)? {
             0.0 => Ok(Vec::new()),
             rest => Err(InvalidInput::new("static_rest_m_n", rest, "0 where no mode of the tail is given")),
         };
@@ -82,7 +82,7 @@ pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -
         .iter()
         .map(|mode| Atom { x: (highest / mode.omega_rad_s).powi(2), weight: (mode.shape / mode.omega_rad_s).powi(2) })
         .collect();
-    match require_compliance(static_rest_m_n)? {
+    match require_compliance("static_rest_m_n", static_rest_m_n)? {
         0.0 => {}
         rest => atoms.extend(power_law_atoms(ASYMPTOTIC_GROWTH, rest, MOST_REMAINDER_MODES)),
     }
@@ -115,21 +115,21 @@ fn highest(omega_rad_s: impl Iterator<Item = f64>) -> Option<f64> {
     omega_rad_s.max_by(f64::total_cmp)
 }
 
-fn require_mode(path: &str, omega_rad_s: f64, shapes: &[f64]) -> Result<(), InvalidInput> {
+fn require_mode(omega_rad_s: f64, shapes: &[f64]) -> Result<(), InvalidInput> {
     const ALLOWED: &str = "a number from 1e-60 to 1e60";
     if !(1e-60..=1e60).contains(&omega_rad_s) {
-        return Err(InvalidInput::new(format!("{path}.omega_rad_s"), omega_rad_s, ALLOWED));
+        return Err(InvalidInput::new("omega_rad_s", omega_rad_s, ALLOWED));
     }
     match shapes.iter().find(|shape| shape.is_nan() || shape.abs() > 1e60) {
-        Some(shape) => Err(InvalidInput::new(format!("{path}.shape"), shape, "a number of at most 1e60 in size")),
+        Some(shape) => Err(InvalidInput::new("shape", *shape, "a number of at most 1e60 in size")),
         None => Ok(()),
     }
 }
 
-fn require_compliance(compliance_m_n: f64) -> Result<f64, InvalidInput> {
+fn require_compliance(field: &'static str, compliance_m_n: f64) -> Result<f64, InvalidInput> {
     if (0.0..=1e60).contains(&compliance_m_n) {
         Ok(compliance_m_n)
     } else {
-        Err(InvalidInput::new("static_rest_m_n", compliance_m_n, "0 up to 1e60"))
+        Err(InvalidInput::new(field, compliance_m_n, "0 up to 1e60"))
     }
 }

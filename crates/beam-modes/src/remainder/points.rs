@@ -1,9 +1,9 @@
 //! One set of remainder modes for several points of a body: block Gauss quadrature with one block.
 
 use super::{ASYMPTOTIC_MEAN, highest, require_mode};
-use crate::error::InvalidInput;
 use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
+use invalid_input::InvalidInput;
 
 /// A mode as seen from several points of a structure.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,10 +38,10 @@ const NODE: f64 = 1e-13;
 pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Result<Vec<PointsMode>, InvalidInput> {
     let points = tail.first().map_or(0, |mode| mode.shapes.len());
     for (k, mode) in tail.iter().enumerate() {
-        require_mode(&format!("tail[{k}]"), mode.omega_rad_s, &mode.shapes)?;
+        require_mode(mode.omega_rad_s, &mode.shapes).map_err(|fault| fault.at(k).within("tail"))?;
         if mode.shapes.len() != points {
             return Err(InvalidInput::new(
-                format!("tail[{k}].shapes"),
+                ("tail", k, "shapes"),
                 format!("{} values", mode.shapes.len()),
                 "one value a point, as many in every mode",
             ));
@@ -52,7 +52,7 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
         return Err(InvalidInput::new("static_rest_m_n", given, "the square of the number of points"));
     }
     if let Some(entry) = static_rest_m_n.iter().find(|entry| entry.is_nan() || entry.abs() > 1e60) {
-        return Err(InvalidInput::new("static_rest_m_n", entry, "numbers of at most 1e60 in size"));
+        return Err(InvalidInput::new("static_rest_m_n", *entry, "numbers of at most 1e60 in size"));
     }
     let Some(highest) = highest(tail.iter().map(|mode| mode.omega_rad_s)) else {
         return Ok(Vec::new());

@@ -2,7 +2,7 @@
 
 use super::quadrature::power_law_atoms;
 use super::{PointMode, from_atoms, require_compliance, require_count, require_mode};
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// How fast frequencies may grow with their number: from a little above what an infinite compliance needs to bending.
 const GROWTH: [f64; 2] = [0.75, 2.0];
@@ -45,10 +45,9 @@ pub fn remainder_from_trend(
     require_count(count)?;
     let elastic = |mode: &&PointMode| mode.omega_rad_s != 0.0;
     for (k, mode) in modes.iter().enumerate().filter(|(_, mode)| elastic(mode)) {
-        require_mode(&format!("modes[{k}]"), mode.omega_rad_s, &[mode.shape])?;
+        require_mode(mode.omega_rad_s, &[mode.shape]).map_err(|fault| fault.at(k).within("modes"))?;
     }
-    let compliance = require_compliance(residual_compliance_m_n)
-        .map_err(|fault| InvalidInput { field: "residual_compliance_m_n".into(), ..fault })?;
+    let compliance = require_compliance("residual_compliance_m_n", residual_compliance_m_n)?;
     let mut omega_rad_s: Vec<f64> = modes.iter().filter(elastic).map(|mode| mode.omega_rad_s).collect();
     omega_rad_s.sort_by(f64::total_cmp);
     let n = omega_rad_s.len();

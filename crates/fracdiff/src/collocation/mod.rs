@@ -9,7 +9,6 @@ mod history;
 mod panel;
 
 use crate::dense::{Dense, PanelValues};
-use crate::error::InvalidInput;
 use crate::implicit::{self, Block, Stage};
 use crate::problem::Volterra;
 use crate::quadrature::{Interpolation, Rule};
@@ -17,6 +16,7 @@ use crate::recorder::Recorder;
 use crate::solution::{Counts, Solution, Stop};
 use crate::system::{Fault, Segment, System};
 use history::History;
+use invalid_input::InvalidInput;
 use panel::{LocalRules, Panel};
 
 /// Largest dense Newton system of a panel.
@@ -60,10 +60,10 @@ impl Default for Collocation {
 impl Collocation {
     fn check(&self) -> Result<(), InvalidInput> {
         let tolerance_ok = self.tolerance >= 1e-14 && self.tolerance <= 0.1;
-        InvalidInput::require(tolerance_ok, "tolerance", self.tolerance, "a number from 1e-14 to 0.1")?;
-        InvalidInput::require((4..=64).contains(&self.nodes), "nodes", self.nodes, "a number from 4 to 64")?;
+        InvalidInput::unless(tolerance_ok, "tolerance", self.tolerance, "a number from 1e-14 to 0.1")?;
+        InvalidInput::unless((4..=64).contains(&self.nodes), "nodes", self.nodes, "a number from 4 to 64")?;
         if let Some(q) = self.mapping {
-            InvalidInput::require((1..=12).contains(&q), "mapping", q, "a number from 1 to 12")?;
+            InvalidInput::unless((1..=12).contains(&q), "mapping", q, "a number from 1 to 12")?;
         }
         for (field, length) in [("first_panel", self.first_panel), ("longest_panel", self.longest_panel)] {
             if let Some(length) = length {
@@ -71,7 +71,7 @@ impl Collocation {
             }
         }
         let panels_ok = (1..=1_000_000).contains(&self.most_panels);
-        InvalidInput::require(panels_ok, "most_panels", self.most_panels, "a number from 1 to 1000000")?;
+        InvalidInput::unless(panels_ok, "most_panels", self.most_panels, "a number from 1 to 1000000")?;
         Ok(())
     }
 
@@ -86,7 +86,7 @@ impl Collocation {
         self.check()?;
         let system = System::new(problem, t_end)?;
         let size = self.nodes * system.unknowns;
-        InvalidInput::require(size <= MOST_EQUATIONS, "unknowns * nodes", size, "at most 8000 equations a panel")?;
+        InvalidInput::unless(size <= MOST_EQUATIONS, "unknowns * nodes", size, "at most 8000 equations a panel")?;
         let rule = Rule::legendre(self.nodes);
         let interpolation = Interpolation::new(&rule);
         let dense = Dense::panels(system.unknowns, interpolation.clone());

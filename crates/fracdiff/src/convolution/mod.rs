@@ -10,12 +10,12 @@ mod past;
 mod weights;
 
 use crate::dense::Dense;
-use crate::error::InvalidInput;
 use crate::method::require_steps;
 use crate::problem::Volterra;
 use crate::recorder::Recorder;
 use crate::solution::{Counts, Solution, Stop};
 use crate::system::System;
+use invalid_input::InvalidInput;
 use march::March;
 use past::Past;
 use weights::Weights;

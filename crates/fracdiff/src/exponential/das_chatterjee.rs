@@ -6,8 +6,8 @@
 //! `log xi`, gives the matrices of Eq. A.1.
 
 use super::sum::ExponentialSum;
-use crate::error::InvalidInput;
 use crate::quadrature::Rule;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
@@ -38,11 +38,11 @@ impl DasChatterjee {
     ///
     /// [`InvalidInput`] unless `0.05 <= alpha <= 0.95`, `3 <= states <= 500`, `-12 <= beta1 < beta2 <= 12`.
     pub fn new(alpha: f64, states: usize, beta1: f64, beta2: f64) -> Result<DasChatterjee, InvalidInput> {
-        InvalidInput::require((0.05..=0.95).contains(&alpha), "alpha", alpha, "a number from 0.05 to 0.95")?;
-        InvalidInput::require((3..=500).contains(&states), "states", states, "a number from 3 to 500")?;
-        InvalidInput::require((-12.0..=12.0).contains(&beta1), "beta1", beta1, "a number from -12 to 12")?;
+        InvalidInput::unless((0.05..=0.95).contains(&alpha), "alpha", alpha, "a number from 0.05 to 0.95")?;
+        InvalidInput::unless((3..=500).contains(&states), "states", states, "a number from 3 to 500")?;
+        InvalidInput::unless((-12.0..=12.0).contains(&beta1), "beta1", beta1, "a number from -12 to 12")?;
         let beta2_ok = beta2 > beta1 && beta2 <= 12.0;
-        InvalidInput::require(beta2_ok, "beta2", beta2, "a number greater than beta1, at most 12")?;
+        InvalidInput::unless(beta2_ok, "beta2", beta2, "a number greater than beta1, at most 12")?;
         Ok(Assembly::new(alpha, states).assemble(beta1, beta2))
     }
 

@@ -7,11 +7,11 @@
 
 use super::sum::{ExponentialSum, moments};
 use crate::dense::Dense;
-use crate::error::InvalidInput;
 use crate::implicit::{self, Block, Stage};
 use crate::recorder::Recorder;
 use crate::solution::{Counts, Solution, Stop};
 use crate::system::{Segment, System};
+use invalid_input::InvalidInput;
 
 /// Kernel `t^(order-1) = t^whole sum(t)`.
 pub(crate) struct Kernel {
@@ -30,7 +30,7 @@ pub(crate) struct Mesh {
 
 impl Mesh {
     pub fn new(segments: &[Segment], steps: usize, grading: f64) -> Result<Mesh, InvalidInput> {
-        InvalidInput::require((1.0..=8.0).contains(&grading), "grading", grading, "a number from 1 to 8")?;
+        InvalidInput::unless((1.0..=8.0).contains(&grading), "grading", grading, "a number from 1 to 8")?;
         let total: f64 = segments.iter().map(Segment::length).sum();
         let least = if segments.len() == 1 { 1 } else { 8 };
         let share = |s: &Segment| ((steps as f64 * s.length() / total).round() as usize).max(least);

@@ -7,11 +7,11 @@ mod sum;
 pub use das_chatterjee::DasChatterjee;
 pub use sum::ExponentialSum;
 
-use crate::error::InvalidInput;
 use crate::method::require_steps;
 use crate::problem::Volterra;
 use crate::solution::Solution;
 use crate::system::System;
+use invalid_input::InvalidInput;
 use march::{Kernel, Mesh};
 
 /// Settings of the sum of exponentials.

@@ -1,7 +1,7 @@
 //! Sums of exponentials in place of a power.
 
-use crate::error::InvalidInput;
 use crate::quadrature::Rule;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 
 /// `sum of weights * exp(-rates * t)`, an approximation of a kernel.
@@ -24,13 +24,13 @@ impl ExponentialSum {
     ///
     /// [`InvalidInput`] for values outside these ranges, or a tolerance outside 1e-14 to 0.1.
     pub fn power(exponent: f64, t_min: f64, t_max: f64, tolerance: f64) -> Result<ExponentialSum, InvalidInput> {
-        InvalidInput::require(exponent > 0.0 && exponent < 1.0, "exponent", exponent, "a number between 0 and 1")?;
+        InvalidInput::unless(exponent > 0.0 && exponent < 1.0, "exponent", exponent, "a number between 0 and 1")?;
         InvalidInput::require_positive("t_min", t_min)?;
         InvalidInput::require_positive("t_max", t_max)?;
         let ordered = t_max >= t_min && (t_max / t_min).is_finite() && (1.0 / t_max).is_finite();
-        InvalidInput::require(ordered, "t_max", t_max, "at least t_min, with a finite ratio to it")?;
+        InvalidInput::unless(ordered, "t_max", t_max, "at least t_min, with a finite ratio to it")?;
         let tolerance_ok = (1e-14..=0.1).contains(&tolerance);
-        InvalidInput::require(tolerance_ok, "tolerance", tolerance, "a number from 1e-14 to 0.1")?;
+        InvalidInput::unless(tolerance_ok, "tolerance", tolerance, "a number from 1e-14 to 0.1")?;
         let digits = -tolerance.log10();
         let nodes = (2.0 + 0.85 * digits).ceil() as usize;
         let scale = 1.0 / tgamma(exponent);

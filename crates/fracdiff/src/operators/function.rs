@@ -1,8 +1,8 @@
 //! Operators on a given function, by Gauss-Jacobi rules that carry the weak singularity.
 
 use super::{require_order, start_terms};
-use crate::error::InvalidInput;
 use crate::quadrature::Rule;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 
 /// Settings of the quadrature of functions.
@@ -24,8 +24,8 @@ impl Default for Quadrature {
 impl Quadrature {
     fn check(&self) -> Result<(), InvalidInput> {
         let ok = (1e-15..=0.1).contains(&self.tolerance);
-        InvalidInput::require(ok, "tolerance", self.tolerance, "a number from 1e-15 to 0.1")?;
-        InvalidInput::require((1..=12).contains(&self.mapping), "mapping", self.mapping, "a number from 1 to 12")?;
+        InvalidInput::unless(ok, "tolerance", self.tolerance, "a number from 1e-15 to 0.1")?;
+        InvalidInput::unless((1..=12).contains(&self.mapping), "mapping", self.mapping, "a number from 1 to 12")?;
         Ok(())
     }
 }
@@ -112,7 +112,7 @@ pub fn riemann_liouville(
     let caputo = caputo(order, g, t, settings)?;
     InvalidInput::require_positive("t", t)?;
     for (k, &value) in initial.iter().enumerate() {
-        InvalidInput::require_finite(&format!("initial[{k}]"), value)?;
+        InvalidInput::require_finite(("initial", k), value)?;
     }
     let count = initial.len().min(order.ceil() as usize);
     Ok(Estimate { value: caputo.value + start_terms(order, &initial[..count], t), ..caputo })
@@ -125,7 +125,7 @@ impl Estimate {
 }
 
 fn require_time(t: f64) -> Result<f64, InvalidInput> {
-    InvalidInput::require(t.is_finite() && t >= 0.0, "t", t, "a finite number, at least 0")
+    InvalidInput::unless(t.is_finite() && t >= 0.0, "t", t, "a finite number, at least 0").map(|()| t)
 }
 
 fn finite(value: f64, t: f64) -> Result<f64, InvalidInput> {

@@ -10,7 +10,7 @@ mod sampled;
 pub use function::{Estimate, Quadrature, caputo, integral, riemann_liouville};
 pub use sampled::{caputo_sampled, grunwald_letnikov, integral_sampled, riemann_liouville_sampled};
 
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 
 /// Largest order of a derivative or integral here.
@@ -18,7 +18,7 @@ const LARGEST_ORDER: f64 = 16.0;
 
 fn require_order(order: f64) -> Result<f64, InvalidInput> {
     let ok = order > 0.0 && order <= LARGEST_ORDER;
-    InvalidInput::require(ok, "order", order, "a number greater than 0, at most 16")
+    InvalidInput::unless(ok, "order", order, "a number greater than 0, at most 16").map(|()| order)
 }
 
 /// What the Riemann-Liouville derivative has over the Caputo derivative, from the derivatives at the start.

@@ -2,7 +2,7 @@
 
 use super::{require_order, start_terms};
 use crate::convolution::product;
-use crate::error::InvalidInput;
+use invalid_input::InvalidInput;
 use libm::tgamma;
 
 /// Points of the polynomials that differentiate samples.
@@ -121,7 +121,7 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
 /// not finite.
 pub fn grunwald_letnikov(order: f64, step: f64, values: &[f64]) -> Result<Vec<f64>, InvalidInput> {
     let ok = order != 0.0 && order.abs() <= super::LARGEST_ORDER;
-    InvalidInput::require(ok, "order", order, "a number other than 0 from -16 to 16")?;
+    InvalidInput::unless(ok, "order", order, "a number other than 0 from -16 to 16")?;
     InvalidInput::require_positive("step", step)?;
     require_finite("values", values)?;
     if values.is_empty() {
@@ -185,19 +185,19 @@ fn differentiated(times: &[f64], values: &[f64]) -> Vec<f64> {
 
 fn require_samples(times: &[f64], values: &[f64], least: usize) -> Result<(), InvalidInput> {
     let allowed = "at least 2 samples (5 for orders of 1 and above)";
-    InvalidInput::require(times.len() >= least, "times.len()", times.len(), allowed)?;
-    InvalidInput::require(values.len() == times.len(), "values.len()", values.len(), "as many as times")?;
+    InvalidInput::unless(times.len() >= least, ["times", "len()"], times.len(), allowed)?;
+    InvalidInput::unless(values.len() == times.len(), ["values", "len()"], values.len(), "as many as times")?;
     require_finite("times", times)?;
     require_finite("values", values)?;
     match times.windows(2).position(|w| w[1] <= w[0]) {
-        Some(i) => Err(InvalidInput::new(format!("times[{}]", i + 1), times[i + 1], "greater than the time before")),
+        Some(i) => Err(InvalidInput::new(("times", i + 1), times[i + 1], "greater than the time before")),
         None => Ok(()),
     }
 }
 
-fn require_finite(field: &str, values: &[f64]) -> Result<(), InvalidInput> {
+fn require_finite(field: &'static str, values: &[f64]) -> Result<(), InvalidInput> {
     match values.iter().position(|v| !v.is_finite()) {
-        Some(i) => Err(InvalidInput::new(format!("{field}[{i}]"), values[i], "a finite number")),
+        Some(i) => Err(InvalidInput::new((field, i), values[i], "a finite number")),
         None => Ok(()),
     }
 }

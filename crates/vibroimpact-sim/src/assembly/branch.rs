@@ -15,8 +15,8 @@
 
 use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, find_orbit, refine};
 use super::problem::Assembly;
-use crate::InvalidInput;
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 
 /// Change of the parameter for its differences, relative to its range.

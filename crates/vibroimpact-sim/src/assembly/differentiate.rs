@@ -7,8 +7,8 @@ use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Solver, follow};
 use super::system::System;
 use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
-use crate::InvalidInput;
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 use std::array;
 
 /// How all modes at the end change with all of them at the start: `[at the start][at the end]`.
@@ -102,8 +102,12 @@ const ROUNDING: f64 = 1e-10;
 /// Accepts offsets of a parameter through which a slope can be taken.
 pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), InvalidInput> {
     let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
-    let field = format!("parameters[{parameter}].offsets");
-    InvalidInput::unless(different, field, format!("{offsets:?}"), "four different finite numbers")
+    InvalidInput::unless(
+        different,
+        ("parameters", parameter, "offsets"),
+        format!("{offsets:?}"),
+        "four different finite numbers",
+    )
 }
 
 /// How well derivatives by one parameter are known, apart from what the coarser motion tells.
@@ -256,8 +260,12 @@ impl Solver<'_> {
     ) -> Result<[Posed<'n>; 4], InvalidInput> {
         check_offsets(i, &parameter.offsets)?;
         let ends = &parameter.end_s;
-        let field = || format!("parameters[{i}].end_s");
-        InvalidInput::unless(ends.iter().all(|end| *end > 0.0), field(), format!("{ends:?}"), "four positive times")?;
+        InvalidInput::unless(
+            ends.iter().all(|end| *end > 0.0),
+            ("parameters", i, "end_s"),
+            format!("{ends:?}"),
+            "four positive times",
+        )?;
         for (k, neighbour) in parameter.neighbours.iter().enumerate() {
             neighbour.check()?;
             let own = &self.posed;
@@ -271,9 +279,13 @@ impl Solver<'_> {
                 |one: &[Point; 2], other: &[Point; 2]| one.each_ref().map(body_of) == other.each_ref().map(body_of);
             let contacts = neighbour.contacts.len() == own.sides.len()
                 && neighbour.contacts.iter().zip(&own.sides).all(|(one, other)| sides(&one.sides, other));
-            let field = || format!("parameters[{i}].neighbours[{k}]");
             let allowed = "the bodies, modes and contacts of the assembly";
-            InvalidInput::unless(bodies && contacts, field(), "another assembly", allowed)?;
+            InvalidInput::unless(
+                bodies && contacts,
+                ("parameters", i, ("neighbours", k)),
+                "another assembly",
+                allowed,
+            )?;
         }
         Ok(parameter.neighbours.map(Assembly::posed))
     }

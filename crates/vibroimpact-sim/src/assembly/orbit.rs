@@ -12,8 +12,8 @@
 use super::problem::{Assembly, Force, Settings};
 use super::solution::{ContactSample, Interval, Motion, Observer, Outcome};
 use super::solve::{Solver, run};
-use crate::InvalidInput;
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 //! The problem in the terms of mechanics: bodies by their modes, contacts between their points, loads.
 
-use crate::InvalidInput;
 pub use crate::panel::oscillator::BodyMode;
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 
 /// Bounds on sizes: wide enough for any system of units, narrow enough that no product overflows.
 const SCALE_MAX: f64 = 1e30;
@@ -171,14 +171,10 @@ fn is_finite(value: f64) -> bool {
     value.abs() <= SCALE_MAX
 }
 
-fn require(ok: bool, field: impl FnOnce() -> String, value: f64, allowed: &'static str) -> Result<(), InvalidInput> {
-    if ok { Ok(()) } else { Err(InvalidInput { field: field(), value: value.to_string(), allowed }) }
-}
-
-fn require_all_finite(values: &[f64], count: usize, field: &str) -> Result<(), InvalidInput> {
+fn require_all_finite(values: &[f64], count: usize, field: &'static str) -> Result<(), InvalidInput> {
     InvalidInput::unless(values.len() == count, field, format!("{} values", values.len()), "one value a mode")?;
     let wrong = values.iter().position(|value| !is_finite(*value));
-    wrong.map_or(Ok(()), |k| require(false, || format!("{field}[{k}]"), values[k], FINITE))
+    wrong.map_or(Ok(()), |k| Err(InvalidInput::new((field, k), values[k], FINITE)))
 }
 
 /// An assembly as the engine reads it, with laws of any type: the engine is compiled once.
@@ -215,47 +211,48 @@ impl<L> Assembly<L> {
     /// The first field out of range, with its value and what would be allowed.
     pub fn check(&self) -> Result<(), InvalidInput> {
         for (i, body) in self.bodies.iter().enumerate() {
-            body.check(&format!("bodies[{i}]"))?;
+            body.check().map_err(|fault| fault.at(i).within("bodies"))?;
         }
         for (i, contact) in self.contacts.iter().enumerate() {
-            let field = format!("contacts[{i}]");
-            require(is_finite(contact.gap_m), || format!("{field}.gap_m"), contact.gap_m, FINITE)?;
+            let gap = is_finite(contact.gap_m);
+            InvalidInput::unless(gap, ("contacts", i, "gap_m"), contact.gap_m, FINITE)?;
             for (side, point) in contact.sides.iter().enumerate() {
                 if let Point::OfBody { body, shape } = point {
-                    let field = format!("{field}.sides[{side}]");
-                    require_all_finite(shape, self.modes_of(*body, &field)?, &format!("{field}.shape"))?;
+                    self.require_shape(*body, shape).map_err(|fault| fault.within(("contacts", i, ("sides", side))))?;
                 }
             }
         }
         for (i, load) in self.loads.iter().enumerate() {
-            let field = format!("loads[{i}]");
-            require_all_finite(&load.shape, self.modes_of(load.body, &field)?, &format!("{field}.shape"))?;
-            load.force.check(&field)?;
-            if let Force::Harmonic { omega_rad_s, .. } = load.force {
-                self.require_no_resonance(load, omega_rad_s, &field)?;
-            }
+            self.check_load(load).map_err(|fault| fault.at(i).within("loads"))?;
         }
         Ok(())
     }
 
-    fn modes_of(&self, body: usize, field: &str) -> Result<usize, InvalidInput> {
+    /// A shape of a body that there is, with one value a mode.
+    fn require_shape(&self, body: usize, shape: &[f64]) -> Result<(), InvalidInput> {
         let found = self.bodies.get(body).map(|body| body.modes.len());
-        found.ok_or_else(|| InvalidInput {
-            field: format!("{field}.body"),
-            value: body.to_string(),
-            allowed: "the number of a body, from 0",
-        })
+        let modes = found.ok_or_else(|| InvalidInput::new("body", body, "the number of a body, from 0"))?;
+        require_all_finite(shape, modes, "shape")
+    }
+
+    fn check_load(&self, load: &Load) -> Result<(), InvalidInput> {
+        self.require_shape(load.body, &load.shape)?;
+        load.force.check().map_err(|fault| fault.within("force"))?;
+        match load.force {
+            Force::Harmonic { omega_rad_s, .. } => self.require_no_resonance(load, omega_rad_s),
+            _ => Ok(()),
+        }
     }
 
     /// An undamped mode driven at its own frequency grows without bound, which a steady motion cannot describe.
-    fn require_no_resonance(&self, load: &Load, omega_rad_s: f64, field: &str) -> Result<(), InvalidInput> {
+    fn require_no_resonance(&self, load: &Load, omega_rad_s: f64) -> Result<(), InvalidInput> {
         let modes = self.bodies[load.body].modes.iter().zip(&load.shape);
         let resonant = modes.filter(|(_, shape)| **shape != 0.0).any(|(mode, _)| {
             mode.damping_ratio < RESONANCE && (mode.omega_rad_s - omega_rad_s).abs() <= RESONANCE * omega_rad_s
         });
-        require(
+        InvalidInput::unless(
             !resonant,
-            || format!("{field}.force.omega_rad_s"),
+            ["force", "omega_rad_s"],
             omega_rad_s,
             "a frequency that is not that of an undamped mode which the load drives (or a damped mode)",
         )
@@ -263,17 +260,17 @@ impl<L> Assembly<L> {
 }
 
 impl Body {
-    fn check(&self, field: &str) -> Result<(), InvalidInput> {
+    fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
-            let of = |quantity: &str| format!("{field}.modes[{k}].{quantity}");
+            let of = |quantity| ("modes", k, quantity);
             let omega = mode.omega_rad_s;
             let allowed = "0 (rigid body) up to 1e15 rad/s";
-            require((0.0..=OMEGA_MAX_RAD_S).contains(&omega), || of("omega_rad_s"), omega, allowed)?;
+            InvalidInput::unless((0.0..=OMEGA_MAX_RAD_S).contains(&omega), of("omega_rad_s"), omega, allowed)?;
             let zeta = mode.damping_ratio;
-            require((0.0..=1e6).contains(&zeta), || of("damping_ratio"), zeta, "0 up to 1e6")?;
+            InvalidInput::unless((0.0..=1e6).contains(&zeta), of("damping_ratio"), zeta, "0 up to 1e6")?;
         }
-        require_all_finite(&self.amplitude, self.modes.len(), &format!("{field}.amplitude"))?;
-        require_all_finite(&self.rate, self.modes.len(), &format!("{field}.rate"))
+        require_all_finite(&self.amplitude, self.modes.len(), "amplitude")?;
+        require_all_finite(&self.rate, self.modes.len(), "rate")
     }
 }
 
@@ -286,26 +283,25 @@ impl Force {
         }
     }
 
-    fn check(&self, field: &str) -> Result<(), InvalidInput> {
-        let of = |quantity: &str| format!("{field}.force.{quantity}");
+    fn check(&self) -> Result<(), InvalidInput> {
         match self {
-            Force::Constant { force_n } => require(is_finite(*force_n), || of("force_n"), *force_n, FINITE),
+            Force::Constant { force_n } => InvalidInput::unless(is_finite(*force_n), "force_n", *force_n, FINITE),
             Force::Harmonic { force_n, omega_rad_s, phase_rad } => {
-                require(is_finite(*force_n), || of("force_n"), *force_n, FINITE)?;
-                require(is_finite(*phase_rad), || of("phase_rad"), *phase_rad, FINITE)?;
+                InvalidInput::unless(is_finite(*force_n), "force_n", *force_n, FINITE)?;
+                InvalidInput::unless(is_finite(*phase_rad), "phase_rad", *phase_rad, FINITE)?;
                 let allowed = "a positive number up to 1e15 rad/s";
                 let within = *omega_rad_s > 0.0 && *omega_rad_s <= OMEGA_MAX_RAD_S;
-                require(within, || of("omega_rad_s"), *omega_rad_s, allowed)
+                InvalidInput::unless(within, "omega_rad_s", *omega_rad_s, allowed)
             }
             Force::Sampled { times_s, forces_n } => {
-                require_all_finite(times_s, times_s.len(), &of("times_s"))?;
+                require_all_finite(times_s, times_s.len(), "times_s")?;
                 let count = format!("{} values", forces_n.len());
                 let equal = forces_n.len() == times_s.len();
-                InvalidInput::unless(equal, of("forces_n"), count, "one value a time")?;
-                require_all_finite(forces_n, times_s.len(), &of("forces_n"))?;
+                InvalidInput::unless(equal, "forces_n", count, "one value a time")?;
+                require_all_finite(forces_n, times_s.len(), "forces_n")?;
                 let wrong = (1..times_s.len()).find(|&i| times_s[i] < times_s[i - 1]);
                 wrong.map_or(Ok(()), |i| {
-                    require(false, || of(&format!("times_s[{i}]")), times_s[i], "not less than the time before")
+                    Err(InvalidInput::new(("times_s", i), times_s[i], "not less than the time before"))
                 })
             }
         }

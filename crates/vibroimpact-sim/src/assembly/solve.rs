@@ -7,8 +7,8 @@ use super::reliability::{COARSER, Comparison};
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
 use super::tables::Tables;
-use crate::InvalidInput;
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 
 /// Follows an assembly from its start to the end of the requested time, and tells the observer what happens.
 ///

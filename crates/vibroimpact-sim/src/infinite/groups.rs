@@ -1,7 +1,7 @@
 //! Physical parameters and the groups that make the problem nondimensional (thesis 2.2).
 
 use super::Structure;
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
 /// A compact body about to strike an infinite structure: the four constants that matter.
@@ -52,17 +52,13 @@ pub struct Groups {
     pub thesis_mass_kg: f64,
 }
 
-fn positive(field: &str, value: f64) -> Result<(), InvalidInput> {
-    InvalidInput::unless(value.is_finite() && value > 0.0, field, value, "a finite number greater than 0")
-}
-
 impl Material {
     /// Steel as in thesis 2.2.3: 200 GPa, 0.3, 7800 kg/m^3.
     pub const STEEL: Material = Material { young_modulus_pa: 200e9, poisson_ratio: 0.3, density_kg_m3: 7800.0 };
 
     fn check(&self) -> Result<(), InvalidInput> {
-        positive("young_modulus_pa", self.young_modulus_pa)?;
-        positive("density_kg_m3", self.density_kg_m3)?;
+        InvalidInput::require_positive("young_modulus_pa", self.young_modulus_pa)?;
+        InvalidInput::require_positive("density_kg_m3", self.density_kg_m3)?;
         let ratio = self.poisson_ratio > -1.0 && self.poisson_ratio <= 0.5;
         InvalidInput::unless(ratio, "poisson_ratio", self.poisson_ratio, "above -1, at most 0.5")
     }
@@ -86,8 +82,8 @@ impl Impact {
         mass_kg: f64,
         speed_m_s: f64,
     ) -> Result<Impact, InvalidInput> {
-        positive("flexural_rigidity_n_m2", flexural_rigidity_n_m2)?;
-        positive("mass_per_length_kg_m", mass_per_length_kg_m)?;
+        InvalidInput::require_positive("flexural_rigidity_n_m2", flexural_rigidity_n_m2)?;
+        InvalidInput::require_positive("mass_per_length_kg_m", mass_per_length_kg_m)?;
         let impulse_response =
             flexural_rigidity_n_m2.powf(-0.25) * mass_per_length_kg_m.powf(-0.75) / (2.0 * PI).sqrt();
         Impact { structure: Structure::Beam, impulse_response, stiffness_n_m1_5, mass_kg, speed_m_s }.checked()
@@ -114,9 +110,9 @@ impl Impact {
         speed_m_s: f64,
     ) -> Result<Impact, InvalidInput> {
         material.check()?;
-        positive("width_m", width_m)?;
-        positive("thickness_m", thickness_m)?;
-        positive("radius_m", radius_m)?;
+        InvalidInput::require_positive("width_m", width_m)?;
+        InvalidInput::require_positive("thickness_m", thickness_m)?;
+        InvalidInput::require_positive("radius_m", radius_m)?;
         Impact::on_beam(
             material.young_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
             material.density_kg_m3 * width_m * thickness_m,
@@ -138,8 +134,8 @@ impl Impact {
         mass_kg: f64,
         speed_m_s: f64,
     ) -> Result<Impact, InvalidInput> {
-        positive("flexural_rigidity_n_m", flexural_rigidity_n_m)?;
-        positive("mass_per_area_kg_m2", mass_per_area_kg_m2)?;
+        InvalidInput::require_positive("flexural_rigidity_n_m", flexural_rigidity_n_m)?;
+        InvalidInput::require_positive("mass_per_area_kg_m2", mass_per_area_kg_m2)?;
         let impulse_response = 0.125 / (flexural_rigidity_n_m * mass_per_area_kg_m2).sqrt();
         Impact { structure: Structure::Plate, impulse_response, stiffness_n_m1_5, mass_kg, speed_m_s }.checked()
     }
@@ -155,8 +151,8 @@ impl Impact {
         speed_m_s: f64,
     ) -> Result<Impact, InvalidInput> {
         material.check()?;
-        positive("thickness_m", thickness_m)?;
-        positive("radius_m", radius_m)?;
+        InvalidInput::require_positive("thickness_m", thickness_m)?;
+        InvalidInput::require_positive("radius_m", radius_m)?;
         Impact::on_plate(
             material.young_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poisson_ratio.powi(2))),
             material.density_kg_m3 * thickness_m,
@@ -167,10 +163,10 @@ impl Impact {
     }
 
     fn checked(self) -> Result<Impact, InvalidInput> {
-        positive("impulse_response", self.impulse_response)?;
-        positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
-        positive("mass_kg", self.mass_kg)?;
-        positive("speed_m_s", self.speed_m_s)?;
+        InvalidInput::require_positive("impulse_response", self.impulse_response)?;
+        InvalidInput::require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
+        InvalidInput::require_positive("mass_kg", self.mass_kg)?;
+        InvalidInput::require_positive("speed_m_s", self.speed_m_s)?;
         Ok(self)
     }
 
@@ -201,7 +197,7 @@ impl Impact {
             thesis_mass_kg: time_s * time_s * force_n / thesis_length_m,
         };
         for (field, value) in [("time_s", time_s), ("force_n", force_n), ("s", groups.s)] {
-            positive(field, value)?;
+            InvalidInput::require_positive(field, value)?;
         }
         Ok(groups)
     }

@@ -69,7 +69,7 @@ pub use solution::{Contact, Extremum, Outcome, Solution, State};
 pub use solve::solve;
 pub use turning::{CriticalS, MOST_TURNING_POINTS, TurningPoint, critical_s, turning_point, turning_points};
 
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// Smallest and largest `S` that [`solve`] accepts.
 pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e8;

@@ -9,7 +9,7 @@
 
 use super::S_RANGE;
 use super::rule::gauss;
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// First contact with a beam, in units in which `C = k_H = 1` and the contact lasts for a unit of time.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,7 +155,7 @@ impl Grid {
 }
 
 /// Follows the physical branch from the gentle limit to `ln(v)` or `ln(S)` = `target`.
-fn follow(given: Given, target: f64, n: usize, field: &str, value: f64) -> Result<FirstContact, InvalidInput> {
+fn follow(given: Given, target: f64, n: usize, field: &'static str, value: f64) -> Result<FirstContact, InvalidInput> {
     InvalidInput::unless((2..=16).contains(&n), "n", n, "2 to 16")?;
     let grid = Grid::new(n);
     // gentle limit: m v / tau = (v tau)^(3/2), tau = 1 / RIGID_DURATION
@@ -182,10 +182,9 @@ fn follow(given: Given, target: f64, n: usize, field: &str, value: f64) -> Resul
         })
         .chain([mu, nu])
         .collect();
-    let nothing = || InvalidInput {
-        field: field.into(),
-        value: value.to_string(),
-        allowed: "a value up to which the branch with f >= 0 can be followed with n functions",
+    let nothing = || {
+        let allowed = "a value up to which the branch with f >= 0 can be followed with n functions";
+        InvalidInput::new(field, value, allowed)
     };
     let (mut at, mut step) = (gentle, 0.1_f64);
     unknowns = newton(&grid, given, at, unknowns).ok_or_else(nothing)?;

@@ -5,7 +5,8 @@ use super::history::History;
 use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
 use super::units::Touch;
 use super::{S_RANGE, Settings, Structure};
-use crate::{InvalidInput, StopReason};
+use crate::StopReason;
+use invalid_input::InvalidInput;
 
 /// Times beyond this (units of `T`) are not followed: powers of them leave the range of numbers.
 const LATEST: f64 = 1e120;

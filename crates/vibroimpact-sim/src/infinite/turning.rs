@@ -7,7 +7,7 @@
 
 use super::Settings;
 use super::solve::{nth_minimum, speed_after_first};
-use crate::InvalidInput;
+use invalid_input::InvalidInput;
 
 /// Largest `n` that [`turning_point`] accepts.
 pub const MOST_TURNING_POINTS: usize = 60;

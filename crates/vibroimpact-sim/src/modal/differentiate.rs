@@ -4,7 +4,6 @@ use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
 use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
-use crate::InvalidInput;
 use crate::assembly::change::Change;
 pub use crate::assembly::change::Stencil;
 use crate::assembly::differentiate::{COARSER, Known, check_offsets};
@@ -13,6 +12,7 @@ use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 pub use crate::assembly::{Derivative, NoDerivative};
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 use std::array;
 
 /// An impact, all of it.
@@ -133,7 +133,7 @@ impl Solver {
             check_offsets(i, &parameter.offsets)?;
             for (place, neighbour) in parameter.neighbours.iter().enumerate() {
                 let found = neighbour.structure.modes.len();
-                let field = format!("parameters[{i}].neighbours[{place}].structure.modes");
+                let field = ("parameters", i, ("neighbours", place, ["structure", "modes"]));
                 InvalidInput::unless(found == count, field, format!("{found} modes"), "as many as the structure has")?;
                 neighbour.structure.check()?;
                 neighbour.striker.check()?;

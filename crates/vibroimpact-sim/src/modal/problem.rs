@@ -1,7 +1,7 @@
 //! The problem as the field poses it: a structure in modes, a striker, how both start.
 
-use crate::InvalidInput;
 use crate::assembly::BodyMode;
+use invalid_input::InvalidInput;
 
 /// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
@@ -50,9 +50,7 @@ pub struct Structure {
 impl Structure {
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
-            let fault = |field: &str, value: f64, allowed| {
-                Err(InvalidInput { field: format!("modes[{k}].{field}"), value: value.to_string(), allowed })
-            };
+            let fault = |field, value: f64, allowed| Err(InvalidInput::new(("modes", k, field), value, allowed));
             if !(0.0..=OMEGA_MAX_RAD_S).contains(&mode.omega_rad_s) {
                 return fault("omega_rad_s", mode.omega_rad_s, "0 (rigid body) up to 1e15 rad/s");
             }
@@ -118,7 +116,7 @@ impl Start {
                 let ok = value.abs() <= SCALE_MAX;
                 if !ok {
                     let allowed = "a finite number, at most 1e30 in size";
-                    return Err(InvalidInput { field: format!("{field}[{k}]"), value: value.to_string(), allowed });
+                    return Err(InvalidInput::new((field, k), *value, allowed));
                 }
             }
         }

@@ -5,6 +5,7 @@ use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit;
+use crate::StopReason;
 use crate::assembly::dense::Stretch;
 use crate::assembly::problem::Posed;
 use crate::assembly::solve::follow;
@@ -12,8 +13,8 @@ use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::assembly::{self, Interval, Ledger, Observer};
 use crate::panel::oscillator::propagate;
-use crate::{InvalidInput, StopReason};
 use contact_models::ContactLaw;
+use invalid_input::InvalidInput;
 
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::fields::KINDS;
 use super::rod::Rod;
-use crate::scene::json::{also_known, quote, read};
+use crate::scene::json::{also_known, found, quote, read};
 use crate::scene::{InvalidInput, MovingMode, SceneError, Structure};
 
 /// A body; `"kind"` tells which.
@@ -117,16 +117,18 @@ const BESIDE: [&str; 5] = ["modes", "residual_compliance", "velocity_m_s", "star
 impl Body {
     pub(super) fn from_value(value: &Value) -> Result<Body, InvalidInput> {
         let Some(entries) = value.as_object() else {
-            return Err(InvalidInput::new("", quote(value), "an object with the field kind"));
+            return Err(InvalidInput::new(
+                invalid_input::Path::default(),
+                quote(value),
+                "an object with the field kind",
+            ));
         };
         match entries.get("kind").and_then(Value::as_str) {
             Some("mass") => read(value).map(Body::Mass),
             Some(kind) if kind == "rod" || STRUCTURES.iter().any(|(name, _)| *name == kind) => {
                 Elastic::from_entries(kind, entries).map(|body| Body::Elastic(Box::new(body)))
             }
-            _ => {
-                Err(InvalidInput { field: "kind".into(), value: entries.get("kind").map(quote), allowed: KINDS.into() })
-            }
+            _ => Err(found("kind", entries.get("kind"), KINDS)),
         }
     }
 
@@ -136,10 +138,7 @@ impl Body {
             && let Elastics::Structure(Structure::ModesFile(named)) = &body.structure
         {
             let modal = named.load(folder).map_err(|fault| match fault {
-                SceneError::Invalid(fault) => {
-                    let field = fault.field.trim_start_matches("structure.").to_owned();
-                    InvalidInput { field, ..fault }.into()
-                }
+                SceneError::Invalid(fault) => fault.without("structure").into(),
                 other => other,
             })?;
             body.structure = Elastics::Structure(Structure::Modal(modal));

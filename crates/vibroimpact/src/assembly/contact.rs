@@ -1,6 +1,7 @@
 //! The contacts of an assembly.
 
 use contact_models::Law;
+use invalid_input::Path;
 use schemars::JsonSchema;
 use serde::ser::{Serialize, Serializer};
 use serde::{Deserialize, Serialize as DeriveSerialize};
@@ -9,6 +10,7 @@ use serde_json::{Map, Value};
 use super::fields::{BETWEEN, FIELDS};
 use crate::scene::fields::look_up;
 use crate::scene::json::{also_known, quote, read};
+use crate::scene::require_positive;
 use crate::scene::{self, InvalidInput, Location, Striker};
 
 /// A contact of two points along `x`.
@@ -97,7 +99,9 @@ impl Side {
         match value {
             Value::String(name) if name == "ground" => Ok(Side::Ground(Ground::Ground)),
             Value::Object(_) => read(value).map(Side::Body),
-            _ => Err(InvalidInput::new("", quote(value), look_up(FIELDS, "between[]").unwrap_or_default())),
+            _ => {
+                Err(InvalidInput::new(Path::default(), quote(value), look_up(FIELDS, "between[]").unwrap_or_default()))
+            }
         }
     }
 }
@@ -122,19 +126,25 @@ const BESIDE: [&str; 7] =
 impl Contact {
     pub(super) fn from_value(value: &Value) -> Result<Contact, InvalidInput> {
         let Some(entries) = value.as_object() else {
-            return Err(InvalidInput::new("", quote(value), look_up(FIELDS, "contacts[]").unwrap_or_default()));
+            return Err(InvalidInput::new(
+                Path::default(),
+                quote(value),
+                look_up(FIELDS, "contacts[]").unwrap_or_default(),
+            ));
         };
         let (beside, law): (Map<String, Value>, Map<String, Value>) =
             entries.clone().into_iter().partition(|(field, _)| BESIDE.contains(&field.as_str()));
         let Beside { name, between, gap_m, two_sided, radius_m, approach_speed_m_s, reduced_mass_kg } =
-            read(&Value::Object(beside)).map_err(|fault: InvalidInput| match fault.field.as_str() {
-                "gap_m" => InvalidInput { allowed: "a finite number; negative for an interference".into(), ..fault },
+            read(&Value::Object(beside)).map_err(|fault: InvalidInput| match fault.field.first() {
+                Some("gap_m") => {
+                    InvalidInput { allowed: "a finite number; negative for an interference".into(), ..fault }
+                }
                 _ => fault,
             })?;
         let law = scene::Contact::from_value(&Value::Object(law)).map_err(|fault| also_known(fault, &BESIDE))?;
         let between = match between.as_array().map(Vec::as_slice) {
             Some([a, b]) => {
-                let side = |i: usize, side| Side::from_value(side).map_err(|f| f.within(&format!("between[{i}]")));
+                let side = |i: usize, side| Side::from_value(side).map_err(|f| f.at(i).within("between"));
                 [side(0, a)?, side(1, b)?]
             }
             _ => return Err(InvalidInput::new("between", quote(&between), BETWEEN)),
@@ -153,7 +163,7 @@ impl Contact {
     /// The law with its parameters.
     pub(super) fn to_law(&self) -> Result<Law, InvalidInput> {
         for (field, value) in self.references() {
-            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+            value.map_or(Ok(()), |value| require_positive(field, value))?;
         }
         let striker = Striker {
             mass_kg: Some(self.reduced_mass_kg.unwrap_or(f64::NAN)),
@@ -175,9 +185,8 @@ impl Contact {
 
     /// A fault of the law under the names that a contact has here.
     fn own(&self, fault: InvalidInput) -> InvalidInput {
-        let field = fault.field.trim_start_matches("contact.").to_owned();
-        let of_striker = field.strip_prefix("striker.").unwrap_or(&field);
-        let place = ["mass_kg", "radius_m", "speed_m_s"].iter().position(|name| *name == of_striker);
+        let fault = fault.without("contact").without("striker");
+        let place = ["mass_kg", "radius_m", "speed_m_s"].iter().position(|name| fault.field == *name);
         match place.map(|place| self.references()[place]) {
             Some((field, None)) => {
                 let needed = match field {
@@ -186,8 +195,8 @@ impl Contact {
                 };
                 InvalidInput::missing(field, format!("{needed}: a finite number greater than 0"))
             }
-            Some((field, Some(_))) => InvalidInput { field: field.to_owned(), ..fault },
-            None => InvalidInput { field, ..fault },
+            Some((field, Some(_))) => fault.under(field),
+            None => fault,
         }
     }
 }

@@ -11,6 +11,7 @@ use super::contact::Point;
 use super::schema::courses;
 use crate::input::{Table, read_bytes};
 use crate::scene::json::number;
+use crate::scene::require_positive;
 use crate::scene::{InvalidInput, Location, SceneError, table_path};
 
 /// A force on a point of a body, positive along `+x`: constant (`force_n`), harmonic (`force_n sin(2 pi frequency_hz t +
@@ -106,7 +107,7 @@ impl Course<'_> {
         };
         match (self.frequency_hz, self.phase_deg) {
             (Some(frequency_hz), phase_deg) => {
-                InvalidInput::require_positive("frequency_hz", frequency_hz)?;
+                require_positive("frequency_hz", frequency_hz)?;
                 let phase_rad = phase_deg.unwrap_or(0.0).to_radians();
                 Ok(Force::Harmonic { force_n, omega_rad_s: TAU * frequency_hz, phase_rad })
             }
@@ -132,19 +133,19 @@ impl Course<'_> {
         }
         for (field, values) in [("times_s", times), (list, values)] {
             for (i, value) in values.iter().enumerate() {
-                require_finite(&format!("{field}[{i}]"), *value)?;
+                require_finite((field, i), *value)?;
             }
         }
         if let Some(i) = (1..times.len()).find(|&i| times[i] < times[i - 1]) {
             let allowed = format!("not less than the time before, {}", number(times[i - 1]));
-            return Err(InvalidInput::new(format!("times_s[{i}]"), number(times[i]), allowed));
+            return Err(InvalidInput::new(("times_s", i), number(times[i]), allowed));
         }
         Ok(Force::Sampled { times_s: times.to_vec(), forces_n: values.to_vec() })
     }
 }
 
 /// Accepts a number that the solver can work with.
-pub(super) fn require_finite(field: &str, value: f64) -> Result<(), InvalidInput> {
+pub(super) fn require_finite(field: impl Into<invalid_input::Path>, value: f64) -> Result<(), InvalidInput> {
     const LARGEST: f64 = 1e30;
     if value.abs() <= LARGEST {
         Ok(())
@@ -230,7 +231,6 @@ fn refuse_lists(lists: &[(&str, &Vec<f64>)]) -> Result<(), InvalidInput> {
 /// The two columns of a table, from a scene that stands in `folder`.
 fn read_history(folder: &Path, file: &str, column: &str) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
     let needed = format!("a table of comma-separated values whose line of names holds time_s and {column}");
-    let in_table = |fault: InvalidInput| InvalidInput { field: format!("{file}, {}", fault.field), ..fault };
     let bytes = read_bytes(&folder.join(table_path("file", file)?))?;
     let read = || {
         let table = Table::parse(&bytes, &needed)?;
@@ -241,5 +241,5 @@ fn read_history(folder: &Path, file: &str, column: &str) -> Result<(Vec<f64>, Ve
         };
         Ok((list("time_s")?, list(column)?))
     };
-    Ok(read().map_err(in_table)?)
+    Ok(read().map_err(|fault: InvalidInput| fault.in_place(file))?)
 }

@@ -196,14 +196,13 @@ impl AssemblyScene {
     pub fn from_value(value: &Value) -> Result<AssemblyScene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
         let value = numbers_of_materials(value)?;
-        let outline: Outline = json::read(&value)?;
+        let outline: Outline = json::read_whole(&value, "the scene")?;
         let body = |(name, value): (String, Value)| {
-            let body = Body::from_value(&value).map_err(|fault| fault.within(&format!("bodies.{name}")))?;
+            let body = Body::from_value(&value).map_err(|fault| fault.within(["bodies", &name]))?;
             Ok((name, body))
         };
-        let contact = |(i, value): (usize, &Value)| {
-            Contact::from_value(value).map_err(|fault| fault.within(&format!("contacts[{i}]")))
-        };
+        let contact =
+            |(i, value): (usize, &Value)| Contact::from_value(value).map_err(|fault| fault.at(i).within("contacts"));
         let motion = outline.ground_motion.as_ref().map(json::read).transpose();
         Ok(AssemblyScene {
             description: outline.description,
@@ -235,10 +234,10 @@ impl AssemblyScene {
     /// A table that cannot be read or used, with its line.
     pub fn read_tables(&mut self, folder: &Path) -> Result<(), SceneError> {
         for (name, body) in &mut self.bodies {
-            body.read_table(folder).map_err(|fault| of_table(fault, &format!("bodies.{name}")))?;
+            body.read_table(folder).map_err(|fault| of_table(fault, ["bodies", name]))?;
         }
         for (i, load) in self.loads.iter_mut().enumerate() {
-            load.read_table(folder).map_err(|fault| of_table(fault, &format!("loads[{i}]")))?;
+            load.read_table(folder).map_err(|fault| of_table(fault, ("loads", i)))?;
         }
         match &mut self.ground_motion {
             Some(motion) => motion.read_table(folder).map_err(|fault| of_table(fault, "ground_motion")),
@@ -265,7 +264,7 @@ impl AssemblyScene {
 pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), SceneError> {
     fn replace<T: Serialize>(
         value: &mut Value,
-        path: &str,
+        path: impl Into<invalid_input::Path>,
         read: impl FnOnce(&Value) -> Result<T, SceneError>,
     ) -> Result<(), SceneError> {
         if value.get("file").is_some() {
@@ -274,14 +273,14 @@ pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), Sc
         Ok(())
     }
     for (name, body) in tree.get_mut("bodies").and_then(Value::as_object_mut).into_iter().flatten() {
-        replace(body, &format!("bodies.{name}"), |value| {
+        replace(body, ["bodies", name.as_str()], |value| {
             let mut body = Body::from_value(value)?;
             body.read_table(folder)?;
             Ok(body)
         })?;
     }
     for (i, load) in tree.get_mut("loads").and_then(Value::as_array_mut).into_iter().flatten().enumerate() {
-        replace(load, &format!("loads[{i}]"), |value| {
+        replace(load, ("loads", i), |value| {
             let mut load: Load = json::read(value)?;
             load.read_table(folder)?;
             Ok(load)
@@ -296,9 +295,9 @@ pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), Sc
 }
 
 /// A fault of a field under its object's path; one within the table names the table.
-fn of_table(fault: SceneError, path: &str) -> SceneError {
+fn of_table(fault: SceneError, path: impl Into<invalid_input::Path>) -> SceneError {
     match fault {
-        SceneError::Invalid(fault) if !fault.field.contains(", ") => fault.within(path).into(),
+        SceneError::Invalid(fault) if !fault.field.has_place() => fault.within(path).into(),
         other => other,
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use contact_models::Law;
+use invalid_input::{Path, Step, Value};
 use vibroimpact_sim::assembly::{self, Assembly, Force, Settings};
 
 use super::AssemblyScene;
@@ -56,11 +57,11 @@ impl AssemblyScene {
         let mut bodies = Bodies::new(self)?;
         let (mut contacts, mut names, mut of_scene) = (Vec::new(), Vec::new(), Vec::new());
         for (i, contact) in self.contacts.iter().enumerate() {
-            let posed = bodies.contact(contact).map_err(|fault| beside(fault, &format!("contacts[{i}]")))?;
+            let posed = bodies.contact(contact).map_err(|fault| beside(fault, ("contacts", i)))?;
             for (name, posed) in posed {
                 if name.is_empty() || names.contains(&name) {
                     let allowed = "a text that names no other contact";
-                    return Err(InvalidInput::new(format!("contacts[{i}].name"), format!("{name:?}"), allowed));
+                    return Err(InvalidInput::new(("contacts", i, "name"), format!("{name:?}"), allowed));
                 }
                 names.push(name);
                 of_scene.push(i);
@@ -69,7 +70,7 @@ impl AssemblyScene {
         }
         let mut loads = Vec::new();
         for (i, load) in self.loads.iter().enumerate() {
-            let within = |fault| beside(fault, &format!("loads[{i}]"));
+            let within = |fault| beside(fault, ("loads", i));
             let (body, shape) = bodies.point(&load.point()).map_err(within)?;
             loads.push(assembly::Load { body, shape, force: load.to_force().map_err(within)? });
         }
@@ -137,8 +138,8 @@ impl AssemblyScene {
 }
 
 /// A fault of a location or a field of an object under the object's path; that of a body has its own path already.
-fn beside(fault: InvalidInput, path: &str) -> InvalidInput {
-    if fault.field.starts_with("bodies.") { fault } else { fault.within(path) }
+fn beside(fault: InvalidInput, path: impl Into<Path>) -> InvalidInput {
+    if fault.field.first() == Some("bodies") { fault } else { fault.within(path) }
 }
 
 /// Elastic modes start where the constant loads hold them.
@@ -204,12 +205,12 @@ impl<'a> Bodies<'a> {
             Side::Body(point) => self
                 .point(point)
                 .map(|(body, shape)| assembly::Point::OfBody { body, shape })
-                .map_err(|fault| beside(fault, &format!("between[{i}]"))),
+                .map_err(|fault| beside(fault, ("between", i))),
         };
         let sides = [side(0)?, side(1)?];
         if sides == [assembly::Point::Ground, assembly::Point::Ground] {
             return Err(InvalidInput::new(
-                "between[1]",
+                ("between", 1),
                 "\"ground\"",
                 "a point of a body where the other side is the ground",
             ));
@@ -244,25 +245,26 @@ fn moving(body: &Elastic, seen: &mut Seen) -> Result<assembly::Body, InvalidInpu
     let mut moving = assembly::Body::at_rest(seen.modes.clone());
     if let Some(start) = &body.start {
         let count = seen.modes.len();
+        let of_start = |fault: InvalidInput| seen.of_body(fault.within("start"));
         for (field, first, all) in [
-            ("start.amplitude_m_kg0_5", &start.amplitude_m_kg0_5, &mut moving.amplitude),
-            ("start.rate_m_kg0_5_s", &start.rate_m_kg0_5_s, &mut moving.rate),
+            ("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, &mut moving.amplitude),
+            ("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, &mut moving.rate),
         ] {
             if first.len() > count {
                 let allowed = format!("at most {count} values, the number of modes");
-                return Err(seen.of_body(InvalidInput::new(field, format!("{} values", first.len()), allowed)));
+                return Err(of_start(InvalidInput::new(field, format!("{} values", first.len()), allowed)));
             }
             for (k, value) in first.iter().enumerate() {
-                require_finite(&format!("{field}[{k}]"), *value).map_err(|fault| seen.of_body(fault))?;
+                require_finite((field, k), *value).map_err(of_start)?;
                 all[k] = *value;
             }
         }
         for (i, mode) in start.moving_modes.iter().enumerate() {
-            let path = format!("start.moving_modes[{i}]");
             let place = Place { location_m: mode.location_m, location: mode.location.as_deref() };
             let shape = seen.modes_at(place).and_then(|modes| mode.shape(&modes));
             let (k, shape) = shape.map_err(|fault| {
-                if fault.field.starts_with("bodies.") { fault } else { seen.of_body(fault.within(&path)) }
+                let own = fault.field.first() == Some("bodies");
+                if own { fault } else { seen.of_body(fault.within(("moving_modes", i)).within("start")) }
             })?;
             moving.amplitude[k] += mode.displacement_m / shape;
             moving.rate[k] += mode.velocity_m_s / shape;
@@ -297,32 +299,39 @@ fn is_free(seen: &Seen, participation: &[f64]) -> bool {
 
 impl Posed {
     /// The solver's fault under the names that scenes use.
-    pub(crate) fn in_scene(&self, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
-        let fault = InvalidInput::from(fault);
-        let indexed = |list: &str| {
-            let (index, rest) = fault.field.strip_prefix(list)?.strip_prefix('[')?.split_once(']')?;
-            Some((index.parse::<usize>().ok()?, rest.to_owned()))
-        };
-        if let Some((i, rest)) = indexed("bodies")
-            && let Some(name) = self.bodies.get(i)
-        {
-            return InvalidInput { field: format!("bodies.{name}{rest}"), ..fault };
-        }
-        if let Some((i, rest)) = indexed("contacts")
-            && let Some(i) = self.of_scene.get(i)
-        {
-            return InvalidInput { field: format!("contacts[{i}]{}", rest.replace("sides", "between")), ..fault };
-        }
-        if let Some((i, rest)) = indexed("loads") {
-            let path = if i < self.loads { format!("loads[{i}]") } else { "ground_motion".to_owned() };
-            let name = rest.trim_start_matches(".force.").trim_start_matches('.');
-            if name == "omega_rad_s" {
-                let hertz = fault.value.as_deref().and_then(|value| value.parse::<f64>().ok()).map(|omega| omega / TAU);
-                let value = hertz.map(number).or(fault.value);
-                return InvalidInput { field: format!("{path}.frequency_hz"), value, ..fault };
+    pub(crate) fn in_scene(&self, fault: InvalidInput) -> InvalidInput {
+        let [Step::Field(list), Step::Index(i), inner @ ..] = fault.field.steps() else { return fault };
+        let (i, inner) = (*i, Path::from(inner));
+        match list.as_str() {
+            "bodies" => match self.bodies.get(i) {
+                Some(name) => fault.under(inner.within(["bodies", name])),
+                None => fault,
+            },
+            "contacts" => match self.of_scene.get(i) {
+                Some(i) => fault.under(in_contact(inner).within(("contacts", *i))),
+                None => fault,
+            },
+            "loads" => {
+                let load = if i < self.loads { ("loads", i).into() } else { Path::from("ground_motion") };
+                let fault = fault.under(inner).without("force");
+                match fault.value {
+                    Some(Value::Number(omega)) if fault.field == "omega_rad_s" => {
+                        InvalidInput::new("frequency_hz", number(omega / TAU), fault.allowed)
+                    }
+                    _ => fault,
+                }
+                .within(load)
             }
-            return InvalidInput { field: format!("{path}.{name}"), ..fault };
+            _ => fault,
         }
-        fault
     }
+}
+
+/// The sides of a contact are called `between` in scenes.
+fn in_contact(path: Path) -> Path {
+    let step = |step: &Step| match step {
+        Step::Field(name) if name == "sides" => Step::Field("between".to_owned()),
+        other => other.clone(),
+    };
+    path.steps().iter().map(step).collect()
 }

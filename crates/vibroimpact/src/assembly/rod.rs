@@ -3,12 +3,13 @@
 use std::f64::consts::PI;
 
 use beam_modes::{RodEnd, RodSegment};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::scene::InvalidInput;
 use crate::scene::json::{objects, read};
+use crate::scene::require_positive;
 use crate::scene::schema::one_of_sets as of_sets;
 use crate::scene::sets::one_of_sets;
 
@@ -85,9 +86,8 @@ impl Rod {
     /// # Errors
     /// A segment whose section is not given in exactly one way, or by numbers that are not positive.
     pub fn to_rod(&self) -> Result<beam_modes::Rod, InvalidInput> {
-        let segment = |(i, segment): (usize, &AxialSegment)| {
-            segment.to_segment().map_err(|fault| fault.within(&format!("segments[{i}]")))
-        };
+        let segment =
+            |(i, segment): (usize, &AxialSegment)| segment.to_segment().map_err(|fault| fault.at(i).within("segments"));
         Ok(beam_modes::Rod {
             segments: self.segments.iter().enumerate().map(segment).collect::<Result<_, _>>()?,
             ends: self.ends.map(|end| match end {
@@ -110,7 +110,7 @@ impl AxialSegment {
         ];
         let set = one_of_sets(&given, &SECTIONS)?;
         for (field, value) in std::iter::once(("length_m", Some(self.length_m))).chain(given) {
-            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+            value.map_or(Ok(()), |value| require_positive(field, value))?;
         }
         let [rigidity, mass, modulus, density, area, diameter] = given.map(|(_, value)| value.unwrap_or_default());
         let area_m2 = if set == 1 { area } else { PI / 4.0 * diameter.powi(2) };

@@ -7,11 +7,12 @@ use vibroimpact_sim::modal::Mode;
 use super::body::{Body, Elastic, Elastics};
 use super::load::require_finite;
 use super::rod::Rod;
+use crate::scene::require_positive;
 use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
 
 /// A body whose modes have been computed, to be seen from any of its points.
 pub(super) struct Seen<'a> {
-    path: String,
+    name: &'a str,
     body: &'a Body,
     known: KnownModes,
     rod: Option<Modes>,
@@ -25,13 +26,13 @@ pub(super) struct Seen<'a> {
 impl<'a> Seen<'a> {
     /// The modes of the body with this name, on which contacts and loads stand at `places_m`, as far as they are locations on
     /// a beam or rod.
-    pub fn new(name: &str, body: &'a Body, places_m: Vec<f64>) -> Result<Seen<'a>, InvalidInput> {
-        let (path, known) = (format!("bodies.{name}"), KnownModes::default());
+    pub fn new(name: &'a str, body: &'a Body, places_m: Vec<f64>) -> Result<Seen<'a>, InvalidInput> {
+        let known = KnownModes::default();
         let (remainder, modes) = (Vec::new(), Vec::new());
-        let mut seen = Seen { path, body, known, rod: None, places_m, remainder, modes };
+        let mut seen = Seen { name, body, known, rod: None, places_m, remainder, modes };
         seen.modes = match body {
             Body::Mass(mass) => {
-                InvalidInput::require_positive("mass_kg", mass.mass_kg).map_err(|fault| seen.of_body(fault))?;
+                require_positive("mass_kg", mass.mass_kg).map_err(|fault| seen.of_body(fault))?;
                 for (field, value) in
                     [("mass_kg", mass.mass_kg), ("position_m", mass.position_m), ("velocity_m_s", mass.velocity_m_s)]
                 {
@@ -69,8 +70,7 @@ impl<'a> Seen<'a> {
 
     /// A fault of the body under its path.
     pub fn of_body(&self, fault: InvalidInput) -> InvalidInput {
-        let field = fault.field.trim_start_matches("structure.").to_owned();
-        InvalidInput { field, ..fault }.within(&self.path)
+        fault.without("structure").within(["bodies", self.name])
     }
 
     /// Shapes of the modes at a location (kg^-1/2). A fault of the location has the field `location_m` or `location`, any other
@@ -95,9 +95,7 @@ impl<'a> Seen<'a> {
             true => {
                 let remainder =
                     beam.to_system().map_err(|fault| self.of_body(fault))?.remainder_at(&self.places_m, kept);
-                remainder.or_else(
-                    |fault| if fault.field == "x_m" { Ok(Vec::new()) } else { Err(self.of_body(fault.into())) },
-                )
+                remainder.or_else(|fault| if fault.field == "x_m" { Ok(Vec::new()) } else { Err(self.of_body(fault)) })
             }
             false => Ok(Vec::new()),
         }
@@ -122,9 +120,7 @@ impl<'a> Seen<'a> {
                 let location_m =
                     place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?.along()?;
                 let Some(modes) = &self.rod else { return Ok(Vec::new()) };
-                let shapes = modes
-                    .shapes_at(location_m)
-                    .map_err(|fault| InvalidInput { field: "location_m".to_owned(), ..fault.into() })?;
+                let shapes = modes.shapes_at(location_m).map_err(|fault| fault.under("location_m"))?;
                 let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: rod.damping_ratio, shape };
                 Ok(modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
             }
@@ -135,9 +131,10 @@ impl<'a> Seen<'a> {
                 if needs_count {
                     return Err(self.of_body(InvalidInput::missing("modes", "a whole number from 0 to 10000")));
                 }
-                structure
-                    .modes_with(place, body.modes, &mut self.known)
-                    .map_err(|fault| if fault.field.starts_with("location") { fault } else { self.of_body(fault) })
+                structure.modes_with(place, body.modes, &mut self.known).map_err(|fault| match fault.field.first() {
+                    Some("location_m" | "location") => fault,
+                    _ => self.of_body(fault),
+                })
             }
         }
     }
@@ -174,7 +171,7 @@ impl<'a> Seen<'a> {
             }
             None => {
                 for (k, value) in given.iter().enumerate() {
-                    require_finite(&format!("{field}[{k}]"), *value).map_err(|fault| self.of_body(fault))?;
+                    require_finite((field, k), *value).map_err(|fault| self.of_body(fault))?;
                 }
                 Ok(given[..self.modes.len()].to_vec())
             }
@@ -201,5 +198,5 @@ fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
         let value = crate::scene::json::number(rod.damping_ratio);
         return Err(InvalidInput::new("damping_ratio", value, fields::NOT_NEGATIVE));
     }
-    Ok(rod.to_rod()?.modes(count)?)
+    rod.to_rod()?.modes(count)
 }

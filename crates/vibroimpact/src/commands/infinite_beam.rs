@@ -67,7 +67,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             if scene.structure.kind() != "infinite-beam" {
                 let kind = format!("\"{}\"", scene.structure.kind());
                 let allowed = "infinite-beam (scenes of every kind are solved by vibroimpact simulate)".to_owned();
-                return Err(InvalidInput { field: "structure.kind".into(), value: Some(kind), allowed }.into());
+                return Err(InvalidInput::new(["structure", "kind"], kind, allowed).into());
             }
             products.require_room()?;
             let (groups, solution) = scene.solve_infinite()?;
@@ -77,7 +77,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
             products.require_room()?;
-            let solution = solve(Structure::Beam, s, &Settings::default()).map_err(InvalidInput::from)?;
+            let solution = solve(Structure::Beam, s, &Settings::default())?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;
             result(&headline, &solution, &Posed { scene: None, groups: None, trust: &[], until: None }, json, &products)

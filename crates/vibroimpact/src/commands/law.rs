@@ -1,7 +1,6 @@
 //! The command `law`: parameters of laws of contact for a wanted restitution.
 
 use clap::Args;
-use vibroimpact::InvalidInput;
 use vibroimpact::export::{self, Failure};
 use vibroimpact::law::{Kind, POSITIVE, Request};
 
@@ -63,8 +62,8 @@ fn positive(text: &str) -> Result<f64, String> {
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law, json } = arguments;
     let request = Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law };
-    let answer = request.answer().map_err(|fault| match fault.field.as_str() {
-        "restitution" => InvalidInput { field: "--restitution".to_owned(), ..fault },
+    let answer = request.answer().map_err(|fault| match fault.field.first() {
+        Some("restitution") => fault.under("--restitution"),
         // a stiffness that nothing can have
         _ => fault,
     })?;

@@ -33,7 +33,7 @@ fn mode_count(text: &str) -> Result<usize, String> {
 
 /// The error for a number of modes that an option gave.
 fn of_option(option: &str) -> impl Fn(InvalidInput) -> InvalidInput {
-    move |fault| if fault.field == "modes" { InvalidInput { field: option.to_owned(), ..fault } } else { fault }
+    move |fault| if fault.field == "modes" { fault.under(option) } else { fault }
 }
 
 /// A scene in a line.

@@ -70,11 +70,10 @@ fn is_there(path: &Path) -> bool {
 /// Refuses to replace a file that is there already.
 pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
     match path {
-        Some(path) if !force && is_there(path) => Err(InvalidInput {
-            field: option.to_owned(),
-            value: Some(path.display().to_string()),
-            allowed: "this file exists; name another, or replace it with --force".to_owned(),
-        }),
+        Some(path) if !force && is_there(path) => {
+            let allowed = "this file exists; name another, or replace it with --force";
+            Err(InvalidInput::new(option, path.display().to_string(), allowed))
+        }
         _ => Ok(()),
     }
 }
@@ -104,11 +103,8 @@ impl Products {
             && let Some(name) =
                 Files::NAMES.into_iter().chain(Files::NAMES_OF_BODIES).find(|name| is_there(&folder.join(name)))
         {
-            return Err(InvalidInput {
-                field: "--out".to_owned(),
-                value: Some(folder.display().to_string()),
-                allowed: format!("this folder holds {name} already; name another folder, or replace it with --force"),
-            });
+            let allowed = format!("this folder holds {name} already; name another folder, or replace it with --force");
+            return Err(InvalidInput::new("--out", folder.display().to_string(), allowed));
         }
         for (option, path) in [("--plot", &self.plot), ("--report", &self.report)] {
             require_free(option, path.as_deref(), self.force)?;

@@ -7,7 +7,7 @@ use clap_complete::Shell;
 use vibroimpact::export::Failure;
 use vibroimpact::report::write_whole;
 use vibroimpact::scene::schema;
-use vibroimpact::text::{printable, shorten};
+use vibroimpact::text::printable;
 use vibroimpact::{InvalidInput, sweep};
 
 use super::products::require_free;
@@ -95,8 +95,7 @@ pub fn manual(
         let of_name = commands().find(|command| command.get_name() == name);
         return page(of_name.ok_or_else(|| {
             let names: Vec<&str> = commands().map(Command::get_name).collect();
-            let value = Some(shorten(&printable(&name)));
-            InvalidInput { field: "COMMAND".to_owned(), value, allowed: format!("one of {}", names.join(", ")) }
+            InvalidInput::new("COMMAND", name.as_str(), format!("one of {}", names.join(", ")))
         })?);
     };
     let mut pages = vec![("vibroimpact.1".to_owned(), page(&program)?)];

@@ -71,12 +71,11 @@ impl Extent {
     fn require_still(&self) -> Result<(), InvalidInput> {
         match &self.animate {
             None => Ok(()),
-            Some(path) => Err(InvalidInput {
-                field: "--animate".to_owned(),
-                value: Some(path.display().to_string()),
-                allowed: "left out for this scene: only an impact on a beam or a string that is resolved in time can be shown"
-                    .to_owned(),
-            }),
+            Some(path) => {
+                let allowed = "left out for this scene: only an impact on a beam or a string that is resolved in time can \
+                               be shown";
+                Err(InvalidInput::new("--animate", path.display().to_string(), allowed))
+            }
         }
     }
 }
@@ -112,7 +111,7 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
         (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, products),
         (AnyScene::Bodies(_), Some(until)) => {
             let allowed = "left out for a scene of bodies, whose field end_s states the end".to_owned();
-            return Err(InvalidInput { field: "--until".into(), value: Some(until.to_string()), allowed }.into());
+            return Err(InvalidInput::new("--until", until.to_string(), allowed).into());
         }
     };
     let found = watched("simulate", || scene.simulate())?;

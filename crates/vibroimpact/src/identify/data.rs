@@ -9,6 +9,7 @@ use super::quantity::Quantity;
 use crate::input::{Row as Cells, Table, read_bytes};
 use crate::scene::FieldPath;
 use crate::scene::json::number;
+use crate::scene::require_positive;
 use crate::scene::{InvalidInput, SceneError, table_path};
 
 /// Most rows of a table.
@@ -185,7 +186,7 @@ impl Columns {
             let text = cells.text(*place);
             if text.is_empty() {
                 let allowed = "a value that the field can have; rows that vary other fields belong in another table";
-                return Err(InvalidInput::missing(format!("line {line}, {field}"), allowed).into());
+                return Err(cells.fault(InvalidInput::missing(field.path().clone(), allowed)).into());
             }
             let value = text.parse().ok().filter(|value: &f64| value.is_finite());
             row.values.push(value.map_or_else(|| Value::from(text), Value::from));
@@ -193,15 +194,16 @@ impl Columns {
         // an empty cell is a quantity that was not measured in this impact
         for &(quantity, place, sd) in self.measured.iter().filter(|(_, place, _)| !cells.text(*place).is_empty()) {
             let value = cells.number(place, quantity.name())?;
-            let field = || format!("line {line}, {}", quantity.name());
-            quantity.allows(value).map_err(|allowed| InvalidInput::new(field(), number(value), allowed))?;
+            quantity
+                .allows(value)
+                .map_err(|allowed| cells.fault(InvalidInput::new(quantity.name(), number(value), allowed)))?;
             row.measured.push((quantity, value, deviation(cells, sd, quantity.name())?));
         }
         if let Some((place, sd)) = self.force
             && !cells.text(place).is_empty()
         {
             let name = cells.text(place);
-            let path: PathBuf = table_path(&format!("line {line}, {FORCE_FILE}"), name)?.to_owned();
+            let path: PathBuf = table_path(FORCE_FILE, name).map_err(|fault| cells.fault(fault))?.to_owned();
             let record = ForceRecord::parse(name, &open(&path)?)?;
             row.force = Some((record, deviation(cells, sd, FORCE)?));
         }
@@ -213,6 +215,6 @@ fn deviation(cells: &Cells, place: Option<usize>, name: &str) -> Result<Option<f
     let Some(place) = place else { return Ok(None) };
     let name = format!("{name}{SD}");
     let value = cells.number(place, &name)?;
-    InvalidInput::require_positive(&format!("line {}, {name}", cells.line), value)?;
+    require_positive(name, value).map_err(|fault| cells.fault(fault))?;
     Ok(Some(value))
 }

@@ -64,7 +64,7 @@ impl<'a> Model<'a> {
             let scene = model.scene(row, start)?;
             if scene.is_infinite() {
                 let allowed = "a structure with modes: a beam, string or plate with ends, a rod, or a list of modes";
-                return Err(InvalidInput::new("structure.kind", scene.structure.kind(), allowed));
+                return Err(InvalidInput::new(["structure", "kind"], scene.structure.kind(), allowed));
             }
             let in_line = |fault| in_line(row, fault);
             scene.check().map_err(in_line)?;
@@ -118,7 +118,7 @@ impl<'a> Model<'a> {
         let mut set = |path: &FieldPath, value: Value| {
             let told = quote(&value);
             if let Err(reason) = path.set(&mut tree, value) {
-                faults = Err(InvalidInput::new(path.to_string(), told, reason));
+                faults = Err(InvalidInput::new(path.path().clone(), told, reason));
             }
         };
         for (field, value) in self.data.fields.iter().zip(&row.values) {
@@ -205,5 +205,5 @@ fn tolerance(scene: &Scene, row: &Row) -> f64 {
 
 /// A fault in the scene of a row, by its line.
 fn in_line(row: &Row, fault: InvalidInput) -> InvalidInput {
-    InvalidInput { field: format!("line {}, {}", row.line, fault.field), ..fault }
+    fault.in_line(row.line)
 }

@@ -1,10 +1,10 @@
 //! The parameters: fields of the scene that are free.
 
 use fitting::{Parameter, Range};
+use invalid_input::InvalidInput;
 use serde_json::Value;
 
 use crate::scene::FieldPath;
-use crate::scene::InvalidInput;
 use crate::scene::json::{number, quote};
 
 /// The time constant of the gauge, which is no field of the scene.
@@ -72,7 +72,7 @@ impl Free {
         };
         let start = if self.search.is_some() { start.clamp(inside, outside) } else { start };
         let parameter = Parameter { name: self.field.clone(), start, range, search: (inside, outside) };
-        parameter.validate().map_err(|fault| InvalidInput::new(name, fault.value, fault.allowed))?;
+        parameter.validate().map_err(|fault| fault.under(name))?;
         Ok(parameter)
     }
 

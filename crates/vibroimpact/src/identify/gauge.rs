@@ -2,10 +2,10 @@
 
 use contact_models::Law;
 use fitting::chi_square_tail;
+use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::History;
 
 use crate::input::{Row, Table};
-use crate::scene::InvalidInput;
 use crate::scene::json::number;
 
 /// Most samples of a history, and least.
@@ -44,7 +44,6 @@ impl ForceRecord {
     /// assert!(fault.to_string().starts_with("f.csv, line 3, time_s = 0.0 is not allowed"));
     /// ```
     pub fn parse(file: &str, bytes: &[u8]) -> Result<ForceRecord, InvalidInput> {
-        let within = |fault: InvalidInput| InvalidInput { field: format!("{file}, {}", fault.field), ..fault };
         let read = || -> Result<ForceRecord, InvalidInput> {
             let table = Table::parse(bytes, NEEDED)?;
             let column = |name: &str| -> Result<Vec<f64>, InvalidInput> {
@@ -54,8 +53,8 @@ impl ForceRecord {
             };
             let (time_s, force_n) = (column("time_s")?, column("force_n")?);
             if let Some(i) = (1..time_s.len()).find(|&i| time_s[i] <= time_s[i - 1]) {
-                let field = format!("line {}, time_s", table.rows[i].line);
-                return Err(InvalidInput::new(field, number(time_s[i]), "a time after that of the line above"));
+                let fault = InvalidInput::new("time_s", number(time_s[i]), "a time after that of the line above");
+                return Err(table.rows[i].fault(fault));
             }
             if !(LEAST..=MOST).contains(&time_s.len()) {
                 let allowed = format!("{LEAST} to {MOST} samples");
@@ -63,7 +62,7 @@ impl ForceRecord {
             }
             Ok(ForceRecord { file: file.to_owned(), time_s, force_n })
         };
-        read().map_err(within)
+        read().map_err(|fault| fault.in_place(file))
     }
 
     /// The offset `d` (s) for which the shown force, `signal(t - d)`, is nearest to the record: the best of many shifts,

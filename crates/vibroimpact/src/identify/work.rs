@@ -5,11 +5,11 @@ use std::sync::{Mutex, PoisonError};
 use fitting::{
     Fit, FitError, Information, Method, Outcome, Parameter, Problem, Profile, Settings, Start, fit, profile,
 };
+use invalid_input::InvalidInput;
 
 use super::data::FORCE;
 use super::derivative::{Derivatives, Prediction, derivatives, predict};
 use super::forward::Model;
-use crate::scene::InvalidInput;
 use crate::scene::json::number;
 
 /// Relative change of the sum of squares at which a search ends; its derivatives are differences.
@@ -268,8 +268,7 @@ impl<'a> Work<'a> {
         let mut rows = vec![0.0; self.measured.len() * n];
         self.jacobian(&self.parameters, &mut rows);
         rows.iter_mut().filter(|entry| entry.is_nan() || entry.abs() >= 1e100).for_each(|entry| *entry = 0.0);
-        let information =
-            Information::of(&rows, n).map_err(|fault| InvalidInput::new(fault.field, fault.value, fault.allowed))?;
+        let information = Information::of(&rows, n)?;
         Ok((rows, information))
     }
 
@@ -286,7 +285,7 @@ impl<'a> Work<'a> {
                 let found = self.with_problem(Loss::Squares, &self.parameters, |problem| {
                     profile(problem, &settings, &self.parameters, self.sum_of_squares, j, z * z, step)
                 });
-                let found = found.map_err(|fault| InvalidInput::new(fault.field, fault.value, fault.allowed))?;
+                let found = found?;
                 if let (Some(better), true) = (&found.better, restarts < MOST_RESTARTS) {
                     restarts += 1;
                     self.parameters.clone_from(better);

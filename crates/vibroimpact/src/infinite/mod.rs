@@ -6,13 +6,12 @@ mod files;
 mod history;
 mod text;
 
+use invalid_input::InvalidInput;
 use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{
     CriticalS, Groups, MOST_TURNING_POINTS, Outcome, Solution, State, TurningPoint, critical_s, turning_points,
 };
-
-use crate::scene::InvalidInput;
 
 #[cfg(feature = "files")]
 pub use files::{files, picture};

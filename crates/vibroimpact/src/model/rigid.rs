@@ -30,7 +30,7 @@ const STILL: f64 = 1e-12;
 pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, String>, InvalidInput> {
     let rigid_bodies = match &pose.source {
         Source::Beam { beam, .. } => {
-            beam.to_system().and_then(|beam| Ok(beam.rigid_body_count()?)).map_err(|fault| fault.within("structure"))?
+            beam.to_system().and_then(|beam| beam.rigid_body_count()).map_err(|fault| fault.within("structure"))?
         }
         Source::Computed { structure, .. } => structure.rigid_body_count()?,
         Source::Listed { modes, .. } => modes.len(),
@@ -89,10 +89,8 @@ pub(super) fn forced(pose: &mut Pose, cost: &mut Cost) -> Tried {
 }
 
 fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, InvalidInput> {
-    let restitution = pose
-        .law
-        .wall_restitution(pose.striker.mass_kg, pose.striker.speed_m_s)
-        .map_err(|fault| in_scene_of_law(fault.into()))?;
+    let restitution =
+        pose.law.wall_restitution(pose.striker.mass_kg, pose.striker.speed_m_s).map_err(in_scene_of_law)?;
     cost.solves += 1;
     let reason = match bound {
         Some(bound) if bound <= pose.tolerance => {
@@ -122,8 +120,8 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
 }
 
 fn in_scene_of_law(fault: InvalidInput) -> InvalidInput {
-    match fault.field.as_str() {
-        "mass_kg" | "speed_m_s" => fault.within("striker"),
+    match fault.field.first() {
+        Some("mass_kg" | "speed_m_s") => fault.within("striker"),
         _ => fault.within("contact"),
     }
 }

@@ -15,6 +15,7 @@
 //! Only a difference between two *different* numbers of modes says anything of the truncated modes. Where a list of modes
 //! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
 
+use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
 use super::choose::Choice;
@@ -27,7 +28,6 @@ use super::text::small;
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::impact::{Impact, in_scene};
-use crate::scene::InvalidInput;
 
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.

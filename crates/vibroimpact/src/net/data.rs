@@ -87,13 +87,12 @@ impl Scene {
     pub fn observations(&self, table: &[Datum], modes: usize) -> Result<Observations, InvalidInput> {
         let Structure::Beam(beam) = &self.structure else {
             let allowed = "beam: the table has locations along a beam";
-            return Err(InvalidInput::new("structure.kind", self.structure.kind(), allowed));
+            return Err(InvalidInput::new(["structure", "kind"], self.structure.kind(), allowed));
         };
         let modes = beam.modes(modes)?;
         let mut observations = Observations::default();
         for datum in table {
-            let at =
-                |fault: InvalidInput| InvalidInput { field: format!("line {}, {}", datum.line, fault.field), ..fault };
+            let at = |fault: InvalidInput| fault.in_line(datum.line);
             if !(0.0..=1.0).contains(&datum.restitution) {
                 let allowed = "a coefficient of restitution from 0 to 1";
                 return Err(at(InvalidInput::new("restitution", number(datum.restitution), allowed)));

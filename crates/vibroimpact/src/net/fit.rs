@@ -2,9 +2,8 @@
 
 use emoc::{Impact, Parameters};
 use fitting::{Fit, FitError, Outcome, Parameter, Problem, Settings};
+use invalid_input::InvalidInput;
 use serde::Serialize;
-
-use crate::scene::InvalidInput;
 
 /// Where the parameters are sought; a fit may leave it.
 const SEARCH: (f64, f64) = (1e-3, 1e3);

@@ -17,7 +17,8 @@ use vibroimpact_sim::modal::{Mode, Solver};
 
 use crate::impact::in_scene;
 use crate::model::{self, Kept};
-use crate::scene::{InvalidInput, Scene};
+use crate::scene::require_positive;
+use crate::scene::{InvalidInput, Scene, as_json};
 
 /// Modes in the law where neither the caller nor the scene states a number (thesis 7.2).
 const LAW_MODES: usize = 50;
@@ -83,11 +84,11 @@ impl Scene {
         // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
         let resolved = self.impact_of(self.modes.count().or(Some(modes.len())), &mut Kept::default())?;
         Solver::new(&resolved.structure).map_err(in_scene)?;
-        let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.as_str() {
-            "mass_kg" => fault.within("striker"),
+        let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.first() {
+            Some("mass_kg") => fault.within("striker"),
             _ => fault,
         })?;
-        let coefficients = parameters.coefficients(&impact)?;
+        let coefficients = parameters.coefficients(&impact).map_err(as_json)?;
         let rebound = parameters.rebound(&impact)?;
         Ok(NetRebound {
             restitution: rebound.restitution,
@@ -129,10 +130,10 @@ pub(crate) fn restitution(parameters: &Parameters, posed: &crate::Impact) -> Res
 fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     // an immovable floor is the limit in which the rigid-body motions alone have mass
     if mass_kg != f64::INFINITY {
-        InvalidInput::require_positive("mass_kg", mass_kg)?;
+        require_positive("mass_kg", mass_kg)?;
     }
     let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     // without rigid-body modes the mass itself, to the last bit
     let effective_kg = if rigid > 0.0 { 1.0 / (1.0 / mass_kg + rigid) } else { mass_kg };
-    Ok(Impact::new(effective_kg, &Site::new(&vibrating(modes))?)?)
+    Impact::new(effective_kg, &Site::new(&vibrating(modes))?)
 }

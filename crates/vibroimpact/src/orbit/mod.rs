@@ -4,6 +4,7 @@
 mod picture;
 mod text;
 
+use invalid_input::InvalidInput;
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
@@ -12,7 +13,6 @@ use vibroimpact_sim::assembly::{
 
 use crate::assembly::{AssemblyScene, Posed};
 use crate::scene::FieldPath;
-use crate::scene::InvalidInput;
 
 #[cfg(feature = "files")]
 pub use picture::picture;
@@ -126,7 +126,7 @@ impl AssemblyScene {
     pub fn orbit(&self, settings: &OrbitSettings) -> Result<Found, InvalidInput> {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
-        let found = find_orbit(&posed.assembly, &settings).map_err(|fault| fault_of(&posed, fault))?;
+        let found = find_orbit(&posed.assembly, &settings).map_err(|fault| posed.in_scene(fault))?;
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
                 Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), nearest_closure: None }
@@ -186,10 +186,6 @@ impl AssemblyScene {
                 .collect(),
         })
     }
-}
-
-fn fault_of(posed: &Posed, fault: vibroimpact_sim::InvalidInput) -> InvalidInput {
-    posed.in_scene(fault)
 }
 
 impl OrbitSummary {

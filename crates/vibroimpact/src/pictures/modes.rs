@@ -127,8 +127,8 @@ impl Line {
     }
 }
 
-fn in_scene(fault: beam_modes::InvalidInput) -> InvalidInput {
-    InvalidInput::from(fault).within("structure")
+fn in_scene(fault: InvalidInput) -> InvalidInput {
+    fault.within("structure")
 }
 
 /// Locations at which shapes are drawn, that of the impact among them.

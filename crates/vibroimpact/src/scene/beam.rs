@@ -1,10 +1,10 @@
 //! A beam of uniform segments, and its modes.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal;
 
-use super::error::InvalidInput;
 use super::fittings::{Attachment, Damping, Support};
 use super::json::{number, objects};
 use super::segment::Segment;
@@ -94,7 +94,7 @@ impl Beam {
     pub fn to_beam(&self) -> Result<beam_modes::Beam, InvalidInput> {
         let length_m: f64 = self.segments.iter().map(|segment| segment.length_m).sum();
         let segment = |(i, segment): (usize, &Segment)| {
-            let within = |fault: InvalidInput| fault.within(&format!("segments[{i}]"));
+            let within = |fault: InvalidInput| fault.at(i).within("segments");
             let bending = segment.to_segment().map_err(within)?;
             match segment.thickness() {
                 Some((field, thickness)) if length_m < 2.0 * thickness => {
@@ -128,7 +128,7 @@ impl Beam {
         let theory = self.solved_by()?;
         let mut shear = Vec::with_capacity(self.segments.len());
         for (i, segment) in self.segments.iter().enumerate() {
-            let within = |fault: InvalidInput| fault.within(&format!("segments[{i}]"));
+            let within = |fault: InvalidInput| fault.at(i).within("segments");
             // checked even where it is not used
             match segment.to_shear().map_err(within)? {
                 Some(section) => shear.push(section),
@@ -210,9 +210,9 @@ impl BeamModes {
 
     /// The modes as a striker at a location on the beam meets them.
     pub(crate) fn seen_from(&self, location_m: f64) -> Result<Vec<modal::Mode>, InvalidInput> {
-        let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.as_str() {
-            "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
-            _ => InvalidInput::from(fault).within("structure"),
+        let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.first() {
+            Some("x_m") => fault.under("location_m"),
+            _ => fault.within("structure"),
         })?;
         let each = self.modes.omega_rad_s().iter().zip(&self.damping_ratios).zip(shapes);
         let mode = |((&omega_rad_s, &damping_ratio), shape)| modal::Mode { omega_rad_s, damping_ratio, shape };

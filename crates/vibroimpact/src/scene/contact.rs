@@ -4,12 +4,12 @@ use contact_models::{
     Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
     Viscous,
 };
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::error::InvalidInput;
-use super::json::{quote, read, unknown_field};
+use super::json::{found, read, unknown_field};
 use super::materials::{HertzStiffness, Materials, in_contact};
 use super::sets::one_of_sets;
 use super::told::did_you_mean_one_of;
@@ -134,7 +134,7 @@ impl Contact {
             if let Some(Value::String(word)) = value {
                 allowed += &did_you_mean_one_of(word, &allowed);
             }
-            InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
+            found(if field.is_empty() { Path::default() } else { field.into() }, value, allowed)
         };
         let Value::Object(entries) = value else { return Err(fault("", Some(value))) };
         let law = entries.get("law");
@@ -145,15 +145,15 @@ impl Contact {
         if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
             return Err(fault(field, Some(value)));
         }
-        let contact: Contact =
-            read(value).map_err(|found| if found.field.is_empty() { fault("law", law) } else { found })?;
+        let contact: Contact = read(value)
+            .map_err(|fault_found| if fault_found.field.is_empty() { fault("law", law) } else { fault_found })?;
         // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
         let written = serde_json::to_value(contact).unwrap_or_default();
         match entries.iter().find(|(field, _)| written.get(field).is_none()) {
             None => Ok(contact),
             Some((field, value)) => {
                 let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
-                Err(unknown_field(field.clone(), Some(value), known))
+                Err(unknown_field(field.as_str().into(), Some(value), known))
             }
         }
     }
@@ -200,7 +200,7 @@ impl Contact {
     /// The law with its parameters, for this striker.
     pub(crate) fn law(&self, striker: &Striker) -> Result<Law, InvalidInput> {
         let speed = striker.speed_m_s;
-        let law: Result<Law, contact_models::InvalidInput> = match *self {
+        let law: Result<Law, InvalidInput> = match *self {
             Contact::Hertz(stiffness) => Hertz::new(stiffness.of(striker)?).map(Law::from),
             Contact::Viscous { stiffness, damping_s_m, restitution } => {
                 let k = stiffness.of(striker)?;
@@ -254,8 +254,8 @@ impl Contact {
                 Thornton::from_bodies(&ball, &structure, yield_pressure_pa).map(Law::from)
             }
         };
-        law.map_err(|fault| match fault.field.as_str() {
-            "speed_m_s" | "mass_kg" | "radius_m" => InvalidInput::from(fault).within("striker"),
+        law.map_err(|fault| match fault.field.first() {
+            Some("speed_m_s" | "mass_kg" | "radius_m") => fault.within("striker"),
             _ => in_contact(fault),
         })
     }

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
 use vibroimpact_sim::modal::{Mode, Settings};
 
-use super::error::InvalidInput;
 use super::json::number;
 use super::{Contact, HertzStiffness, Scene, Striker, fields};
 use crate::impact::Impact;
@@ -79,7 +79,7 @@ impl DroppedRod {
     }
 
     fn at_unit_speed(&self) -> Result<dropped_rod::Drop, InvalidInput> {
-        Ok(self.to_rod()?.drop(1.0)?)
+        self.to_rod()?.drop(1.0)
     }
 
     /// Rigid-body motions and modes as the floor meets them, from the lowest frequency.
@@ -122,9 +122,9 @@ impl Scene {
         left_out("residual_compliance", self.residual_compliance.map(|on| on.to_string()))?;
         left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
         let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
-        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.as_str() {
-            "speed_m_s" => InvalidInput::from(fault).within("striker"),
-            _ => InvalidInput::from(fault).within("structure"),
+        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.first() {
+            Some("speed_m_s") => fault.within("striker"),
+            _ => fault.within("structure"),
         })?;
         let law = match &self.contact {
             Contact::Hertz(stiffness) if *stiffness == HertzStiffness::default() => drop.law.into(),

@@ -3,6 +3,8 @@
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
+use invalid_input::{Path, Step};
+
 pub(crate) const POSITIVE: &str = "a finite number greater than 0";
 pub(crate) const NOT_NEGATIVE: &str = "a finite number not less than 0";
 /// A damping ratio; the largest is that of the solver.
@@ -120,19 +122,30 @@ const FIELDS: &[(&str, &str)] = &[
     ("poissons_ratio", "a number greater than -1 and not greater than 0.5"),
 ];
 
-/// What the field at the end of this path may hold.
-pub(crate) fn allowed(path: &str) -> Option<&'static str> {
-    look_up(FIELDS, path).or_else(|| look_up(crate::assembly::fields::FIELDS, path))
+/// What the field of this name may hold. (`name[]` are the items of a list.)
+pub(crate) fn allowed(name: &str) -> Option<&'static str> {
+    look_up(FIELDS, name).or_else(|| look_up(crate::assembly::fields::FIELDS, name))
 }
 
-/// What a table of fields says of the one at the end of this path. (`name[]` are the items of a list.)
-pub(crate) fn look_up(fields: &[(&str, &'static str)], path: &str) -> Option<&'static str> {
-    let last = path.rsplit('.').next().unwrap_or(path);
-    let name = match last.split_once('[') {
-        Some((list, _)) => format!("{list}[]"),
-        None => last.to_owned(),
-    };
+/// What the field at the end of this path may hold.
+pub(crate) fn allowed_at(path: &Path) -> Option<&'static str> {
+    allowed(&name_at(path))
+}
+
+/// What a table of fields says of the field of this name.
+pub(crate) fn look_up(fields: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
     fields.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
+}
+
+/// The name at the end of a path, of a list where an item of it is meant.
+pub(crate) fn name_at(path: &Path) -> String {
+    match path.steps().iter().rposition(|step| !matches!(step, Step::Index(_))) {
+        Some(last) => {
+            let items = if last + 1 < path.steps().len() { "[]" } else { "" };
+            format!("{}{items}", Path::from(path.steps()[last].clone()))
+        }
+        None => String::new(),
+    }
 }
 
 /// The range of a number in the field of this name, where it has one; for the schema, which tests hold against what

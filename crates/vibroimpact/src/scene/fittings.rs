@@ -1,9 +1,9 @@
 //! What may be fixed to a beam, and how it is damped.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::InvalidInput;
 use super::fields;
 use super::json::number;
 

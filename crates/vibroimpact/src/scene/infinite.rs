@@ -1,10 +1,11 @@
 //! Infinite structures of a scene, and their impact in the terms of [`vibroimpact_sim::infinite`].
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::infinite;
 
-use super::error::InvalidInput;
+use super::error::require_positive;
 use super::json::number;
 use super::{Contact, Scene, Segment, Structure};
 
@@ -92,7 +93,7 @@ impl Scene {
         left_out("tolerance", self.tolerance.map(number))?;
         let Contact::Hertz(stiffness) = &self.contact else {
             let law = format!("\"{}\"", self.contact.law_name());
-            return Err(InvalidInput::new("contact.law", law, "hertz, the law of impacts on infinite structures"));
+            return Err(InvalidInput::new(["contact", "law"], law, "hertz, the law of impacts on infinite structures"));
         };
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
         let stiffness_n_m1_5 = stiffness.of(&self.striker)?;
@@ -118,13 +119,10 @@ impl Scene {
                 ));
             }
         }
-        .map_err(|fault| {
-            let fault = InvalidInput::from(fault);
-            match fault.field.as_str() {
-                "mass_kg" | "speed_m_s" => fault.within("striker"),
-                "stiffness_n_m1_5" => fault.within("contact"),
-                _ => fault.within("structure"),
-            }
+        .map_err(|fault| match fault.field.first() {
+            Some("mass_kg" | "speed_m_s") => fault.within("striker"),
+            Some("stiffness_n_m1_5") => fault.within("contact"),
+            _ => fault.within("structure"),
         })
     }
 }
@@ -174,9 +172,9 @@ impl InfiniteBeam {
 
 impl InfinitePlate {
     fn check(&self) -> Result<(), InvalidInput> {
-        InvalidInput::require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
-        InvalidInput::require_positive("density_kg_m3", self.density_kg_m3)?;
-        InvalidInput::require_positive("thickness_m", self.thickness_m)?;
+        require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
+        require_positive("density_kg_m3", self.density_kg_m3)?;
+        require_positive("thickness_m", self.thickness_m)?;
         if self.poissons_ratio > -1.0 && self.poissons_ratio <= 0.5 {
             return Ok(());
         }

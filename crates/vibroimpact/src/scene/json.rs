@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
 
+use invalid_input::{InvalidInput, Path, Step};
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
-use serde_path_to_error::{Path, Segment};
+use serde_path_to_error::Segment;
 
-use super::error::{InvalidInput, SceneError};
+use super::error::SceneError;
 use super::fields;
 use super::material::names_beside;
 use super::told::{did_you_mean, did_you_mean_one_of, shorten};
@@ -85,17 +86,17 @@ pub(crate) fn parse(text: &str, what: &str) -> Result<Value, SceneError> {
     let mut source = serde_json::Deserializer::from_str(text);
     match serde_path_to_error::deserialize::<_, Tree>(&mut source) {
         Ok(Tree(value)) => {
-            source.end().map(|()| value).map_err(|fault| syntax_error(text, what, String::new(), &fault))
+            source.end().map(|()| value).map_err(|fault| syntax_error(text, what, Path::default(), &fault))
         }
         Err(fault) => Err(syntax_error(text, what, render(fault.path()), fault.inner())),
     }
 }
 
-fn syntax_error(text: &str, what: &str, field: String, fault: &serde_json::Error) -> SceneError {
+fn syntax_error(text: &str, what: &str, field: Path, fault: &serde_json::Error) -> SceneError {
     let word = word_at(text, fault.line(), fault.column());
     if !field.is_empty() && word.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
-        let allowed = fields::allowed(&field).unwrap_or("a finite number").to_owned();
-        return InvalidInput { field, value: Some(shorten(word)), allowed }.into();
+        let allowed = fields::allowed_at(&field).unwrap_or("a finite number");
+        return InvalidInput::new(field, shorten(word), allowed).into();
     }
     let told = fault.to_string();
     let fault_text = told.split(" at line ").next().unwrap_or(&told);
@@ -165,42 +166,54 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput
         let told = fault.inner().to_string();
         let path = fault.path();
         if let Some(key) = between(&told, "missing field `", "`") {
-            let field = join(render(path), key);
-            let allowed = fields::allowed(&field).unwrap_or("a value is required").to_owned();
-            return InvalidInput { field, value: None, allowed };
+            let field = Path::from(key).within(render(path));
+            let allowed = fields::allowed_at(&field).unwrap_or("a value is required");
+            return InvalidInput::missing(field, allowed);
         }
         if let Some(key) = between(&told, "unknown field `", "`") {
             // the path may or may not end in the unknown key
             let holder = render(path);
-            let holder = holder.strip_suffix(key).map_or(holder.as_str(), |rest| rest.trim_end_matches('.')).to_owned();
+            let field = if holder.last() == Some(key) { holder } else { Path::from(key).within(holder) };
             let known = told.split_once("expected ").map_or("", |(_, known)| known).replace('`', "");
             let known = known.strip_prefix("one of ").unwrap_or(&known).replace(" or ", ", ");
             let found = at(value, path).map(|inner| inner.get(key).unwrap_or(inner));
-            return unknown_field(join(holder, key), found, known.split(", "));
+            return unknown_field(field, found, known.split(", "));
         }
         let field = render(path);
         let expected = told.split_once("expected ").map_or(told.as_str(), |(_, expected)| expected);
         let found = at(value, path);
-        let mut allowed = fields::allowed(&field).unwrap_or(expected).to_owned();
+        let mut allowed = fields::allowed_at(&field).unwrap_or(expected).to_owned();
         if let Some(Value::String(word)) = found {
             allowed += &did_you_mean_one_of(word, &allowed);
         }
-        InvalidInput { value: Some(found.map_or_else(String::new, quote)), field, allowed }
+        InvalidInput::new(field, found.map_or_else(String::new, quote), allowed)
     })
+}
+
+/// As [`read`]; a fault of the whole is told of `what`.
+pub(crate) fn read_whole<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, InvalidInput> {
+    read(value).map_err(|fault| if fault.field.is_empty() { fault.in_place(what) } else { fault })
 }
 
 /// A name that its object does not have, and those that it has.
 pub(crate) fn unknown_field<'a>(
-    field: String,
+    field: Path,
     value: Option<&Value>,
     known: impl Iterator<Item = &'a str>,
 ) -> InvalidInput {
-    let key = field.rsplit('.').next().unwrap_or_default();
     let mut names: Vec<&str> = known.collect();
     names.extend(names_beside(&names));
-    let meant = did_you_mean(key, names.iter().copied());
+    let meant = did_you_mean(field.last().unwrap_or_default(), names.iter().copied());
     let allowed = format!("{UNKNOWN_FIELD}{}{meant}", names.join(", "));
-    InvalidInput { value: value.map(quote), field, allowed }
+    found(field, value, allowed)
+}
+
+/// A fault of a field that may be missing.
+pub(crate) fn found(field: impl Into<Path>, value: Option<&Value>, allowed: impl Into<String>) -> InvalidInput {
+    match value {
+        Some(value) => InvalidInput::new(field, quote(value), allowed),
+        None => InvalidInput::missing(field, allowed),
+    }
 }
 
 /// How the fault of a name that its object does not have begins.
@@ -208,7 +221,7 @@ pub(crate) const UNKNOWN_FIELD: &str = "unknown field; the fields here are ";
 
 /// The fault of an object whose fields are read in two parts: an unknown field is told of those of the other part, too.
 pub(crate) fn also_known(fault: InvalidInput, beside: &[&str]) -> InvalidInput {
-    let listed = fault.allowed.strip_prefix(UNKNOWN_FIELD).filter(|_| !fault.field.contains(['.', '[']));
+    let listed = fault.allowed.strip_prefix(UNKNOWN_FIELD).filter(|_| fault.field.steps().len() == 1);
     let Some(listed) = listed.map(|listed| listed.split(';').next().unwrap_or_default().to_owned()) else {
         return fault;
     };
@@ -223,16 +236,16 @@ pub(crate) fn split_tag<'k>(
     tag: &str,
     kinds: &[&'k str],
 ) -> Result<(&'k str, Map<String, Value>), InvalidInput> {
-    let fault = |field: &str, value: Option<&Value>| {
+    let fault = |field: Path, value: Option<&Value>| {
         let mut allowed = fields::allowed(tag).unwrap_or_default().to_owned();
         allowed += &value.and_then(Value::as_str).map_or_else(String::new, |word| did_you_mean(word, kinds.to_vec()));
-        InvalidInput { field: field.to_owned(), value: value.map(quote), allowed }
+        found(field, value, allowed)
     };
-    let Value::Object(map) = value else { return Err(fault("", Some(value))) };
+    let Value::Object(map) = value else { return Err(fault(Path::default(), Some(value))) };
     let mut rest = map.clone();
     let named = rest.remove(tag);
     let kind = kinds.iter().find(|kind| named.as_ref().is_some_and(|named| named == *kind));
-    kind.map(|kind| (*kind, rest)).ok_or_else(|| fault(tag, named.as_ref()))
+    kind.map(|kind| (*kind, rest)).ok_or_else(|| fault(tag.into(), named.as_ref()))
 }
 
 /// A value as the text of a message.
@@ -249,24 +262,17 @@ fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
     text.split_once(before)?.1.split_once(after).map(|(inner, _)| inner)
 }
 
-fn join(holder: String, key: &str) -> String {
-    if holder.is_empty() { key.to_owned() } else { format!("{holder}.{key}") }
+/// The path without the part that serde could not name.
+fn render(path: &serde_path_to_error::Path) -> Path {
+    let step = |segment: &Segment| match segment {
+        Segment::Seq { index } => Some(Step::Index(*index)),
+        Segment::Map { key } => Some(Step::Field(key.clone())),
+        Segment::Enum { .. } | Segment::Unknown => None,
+    };
+    path.iter().filter_map(step).collect()
 }
 
-/// The path as text, without the part that serde could not name.
-fn render(path: &Path) -> String {
-    let mut text = String::new();
-    for segment in path.iter() {
-        match segment {
-            Segment::Seq { index } => text.push_str(&format!("[{index}]")),
-            Segment::Map { key } => text = join(text, key),
-            Segment::Enum { .. } | Segment::Unknown => {}
-        }
-    }
-    text
-}
-
-fn at<'a>(value: &'a Value, path: &Path) -> Option<&'a Value> {
+fn at<'a>(value: &'a Value, path: &serde_path_to_error::Path) -> Option<&'a Value> {
     path.iter().try_fold(value, |inner, segment| match segment {
         Segment::Seq { index } => inner.get(index),
         Segment::Map { key } => inner.get(key),

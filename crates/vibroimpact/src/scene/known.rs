@@ -1,9 +1,9 @@
 //! Modes computed for earlier scenes of the same structure.
 
+use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::Mode;
 
 use super::beam::{Beam, BeamModes};
-use super::error::InvalidInput;
 use super::fields;
 use super::json::number;
 use super::plate::Plate;
@@ -70,7 +70,7 @@ pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
         return Ok(());
     }
     let allowed = fields::allowed("damping_ratio").unwrap_or_default();
-    Err(InvalidInput::new("structure.damping_ratio", number(damping_ratio), allowed))
+    Err(InvalidInput::new(["structure", "damping_ratio"], number(damping_ratio), allowed))
 }
 
 /// Modes of one damping ratio, from frequencies and shapes.

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
+use invalid_input::InvalidInput;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 
-use super::error::InvalidInput;
 use super::json::number;
 
 /// A location on a structure (m): a distance from the left end of a beam or string, or the two coordinates of a location on a

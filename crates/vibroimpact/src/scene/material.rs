@@ -7,9 +7,9 @@
 
 use std::borrow::Cow;
 
+use invalid_input::InvalidInput;
 use serde_json::{Map, Value};
 
-use super::error::InvalidInput;
 use super::json::quote;
 use super::told::did_you_mean;
 
@@ -173,15 +173,14 @@ fn names_one(value: &Value) -> bool {
 
 fn replace(value: &mut Value, holder: Holder) -> Result<(), InvalidInput> {
     match value {
-        Value::Array(items) => items
-            .iter_mut()
-            .enumerate()
-            .try_for_each(|(i, item)| replace(item, holder).map_err(|fault| fault.within(&format!("[{i}]")))),
+        Value::Array(items) => {
+            items.iter_mut().enumerate().try_for_each(|(i, item)| replace(item, holder).map_err(|fault| fault.at(i)))
+        }
         Value::Object(map) => {
             let kind = map.get("kind").and_then(Value::as_str).map(str::to_owned);
             for (key, inner) in map.iter_mut() {
                 if let Some(under) = holder.under(key, kind.as_deref() == Some("rod")) {
-                    replace(inner, under).map_err(|fault| fault.within(key))?;
+                    replace(inner, under).map_err(|fault| fault.within(key.as_str()))?;
                 }
             }
             let takes = holder.takes(kind.as_deref());

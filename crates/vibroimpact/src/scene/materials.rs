@@ -1,11 +1,12 @@
 //! Stiffness of a contact, and the materials it may come from.
 
 use contact_models::{Body, Hertz, effective_modulus_pa};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Striker;
-use super::error::InvalidInput;
+use super::error::require_positive;
 use super::sets::one_of_sets;
 
 /// What striker and structure are made of where they touch.
@@ -34,8 +35,8 @@ pub struct HertzStiffness {
 const BOTH: &[&str] = &["youngs_modulus_pa", "poissons_ratio"];
 const EACH: &[&str] = &["youngs_modulus_pa", "poissons_ratio", "striker_youngs_modulus_pa", "striker_poissons_ratio"];
 
-pub(crate) fn in_contact(fault: impl Into<InvalidInput>) -> InvalidInput {
-    fault.into().within("contact")
+pub(crate) fn in_contact(fault: InvalidInput) -> InvalidInput {
+    fault.within("contact")
 }
 
 impl Materials {
@@ -59,11 +60,11 @@ impl Materials {
         one_of_sets(&self.fields(), &[BOTH, EACH]).map_err(in_contact)?;
         let radius_m = striker.radius_m.ok_or_else(|| {
             InvalidInput::missing(
-                "striker.radius_m",
+                ["striker", "radius_m"],
                 "needed for a contact given by materials: a finite number greater than 0",
             )
         })?;
-        InvalidInput::require_positive("striker.radius_m", radius_m)?;
+        require_positive(["striker", "radius_m"], radius_m)?;
         // a whole set was given, so that both are there
         let [modulus, ratio] = [self.youngs_modulus_pa, self.poissons_ratio].map(|value| value.unwrap_or(f64::NAN));
         let structure = Body::flat(modulus, ratio);
@@ -75,9 +76,9 @@ impl Materials {
         // each material against a rigid partner, so that a fault is laid at the right door
         let partner = Body::rigid(1.0);
         effective_modulus_pa(&structure, &partner).map_err(in_contact)?;
-        effective_modulus_pa(&ball, &partner).map_err(|mut fault| {
-            fault.field.insert_str(0, "striker_");
-            in_contact(fault)
+        effective_modulus_pa(&ball, &partner).map_err(|fault| {
+            let of_striker = format!("striker_{}", fault.field);
+            in_contact(fault.under(of_striker))
         })?;
         Ok((ball, structure))
     }
@@ -113,7 +114,7 @@ impl HertzStiffness {
         let (ball, structure) = self.materials.bodies(striker)?;
         Hertz::from_bodies(&ball, &structure)
             .map(|hertz| hertz.stiffness_n_m1_5)
-            .map_err(|fault| InvalidInput::from(fault).within("striker"))
+            .map_err(|fault| fault.within("striker"))
     }
 
     /// The stiffness and exponent of a general power law, which must then stand alone.

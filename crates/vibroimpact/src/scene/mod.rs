@@ -66,9 +66,11 @@ use crate::model::{Model, Modes};
 pub use beam::{Beam, End};
 pub use contact::Contact;
 pub use dropped_rod::DroppedRod;
-pub use error::{InvalidInput, SceneError};
+pub use error::SceneError;
+pub(crate) use error::{as_json, require_positive};
 pub use fittings::{Attachment, Support};
 pub use infinite::{InfiniteBeam, InfinitePlate};
+pub use invalid_input::InvalidInput;
 pub(crate) use known::KnownModes;
 pub use location::Location;
 pub use material::{MATERIALS, NamedMaterial};
@@ -177,7 +179,7 @@ impl Scene {
 
     /// Accepts a yield strength that can be one.
     pub(crate) fn require_yield_strength(&self) -> Result<(), InvalidInput> {
-        self.yield_strength_pa.map_or(Ok(()), |strength| InvalidInput::require_positive("yield_strength_pa", strength))
+        self.yield_strength_pa.map_or(Ok(()), |strength| error::require_positive("yield_strength_pa", strength))
     }
 
     /// Reads a scene from JSON text.
@@ -224,7 +226,7 @@ impl Scene {
             return Err(InvalidInput::new("bodies", json::quote(bodies), allowed));
         }
         let value = numbers_of_materials(value)?;
-        let outline: Outline = json::read(&value)?;
+        let outline: Outline = json::read_whole(&value, "the scene")?;
         let start = outline.start.as_ref().map(json::read).transpose().map_err(|fault| fault.within("start"))?;
         let mut scene = Scene {
             description: outline.description,

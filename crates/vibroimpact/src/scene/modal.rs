@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use invalid_input::{InvalidInput, Path, Step};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use vibroimpact_sim::modal::{Mode, Solver, Structure};
 
-use super::error::InvalidInput;
+use super::error::require_positive;
 use super::fields;
 use super::json::{named_objects, number, read};
 use super::told::did_you_mean;
@@ -65,9 +66,9 @@ pub struct Point {
 /// The shapes and the compliance at one place, and where they stand in the scene.
 struct Seen<'a> {
     shape: &'a [f64],
-    shape_field: String,
+    shape_field: Path,
     static_compliance_m_n: Option<f64>,
-    compliance_field: String,
+    compliance_field: Path,
 }
 
 impl Modal {
@@ -90,18 +91,14 @@ impl Modal {
 
     fn seen_from(&self, location: Option<&str>) -> Result<Seen<'_>, InvalidInput> {
         let left_out = |field: &str, value: String| {
-            Err(InvalidInput::new(
-                format!("structure.{field}"),
-                value,
-                "left out beside points, each of which has its own",
-            ))
+            Err(InvalidInput::new(["structure", field], value, "left out beside points, each of which has its own"))
         };
         match (location, self.points.is_empty()) {
             (None, true) => Ok(Seen {
                 shape: &self.shape_at_location,
-                shape_field: "shape_at_location".to_owned(),
+                shape_field: "shape_at_location".into(),
                 static_compliance_m_n: self.static_compliance_m_n,
-                compliance_field: "static_compliance_m_n".to_owned(),
+                compliance_field: "static_compliance_m_n".into(),
             }),
             (Some(name), true) => {
                 let allowed = "left out: the modal structure has no points, only shape_at_location";
@@ -123,9 +120,9 @@ impl Modal {
                 let point = self.points.get(name).ok_or_else(missing)?;
                 Ok(Seen {
                     shape: &point.shape,
-                    shape_field: format!("points.{name}.shape"),
+                    shape_field: ["points", name, "shape"].into(),
                     static_compliance_m_n: point.static_compliance_m_n,
-                    compliance_field: format!("points.{name}.static_compliance_m_n"),
+                    compliance_field: ["points", name, "static_compliance_m_n"].into(),
                 })
             }
         }
@@ -140,17 +137,17 @@ impl Modal {
     fn modes_of(&self, seen: &Seen) -> Result<Vec<Mode>, InvalidInput> {
         let listed = self.omega_rad_s.len();
         for (field, length, needed) in [
-            (seen.shape_field.as_str(), seen.shape.len(), true),
-            ("damping_ratios", self.damping_ratios.len(), false),
-            ("modal_mass_kg", self.modal_mass_kg.len(), false),
+            (&seen.shape_field, seen.shape.len(), true),
+            (&"damping_ratios".into(), self.damping_ratios.len(), false),
+            (&"modal_mass_kg".into(), self.modal_mass_kg.len(), false),
         ] {
             if length != listed && (needed || length > 0) {
                 let allowed = format!("as many values as omega_rad_s has, which is {listed}");
-                return Err(InvalidInput::new(field, format!("{length} values"), allowed));
+                return Err(InvalidInput::new(field.clone(), format!("{length} values"), allowed));
             }
         }
         for (k, &mass) in self.modal_mass_kg.iter().enumerate() {
-            InvalidInput::require_positive(&format!("modal_mass_kg[{k}]"), mass)?;
+            require_positive(("modal_mass_kg", k), mass)?;
         }
         let mode = |k: usize| Mode {
             omega_rad_s: self.omega_rad_s[k],
@@ -162,22 +159,19 @@ impl Modal {
         let structure = Structure { modes };
         match Solver::new(&structure) {
             Ok(_) => Ok(structure.modes),
-            Err(fault) => Err(self.in_lists(seen, fault.into())),
+            Err(fault) => Err(self.in_lists(seen, fault)),
         }
     }
 
     fn in_lists(&self, seen: &Seen, fault: InvalidInput) -> InvalidInput {
-        let place = fault.field.strip_prefix("modes[").and_then(|rest| rest.split_once("]."));
-        let Some((k, quantity)) = place.and_then(|(k, quantity)| Some((k.parse::<usize>().ok()?, quantity))) else {
-            return fault;
+        let [_, Step::Index(k), Step::Field(quantity)] = fault.field.steps() else { return fault };
+        let (list, values) = match quantity.as_str() {
+            "shape" => (seen.shape_field.clone(), seen.shape),
+            "damping_ratio" => ("damping_ratios".into(), self.damping_ratios.as_slice()),
+            _ => ("omega_rad_s".into(), self.omega_rad_s.as_slice()),
         };
-        let (list, values) = match quantity {
-            "shape" => (seen.shape_field.as_str(), seen.shape),
-            "damping_ratio" => ("damping_ratios", self.damping_ratios.as_slice()),
-            _ => ("omega_rad_s", self.omega_rad_s.as_slice()),
-        };
-        let value = values.get(k).map(|value| number(*value));
-        InvalidInput { field: format!("{list}[{k}]"), value, ..fault }
+        let (field, value) = ((list, *k).into(), values.get(*k).map(|value| number(*value).into()));
+        InvalidInput { field, value, ..fault }
     }
 
     /// Whether the static compliance at a point is stated, be its value allowed or not.
@@ -187,9 +181,9 @@ impl Modal {
 
     pub(super) fn static_compliance_m_n(&self, location: Option<&str>) -> Result<f64, InvalidInput> {
         let seen = self.seen_from(location)?;
-        let field = format!("structure.{}", seen.compliance_field);
+        let field = seen.compliance_field.within("structure");
         let allowed = || format!("needed for residual_compliance: {}", fields::NOT_NEGATIVE);
-        let value = seen.static_compliance_m_n.ok_or_else(|| InvalidInput::missing(field.as_str(), allowed()))?;
+        let value = seen.static_compliance_m_n.ok_or_else(|| InvalidInput::missing(field.clone(), allowed()))?;
         if value >= 0.0 && value.is_finite() {
             Ok(value)
         } else {

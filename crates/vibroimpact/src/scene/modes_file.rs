@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::{Component, Path};
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{InvalidInput, SceneError};
+use super::error::SceneError;
 use super::fields;
 use super::modal::{Modal, Point};
 use crate::input::{Row, Table, read_bytes};
@@ -39,12 +40,11 @@ const NEEDED: &str = "a table of comma-separated values whose line of names hold
 impl ModesFile {
     /// Reads the table, from a scene that stands in `folder`.
     pub(crate) fn load(&self, folder: &Path) -> Result<Modal, SceneError> {
-        let path = table_path("structure.file", &self.file)?;
-        let in_table = |fault: InvalidInput| InvalidInput { field: format!("{}, {}", self.file, fault.field), ..fault };
-        let mut modal = parse(&read_bytes(&folder.join(path))?).map_err(in_table)?;
+        let path = table_path(["structure", "file"], &self.file)?;
+        let mut modal = parse(&read_bytes(&folder.join(path))?).map_err(|fault| fault.in_place(self.file.as_str()))?;
         for (name, compliance) in &self.static_compliances_m_n {
             let Some(point) = modal.points.get_mut(name) else {
-                let field = format!("structure.static_compliances_m_n.{name}");
+                let field = ["structure", "static_compliances_m_n", name.as_str()];
                 return Err(InvalidInput::new(field, super::json::number(*compliance), "a point of the table").into());
             };
             point.static_compliance_m_n = Some(*compliance);
@@ -54,7 +54,7 @@ impl ModesFile {
 }
 
 /// The path of a table that a scene names, which stands in the folder of the scene or below.
-pub(crate) fn table_path<'a>(field: &str, file: &'a str) -> Result<&'a Path, InvalidInput> {
+pub(crate) fn table_path(field: impl Into<invalid_input::Path>, file: &str) -> Result<&Path, InvalidInput> {
     let path = Path::new(file);
     let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if file.is_empty() || !below {
@@ -115,6 +115,6 @@ fn within(row: &Row, place: usize, name: &str, allowed: (&str, fn(f64) -> bool))
     if allowed.1(value) {
         Ok(value)
     } else {
-        Err(InvalidInput::new(format!("line {}, {name}", row.line), super::json::number(value), allowed.0))
+        Err(row.fault(InvalidInput::new(name, super::json::number(value), allowed.0)))
     }
 }

@@ -2,19 +2,14 @@
 
 use std::fmt;
 
+use invalid_input::{Path, Step};
 use serde_json::{Map, Value};
 
 use super::told::counted;
 
 /// The place of a field in a scene file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FieldPath(Vec<Step>);
-
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Step {
-    Key(String),
-    Index(usize),
-}
+pub struct FieldPath(Path);
 
 impl FieldPath {
     /// Reads a path; `None` for what is none.
@@ -25,7 +20,7 @@ impl FieldPath {
             if key.is_empty() || key.contains(']') {
                 return None;
             }
-            steps.push(Step::Key(key.to_owned()));
+            steps.push(Step::Field(key.to_owned()));
             while !rest.is_empty() {
                 let (index, after) = rest.strip_prefix('[')?.split_once(']')?;
                 if !index.bytes().all(|byte| byte.is_ascii_digit()) {
@@ -35,14 +30,15 @@ impl FieldPath {
                 rest = after;
             }
         }
-        Some(FieldPath(steps))
+        Some(FieldPath(steps.into_iter().collect()))
     }
 
     /// What stands in its place.
     pub(crate) fn get<'a>(&self, tree: &'a Value) -> Option<&'a Value> {
-        self.0.iter().try_fold(tree, |place, step| match step {
-            Step::Key(key) => place.get(key),
+        self.0.steps().iter().try_fold(tree, |place, step| match step {
+            Step::Field(key) => place.get(key),
             Step::Index(index) => place.get(index),
+            _ => None,
         })
     }
 
@@ -52,10 +48,10 @@ impl FieldPath {
     /// Says what is not there.
     pub(crate) fn set(&self, tree: &mut Value, value: Value) -> Result<(), String> {
         let mut place = tree;
-        for (depth, step) in self.0.iter().enumerate() {
-            let last = depth + 1 == self.0.len();
+        for (depth, step) in self.0.steps().iter().enumerate() {
+            let last = depth + 1 == self.0.steps().len();
             place = match (step, place) {
-                (Step::Key(key), Value::Object(map)) => {
+                (Step::Field(key), Value::Object(map)) => {
                     if last {
                         map.entry(key.clone()).or_insert(Value::Null)
                     } else {
@@ -72,9 +68,10 @@ impl FieldPath {
                         )
                     })?
                 }
-                (Step::Key(_), _) if depth == 0 => return Err("the scene is not an object".to_owned()),
-                (Step::Key(_), _) => return Err(format!("{} is not an object", self.upto(depth - 1))),
+                (Step::Field(_), _) if depth == 0 => return Err("the scene is not an object".to_owned()),
+                (Step::Field(_), _) => return Err(format!("{} is not an object", self.upto(depth - 1))),
                 (Step::Index(_), _) => return Err(format!("{} is not a list", self.upto(depth - 1))),
+                _ => return Err(format!("{self} is not the path of a field")),
             };
         }
         *place = value;
@@ -87,8 +84,9 @@ impl FieldPath {
     /// # Errors
     /// Says what is no object, or which list is too short.
     pub(crate) fn set_or_insert(&self, tree: &mut Value, value: Value) -> Result<(), String> {
-        for depth in 1..self.0.len() {
-            let object = matches!(self.0[depth], Step::Key(_)) && matches!(self.0[depth - 1], Step::Key(_));
+        for depth in 1..self.0.steps().len() {
+            let object =
+                matches!(self.0.steps()[depth], Step::Field(_)) && matches!(self.0.steps()[depth - 1], Step::Field(_));
             let holder = self.upto(depth - 1);
             if object && holder.get(tree).is_none_or(Value::is_null) {
                 holder.set(tree, Value::Object(Map::new()))?;
@@ -98,26 +96,24 @@ impl FieldPath {
     }
 
     /// Whether the other field is this one or stands within it.
-    pub(crate) fn holds(&self, other: &FieldPath) -> bool {
-        other.0.starts_with(&self.0)
+    pub(crate) fn holds(&self, other: &Path) -> bool {
+        other.steps().starts_with(self.0.steps())
+    }
+
+    /// The steps to the field.
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
     }
 
     /// The path up to and with the step at `depth`.
     fn upto(&self, depth: usize) -> FieldPath {
-        FieldPath(self.0.iter().take(depth + 1).cloned().collect())
+        FieldPath(self.0.steps().iter().take(depth + 1).cloned().collect())
     }
 }
 
 impl fmt::Display for FieldPath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, step) in self.0.iter().enumerate() {
-            match step {
-                Step::Key(key) if i == 0 => f.write_str(key)?,
-                Step::Key(key) => write!(f, ".{key}")?,
-                Step::Index(index) => write!(f, "[{index}]")?,
-            }
-        }
-        Ok(())
+        self.0.fmt(f)
     }
 }
 

@@ -1,10 +1,10 @@
 //! A rectangular plate.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal::Mode;
 
-use super::error::InvalidInput;
 use super::known::{require_damping, shapes_as_modes};
 
 /// A frequency that more polynomials would change by a smaller share than this has converged.
@@ -173,11 +173,11 @@ impl Plate {
     }
 }
 
-fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
-    match fault.field.as_str() {
-        "x_m" => InvalidInput { field: "location_m[0]".to_owned(), ..fault.into() },
-        "y_m" => InvalidInput { field: "location_m[1]".to_owned(), ..fault.into() },
-        "count" => InvalidInput { field: "modes".to_owned(), ..fault.into() },
-        _ => InvalidInput::from(fault).within("structure"),
+fn in_structure(fault: InvalidInput) -> InvalidInput {
+    match fault.field.first() {
+        Some("x_m") => fault.under(("location_m", 0)),
+        Some("y_m") => fault.under(("location_m", 1)),
+        Some("count") => fault.under("modes"),
+        _ => fault.within("structure"),
     }
 }

@@ -4,9 +4,9 @@
 //! them, and all of the tail of a list, follows from the static compliance and from how the frequencies grow.
 
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend, remainder_modes};
+use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::Mode;
 
-use super::error::InvalidInput;
 use super::structure::MOST_MODES;
 use super::{BeamTheory, Edge, Structure};
 use crate::impact::compliance;
@@ -18,7 +18,7 @@ pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), Inval
     }
     let allowed = "left out, or beside at least one mode with a frequency above 0, which is kept: how the modes that are \
                    not listed answer is told from those that are";
-    Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole_m_n:e}"), allowed))
+    Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed))
 }
 
 /// Remainder modes of a beam by Euler-Bernoulli's theory, whose tail is nearly a spring. All others are wave impedances.
@@ -54,7 +54,7 @@ impl Structure {
         // where both are computed, less than nothing is rounding
         if !self.is_computed() && whole_m_n < answered * (1.0 - ROUNDING) {
             let allowed = format!("not less than that of the modes retained, {answered:e}");
-            return Err(InvalidInput::new("structure.static_compliance_m_n", format!("{whole_m_n:e}"), allowed));
+            return Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed));
         }
         if !self.is_computed() && whole_m_n - answered <= COMPLETE * answered {
             return Ok(Vec::new());
@@ -75,7 +75,7 @@ impl Structure {
         };
         let remainder = remainder.map_err(|fault| {
             let allowed = "a structure whose modes and static compliance double precision holds";
-            InvalidInput::new("structure", fault.value, allowed)
+            InvalidInput { field: "structure".into(), allowed: allowed.to_owned(), ..fault }
         })?;
         let last = known[..kept.min(known.len())].last().or(known.first());
         let damping_ratio = last.map_or(0.0, |mode| mode.damping_ratio);

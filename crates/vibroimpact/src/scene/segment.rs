@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::InvalidInput;
+use super::error::require_positive;
 use super::fields;
 use super::json::number;
 use super::sets::one_of_sets;
@@ -111,7 +112,7 @@ impl Segment {
         ];
         let set = one_of_sets(&given, &SECTIONS)?;
         for (field, value) in std::iter::once(("length_m", Some(self.length_m))).chain(given) {
-            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+            value.map_or(Ok(()), |value| require_positive(field, value))?;
         }
         let [width, thickness, diameter] =
             [self.width_m, self.thickness_m, self.diameter_m].map(Option::unwrap_or_default);
@@ -178,7 +179,7 @@ impl Segment {
         if section == Section::Direct {
             let shear_rigidity_n = first.ok_or_else(|| missing("shear_rigidity_n"))?;
             let rotary_inertia_kg_m = second.ok_or_else(|| missing("rotary_inertia_kg_m"))?;
-            InvalidInput::require_positive("shear_rigidity_n", shear_rigidity_n)?;
+            require_positive("shear_rigidity_n", shear_rigidity_n)?;
             return Ok(Some(beam_modes::ShearSection { shear_rigidity_n, rotary_inertia_kg_m }));
         }
         let nu = first.ok_or_else(|| missing("poissons_ratio"))?;

@@ -1,6 +1,7 @@
 //! Quantities that can be given in more than one way, each way a set of fields.
 
-use super::error::InvalidInput;
+use invalid_input::InvalidInput;
+
 use super::json::number;
 
 /// Finds which of `sets` the given fields make up. Exactly one set must be given whole, and nothing beside it;
@@ -29,7 +30,8 @@ mod tests {
     const SETS: &[&[&str]] = &[&["a"], &["b", "c"], &["b", "c", "d"]];
 
     fn of(a: Option<f64>, b: Option<f64>, c: Option<f64>, d: Option<f64>) -> Result<usize, (String, bool)> {
-        one_of_sets(&[("a", a), ("b", b), ("c", c), ("d", d)], SETS).map_err(|e| (e.field, e.value.is_some()))
+        one_of_sets(&[("a", a), ("b", b), ("c", c), ("d", d)], SETS)
+            .map_err(|e| (e.field.to_string(), e.value.is_some()))
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Motion before the impact.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal::{self, Mode};
 
-use super::error::InvalidInput;
 use super::json::{number, objects};
 use super::structure::Place;
 use super::{Location, Scene, fields};
@@ -81,14 +81,14 @@ impl Scene {
         };
         let here = self.place();
         for (i, moving) in start.moving_modes.iter().enumerate() {
-            let within = |fault: InvalidInput| fault.within(&format!("start.moving_modes[{i}]"));
+            let within = |fault: InvalidInput| fault.within(("moving_modes", i)).within("start");
             let there = moving.place(here);
             let (k, shape) = if there == here {
                 moving.shape(modes)
             } else {
                 let seen = self.structure.modes(there, Some(modes.len())).map_err(|fault| {
                     // a fault of the structure itself keeps its own path
-                    if fault.field.starts_with("location") { within(fault) } else { fault }
+                    if matches!(fault.field.first(), Some("location_m" | "location")) { within(fault) } else { fault }
                 })?;
                 moving.shape(&seen)
             }

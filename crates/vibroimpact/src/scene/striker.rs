@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::InvalidInput;
+use super::error::require_positive;
 use super::json::number;
 
 /// The compact body: its mass (or a solid sphere's density and radius) and its speed.
@@ -49,7 +50,7 @@ impl Striker {
     pub fn mass_kg(&self) -> Result<f64, InvalidInput> {
         let Striker { mass_kg, density_kg_m3, radius_m, .. } = *self;
         for (field, value) in [("mass_kg", mass_kg), ("density_kg_m3", density_kg_m3), ("radius_m", radius_m)] {
-            value.map_or(Ok(()), |value| InvalidInput::require_positive(field, value))?;
+            value.map_or(Ok(()), |value| require_positive(field, value))?;
         }
         if self.immovable {
             return self.stop_mass_kg();

@@ -1,10 +1,10 @@
 //! A string under tension.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal::Mode;
 
-use super::error::InvalidInput;
 use super::known::{require_damping, shapes_as_modes};
 
 /// A uniform string between two pinned ends, [`beam_modes::TautString`].
@@ -69,10 +69,10 @@ impl TautString {
     }
 }
 
-fn in_structure(fault: beam_modes::InvalidInput) -> InvalidInput {
-    match fault.field.as_str() {
-        "x_m" => InvalidInput { field: "location_m".to_owned(), ..fault.into() },
-        "count" => InvalidInput { field: "modes".to_owned(), ..fault.into() },
-        _ => InvalidInput::from(fault).within("structure"),
+fn in_structure(fault: InvalidInput) -> InvalidInput {
+    match fault.field.first() {
+        Some("x_m") => fault.under("location_m"),
+        Some("count") => fault.under("modes"),
+        _ => fault.within("structure"),
     }
 }

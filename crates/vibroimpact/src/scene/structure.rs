@@ -1,5 +1,6 @@
 //! The struck structure of a scene.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -7,7 +8,6 @@ use vibroimpact_sim::modal;
 
 use super::beam::Beam;
 use super::dropped_rod::DroppedRod;
-use super::error::InvalidInput;
 use super::fields;
 use super::infinite::{InfiniteBeam, InfinitePlate};
 use super::json::{read, split_tag};
@@ -131,7 +131,7 @@ impl Structure {
             Structure::ModesFile(_) => "replaced by its table: Scene::read does it, or Scene::read_modes_file",
             _ => "beam, string, plate, modal or dropped-rod, the structures with modes",
         };
-        InvalidInput::new("structure.kind", format!("\"{}\"", self.kind()), allowed)
+        InvalidInput::new(["structure", "kind"], format!("\"{}\"", self.kind()), allowed)
     }
 
     /// The first `count` modes as seen from a location (all that there are, for `None`).
@@ -268,7 +268,7 @@ impl Structure {
         match self {
             Structure::Beam(beam) => beam
                 .to_system()
-                .and_then(|beam| Ok(beam.static_compliance(place.on_structure()?.along()?)?))
+                .and_then(|beam| beam.static_compliance(place.on_structure()?.along()?))
                 .map_err(|fault| if fault.field == "location_m" { fault } else { fault.within("structure") }),
             Structure::TautString(string) => string.static_compliance_m_n(place.on_structure()?.along()?),
             Structure::Plate(_) => Ok(self.static_compliance_with_uncertainty_m_n(place)?.0),

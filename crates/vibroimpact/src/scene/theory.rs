@@ -1,10 +1,10 @@
 //! Which theory of bending a beam is solved by, and its neighbours: the other theory, another shear coefficient.
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::beam::Beam;
-use super::error::InvalidInput;
 
 /// Theory of bending of a beam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -59,7 +59,7 @@ impl Beam {
     fn has_shear(&self) -> Result<bool, InvalidInput> {
         let mut all = !self.segments.is_empty();
         for (i, segment) in self.segments.iter().enumerate() {
-            let shear = segment.to_shear().map_err(|fault| fault.within(&format!("segments[{i}]")))?;
+            let shear = segment.to_shear().map_err(|fault| fault.at(i).within("segments"))?;
             all &= shear.is_some();
         }
         Ok(all)

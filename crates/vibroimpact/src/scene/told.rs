@@ -1,9 +1,7 @@
 //! What messages repeat of the input: short, without control characters, and with the name that was probably meant.
 
-/// Longest piece of a value that a message repeats (characters).
-const LONGEST_QUOTE: usize = 60;
-/// Longest path of a field (characters).
-const LONGEST_PATH: usize = 90;
+use invalid_input::LONGEST_VALUE;
+
 /// Longest name that is compared with those that are allowed (characters).
 const LONGEST_NAME: usize = 60;
 /// Names less alike than this (Jaro similarity) are no slip of one another.
@@ -18,20 +16,7 @@ pub fn counted(count: u64, one: &str, more: &str) -> String {
 
 /// A text cut to a length that fits a message. Cutting it again changes nothing.
 pub fn shorten(text: &str) -> String {
-    cut(text, LONGEST_QUOTE)
-}
-
-/// The path of a field, which may hold names of the user's, cut to a length that fits a message.
-pub(crate) fn shorten_path(path: &str) -> String {
-    cut(path, LONGEST_PATH)
-}
-
-fn cut(text: &str, most: usize) -> String {
-    const DOTS: &str = "...";
-    match text.char_indices().nth(most) {
-        None => text.to_owned(),
-        Some(_) => text.chars().take(most - DOTS.len()).chain(DOTS.chars()).collect(),
-    }
+    invalid_input::cut(text, LONGEST_VALUE).to_string()
 }
 
 /// A text that cannot steer a terminal: control characters other than line breaks and tabs, and characters that turn
@@ -41,14 +26,7 @@ fn cut(text: &str, most: usize) -> String {
 /// assert_eq!(vibroimpact::text::printable("a\u{1b}[2J"), "a\\u{1b}[2J");
 /// ```
 pub fn printable(text: &str) -> String {
-    let steers = |c: char| {
-        (c.is_control() && c != '\n' && c != '\t') || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if steers(c) { shown.extend(c.escape_unicode()) } else { shown.push(c) }
-    }
-    shown
+    invalid_input::printable(text).to_string()
 }
 
 /// `; did you mean ...?` where one of the names is like the word, otherwise nothing. Of names that are equally alike the
@@ -109,7 +87,7 @@ mod tests {
     #[test]
     fn what_is_cut_stays_as_it_is() {
         let long = "9".repeat(400);
-        assert_eq!(shorten(&long).chars().count(), LONGEST_QUOTE);
+        assert_eq!(shorten(&long).chars().count(), LONGEST_VALUE);
         assert_eq!(shorten(&shorten(&long)), shorten(&long));
         assert_eq!(shorten("short"), "short");
     }

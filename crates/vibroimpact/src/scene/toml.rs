@@ -1,15 +1,16 @@
 //! TOML as another way to write a scene: text to the same tree as JSON's, and back.
 
+use invalid_input::{InvalidInput, Path, Step};
 use serde_json::{Map, Number, Value};
 
-use super::error::{InvalidInput, SceneError};
+use super::error::SceneError;
 use super::fields;
 
 /// Parses TOML text. Keys that occur twice are refused by the format itself.
 pub(crate) fn parse(text: &str) -> Result<Value, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let table: toml::Table = text.parse().map_err(|fault| syntax_error(text, &fault))?;
-    Ok(tree(toml::Value::Table(table), "")?)
+    Ok(tree(toml::Value::Table(table), &Path::default())?)
 }
 
 fn syntax_error(text: &str, fault: &toml::de::Error) -> SceneError {
@@ -20,29 +21,28 @@ fn syntax_error(text: &str, fault: &toml::de::Error) -> SceneError {
     SceneError::Syntax {
         line: before.matches('\n').count() + 1,
         column: before[line_start..].chars().count() + 1,
-        field: String::new(),
+        field: Path::default(),
         reason,
     }
 }
 
 /// The tree in JSON's terms. Numbers that are not finite are reported as values of their field; dates become texts.
-fn tree(value: toml::Value, path: &str) -> Result<Value, InvalidInput> {
+fn tree(value: toml::Value, path: &Path) -> Result<Value, InvalidInput> {
     Ok(match value {
         toml::Value::String(text) => Value::String(text),
         toml::Value::Integer(number) => number.into(),
         toml::Value::Float(number) => Number::from_f64(number).map(Value::Number).ok_or_else(|| {
-            InvalidInput::new(path, number.to_string(), fields::allowed(path).unwrap_or("a finite number"))
+            InvalidInput::new(path.clone(), number.to_string(), fields::allowed_at(path).unwrap_or("a finite number"))
         })?,
         toml::Value::Boolean(value) => Value::Bool(value),
         toml::Value::Datetime(date) => Value::String(date.to_string()),
         toml::Value::Array(items) => {
-            let item = |(i, item)| tree(item, &format!("{path}[{i}]"));
+            let item = |(i, item)| tree(item, &Path::from(Step::Index(i)).within(path.clone()));
             Value::Array(items.into_iter().enumerate().map(item).collect::<Result<_, _>>()?)
         }
         toml::Value::Table(entries) => {
-            let joint = if path.is_empty() { "" } else { "." };
             let entry = |(key, value): (String, toml::Value)| {
-                let value = tree(value, &format!("{path}{joint}{key}"))?;
+                let value = tree(value, &Path::from(key.as_str()).within(path.clone()))?;
                 Ok((key, value))
             };
             Value::Object(entries.into_iter().map(entry).collect::<Result<Map<_, _>, InvalidInput>>()?)
@@ -53,5 +53,7 @@ fn tree(value: toml::Value, path: &str) -> Result<Value, InvalidInput> {
 /// The text of a tree in which nothing is null.
 pub(crate) fn write(tree: &Value) -> Result<String, InvalidInput> {
     let written = toml::Table::try_from(tree).and_then(|table| toml::to_string(&table));
-    written.map_err(|fault| InvalidInput::new("", fault.to_string(), "whole numbers below 2^63, the largest of TOML"))
+    written.map_err(|fault| {
+        InvalidInput::new("the scene", fault.to_string(), "whole numbers below 2^63, the largest of TOML")
+    })
 }

@@ -143,7 +143,7 @@ fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
 fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidInput> {
     let mut tree = tree.clone();
     // the field is there: it was read from the same tree
-    path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.to_string(), number(value), why))?;
+    path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.path().clone(), number(value), why))?;
     Ok(tree)
 }
 

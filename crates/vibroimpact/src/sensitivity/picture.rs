@@ -1,8 +1,9 @@
 //! The tornado picture of a sensitivity.
 
+use invalid_input::InvalidInput;
+
 use super::table::{Row, Table};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
-use crate::scene::InvalidInput;
 
 /// Fields drawn at most.
 const MOST: usize = 20;

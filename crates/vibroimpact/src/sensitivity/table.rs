@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use invalid_input::InvalidInput;
 use serde::Serialize;
 use vibroimpact_sim::modal::Derivative;
 
 use super::neighbours::Neighbours;
-use crate::scene::InvalidInput;
 
 /// A derivative of an output by a field, in the unit of the output over that of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

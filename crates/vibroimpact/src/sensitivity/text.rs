@@ -1,10 +1,12 @@
 //! The table of a sensitivity.
 
+use std::fmt::Write;
+
+use invalid_input::InvalidInput;
+
 use super::table::{Row, Table};
 use super::{BodiesSensitivity, Sensitivity};
-use crate::scene::InvalidInput;
 use crate::text::counted;
-use std::fmt::Write;
 
 /// A touch slower than this part of the fastest is near a graze.
 const NEAR: f64 = 1e-2;

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use invalid_input::InvalidInput;
+
 use super::Status;
 use super::definition::Sweep;
 use super::error::SweepError;
@@ -9,7 +11,6 @@ use super::folder::Part;
 use super::row::{Row, columns};
 use super::table::Kind;
 use super::threads::{self, Sink};
-use crate::scene::InvalidInput;
 
 /// Most points of a sweep that is kept in memory.
 pub const MOST_IN_MEMORY: u64 = 10_000_000;

@@ -1,7 +1,6 @@
 //! A sweep: from the number of a point to its scene.
 
-use std::path::Path;
-
+use invalid_input::Path;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
@@ -52,7 +51,7 @@ impl Sweep {
     ///
     /// # Errors
     /// A file that cannot be read, a fault in the sweep or in its base scene, or too many points.
-    pub fn read(path: &Path) -> Result<Sweep, SweepError> {
+    pub fn read(path: &std::path::Path) -> Result<Sweep, SweepError> {
         Ok(Sweep::new(file::read(path)?)?)
     }
 
@@ -166,7 +165,7 @@ impl Sweep {
         match self.canonical.pointer("/sampling/sampling_error") {
             Some(error) if self.is_adaptive() => {
                 let allowed = "left out where a sweep is computed in parts or over MPI, whose number of draws is fixed";
-                Err(InvalidInput::new("sampling.sampling_error", quote(error), allowed))
+                Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed))
             }
             _ => Ok(()),
         }
@@ -208,7 +207,7 @@ impl Sweep {
         let mut tree = self.scene.clone();
         for (field, value) in self.fields().zip(values) {
             let set = field.set(&mut tree, value.clone());
-            set.map_err(|reason| InvalidInput::new(field.to_string(), quote(value), reason))?;
+            set.map_err(|reason| InvalidInput::new(field.path().clone(), quote(value), reason))?;
         }
         AnyScene::from_value(&tree)
     }
@@ -249,20 +248,20 @@ impl Sweep {
     }
 
     /// Where in the sweep file the field with this number in [`Sweep::fields`] stands.
-    fn entry(&self, number: usize) -> String {
+    fn entry(&self, number: usize) -> Path {
         match number.checked_sub(self.axes.len()) {
-            None => format!("vary[{number}]"),
+            None => ("vary", number).into(),
             Some(drawn) => match self.uncertain.as_ref().and_then(|uncertain| uncertain.fields.get(drawn)) {
-                Some((field, _)) => format!("uncertain.{field}"),
-                None => format!("random.fields[{drawn}]"),
+                Some((field, _)) => Path::from(field.to_string()).within("uncertain"),
+                None => Path::from(("fields", drawn)).within("random"),
             },
         }
     }
 
     /// Where the path of that field is written.
-    fn entry_field(&self, number: usize) -> String {
+    fn entry_field(&self, number: usize) -> Path {
         let entry = self.entry(number);
-        if self.uncertain.is_some() && number >= self.axes.len() { entry } else { format!("{entry}.field") }
+        if self.uncertain.is_some() && number >= self.axes.len() { entry } else { Path::from("field").within(entry) }
     }
 
     /// No field may undo what one before it has set.
@@ -272,10 +271,10 @@ impl Sweep {
             let beside = self.axis_before(i);
             if let Some(axis) = beside.filter(|axis| !self.axes[*axis].is_numeric()) {
                 let allowed = format!("numbers, about which {} is uncertain", self.entry(i));
-                return Err(InvalidInput::new(format!("{}.values", self.entry(axis)), "[...]", allowed));
+                return Err(InvalidInput::new(Path::from("values").within(self.entry(axis)), "[...]", allowed));
             }
             let mut others = fields[..i].iter().enumerate().filter(|(before, _)| beside != Some(*before));
-            if let Some((before, _)) = others.find(|(_, before)| field.holds(before)) {
+            if let Some((before, _)) = others.find(|(_, before)| field.holds(before.path())) {
                 let allowed = format!("a field that does not overwrite that of {}", self.entry(before));
                 return Err(InvalidInput::new(self.entry_field(i), format!("\"{field}\""), allowed));
             }
@@ -304,9 +303,9 @@ impl Sweep {
                 let mut values = first.clone();
                 values[i] = axis.value(number);
                 self.scene_with(&values).map_err(|fault| {
-                    let name = match axis.values {
-                        AxisValues::Range(..) => format!("vary[{i}].count"),
-                        AxisValues::List(_) => format!("vary[{i}].values[{number}]"),
+                    let name: Path = match axis.values {
+                        AxisValues::Range(..) => ("vary", i, "count").into(),
+                        AxisValues::List(_) => ("vary", i, ("values", number as usize)).into(),
                     };
                     InvalidInput::new(name, quote(&values[i]), format!("a value that the scene can hold; {fault}"))
                 })?;
@@ -317,8 +316,7 @@ impl Sweep {
 
     /// The number of the varied field in which a fault stands.
     fn varies(&self, fault: &InvalidInput) -> Option<usize> {
-        let found = FieldPath::parse(&fault.field)?;
-        self.fields().position(|field| field.holds(&found))
+        self.fields().position(|field| field.holds(&fault.field))
     }
 
     /// A fault at the first point, under the name of what has to be changed in the sweep file.
@@ -328,13 +326,11 @@ impl Sweep {
             Some(i) if fault.allowed.starts_with(crate::scene::json::UNKNOWN_FIELD) => {
                 InvalidInput::new(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
             }
-            Some(i) if self.uncertain.is_some() && i >= self.axes.len() => {
-                InvalidInput { field: self.entry(i), ..fault }
-            }
+            Some(i) if self.uncertain.is_some() && i >= self.axes.len() => fault.under(self.entry(i)),
             Some(i) => {
                 let list = self.axes.get(i).is_some_and(|axis| matches!(axis.values, AxisValues::List(_)));
-                let name = if list { "values[0]" } else { "from" };
-                InvalidInput { field: format!("{}.{name}", self.entry(i)), ..fault }
+                let name = if list { ("values", 0).into() } else { Path::from("from") };
+                fault.under(name.within(self.entry(i)))
             }
         }
     }

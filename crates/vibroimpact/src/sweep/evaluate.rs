@@ -3,12 +3,12 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use invalid_input::InvalidInput;
 use vibroimpact_sim::assembly::{Outcome, Reason};
 
 use super::results::{Results, of_draw, of_impact};
 use crate::assembly::{AnyScene, Wanted};
 use crate::model::Kept;
-use crate::scene::InvalidInput;
 
 /// Whether a scene can be solved, as far as can be told without solving it. A fault in the program itself is left to
 /// the rows.

@@ -11,7 +11,7 @@ use super::uncertain::{self, SamplingEntry, Told, Uncertain, UncertainEntry};
 use super::values::{Axis, AxisValues, Interval, Random, Scale};
 use crate::assembly;
 use crate::scene::FieldPath;
-use crate::scene::fields::look_up;
+use crate::scene::fields::{look_up, name_at};
 use crate::scene::json::{self, number, quote};
 use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};
 
@@ -58,15 +58,15 @@ const FIELDS: &[(&str, &str)] = &[
     ("indices", "true or false"),
 ];
 
-fn fault(field: impl Into<String>, value: impl Into<String>) -> InvalidInput {
+fn fault(field: impl Into<invalid_input::Path>, value: impl Into<String>) -> InvalidInput {
     let field = field.into();
-    let allowed = look_up(FIELDS, &field).unwrap_or_default();
-    InvalidInput::new(field, value, allowed)
+    let allowed = look_up(FIELDS, &name_at(&field)).unwrap_or_default();
+    InvalidInput::new(field, value.into(), allowed)
 }
 
-fn missing(field: impl Into<String>) -> InvalidInput {
+fn missing(field: impl Into<invalid_input::Path>) -> InvalidInput {
     let field = field.into();
-    let allowed = look_up(FIELDS, &field).unwrap_or_default();
+    let allowed = look_up(FIELDS, &name_at(&field)).unwrap_or_default();
     InvalidInput::missing(field, allowed)
 }
 
@@ -216,7 +216,9 @@ pub(super) fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), S
     };
     read.map_err(|found| match found {
         SceneError::Invalid(fault)
-            if ["structure", "bodies", "loads", "ground_motion"].iter().any(|name| fault.field.starts_with(name)) =>
+            if ["structure", "bodies", "loads", "ground_motion"]
+                .iter()
+                .any(|name| fault.field.first() == Some(name)) =>
         {
             fault.within("scene").into()
         }
@@ -240,7 +242,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     if !scene.is_object() {
         return Err(fault("scene", quote(&scene)));
     }
-    let axes = file.vary.into_iter().enumerate().map(|(i, entry)| axis(&format!("vary[{i}]"), entry));
+    let axes = file.vary.into_iter().enumerate().map(|(i, entry)| axis(("vary", i).into(), entry));
     let axes = axes.collect::<Result<Vec<_>, _>>()?;
     let random = file.random.map(|value| random(&value).map_err(|found| found.within("random"))).transpose()?;
     let sampling = file.sampling.as_ref();
@@ -264,23 +266,23 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         canonical.pointer("/sampling/sampling_error").filter(|_| told.is_adaptive() && !axes.is_empty())
     {
         let allowed = "left out beside vary: every point of a grid has the same draws";
-        return Err(InvalidInput::new("sampling.sampling_error", quote(error), allowed));
+        return Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed));
     }
     Ok(Contents { description: file.description, scene, axes, random, uncertain, told, canonical })
 }
 
 /// Reads an object; what is allowed is told in the terms of sweeps.
 fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
-    json::read(value).map_err(|found| {
-        let told = if found.allowed.starts_with(json::UNKNOWN_FIELD) { None } else { look_up(FIELDS, &found.field) };
-        let field = if found.field.is_empty() { "the sweep".to_owned() } else { found.field };
-        InvalidInput { field, allowed: told.map_or(found.allowed, str::to_owned), ..found }
+    json::read_whole(value, "the sweep").map_err(|found| {
+        let unknown = found.allowed.starts_with(json::UNKNOWN_FIELD);
+        let told = if unknown { None } else { look_up(FIELDS, &name_at(&found.field)) };
+        InvalidInput { allowed: told.map_or(found.allowed, str::to_owned), ..found }
     })
 }
 
-fn axis(place: &str, entry: AxisEntry) -> Result<Axis, InvalidInput> {
+fn axis(place: invalid_input::Path, entry: AxisEntry) -> Result<Axis, InvalidInput> {
     let AxisEntry { field, from, to, count, scale, whole_numbers, values } = entry;
-    let at = |name: &str| format!("{place}.{name}");
+    let at = |name: &str| invalid_input::Path::from(name).within(place.clone());
     let path = field_path(at("field"), field)?;
     let values = match values {
         Some(values) => {
@@ -299,7 +301,7 @@ fn axis(place: &str, entry: AxisEntry) -> Result<Axis, InvalidInput> {
                 return Err(fault(at("count"), count.to_string()));
             }
             let whole_numbers = whole_numbers.unwrap_or_default();
-            AxisValues::Range(interval(place, Interval { from, to, scale, whole_numbers })?, count)
+            AxisValues::Range(interval(&place, Interval { from, to, scale, whole_numbers })?, count)
         }
     };
     Ok(Axis { field: path, values })
@@ -314,25 +316,25 @@ fn random(value: &Value) -> Result<Random, InvalidInput> {
         return Err(fault("fields", "[]"));
     }
     let field = |(i, entry): (usize, IntervalEntry)| {
-        let place = format!("fields[{i}]");
+        let place = invalid_input::Path::from(("fields", i));
         let IntervalEntry { field, from, to, scale, whole_numbers } = entry;
-        let path = field_path(format!("{place}.field"), field)?;
+        let path = field_path(invalid_input::Path::from("field").within(place.clone()), field)?;
         Ok::<_, InvalidInput>((path, interval(&place, Interval { from, to, scale, whole_numbers })?))
     };
     let fields = fields.into_iter().enumerate().map(field).collect::<Result<_, _>>()?;
     Ok(Random { seed, draws, fields })
 }
 
-fn field_path(place: String, text: String) -> Result<FieldPath, InvalidInput> {
+fn field_path(place: invalid_input::Path, text: String) -> Result<FieldPath, InvalidInput> {
     FieldPath::parse(&text).ok_or_else(|| fault(place, quote(&text.into())))
 }
 
-fn interval(place: &str, interval: Interval) -> Result<Interval, InvalidInput> {
+fn interval(place: &invalid_input::Path, interval: Interval) -> Result<Interval, InvalidInput> {
     let Interval { from, to, scale, .. } = interval;
     let usable = |value: f64| value.is_finite() && (scale == Scale::Linear || value > 0.0);
     for (name, value, good) in [("from", from, usable(from)), ("to", to, usable(to) && to != from)] {
         if !good {
-            return Err(fault(format!("{place}.{name}"), number(value)));
+            return Err(fault(invalid_input::Path::from(name).within(place.clone()), number(value)));
         }
     }
     Ok(interval)

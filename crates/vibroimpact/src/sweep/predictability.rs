@@ -1,5 +1,6 @@
 //! Where the outcome can be predicted: its spread over one or two fields of a scene, under a stated blur.
 
+use invalid_input::{InvalidInput, Path, Step};
 use serde_json::{Map, Value, json};
 
 use super::definition::Sweep;
@@ -8,7 +9,6 @@ use super::file::read_tables_into;
 use super::values::Scale;
 use crate::draft::Draft;
 use crate::scene::FieldPath;
-use crate::scene::InvalidInput;
 use crate::scene::json::quote;
 
 /// A field over which the spread is mapped.
@@ -103,16 +103,18 @@ fn value(scene: &Value, field: &str) -> Result<f64, InvalidInput> {
 
 /// A fault of the sweep under the name of the option that caused it.
 fn of_option(fault: InvalidInput, over: &[Over]) -> InvalidInput {
-    let of_axis = |(i, over): (usize, &Over)| {
-        let rest = fault.field.strip_prefix(&format!("vary[{i}]."))?;
-        Some(format!("--over {}, {rest}", over.field))
-    };
-    let of_blur = || fault.field.strip_prefix("uncertain.").map(|field| format!("--blur {field}"));
-    let others = || match fault.field.as_str() {
-        "uncertain" => Some("--blur".to_owned()),
-        "sampling.draws" => Some("--draws".to_owned()),
-        of_scene => of_scene.strip_prefix("scene.").map(str::to_owned),
-    };
-    let field = over.iter().enumerate().find_map(of_axis).or_else(of_blur).or_else(others);
-    InvalidInput { field: field.unwrap_or_else(|| fault.field.clone()), ..fault }
+    match fault.field.steps() {
+        [Step::Field(list), Step::Index(i), inner @ ..] if list == "vary" && !inner.is_empty() => {
+            let inner = Path::from(inner);
+            let option = over.get(*i).map_or_else(String::new, |over| format!("--over {}", over.field));
+            fault.under(inner).in_place(option)
+        }
+        [Step::Field(name), field] if name == "uncertain" => {
+            let option = format!("--blur {}", Path::from(field.clone()));
+            fault.under(option)
+        }
+        [Step::Field(name)] if name == "uncertain" => fault.under("--blur"),
+        [Step::Field(name), Step::Field(draws)] if name == "sampling" && draws == "draws" => fault.under("--draws"),
+        _ => fault.without("scene"),
+    }
 }

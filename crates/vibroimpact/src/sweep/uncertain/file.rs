@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
@@ -10,7 +11,6 @@ use super::design::{Output, Sampling, Sequence, Uncertain};
 use super::distribution::Distribution;
 use super::sobol::MOST_COORDINATES;
 use crate::scene::FieldPath;
-use crate::scene::InvalidInput;
 use crate::scene::json::{number, quote};
 use crate::sweep::file::MAX_POINTS;
 use crate::sweep::results::Results;
@@ -134,7 +134,7 @@ pub(in crate::sweep) fn read(
         }
     };
     let field = |(name, value): (&String, &Value)| {
-        let fault = |allowed: &str| InvalidInput::new(format!("uncertain.{name}"), quote(value), allowed);
+        let fault = |allowed: &str| InvalidInput::new(["uncertain", name], quote(value), allowed);
         let path =
             FieldPath::parse(name).ok_or_else(|| fault("a distribution under the path of a field of the scene"))?;
         let distribution: Distribution = serde_json::from_value(value.clone()).map_err(|_| fault(DISTRIBUTION))?;

@@ -1,0 +1,34 @@
+//! One error for input that cannot be used: where it stands, its value, and what would be allowed.
+//!
+//! Whoever checks a number knows its name; whoever holds the object in which the number stands puts the object's name in
+//! front. The path of a field is therefore a list of typed [`Step`]s that grows from the inside out:
+//!
+//! ```
+//! use invalid_input::InvalidInput;
+//!
+//! fn mass(mass_kg: f64) -> Result<f64, InvalidInput> {
+//!     InvalidInput::require_positive("mass_kg", mass_kg)
+//! }
+//!
+//! let fault = mass(f64::NAN).unwrap_err().at(2).within("strikers");
+//! assert_eq!(fault.to_string(), "strikers[2].mass_kg = NaN is not allowed: a finite number greater than 0");
+//! ```
+//!
+//! Without the feature `alloc` the crate needs neither `std` nor an allocator. Names are then literals, and a path keeps its
+//! three innermost steps.
+#![no_std]
+// without an allocator a literal is a text already
+#![cfg_attr(not(feature = "alloc"), allow(clippy::useless_conversion))]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+
+mod error;
+mod path;
+mod told;
+mod value;
+
+pub use error::InvalidInput;
+pub use path::{Path, Step};
+pub use told::{LONGEST_VALUE, cut, printable};
+pub use value::{Text, Value};

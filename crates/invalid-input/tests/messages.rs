@@ -1,0 +1,77 @@
+//! What a fault says, and how its path grows.
+
+use invalid_input::{InvalidInput, Path, Step, Value, cut, printable};
+
+#[test]
+fn a_path_grows_from_the_inside_out() {
+    let fault = InvalidInput::require_positive("mass_kg", -1.0).unwrap_err();
+    assert_eq!(fault.field, "mass_kg");
+    let fault = fault.at(2).within("strikers");
+    assert_eq!(fault.field, "strikers[2].mass_kg");
+    assert_eq!(fault.field, Path::from(("strikers", 2, "mass_kg")));
+    assert_ne!(fault.field, "strikers[2].mass");
+    assert_ne!(fault.field, "strikers[2].mass_kg_m");
+    assert_eq!(fault.to_string(), "strikers[2].mass_kg = -1 is not allowed: a finite number greater than 0");
+}
+
+#[test]
+fn places_stand_before_the_fields_within_them() {
+    let fault = InvalidInput::missing("mass_kg", "a number").in_line(3).in_place("data.csv");
+    assert_eq!(fault.to_string(), "data.csv, line 3, mass_kg is missing: a number");
+    assert_eq!(fault.field.first(), None);
+}
+
+#[test]
+fn a_field_that_has_to_go_is_told_so() {
+    let fault = InvalidInput::new(["contact", "restitution"], 0.5, "left out: the law is hertz");
+    assert_eq!(fault.to_string(), "contact.restitution = 0.5 must be left out: the law is hertz");
+    assert_eq!(fault.within(Path::default()).field.first(), Some("contact"));
+}
+
+#[test]
+fn steps_say_what_a_text_would_not() {
+    // a name of the user's may hold what a path is written with
+    let path = Path::from_iter([Step::Field("a.b[0]".into()), Step::Index(1)]);
+    assert_eq!(path, "a.b[0][1]");
+    assert_eq!(path.steps().len(), 2);
+    assert_eq!(path.first(), Some("a.b[0]"));
+}
+
+#[test]
+fn numbers_are_short() {
+    for (number, text) in [
+        (1.0, "1"),
+        (0.1, "0.1"),
+        (1e-12, "0.000000000001"),
+        (1e-30, "1e-30"),
+        (-1.5e300, "-1.5e+300"),
+        (123_456_789_012_345.6, "123456789012345.6"),
+        (f64::NAN, "NaN"),
+        (f64::NEG_INFINITY, "-inf"),
+    ] {
+        assert_eq!(Value::from(number).to_string(), text);
+    }
+    assert_eq!(Value::from(7_usize).to_string(), "7");
+}
+
+#[test]
+fn messages_are_short_and_cannot_steer_a_terminal() {
+    let long = "9".repeat(400);
+    let fault = InvalidInput::new(format!("a\u{1b}{long}"), long.clone(), "less");
+    let told = fault.to_string();
+    assert!(told.chars().count() < 180, "{told}");
+    assert!(told.starts_with("a\\u{1b}99"), "{told}");
+    let once = cut(&long, 60).to_string();
+    assert_eq!((once.chars().count(), cut(&once, 60).to_string()), (60, once.clone()));
+    assert_eq!(cut("short", 5).to_string(), "short");
+    assert_eq!(printable("a\tb\u{202e}").to_string(), "a\tb\\u{202e}");
+    assert_eq!(InvalidInput::missing(Path::default(), "an object").to_string(), "the input is missing: an object");
+}
+
+#[test]
+fn a_parent_can_be_taken_away() {
+    let fault = InvalidInput::new(("segments", 0, "length_m"), 0_usize, "more");
+    let within = fault.clone().within("structure");
+    assert_eq!(within.clone().without("segments"), within);
+    assert_eq!(within.without("structure"), fault);
+}
