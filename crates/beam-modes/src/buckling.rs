@@ -2,6 +2,7 @@
 
 use crate::chain::Chain;
 use crate::flexure::Flexure;
+use crate::rigid::rigid_motions;
 use crate::roots::Characteristic;
 use invalid_input::InvalidInput;
 
@@ -11,7 +12,7 @@ const STILL: f64 = 1e-3;
 /// Refuses a compression under which the count of Wittrick and Williams finds a negative square of a frequency; the
 /// critical load is where it first does.
 pub(crate) fn require_stable(chain: &Chain) -> Result<(), InvalidInput> {
-    let rigid = crate::beam::rigid_motions(&chain.spans, chain.ends, &chain.nodes).len();
+    let rigid = rigid_motions(&chain.spans, chain.ends, &chain.nodes).len();
     let buckled = |tension: f64| {
         let mut spans = chain.spans.clone();
         spans.iter_mut().for_each(|span| span.tension = tension);

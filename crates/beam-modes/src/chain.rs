@@ -1,10 +1,9 @@
 //! A beam system as a dimensionless chain of uniform spans with nodes between them.
 
-use crate::beam::End;
+use crate::definition::{BeamSystem, End, held};
 use crate::location::require_on;
 use crate::node::Node;
 use crate::span::{Span, Units, nondimensional_beam};
-use crate::system::{BeamSystem, held};
 use crate::waves::SHORT;
 use invalid_input::InvalidInput;
 

@@ -4,9 +4,9 @@
 //! share of the force as uniform acceleration, and what remains is in equilibrium. The deflection is then made
 //! orthogonal to them.
 
-use crate::beam::End;
+use crate::definition::End;
 use crate::flexure::{allowed, constrained};
-use crate::piece::gauss;
+use crate::quadrature::gauss;
 use crate::span::Span;
 
 /// `(w, w', EI w'', (EI w'')')`.

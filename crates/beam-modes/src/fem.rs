@@ -4,7 +4,7 @@
 //! generalised eigenproblem `K v = omega^2 M v` is reduced by the Cholesky factor of `M`. Frequencies converge from
 //! above with the fourth power of the element length.
 
-use crate::beam::{Beam, End};
+use crate::definition::{Beam, End};
 use crate::location::require_on;
 use faer::linalg::solvers::{Llt, SelfAdjointEigen};
 use faer::{Mat, Side};

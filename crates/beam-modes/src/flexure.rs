@@ -5,14 +5,14 @@
 //! `k = q (m/EI)^(1/4)`. What the two theories of bending, axial force and foundation make of a span is in `waves`;
 //! what is fixed to the beam between spans is in `node`.
 
-use crate::beam::End;
+use crate::definition::End;
 use crate::node::Node;
 use crate::piece::Piece;
-use crate::plane::{Crossing, Handover, Plane, State, combine, form, reflect};
+use crate::plane::{Crossing, Handover, Plane, combine, form, reflect};
 use crate::roots::Characteristic;
 use crate::shapes::{Match, Waveguide};
 use crate::span::Span;
-use crate::waves::Waves;
+use crate::waves::{State, Waves};
 
 #[derive(Debug, Clone)]
 pub(crate) struct Flexure {

@@ -75,15 +75,19 @@ mod beam;
 mod buckling;
 mod chain;
 mod compliance;
+mod definition;
 pub mod fem;
 mod flexure;
+mod krylov;
 mod location;
 mod modes;
 mod node;
 mod piece;
 mod plane;
 mod plate;
+mod quadrature;
 mod remainder;
+mod rigid;
 mod rod;
 mod roots;
 mod shapes;
@@ -96,7 +100,7 @@ mod uniform;
 mod waves;
 
 pub use axial::RodEnd;
-pub use beam::{Beam, End, Segment};
+pub use definition::{Attachment, Beam, BeamSystem, End, Segment, ShearSection, Support};
 pub use invalid_input::InvalidInput;
 pub use modes::Modes;
 pub use plate::{Edge, Plate, PlateModes, PlateTheory};
@@ -106,7 +110,6 @@ pub use remainder::{
 };
 pub use rod::{Rod, RodSegment};
 pub use string::{TautString, TautStringModes};
-pub use system::{Attachment, BeamSystem, ShearSection, Support};
 
 /// Runs the example of the readme.
 #[cfg(doctest)]

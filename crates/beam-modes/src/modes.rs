@@ -2,7 +2,7 @@
 
 use crate::location::require_on;
 use crate::piece::Piece;
-use crate::span::{Span, Units, locate};
+use crate::span::{RESOLVABLE, Span, Units, locate};
 use invalid_input::InvalidInput;
 
 /// Natural modes of a beam or a rod, in ascending order of frequency.
@@ -32,9 +32,6 @@ pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInp
     }
     Ok(())
 }
-
-/// What an extreme chain of segments lacks.
-pub(crate) const RESOLVABLE: &str = "contrasts and sizes for which double precision resolves the modes";
 
 impl Modes {
     /// From dimensionless, mass-normalised shapes: rigid-body ones first, then elastic ones with their frequencies.

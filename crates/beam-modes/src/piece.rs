@@ -11,9 +11,10 @@
 //!
 //! Axial modes use the long form with `c = d = 0` (and the short one for the rigid motion).
 
-use crate::plane::State;
-use crate::superposition::Superposition;
-use crate::waves::{Waves, cosine_and_sine};
+use crate::krylov::krylov;
+use crate::quadrature::gauss;
+use crate::superposition::{Second, Superposition};
+use crate::waves::{Exponent, Form, State, Waves, cosine_and_sine};
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Piece {
@@ -37,37 +38,30 @@ pub(crate) enum Piece {
     },
 }
 
-/// The exponent of the second pair of waves.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Second {
-    /// `kappa`.
-    Decaying(f64),
-    /// `mu`.
-    Bounded(f64),
-}
-
-/// `[1/m!, 1/(m+4)!, 1/(m+8)!, ...]` for m = 0..4.
-const TAYLOR: [[f64; 6]; 4] = {
-    let mut table = [[0.0; 6]; 4];
-    let (mut n, mut inverse_factorial) = (0, 1.0);
-    while n < 24 {
-        table[n % 4][n / 4] = inverse_factorial;
-        n += 1;
-        inverse_factorial /= n as f64;
-    }
-    table
-};
-
-/// `sum_i (y^4)^i / (4i+m)!` for m = 0..4: times `y^m`, these are the functions of Krylov, `(cosh y + cos y)/2` and on.
-pub(crate) fn krylov(y: f64) -> [f64; 4] {
-    let y4 = (y * y) * (y * y);
-    TAYLOR.map(|row| row.iter().rev().fold(0.0, |sum, coefficient| sum * y4 + coefficient))
-}
-
 impl Piece {
     /// A wave of bending without shear, or an axial one: the rotation is the slope.
     pub fn slender(k: f64, length: f64, wave: [f64; 4]) -> Self {
         Piece::Long { k, second: Second::Decaying(k), length, wave, turns: [k, k] }
+    }
+
+    /// The solution whose amplitudes (long) or left-end state (short) are given, in units of its displacement.
+    pub fn of_waves(waves: &Waves, amplitudes: [f64; 4]) -> Piece {
+        let (k, length) = (waves.k, waves.length);
+        let [a, b, c, d] = amplitudes;
+        match waves.form {
+            Form::Short if waves.plain => Piece::Short { k, length, start: [a, b * k, c * k * k, d * k * k * k] },
+            Form::Short => Piece::Series { waves: *waves, start: amplitudes },
+            Form::Long(pair) => {
+                let [h1, h2] = pair.moments;
+                let travelling = h1 / pair.travelling * k;
+                let (second, wave, turn) = match pair.second {
+                    Exponent::Decaying(kappa) => (Second::Decaying(k * kappa), [a, b, c, d], h2 / kappa * k),
+                    // the odd function is mu sinh(sqrt(mu) x)/sqrt(mu) in x, not in k x
+                    Exponent::Bounded(mu) => (Second::Bounded(k * k * mu), [a, b, c, d / k], h2 * k * k),
+                };
+                Piece::Long { k: k * pair.travelling, second, length, wave, turns: [travelling, turn] }
+            }
+        }
     }
 
     /// The displacement at the distance `x` from the left end of the span.
@@ -337,19 +331,4 @@ fn short(k: f64, start: &[f64; 4], order: usize, x: f64) -> f64 {
         }
     };
     term(0) + term(1) + term(2) + term(3)
-}
-
-/// Positive nodes and weights of Gauss's rule with ten points (Abramowitz and Stegun, table 25.4).
-const GAUSS: [(f64, f64); 5] = [
-    (0.148_874_338_981_631_22, 0.295_524_224_714_752_87),
-    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
-    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
-    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
-    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
-];
-
-/// Gauss's rule with ten points on `[0, length]`: exact for polynomials up to degree 19.
-pub(crate) fn gauss(length: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let half = 0.5 * length;
-    GAUSS.iter().map(|(node, weight)| half * weight * (f(half * (1.0 + node)) + f(half * (1.0 - node)))).sum()
 }

@@ -6,9 +6,7 @@
 //! turned so that a single column holds the growing exponential, and that column is measured at the far end.
 
 use crate::piece::Piece;
-use crate::waves::{Form, Waves, decay};
-
-pub(crate) type State = [f64; 4];
+use crate::waves::{Form, State, Waves, decay};
 
 /// Two orthonormal columns.
 #[derive(Debug, Clone, Copy)]
@@ -170,9 +168,9 @@ impl Crossing {
         let [p, q] = self.triangle.solve(coefficients);
         let entry = combine(p, &self.entry[0], q * self.shrink, &self.entry[1]);
         let Form::Long(pair) = self.waves.form else {
-            return (self.waves.piece(entry), entry);
+            return (Piece::of_waves(&self.waves, entry), entry);
         };
         let arrived = self.arrived.map_or(entry[3], |arrived| q * arrived);
-        (self.waves.piece([entry[0], entry[1], entry[2], arrived]), pair.to_state(entry))
+        (Piece::of_waves(&self.waves, [entry[0], entry[1], entry[2], arrived]), pair.to_state(entry))
     }
 }

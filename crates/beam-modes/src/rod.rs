@@ -3,7 +3,8 @@
 use crate::axial::{Axial, RodEnd};
 use crate::location::require_on;
 use crate::modes::{Modes, require_count};
-use crate::piece::{Piece, gauss};
+use crate::piece::Piece;
+use crate::quadrature::gauss;
 use crate::roots::elastic_roots;
 use crate::shapes::shapes;
 use crate::span::{Span, Units, nondimensional};

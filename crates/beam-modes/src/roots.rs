@@ -8,7 +8,7 @@
 //! The two are computed differently, so that each checks the other: the sign of the characteristic function must be
 //! the parity of the count.
 
-use crate::modes::RESOLVABLE;
+use crate::span::RESOLVABLE;
 use invalid_input::InvalidInput;
 
 /// What the search asks at a trial value `q` (any increasing function of frequency).

@@ -1,8 +1,8 @@
 //! From natural frequencies to orthonormal mode shapes.
 
 use crate::piece::Piece;
-use crate::plane::State;
 use crate::span::Span;
+use crate::waves::State;
 
 /// A state at the left end of a span that (nearly) satisfies the conditions of both ends.
 #[derive(Debug, Clone, Copy)]

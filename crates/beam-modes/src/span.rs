@@ -2,8 +2,7 @@
 //!
 //! Lengths are measured in the total length, rigidity and mass per length in those of the first segment.
 
-use crate::beam::Beam;
-use crate::system::ShearSection;
+use crate::definition::{Beam, ShearSection};
 use invalid_input::InvalidInput;
 
 /// One uniform stretch, dimensionless.
@@ -58,6 +57,8 @@ impl Units {
 const MAX_CONTRAST: f64 = 1e12;
 const CONTRAST: &str = "within a factor 1e12 of the same property of every other segment";
 const SCALE: &str = "between 1e-60 and 1e60";
+/// What an extreme chain of segments lacks.
+pub(crate) const RESOLVABLE: &str = "contrasts and sizes for which double precision resolves the modes";
 
 /// Checks raw segments `[length, rigidity, mass per length]` and makes them dimensionless.
 ///

@@ -6,10 +6,11 @@
 //!
 //! Rigid-body motions take their share of the force as uniform acceleration, as in `compliance`.
 
-use crate::beam::{End, rigid_motions};
 use crate::chain::Chain;
+use crate::definition::End;
 use crate::node::Node;
-use crate::piece::gauss;
+use crate::quadrature::gauss;
+use crate::rigid::rigid_motions;
 use crate::span::Span;
 
 /// `(w, t, M, -V)`, scaled by the span's units.

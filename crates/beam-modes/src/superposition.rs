@@ -1,6 +1,13 @@
 //! Sums of sines and exponentials on a span, and the closed-form integrals of their products.
 
-use crate::piece::Second;
+/// The exponent of the second pair of waves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Second {
+    /// `kappa`.
+    Decaying(f64),
+    /// `mu`.
+    Bounded(f64),
+}
 
 /// `a cos kx + b sin kx`.
 #[derive(Debug, Clone, Copy)]

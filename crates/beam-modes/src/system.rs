@@ -1,99 +1,19 @@
-//! A beam with all that may be said of it: theory of bending, attachments, supports, axial force, foundation.
+//! Modes and static compliance of a beam with all that may be said of it: theory of bending, attachments, supports, axial
+//! force, foundation.
 
-use crate::beam::{Beam, End, rigid_motions, rigid_shape};
 use crate::buckling::require_stable;
 use crate::chain::Chain;
+use crate::definition::BeamSystem;
 use crate::flexure::Flexure;
 use crate::location::require_on;
 use crate::modes::{Modes, require_count};
 use crate::piece::Piece;
+use crate::rigid::{rigid_motions, rigid_shape};
 use crate::roots::elastic_roots;
 use crate::shapes::shapes;
-use crate::span::Units;
+use crate::span::{RESOLVABLE, Units};
 use crate::statics;
 use invalid_input::InvalidInput;
-
-/// What Timoshenko's theory needs of a segment beside its rigidity and mass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShearSection {
-    /// Shear rigidity `kappa G A`, N.
-    pub shear_rigidity_n: f64,
-    /// Rotary inertia per length `rho I`, kg m; zero neglects it.
-    pub rotary_inertia_kg_m: f64,
-}
-
-/// Springs and masses fixed to a beam at one location. Each of them may be zero, and is by default.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Attachment {
-    /// Distance from the left end, m.
-    pub location_m: f64,
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Rotary inertia about the axis of bending, kg m^2.
-    pub rotary_inertia_kg_m2: f64,
-    /// Spring to the ground, N/m.
-    pub spring_n_m: f64,
-    /// Rotational spring to the ground, N m/rad.
-    pub rotational_spring_n_m_rad: f64,
-}
-
-/// A rigid support between the ends: no displacement, no moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
-    /// Distance from the left end, m.
-    pub location_m: f64,
-}
-
-/// A beam by either theory of bending, and what is fixed to it.
-///
-/// Timoshenko's theory is exact in shear and rotary inertia: each segment has the frequencies of both spectra. Axial
-/// force and foundation are those of Euler-Bernoulli's theory.
-///
-/// ```
-/// use beam_modes::{Attachment, Beam, BeamSystem, End, Segment, ShearSection};
-/// // 1 m of steel, 50 mm square, pinned at both ends: shear and rotary inertia take a quarter of the tenth frequency
-/// let side: f64 = 0.05;
-/// let segment = Segment::rectangular(1.0, 2e11, 7800.0, side, side);
-/// let shear = ShearSection {
-///     shear_rigidity_n: 0.85 * 2e11 / 2.6 * side.powi(2),
-///     rotary_inertia_kg_m: 7800.0 * side.powi(4) / 12.0,
-/// };
-/// let slender = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
-/// let mut thick = BeamSystem { shear: Some(vec![shear]), ..BeamSystem::from(slender.clone()) };
-/// let ratio = thick.modes(10)?.omega_rad_s()[9] / slender.modes(10)?.omega_rad_s()[9];
-/// assert!((0.75..0.76).contains(&ratio));
-/// thick.attachments.push(Attachment { location_m: 0.5, mass_kg: 3.0, ..Attachment::default() });
-/// assert!(thick.modes(1)?.omega_rad_s()[0] < 0.9 * slender.modes(1)?.omega_rad_s()[0]);
-/// # Ok::<(), beam_modes::InvalidInput>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct BeamSystem {
-    /// Segments and ends.
-    pub beam: Beam,
-    /// One for each segment makes a Timoshenko beam; `None` leaves shear and rotary inertia out (Euler-Bernoulli).
-    pub shear: Option<Vec<ShearSection>>,
-    /// Springs and masses; those at one place add up.
-    pub attachments: Vec<Attachment>,
-    /// Rigid supports between the ends.
-    pub supports: Vec<Support>,
-    /// Axial force, N; tension is positive. It keeps its direction when an end moves. Euler-Bernoulli only.
-    pub axial_force_n: f64,
-    /// Stiffness per length of an elastic foundation along the whole beam, N/m^2. Euler-Bernoulli only.
-    pub foundation_n_m2: f64,
-}
-
-impl From<Beam> for BeamSystem {
-    fn from(beam: Beam) -> Self {
-        Self {
-            beam,
-            shear: None,
-            attachments: Vec::new(),
-            supports: Vec::new(),
-            axial_force_n: 0.0,
-            foundation_n_m2: 0.0,
-        }
-    }
-}
 
 impl BeamSystem {
     /// Whether segments and ends are all there is.
@@ -185,15 +105,7 @@ impl BeamSystem {
         if deflection.is_finite() {
             Ok(deflection * length_m.powi(3) / rigidity)
         } else {
-            Err(InvalidInput::new("segments", "as given", crate::modes::RESOLVABLE))
+            Err(InvalidInput::new("segments", "as given", RESOLVABLE))
         }
-    }
-}
-
-/// An end that a support holds.
-pub(crate) fn held(end: End) -> End {
-    match end {
-        End::Free | End::Pinned => End::Pinned,
-        End::Guided | End::Clamped => End::Clamped,
     }
 }

@@ -7,7 +7,7 @@
 //! whose last term is at most a fraction of the distance between roots: each `n` has exactly one root, and Newton's
 //! method finds it in a few steps.
 
-use crate::beam::End;
+use crate::definition::End;
 use std::f64::consts::PI;
 
 /// `k L` of the `n`-th elastic mode, `n = 1, 2, ...`

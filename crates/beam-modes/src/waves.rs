@@ -20,9 +20,10 @@
 //! travels above it (the second spectrum). Their product `kappa_1^2 mu = 1 - S J` is free of cancellation. Without
 //! shear, rotary inertia and tension both are 1, and every product with them is exact.
 
-use crate::piece::{Piece, Second, krylov};
-use crate::plane::State;
+use crate::krylov::krylov;
 use crate::span::Span;
+
+pub(crate) type State = [f64; 4];
 
 /// Up to this value of `k l` (and of the exponents times `l`) a span is short: sines and exponentials would be nearly
 /// dependent, and power series take their place.
@@ -37,7 +38,7 @@ pub(crate) struct Waves {
     rotary: f64,
     inertia: f64,
     /// Neither shear nor rotary inertia nor tension nor foundation.
-    plain: bool,
+    pub plain: bool,
     pub form: Form,
 }
 
@@ -51,14 +52,14 @@ pub(crate) enum Form {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pair {
     /// `kappa_1`.
-    travelling: f64,
-    second: Exponent,
+    pub travelling: f64,
+    pub second: Exponent,
     /// `kappa_1^2 - S` and `mu + S`: moment over displacement of either pair; their sum is `D`.
-    moments: [f64; 2],
+    pub moments: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Exponent {
+pub(crate) enum Exponent {
     /// `sqrt(mu)` of a pair that decays from both ends.
     Decaying(f64),
     /// `mu` of a pair that stays of one size over the span.
@@ -232,26 +233,6 @@ pub(crate) fn decay(y: f64) -> f64 {
 }
 
 impl Waves {
-    /// The solution whose amplitudes (long) or left-end state (short) are given, in units of its displacement.
-    pub fn piece(&self, amplitudes: [f64; 4]) -> Piece {
-        let (k, length) = (self.k, self.length);
-        let [a, b, c, d] = amplitudes;
-        match self.form {
-            Form::Short if self.plain => Piece::Short { k, length, start: [a, b * k, c * k * k, d * k * k * k] },
-            Form::Short => Piece::Series { waves: *self, start: amplitudes },
-            Form::Long(pair) => {
-                let [h1, h2] = pair.moments;
-                let travelling = h1 / pair.travelling * k;
-                let (second, wave, turn) = match pair.second {
-                    Exponent::Decaying(kappa) => (Second::Decaying(k * kappa), [a, b, c, d], h2 / kappa * k),
-                    // the odd function is mu sinh(sqrt(mu) x)/sqrt(mu) in x, not in k x
-                    Exponent::Bounded(mu) => (Second::Bounded(k * k * mu), [a, b, c, d / k], h2 * k * k),
-                };
-                Piece::Long { k: k * pair.travelling, second, length, wave, turns: [travelling, turn] }
-            }
-        }
-    }
-
     /// The span with its far end clamped: how many of its doubly clamped frequencies lie below, and its stiffness
     /// matrix at the near end, `[ww, wt, tt]` over the last number.
     ///

@@ -1,6 +1,6 @@
 //! Energy minimisation under outward constraints for several contacts and a structure already vibrating.
 
-use crate::program::Engine;
+use crate::engine::Engine;
 use crate::scaled::Scaled;
 use crate::{Outcome, Problem, Solution};
 use alloc::vec;

@@ -140,6 +140,8 @@ extern crate std;
 mod active_set;
 mod closed_form;
 #[cfg(feature = "qp")]
+mod engine;
+#[cfg(feature = "qp")]
 mod general;
 #[cfg(feature = "alloc")]
 pub mod lcp;

@@ -1,6 +1,7 @@
 //! The quadratic programs of a contact problem, in units in which everything is of order one.
 
-use crate::program::{Engine, Failure, Program};
+use crate::engine::{Engine, Failure};
+use crate::program::Program;
 use crate::{Friction, Mode, Outcome, Problem, Solution};
 use alloc::vec::Vec;
 use core::f64::consts::PI;

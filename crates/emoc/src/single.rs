@@ -1,7 +1,8 @@
 //! Problem P_1 of section 6.3 and its reduced form, for one striker and a structure at rest.
 
 use crate::closed_form::sum_of_squares;
-use crate::program::{Engine, Failure, Minimum, Program};
+use crate::engine::{Engine, Failure, Minimum};
+use crate::program::Program;
 use crate::require::require_positive;
 use crate::{Coefficients, SolveError};
 use alloc::vec::Vec;

@@ -1,147 +1,12 @@
-//! The problem, the fit, and the search over starting points.
+//! The search over starting points.
 
-use crate::intervals::covariance;
+use crate::error::FitError;
 use crate::objective::Objective;
+use crate::parameter::Parameter;
+use crate::problem::{Fit, Method, Outcome, Problem, Settings, Start};
 use crate::random::halton;
-use crate::{FitError, Parameter, Residuals, gradient_method, simplex};
-use invalid_input::InvalidInput;
-
-/// Residuals as a function of the parameters: reads the parameters, writes every residual.
-pub type ResidualsFn<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
-
-/// Least squares over a closure: find the parameters that make the sum of squared residuals least.
-///
-/// A residual that is NaN, infinite or beyond 1e100 marks parameters at which the model does not exist; the search
-/// stays away from them.
-pub struct Problem<'a> {
-    /// The parameters, in the order in which the closures take them.
-    pub parameters: Vec<Parameter>,
-    /// Number of residuals `m`, at least as many as parameters.
-    pub count: usize,
-    /// Writes the `m` residuals at the given parameters (in their own units, not transformed).
-    pub residuals: &'a ResidualsFn<'a>,
-    /// Writes the derivative of residual `i` in parameter `j` at `i * n + j`; central differences if absent.
-    pub jacobian: Option<&'a ResidualsFn<'a>>,
-}
-
-/// How to search.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// Levenberg-Marquardt from every start: fast and precise where residuals are smooth.
-    LevenbergMarquardt,
-    /// The simplex method from every start: needs no derivative, slow, for few parameters.
-    Simplex,
-    /// Levenberg-Marquardt from every start, then the simplex method from the best point, for residuals with
-    /// kinks: the first can stop at a kink, the second goes on along it.
-    Both,
-}
-
-/// Settings of a fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// Default [`Method::Both`].
-    pub method: Method,
-    /// Number of starting points: the parameters' own, then a Halton sequence over their search intervals (in the
-    /// transformed coordinates). Default 8.
-    pub starts: usize,
-    /// Points of the sequence at which the sum of squares is evaluated to choose the starting points from: those where it
-    /// is least. Default 0: the first of the sequence, whatever they are worth. Worth it where evaluating costs little
-    /// beside searching, and the sum of squares has many minima.
-    pub candidates: usize,
-    /// Relative change in the sum of squares and in the parameters at which a search ends, from 1e-15 to 0.1.
-    /// Default 1e-10. The search from each start ends at 1e-5 already, and the best goes on from there.
-    pub tolerance: f64,
-    /// Evaluations of the residuals that one search may take, those for differences aside. Default 2000.
-    pub max_evaluations: usize,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings { method: Method::Both, starts: 8, candidates: 0, tolerance: 1e-10, max_evaluations: 2000 }
-    }
-}
-
-/// How a search ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Outcome {
-    /// At a minimum, by the method's own tests.
-    Converged,
-    /// At the limit of evaluations; the parameters are the best seen.
-    LimitReached,
-    /// The model was not finite at the starting point, so that nothing was searched.
-    NonFinite,
-}
-
-/// One starting point and what became of it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Start {
-    /// The starting point.
-    pub from: Vec<f64>,
-    /// Where its search ended, to about five digits.
-    pub parameters: Vec<f64>,
-    /// Sum of squares there.
-    pub sum_of_squares: f64,
-    /// How it ended.
-    pub outcome: Outcome,
-}
-
-/// A fit.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fit {
-    /// The parameters found, in their own units.
-    pub parameters: Vec<f64>,
-    /// Sum of squared residuals.
-    pub sum_of_squares: f64,
-    /// How the search ended that found them.
-    pub outcome: Outcome,
-    /// The residuals.
-    pub residuals: Vec<f64>,
-    /// Their summary.
-    pub report: Residuals,
-    /// Every starting point. How many end at the same place tells how much the minimum can be trusted.
-    pub starts: Vec<Start>,
-    /// Evaluations of the residuals in all.
-    pub evaluations: usize,
-    /// Evaluations of the Jacobian in all.
-    pub jacobians: usize,
-    /// Covariance of the transformed coordinates, row by row; see [`Fit::intervals`].
-    pub(crate) covariance: Option<Vec<f64>>,
-    pub(crate) transforms: Vec<Parameter>,
-}
-
-impl Problem<'_> {
-    /// Checks the parameters and the number of residuals.
-    pub fn validate(&self) -> Result<(), InvalidInput> {
-        let n = self.parameters.len();
-        if n == 0 || n > 100 {
-            return Err(InvalidInput::new(["parameters", "len()"], n, "1 to 100 parameters"));
-        }
-        if self.count < n {
-            return Err(InvalidInput::new("count", self.count, "at least as many residuals as parameters"));
-        }
-        self.parameters.iter().try_for_each(Parameter::validate)
-    }
-}
-
-impl Settings {
-    /// Checks the ranges.
-    pub fn validate(&self) -> Result<(), InvalidInput> {
-        if !(1e-15..=0.1).contains(&self.tolerance) {
-            return Err(InvalidInput::new("tolerance", self.tolerance, "a number from 1e-15 to 0.1"));
-        }
-        if !(1..=100_000).contains(&self.starts) {
-            return Err(InvalidInput::new("starts", self.starts, "1 to 100000 starting points"));
-        }
-        if self.candidates > 1_000_000 {
-            return Err(InvalidInput::new("candidates", self.candidates, "0 to 1000000 points"));
-        }
-        if !(1..=100_000_000).contains(&self.max_evaluations) {
-            return Err(InvalidInput::new("max_evaluations", self.max_evaluations, "1 to 1e8 evaluations"));
-        }
-        Ok(())
-    }
-}
+use crate::report::Residuals;
+use crate::{gradient_method, simplex};
 
 /// Fits the parameters. The same input gives the same bits.
 ///
@@ -205,7 +70,7 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
             (u, value) = (found.u, found.value);
         }
     }
-    let covariance = covariance(&objective, &u, value, weights);
+    let covariance = objective.covariance(&u, value, weights);
     let parameters = objective.parameters(&u);
     // residuals without weights, of the points that took part
     (problem.residuals)(&parameters, &mut buffer);

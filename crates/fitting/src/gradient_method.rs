@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt, by the crate of that name (a port of MINPACK's `lmder`).
 
-use crate::Settings;
 use crate::objective::Objective;
+use crate::problem::Settings;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::{DMatrix, DVector, Dyn, U1, VecStorage};
 

@@ -1,12 +1,12 @@
 //! How well the parameters are known.
 
-use crate::FitError;
 use crate::distributions::two_sided_quantile;
-use crate::fit::{Fit, Problem, Settings, fit_weighted};
-use crate::objective::Objective;
+use crate::error::FitError;
+use crate::fit::fit_weighted;
+use crate::parameter::Parameter;
+use crate::problem::{Fit, Problem, Settings};
 use crate::random::Random;
 use invalid_input::InvalidInput;
-use nalgebra::DMatrix;
 
 /// An interval for a parameter, in its own unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ impl Fit {
         let n = self.parameters.len();
         let Some(covariance) = &self.covariance else { return Ok(None) };
         let t = two_sided_quantile(level, Some(self.report.count - n));
-        let interval = |(j, parameter): (usize, &crate::Parameter)| {
+        let interval = |(j, parameter): (usize, &Parameter)| {
             let (u, half) = (parameter.inward(self.parameters[j]), t * covariance[j * n + j].sqrt());
             Interval { low: parameter.outward(u - half), high: parameter.outward(u + half) }
         };
@@ -112,32 +112,4 @@ fn require_level(level: f64) -> Result<(), InvalidInput> {
     } else {
         Err(InvalidInput::new("level", level, "a probability from 0.01 to 0.9999"))
     }
-}
-
-/// `s^2 (J^T J)^-1` in the transformed coordinates, with columns scaled to length one before the inversion.
-pub(crate) fn covariance(
-    objective: &Objective,
-    u: &[f64],
-    sum_of_squares: f64,
-    weights: Option<&[f64]>,
-) -> Option<Vec<f64>> {
-    let (m, n) = (objective.problem.count, u.len());
-    let taking_part = weights.map_or(m, |weights| weights.iter().filter(|w| **w > 0.0).count());
-    let freedom = taking_part.checked_sub(n).filter(|&f| f > 0)?;
-    let mut rows = vec![0.0; m * n];
-    objective.jacobian(u, &mut rows);
-    let jacobian = DMatrix::from_row_slice(m, n, &rows);
-    let lengths: Vec<f64> = jacobian.column_iter().map(|column| column.norm()).collect();
-    if !lengths.iter().all(|length| *length > 0.0) {
-        return None;
-    }
-    let scaled = DMatrix::from_fn(m, n, |i, j| jacobian[(i, j)] / lengths[j]);
-    let factor = (scaled.transpose() * &scaled).cholesky()?;
-    // the square of a pivot is the share of a column that the others cannot imitate
-    if factor.l_dirty().diagonal().iter().any(|pivot| pivot * pivot < 1e-12) {
-        return None;
-    }
-    let inverse = factor.inverse();
-    let variance = sum_of_squares / freedom as f64;
-    Some((0..n * n).map(|k| variance * inverse[(k / n, k % n)] / (lengths[k / n] * lengths[k % n])).collect())
 }

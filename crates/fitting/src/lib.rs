@@ -47,6 +47,7 @@
 //! [`FitError::NonFiniteModel`]; where it is not finite on the way, the search turns back. A search that ends at its
 //! limit says so in its [`Outcome`]. No closure that returns makes the crate panic or loop without end.
 
+mod covariance;
 mod distributions;
 mod error;
 mod fit;
@@ -55,6 +56,7 @@ mod information;
 mod intervals;
 mod objective;
 mod parameter;
+mod problem;
 mod profile;
 mod random;
 mod report;
@@ -63,11 +65,12 @@ mod validation;
 
 pub use distributions::{chi_square_tail, fisher_tail, two_sided_quantile};
 pub use error::FitError;
-pub use fit::{Fit, Method, Outcome, Problem, ResidualsFn, Settings, Start, fit};
+pub use fit::fit;
 pub use information::{Direction, Information};
 pub use intervals::{Interval, bootstrap};
 pub use invalid_input::InvalidInput;
 pub use parameter::{Parameter, Range};
+pub use problem::{Fit, Method, Outcome, Problem, ResidualsFn, Settings, Start};
 pub use profile::{Profile, profile};
 pub use report::Residuals;
 pub use validation::{CrossValidation, Fold, cross_validate, k_folds};

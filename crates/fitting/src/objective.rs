@@ -1,6 +1,6 @@
 //! The residuals as functions of the unrestricted coordinates `u`.
 
-use crate::Problem;
+use crate::problem::Problem;
 use std::cell::Cell;
 
 /// What stands in for a residual that is not finite, or larger: a step there is always rejected.

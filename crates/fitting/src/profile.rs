@@ -5,9 +5,10 @@
 //! covariance does and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u` for a linear model, so
 //! that a secant finds the ends in few steps.
 
-use crate::fit::{Method, Problem, Settings};
+use crate::gradient_method;
 use crate::objective::{HUGE, Objective};
-use crate::{Parameter, Range, ResidualsFn, gradient_method};
+use crate::parameter::{Parameter, Range};
+use crate::problem::{Method, Problem, ResidualsFn, Settings};
 use invalid_input::InvalidInput;
 
 /// Doublings of the step after which an end is taken to be open.

@@ -1,8 +1,10 @@
 //! How well a fit predicts data that it has not seen.
 
-use crate::fit::{Outcome, Problem, Settings, fit_weighted};
+use crate::error::FitError;
+use crate::fit::fit_weighted;
+use crate::problem::{Outcome, Problem, Settings};
 use crate::random::Random;
-use crate::{FitError, Residuals};
+use crate::report::Residuals;
 use invalid_input::InvalidInput;
 
 /// One group left out.

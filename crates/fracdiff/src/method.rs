@@ -1,11 +1,10 @@
 //! The methods and their settings.
 
 use crate::collocation::Collocation;
-use crate::convolution::Convolution;
+use crate::convolution::{Convolution, Scheme};
 use crate::exponential::{GalerkinStates, SumOfExponentials};
 use crate::problem::Volterra;
 use crate::solution::Solution;
-use crate::system::System;
 use invalid_input::InvalidInput;
 
 /// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
@@ -39,8 +38,7 @@ impl Method {
         }
     }
 
-    pub(crate) fn run(&self, problem: &Volterra<'_>, t_end: f64) -> Result<Solution, InvalidInput> {
-        use crate::convolution::Scheme;
+    fn run(&self, problem: &Volterra<'_>, t_end: f64) -> Result<Solution, InvalidInput> {
         match self {
             Method::GrunwaldLetnikov(settings) => {
                 crate::convolution::run(problem, Scheme::GrunwaldLetnikov, settings, t_end)
@@ -54,10 +52,16 @@ impl Method {
     }
 }
 
-/// Checks a number of steps, and that the samples of the solution and the density fit into a sensible memory.
-pub(crate) fn require_steps(steps: usize, system: &System<'_, '_>) -> Result<usize, InvalidInput> {
-    InvalidInput::unless((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
-    let samples = steps * (system.unknowns + system.densities);
-    InvalidInput::unless(samples <= 1 << 28, "steps", steps, "few enough for 2^28 values of solution and density")
-        .map(|()| steps)
+impl Volterra<'_> {
+    /// Solves the problem on `[0, t_end]` and ends exactly at `t_end`.
+    ///
+    /// What the run met on its way (a terminal event, a value that is not finite, a limit) is the
+    /// [`stop`](Solution::stop) of the solution, which then reaches as far as it could be computed.
+    ///
+    /// # Errors
+    ///
+    /// [`InvalidInput`] for a problem or settings that no run could start from.
+    pub fn solve(&self, method: &Method, t_end: f64) -> Result<Solution, InvalidInput> {
+        method.run(self, t_end)
+    }
 }

@@ -1,9 +1,5 @@
 //! The problem: a system of weakly singular Volterra equations of the second kind.
 
-use crate::method::Method;
-use crate::solution::Solution;
-use invalid_input::InvalidInput;
-
 /// One memory term: `coefficient * integral_0^t (t-s)^(order-1) f_density(s, y(s)) ds` in the equation of `y_unknown`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
@@ -144,18 +140,6 @@ impl<'a> Volterra<'a> {
     pub fn with_event(mut self, event: Event<'a>) -> Self {
         self.events.push(event);
         self
-    }
-
-    /// Solves the problem on `[0, t_end]` and ends exactly at `t_end`.
-    ///
-    /// What the run met on its way (a terminal event, a value that is not finite, a limit) is the
-    /// [`stop`](Solution::stop) of the solution, which then reaches as far as it could be computed.
-    ///
-    /// # Errors
-    ///
-    /// [`InvalidInput`] for a problem or settings that no run could start from.
-    pub fn solve(&self, method: &Method, t_end: f64) -> Result<Solution, InvalidInput> {
-        method.run(self, t_end)
     }
 }
 

@@ -1,9 +1,8 @@
 //! Remainder modes of a beam whose modes are known as far as one likes.
 
 use super::{PointMode, PointsMode, remainder_at_points, remainder_modes};
-use crate::beam::Beam;
+use crate::definition::{Beam, BeamSystem};
 use crate::modes::Modes;
-use crate::system::BeamSystem;
 use invalid_input::InvalidInput;
 
 /// How many modes to compute so that what lies beyond them hardly tells in the remainder of the first `kept`: twice as

@@ -1,8 +1,8 @@
 //! Marching through one segment with fast history.
 
-use super::Scheme;
 use super::fft::{Spectrum, Transform};
 use super::past::Past;
+use super::scheme::Scheme;
 use super::weights::{Weights, start_exponents};
 use crate::implicit::{self, Block, Stage};
 use crate::recorder::Recorder;

@@ -7,20 +7,20 @@
 mod fft;
 mod march;
 mod past;
+mod scheme;
 mod weights;
 
 use crate::dense::Dense;
-use crate::method::require_steps;
 use crate::problem::Volterra;
 use crate::recorder::Recorder;
 use crate::solution::{Counts, Solution, Stop};
-use crate::system::System;
+use crate::system::{System, require_steps};
 use invalid_input::InvalidInput;
 use march::March;
 use past::Past;
-use weights::Weights;
 
 pub(crate) use fft::product;
+pub(crate) use scheme::Scheme;
 
 /// Settings of the methods on equal steps.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,41 +33,6 @@ pub struct Convolution {
 impl Default for Convolution {
     fn default() -> Self {
         Convolution { steps: 1000 }
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Scheme {
-    GrunwaldLetnikov,
-    L1,
-    Trapezoidal,
-}
-
-impl Scheme {
-    fn weights(self, order: f64, steps: usize, exponents: &[f64]) -> Weights {
-        match self {
-            Scheme::GrunwaldLetnikov => weights::grunwald_letnikov(order, steps),
-            Scheme::L1 => weights::l1(order, steps),
-            Scheme::Trapezoidal => {
-                let mut weights = weights::trapezoidal(order, steps);
-                if exponents.len() > 2 {
-                    weights::add_corrections(&mut weights, order, exponents);
-                }
-                weights
-            }
-        }
-    }
-
-    /// Corrections for the singular start of a segment in the past; the methods of first order need none.
-    fn start_corrections(self, orders: &[f64]) -> Vec<f64> {
-        let exponents = weights::start_exponents(orders);
-        let wanted = self == Scheme::Trapezoidal && exponents.len() > 2;
-        if wanted { weights::start_corrections(&exponents) } else { Vec::new() }
-    }
-
-    /// Degree of the interpolation between grid points: one more than the order needs.
-    fn degree(self) -> usize {
-        if self == Scheme::Trapezoidal { 3 } else { 1 }
     }
 }
 

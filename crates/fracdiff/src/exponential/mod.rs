@@ -7,10 +7,9 @@ mod sum;
 pub use das_chatterjee::DasChatterjee;
 pub use sum::ExponentialSum;
 
-use crate::method::require_steps;
 use crate::problem::Volterra;
 use crate::solution::Solution;
-use crate::system::System;
+use crate::system::{System, require_steps};
 use invalid_input::InvalidInput;
 use march::{Kernel, Mesh};
 

@@ -137,14 +137,12 @@ pub(crate) fn look_up(fields: &[(&str, &'static str)], name: &str) -> Option<&'s
     fields.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
 }
 
-/// The name at the end of a path, of a list where an item of it is meant.
+/// The name at the end of a path, of a list where an item of it is meant; empty where the whole is.
 pub(crate) fn name_at(path: &Path) -> String {
-    match path.steps().iter().rposition(|step| !matches!(step, Step::Index(_))) {
-        Some(last) => {
-            let items = if last + 1 < path.steps().len() { "[]" } else { "" };
-            format!("{}{items}", Path::from(path.steps()[last].clone()))
-        }
-        None => String::new(),
+    match path.steps() {
+        [.., Step::Field(name)] => name.clone(),
+        [.., Step::Field(list), Step::Index(_)] => format!("{list}[]"),
+        _ => String::new(),
     }
 }
 
