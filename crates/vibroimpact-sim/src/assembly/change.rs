@@ -6,53 +6,12 @@
 
 use super::load_change::LoadChange;
 use super::problem::Posed;
+use super::stencil::Stencil;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
 /// Nearer to critical damping, in `|1 - zeta^2|`, a change of the damping has no digits.
 const CRITICAL: f64 = 1e-6;
-
-/// Neighbouring values of a parameter, and what they say about the slope at the value between them or beside them: that of
-/// the polynomial through them.
-///
-/// ```
-/// use vibroimpact_sim::modal::Stencil;
-///
-/// // at a bound, exact for polynomials of third degree
-/// let slope = Stencil::new([0.1, 0.2, 0.3, 0.4]).slope([0.1, 0.2, 0.3, 0.4].map(|x: f64| 2.0 * x + x.powi(3)));
-/// assert!((slope - 2.0).abs() < 1e-13);
-/// ```
-#[derive(Debug, Clone, Copy)]
-pub struct Stencil<const N: usize> {
-    /// Distances from the value, in its unit.
-    pub offsets: [f64; N],
-    weights: [f64; N],
-}
-
-impl<const N: usize> Stencil<N> {
-    /// From distances that differ from each other; zero, the value itself, may be among them.
-    pub fn new(offsets: [f64; N]) -> Stencil<N> {
-        // derivative at zero of Lagrange's polynomials
-        let weight = |i: usize| {
-            let others = || (0..N).filter(|j| *j != i);
-            let scale: f64 = others().map(|j| offsets[i] - offsets[j]).product();
-            let without = |skip: usize| others().filter(|j| *j != skip).map(|j| -offsets[j]).product::<f64>();
-            others().map(without).sum::<f64>() / scale
-        };
-        Stencil { offsets, weights: std::array::from_fn(weight) }
-    }
-
-    /// Slope from the values there (their unit over that of the distances): exactly zero where they are all the same.
-    pub fn slope(&self, values: [f64; N]) -> f64 {
-        (1..N).map(|i| self.weights[i] * (values[i] - values[0])).sum()
-    }
-}
-
-impl Stencil<4> {
-    pub(crate) fn central(step: f64) -> Stencil<4> {
-        Stencil::new([-2.0 * step, -step, step, 2.0 * step])
-    }
-}
 
 /// What a unit of a parameter changes, by modes in the order of [`System`].
 pub(crate) struct Change<'a> {

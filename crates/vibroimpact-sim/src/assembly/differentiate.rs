@@ -1,10 +1,11 @@
 //! How a run of an assembly changes with the numbers that pose it.
 
-use super::change::{Change, Stencil};
+use super::change::Change;
 use super::no_derivative::NoDerivative;
 use super::problem::{Assembly, Point, Posed, Settings};
 use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Solver, follow};
+use super::stencil::Stencil;
 use super::system::System;
 use super::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use contact_models::ContactLaw;

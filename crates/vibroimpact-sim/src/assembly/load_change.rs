@@ -4,9 +4,9 @@
 //! the parameter gives the change at a fixed time. Where the time itself is shifted, the rate of that motion times the shift
 //! comes on top of it; that part belongs to whoever knows the shift.
 
-use super::change::Stencil;
 use super::load::Loads;
 use super::problem::Posed;
+use super::stencil::Stencil;
 use super::system::System;
 use std::array;
 

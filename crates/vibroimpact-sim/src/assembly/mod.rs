@@ -68,6 +68,7 @@ mod rest;
 mod solution;
 pub(crate) mod solve;
 mod state;
+mod stencil;
 pub(crate) mod system;
 pub(crate) mod tables;
 pub(crate) mod tangent;
@@ -75,7 +76,6 @@ mod terminal;
 mod wave;
 
 pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
-pub use change::Stencil;
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
 pub use no_derivative::NoDerivative;
 pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit};
@@ -85,3 +85,4 @@ pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,
 };
 pub use solve::{Solver, run};
+pub use stencil::Stencil;

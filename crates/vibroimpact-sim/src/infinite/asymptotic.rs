@@ -13,7 +13,7 @@
 //! contact ends on this solution; its compression is `x = (f / sqrt(S))^(2/3)`. A body attached to
 //! a plate has `u = exp(-t)`.
 
-use super::Structure;
+use super::problem::Structure;
 use std::f64::consts::PI;
 
 /// Motion of a body in sustained contact at large times, in the units of

@@ -1,7 +1,8 @@
 //! The equations of one panel, and Newton's method for them.
 
 use super::panel::hertz;
-use super::rule::{NODES, dot};
+use super::problem::NODES;
+use super::rule::dot;
 
 /// `x_i + sum_j m_ij f(x_j) = known_i` with `f = x_+^(3/2)`, and room for solving it: kept from one panel to the next.
 #[derive(Debug, Default)]

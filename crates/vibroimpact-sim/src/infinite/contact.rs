@@ -18,10 +18,11 @@ use super::flight::Departure;
 use super::free::{Forcing, Free};
 use super::history::{History, Impulse};
 use super::panel::{Panel, curvature, end_acceleration, hertz, root, turns, variable};
+use super::piece::Piece;
+use super::problem::{Settings, Structure};
 use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;
 use super::units::{Touch, Units};
-use super::{Settings, Structure};
 
 /// How the march through a contact ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,28 +35,6 @@ pub(super) enum Ending {
     Minimum(f64),
     /// The limit on panels was reached at this time after touch.
     Limit(f64),
-}
-
-/// A panel as the solution keeps it.
-#[derive(Debug, Clone)]
-pub(super) struct Piece {
-    pub kind: Kind,
-    /// Time from touch to the panel's start, in natural units.
-    pub start: f64,
-    pub h: f64,
-    /// Compression at the nodes.
-    pub x: Vec<f64>,
-    /// `int xi_+^(3/2)` from touch to the panel's start, in natural units.
-    pub impulse: f64,
-    /// `int (start - theta) xi_+^(3/2)` from touch to the panel's start.
-    pub moment: f64,
-}
-
-impl Piece {
-    /// The panel again, on the time origin of touch.
-    pub fn panel(&self, tables: &Tables) -> Panel {
-        Panel::new(tables, self.kind, self.start, self.h, self.x.clone())
-    }
 }
 
 /// A local extremum of the compression within a contact.

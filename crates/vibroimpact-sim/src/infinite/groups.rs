@@ -1,6 +1,6 @@
 //! Physical parameters and the groups that make the problem nondimensional (thesis 2.2).
 
-use super::Structure;
+use super::problem::Structure;
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 

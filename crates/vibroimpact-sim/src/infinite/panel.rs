@@ -1,7 +1,7 @@
 //! One panel of a contact: its collocation solution, and what it does to later times.
 
-use super::Structure;
-use super::rule::{Kind, NODES, Tables, dot, series, series_slope};
+use super::problem::{NODES, Structure};
+use super::rule::{Kind, Tables, dot, series, series_slope};
 
 /// A solved panel, in the scaled units of its contact (see [`super::contact`]).
 #[derive(Debug, Clone)]

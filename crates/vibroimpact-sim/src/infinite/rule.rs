@@ -12,13 +12,10 @@
 //! The product weights integrate the polynomial interpolant of the force exactly against the
 //! kernels `t - s` and `sqrt(t - s)` (or 1 for the plate).
 
-use super::Structure;
+use super::problem::{NODES, Structure};
 use gauss_quad::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::OnceLock;
-
-/// Smallest and largest number of nodes a panel may have.
-pub(super) const NODES: std::ops::RangeInclusive<usize> = 8..=32;
 
 /// Where in a contact a panel lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,7 @@
 //! orthogonal to every `phi_k` (Eqs. 2.23, 2.25), by Newton's method and continuation from the
 //! gentle limit, in which the beam stands still.
 
-use super::S_RANGE;
+use super::problem::S_RANGE;
 use super::rule::gauss;
 use invalid_input::InvalidInput;
 

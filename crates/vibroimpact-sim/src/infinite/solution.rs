@@ -1,10 +1,10 @@
 //! The result of a run, and its evaluation at any time.
 
-use super::Structure;
-use super::contact::Piece;
 use super::flight::Departure;
 use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
+use super::piece::Piece;
+use super::problem::Structure;
 use super::rule::{Kind, Tables, gauss, series};
 use super::units::Units;
 use crate::StopReason;

@@ -2,9 +2,9 @@
 
 use super::contact::{Ending, March};
 use super::history::History;
+use super::problem::{S_RANGE, Settings, Structure};
 use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
 use super::units::Touch;
-use super::{S_RANGE, Settings, Structure};
 use crate::StopReason;
 use invalid_input::InvalidInput;
 

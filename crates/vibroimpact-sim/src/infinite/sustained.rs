@@ -21,11 +21,12 @@
 //! On a plate `k` falls with the compression while the damping does too, faster: the body always
 //! leaves, whatever `S`, and no contact lasts.
 
-use super::contact::Piece;
+use super::asymptotic::attached;
 use super::panel::hertz;
+use super::piece::Piece;
+use super::problem::Structure;
 use super::rule::{Kind, Tables};
 use super::units::Units;
-use super::{Structure, attached};
 
 /// Follows the force ratio of one contact.
 pub(super) struct Watch {

@@ -5,7 +5,7 @@
 //! separation exists for `S` below the `n`-th turning point; there the minimum of the compression,
 //! negative in flight and positive in contact, passes through zero.
 
-use super::Settings;
+use super::problem::Settings;
 use super::solve::{nth_minimum, speed_after_first};
 use invalid_input::InvalidInput;
 

@@ -1,6 +1,6 @@
 //! What a contact starts from, and the units in which it is solved.
 
-use super::Structure;
+use super::problem::Structure;
 
 /// What is fixed at touch.
 #[derive(Debug, Clone, Copy)]

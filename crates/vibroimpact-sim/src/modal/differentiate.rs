@@ -5,15 +5,15 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
 use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
 use crate::assembly::change::Change;
-pub use crate::assembly::change::Stencil;
 use crate::assembly::differentiate::{COARSER, Known, check_offsets};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
-pub use crate::assembly::{Derivative, NoDerivative};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
+
+pub use crate::assembly::{Derivative, NoDerivative, Stencil};
 
 /// An impact, all of it.
 #[derive(Clone, Copy)]

@@ -2,11 +2,11 @@
 
 use super::problem::{Mode, Start, Striker};
 use super::solution::{Outcome, Solution};
-use super::solve::all_modes;
 use crate::assembly::dense::{Panel, Stretch};
 use crate::assembly::load::Loads;
 use crate::assembly::system::System;
 use crate::panel::legendre::BASIS;
+use crate::panel::oscillator::propagate;
 use contact_models::ContactLaw;
 
 /// Motion and force at one time. Displacements are positive away from the side that is struck.
@@ -186,4 +186,23 @@ impl<L> Recorded<L> {
 fn energies(modes: &[Mode], amplitude: &[f64], rate: &[f64]) -> Vec<f64> {
     let energy = |(k, mode): (usize, &Mode)| 0.5 * (rate[k].powi(2) + (mode.omega_rad_s * amplitude[k]).powi(2));
     modes.iter().enumerate().map(energy).collect()
+}
+
+/// All modes of a structure at a time, of which these have moved like this under the contact; the others move freely.
+pub(crate) fn all_modes(
+    modes: &[Mode],
+    moved: &[usize],
+    start: &Start,
+    time_s: f64,
+    (amplitude, rate): (&[f64], &[f64]),
+) -> (Vec<f64>, Vec<f64>) {
+    let free = |(k, mode): (usize, &Mode)| propagate(&mode.of_body(), time_s).apply(start.amplitude[k], start.rate[k]);
+    let mut all: Vec<(f64, f64)> = match moved.len() == modes.len() {
+        true => vec![(0.0, 0.0); modes.len()],
+        false => modes.iter().enumerate().map(free).collect(),
+    };
+    for (k, motion) in moved.iter().zip(amplitude.iter().copied().zip(rate.iter().copied())) {
+        all[*k] = motion;
+    }
+    all.into_iter().unzip()
 }

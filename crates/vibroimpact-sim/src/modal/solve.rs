@@ -1,6 +1,6 @@
 //! From first touch to the certainty that the bodies never meet again.
 
-use super::history::{History, Recorded};
+use super::history::{History, Recorded, all_modes};
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
@@ -12,7 +12,6 @@ use crate::assembly::solve::follow;
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
 use crate::assembly::{self, Interval, Ledger, Observer};
-use crate::panel::oscillator::propagate;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 
@@ -367,23 +366,4 @@ fn stop_reason(reason: assembly::Reason, closed: bool) -> StopReason {
         assembly::Reason::Chatter => StopReason::DigitsExhausted,
         assembly::Reason::Law => StopReason::Law,
     }
-}
-
-/// All modes of a structure at a time, of which these have moved like this under the contact; the others move freely.
-pub(crate) fn all_modes(
-    modes: &[Mode],
-    moved: &[usize],
-    start: &Start,
-    time_s: f64,
-    (amplitude, rate): (&[f64], &[f64]),
-) -> (Vec<f64>, Vec<f64>) {
-    let free = |(k, mode): (usize, &Mode)| propagate(&mode.of_body(), time_s).apply(start.amplitude[k], start.rate[k]);
-    let mut all: Vec<(f64, f64)> = match moved.len() == modes.len() {
-        true => vec![(0.0, 0.0); modes.len()],
-        false => modes.iter().enumerate().map(free).collect(),
-    };
-    for (k, motion) in moved.iter().zip(amplitude.iter().copied().zip(rate.iter().copied())) {
-        all[*k] = motion;
-    }
-    all.into_iter().unzip()
 }

@@ -2,7 +2,7 @@
 
 use super::panel::Moved;
 use super::walk::{IntervalChange, LAW_STEP, Tangent, Walk, shifted, size_of, sum};
-use crate::assembly::change::Stencil;
+use crate::assembly::stencil::Stencil;
 use crate::assembly::dense::Event;
 use crate::assembly::no_derivative::NoDerivative;
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory};

@@ -2,7 +2,7 @@
 
 use super::expansion::Expansion;
 use super::walk::{LAW_STEP, Walk, shifted, size_of};
-use crate::assembly::change::Stencil;
+use crate::assembly::stencil::Stencil;
 use crate::assembly::dense::Stretch;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;

@@ -1,0 +1,66 @@
+//! The problem and how accurately it is solved.
+
+use invalid_input::InvalidInput;
+
+/// Smallest and largest number of nodes a panel may have.
+pub(super) const NODES: std::ops::RangeInclusive<usize> = 8..=32;
+
+/// Smallest and largest `S` that [`solve`] accepts.
+pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e8;
+
+/// The struck structure, which decides the kernel `K` of the Volterra equation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Structure {
+    /// Infinite Euler-Bernoulli beam: `K = sqrt(t)` (thesis Eq. 2.1).
+    Beam,
+    /// Thin infinite plate: `K = 1` (Zener 1941; thesis 2.1).
+    Plate,
+}
+
+/// Accuracy and extent of a solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Collocation nodes per panel, 8 to 32. Default 20.
+    pub nodes: usize,
+    /// Largest relative size of the last Legendre coefficients of the force in a panel, 1e-14 to
+    /// 1e-3. Default 1e-10.
+    pub tolerance: f64,
+    /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
+    /// it takes to know that it lasts.
+    pub horizon: f64,
+    /// Whether to solve a second time with more nodes, for [`Solution::error`]. Default true.
+    pub estimate_error: bool,
+    /// Most panels to try before stopping ([`StopReason::Steps`](crate::StopReason)). Default 200,000. Only `S`
+    /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at
+    /// a relative distance of 1e-3, 1,008 at 1e-5, 4,401 at 1e-6 and more than 16,000 at 1e-7; nearer still times leave
+    /// the range of numbers first ([`StopReason::DigitsExhausted`](crate::StopReason)).
+    pub max_panels: usize,
+    /// Most contacts to follow: 1 for the first alone. Where the body would come back once more, the run stops
+    /// ([`StopReason::SubImpacts`](crate::StopReason)), known up to the next touch. Default: no limit.
+    pub max_contacts: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            nodes: 20,
+            tolerance: 1e-10,
+            horizon: 0.0,
+            estimate_error: true,
+            max_panels: 200_000,
+            max_contacts: usize::MAX,
+        }
+    }
+}
+
+impl Settings {
+    pub(super) fn check(&self) -> Result<(), InvalidInput> {
+        InvalidInput::unless(NODES.contains(&self.nodes), "nodes", self.nodes, "8 to 32")?;
+        let tolerance = (1e-14..=1e-3).contains(&self.tolerance);
+        InvalidInput::unless(tolerance, "tolerance", self.tolerance, "1e-14 to 1e-3")?;
+        let horizon = (0.0..=1e12).contains(&self.horizon);
+        InvalidInput::unless(horizon, "horizon", self.horizon, "0 to 1e12 (units of T)")?;
+        InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")?;
+        InvalidInput::unless(self.max_contacts > 0, "max_contacts", self.max_contacts, "at least 1")
+    }
+}
