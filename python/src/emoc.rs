@@ -74,7 +74,7 @@ fn restitution(
     let mut keep = |found: InvalidInput| {
         fault.get_or_insert(found);
     };
-    let sites = shapes.map_axis(last, |phi| Site::new(&phi.to_vec()).map_err(|found| keep(found)).ok());
+    let sites = shapes.map_axis(last, |phi| Site::new(&phi.to_vec()).map_err(&mut keep).ok());
     let mut restitution = ArrayD::from_elem(common, f64::NAN);
     // numpy has found the common shape, to which both can be spread
     if let (Some(mass_kg), Some(sites)) = (mass_kg.broadcast(common), sites.broadcast(common)) {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
@@ -107,20 +107,20 @@ impl DroppedRod {
 impl Scene {
     /// The fall of a rod in the terms of the solver.
     pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
-        let left_out = |field: &str, value: Option<String>| match value {
+        let left_out = |field: Path, value: Option<String>| match value {
             Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),
             None => Ok(()),
         };
         let Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;
-        left_out("striker.mass_kg", mass_kg.map(number))?;
-        left_out("striker.density_kg_m3", density_kg_m3.map(number))?;
-        left_out("striker.radius_m", radius_m.map(number))?;
-        left_out("striker.immovable", immovable.then(|| "true".to_owned()))?;
-        left_out("location_m", self.location_m.map(|place| place.to_string()))?;
-        left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
-        left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
-        left_out("residual_compliance", self.residual_compliance.map(|on| on.to_string()))?;
-        left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        left_out(["striker", "mass_kg"].into(), mass_kg.map(number))?;
+        left_out(["striker", "density_kg_m3"].into(), density_kg_m3.map(number))?;
+        left_out(["striker", "radius_m"].into(), radius_m.map(number))?;
+        left_out(["striker", "immovable"].into(), immovable.then(|| "true".to_owned()))?;
+        left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
+        left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
+        left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance".into(), self.residual_compliance.map(|on| on.to_string()))?;
+        left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
         let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
         let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.first() {
             Some("speed_m_s") => fault.within("striker"),

@@ -1,6 +1,6 @@
 //! What may be fixed to a beam, and how it is damped.
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -57,7 +57,7 @@ impl Damping<'_> {
             require_not_negative(field, field, value)?;
         }
         for (k, &value) in self.ratios.iter().enumerate() {
-            require_not_negative(&format!("damping_ratios[{k}]"), "damping_ratio", value)?;
+            require_not_negative(("damping_ratios", k), "damping_ratio", value)?;
         }
         Ok(())
     }
@@ -76,7 +76,7 @@ impl Damping<'_> {
 /// Largest damping ratio that the solver takes.
 const MOST_DAMPING: f64 = 1e6;
 
-fn require_not_negative(path: &str, field: &str, value: f64) -> Result<(), InvalidInput> {
+fn require_not_negative(path: impl Into<Path>, field: &str, value: f64) -> Result<(), InvalidInput> {
     let most = if field == "damping_ratio" { MOST_DAMPING } else { f64::MAX };
     if value >= 0.0 && value <= most {
         return Ok(());

@@ -1,6 +1,6 @@
 //! Infinite structures of a scene, and their impact in the terms of [`vibroimpact_sim::infinite`].
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::infinite;
@@ -79,18 +79,18 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn infinite_impact(&self) -> Result<infinite::Impact, InvalidInput> {
-        let left_out = |field: &str, value: Option<String>| match value {
+        let left_out = |field: Path, value: Option<String>| match value {
             Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
             None => Ok(()),
         };
         self.require_yield_strength()?;
-        left_out("location_m", self.location_m.map(|place| place.to_string()))?;
-        left_out("location", self.location.as_ref().map(|name| format!("{name:?}")))?;
-        left_out("start", self.start.as_ref().map(|_| "{...}".to_owned()))?;
-        left_out("striker.immovable", self.striker.immovable.then(|| "true".to_owned()))?;
-        left_out("modes", self.modes.count().map(|modes| modes.to_string()))?;
-        left_out("residual_compliance", self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
-        left_out("tolerance", self.tolerance.map(number))?;
+        left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
+        left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
+        left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        left_out(["striker", "immovable"].into(), self.striker.immovable.then(|| "true".to_owned()))?;
+        left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
+        left_out("tolerance".into(), self.tolerance.map(number))?;
         let Contact::Hertz(stiffness) = &self.contact else {
             let law = format!("\"{}\"", self.contact.law_name());
             return Err(InvalidInput::new(["contact", "law"], law, "hertz, the law of impacts on infinite structures"));
@@ -113,7 +113,7 @@ impl Scene {
             }
             _ => {
                 return Err(InvalidInput::new(
-                    "structure.kind",
+                    ["structure", "kind"],
                     format!("\"{}\"", self.structure.kind()),
                     "infinite-beam, infinite-plate",
                 ));

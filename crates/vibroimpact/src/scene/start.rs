@@ -75,8 +75,8 @@ impl Scene {
 
     fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {
         let mut posed = modal::Start {
-            amplitude: padded("start.amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
-            rate: padded("start.rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
+            amplitude: padded("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
+            rate: padded("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
             gap_m: start.gap_m,
         };
         let here = self.place();
@@ -104,7 +104,7 @@ impl Scene {
 fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
     if first.len() > count {
         let allowed = format!("at most {count} values, the number of modes");
-        return Err(InvalidInput::new(field, format!("{} values", first.len()), allowed));
+        return Err(InvalidInput::new(["start", field], format!("{} values", first.len()), allowed));
     }
     let mut all = first.to_vec();
     all.resize(count, 0.0);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use invalid_input::InvalidInput;
+use invalid_input::{InvalidInput, Path};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
@@ -90,7 +90,7 @@ impl Uncertain {
             return Err(InvalidInput::new("outputs", format!("{} names", names.len()), allowed));
         }
         for (i, name) in names.iter().enumerate() {
-            let fault = |allowed| InvalidInput::new(format!("outputs[{i}]"), quote(&name.as_str().into()), allowed);
+            let fault = |allowed| InvalidInput::new(("outputs", i), quote(&name.as_str().into()), allowed);
             if !all.contains(name) {
                 return Err(fault(allowed()));
             }
@@ -112,7 +112,7 @@ impl Uncertain {
         };
         if let Some((name, error)) = wanted.iter().find(|(name, _)| !names.contains(name)) {
             let allowed = format!("under one of {}", names.join(", "));
-            return Err(InvalidInput::new(format!("sampling_error.{name}"), number(*error), allowed));
+            return Err(InvalidInput::new(["sampling_error", name], number(*error), allowed));
         }
         let output = |name: String| Output { sampling_error: wanted.get(&name).copied(), name };
         self.outputs = names.into_iter().map(output).collect();
@@ -158,10 +158,10 @@ pub(in crate::sweep) fn read(
     }
     let positive = |error: f64| error.is_finite() && error > 0.0;
     let fault = match &sampling_error {
-        Some(SamplingError::OfOne(error)) if !positive(*error) => Some(("sampling_error".to_owned(), *error)),
+        Some(SamplingError::OfOne(error)) if !positive(*error) => Some((Path::from("sampling_error"), *error)),
         Some(SamplingError::OfEach(errors)) => {
             let found = errors.iter().find(|(_, error)| !positive(**error));
-            found.map(|(name, error)| (format!("sampling_error.{name}"), *error))
+            found.map(|(name, error)| (["sampling_error", name].into(), *error))
         }
         _ => None,
     };
