@@ -2,9 +2,9 @@
 
 use super::panel::Moved;
 use super::walk::{IntervalChange, LAW_STEP, Tangent, Walk, shifted, size_of, sum};
-use crate::assembly::stencil::Stencil;
 use crate::assembly::dense::Event;
 use crate::assembly::no_derivative::NoDerivative;
+use crate::assembly::stencil::Stencil;
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
 
 /// Two events stay together if their times shift by the same to this part.

@@ -2,8 +2,8 @@
 
 use super::expansion::Expansion;
 use super::walk::{LAW_STEP, Walk, shifted, size_of};
-use crate::assembly::stencil::Stencil;
 use crate::assembly::dense::Stretch;
+use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
 use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
