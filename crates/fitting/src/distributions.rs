@@ -30,17 +30,17 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
     if value.is_infinite() { 0.0 } else { puruspe::betai(0.5 * b, 0.5 * a, b / (b + a * value)) }
 }
 
-/// `t` such that Student's variable with `freedom` degrees lies within `-t..t` with probability `level` (0 to 1):
+/// `t` such that Student's variable with `freedom` degrees (which need not be a whole number; at least 1) lies within `-t..t` with probability `level` (0 to 1):
 /// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. `None` stands for a standard deviation that is known: the normal
 /// variable.
 ///
 /// ```
 /// assert!((fitting::two_sided_quantile(0.95, None) - 1.959964).abs() < 1e-6);
-/// assert!((fitting::two_sided_quantile(0.95, Some(10)) - 2.228139).abs() < 1e-6);
+/// assert!((fitting::two_sided_quantile(0.95, Some(10.0)) - 2.228139).abs() < 1e-6);
 /// ```
-pub fn two_sided_quantile(level: f64, freedom: Option<usize>) -> f64 {
+pub fn two_sided_quantile(level: f64, freedom: Option<f64>) -> f64 {
     let Some(freedom) = freedom else { return std::f64::consts::SQRT_2 * puruspe::inverf(level) };
-    let f = freedom.max(1) as f64;
+    let f = freedom.max(1.0);
     let x = puruspe::invbetai(1.0 - level, 0.5 * f, 0.5);
     (f * (1.0 - x) / x).sqrt()
 }
@@ -56,10 +56,10 @@ mod tests {
         let exact =
             [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];
         for (freedom, t) in exact {
-            assert!((two_sided_quantile(level, Some(freedom)) / t - 1.0).abs() < 1e-8, "{freedom}");
+            assert!((two_sided_quantile(level, Some(f64::from(freedom))) / t - 1.0).abs() < 1e-8, "{freedom}");
         }
         for (freedom, t) in [(10, 2.228138852), (30, 2.042272456), (100, 1.983971519)] {
-            assert!((two_sided_quantile(level, Some(freedom)) - t).abs() < 1e-7, "{freedom}");
+            assert!((two_sided_quantile(level, Some(f64::from(freedom))) - t).abs() < 1e-7, "{freedom}");
         }
     }
 }

@@ -33,7 +33,7 @@ impl Fit {
         require_level(level)?;
         let n = self.parameters.len();
         let Some(covariance) = &self.covariance else { return Ok(None) };
-        let t = two_sided_quantile(level, Some(self.report.count - n));
+        let t = two_sided_quantile(level, Some((self.report.count - n) as f64));
         let interval = |(j, parameter): (usize, &Parameter)| {
             let (u, half) = (parameter.inward(self.parameters[j]), t * covariance[j * n + j].sqrt());
             Interval { low: parameter.outward(u - half), high: parameter.outward(u + half) }

@@ -1,6 +1,6 @@
 //! The identification itself.
 
-use fitting::{Information, Profile, Start, two_sided_quantile};
+use fitting::{Information, Profile, Start};
 
 use super::data::Data;
 use super::derivative::Prediction;
@@ -8,6 +8,7 @@ use super::design::design;
 use super::determined::undetermined;
 use super::forward::Model;
 use super::free::Free;
+use super::freedom::quantiles;
 use super::judge::lack_of_fit;
 use super::quantity::Quantity;
 use super::summary::{Identification, Identified, Noise, Predicted, ProfileCurve, RecordFit, StartFound};
@@ -70,9 +71,9 @@ pub fn identify(scene: &Scene, data: &Data, free: &[Free], request: &Request) ->
     let model = Model::new(&tree, data, free, &start)?;
     let mut work = Work::new(&model, coordinates)?;
     let (starts, converged) = work.search(request.starts)?;
-    let z = two_sided_quantile(request.level, (!data.stated).then_some(work.freedom));
-    let profiles = work.profiles(z)?;
-    work.conclude(request, starts, converged, z, profiles)
+    let z = quantiles(&work, request.level)?;
+    let profiles = work.profiles(&z)?;
+    work.conclude(request, starts, converged, &z, profiles)
 }
 
 fn require(data: &Data, free: &[Free], request: &Request) -> Result<(), InvalidInput> {
@@ -117,7 +118,7 @@ impl Work<'_> {
         request: &Request,
         starts: Vec<Start>,
         converged: bool,
-        z: f64,
+        z: &[f64],
         profiles: Vec<Profile>,
     ) -> Result<Identification, InvalidInput> {
         let n = self.coordinates.len();
@@ -130,7 +131,7 @@ impl Work<'_> {
         self.residuals(&self.parameters, &mut residuals);
         let identified = |j: usize| {
             let (parameter, value) = (&self.coordinates[j], self.parameters[j]);
-            let (u, half) = (parameter.inward(value), z * sds[j]);
+            let (u, half) = (parameter.inward(value), z[j] * sds[j]);
             let wald = half.is_finite().then(|| [parameter.outward(u - half), parameter.outward(u + half)]);
             let ends = [profiles[j].low, profiles[j].high];
             let apart = |end: Option<f64>, sign: f64| {
@@ -187,8 +188,8 @@ impl Work<'_> {
             candidates,
             profiles: profiles
                 .into_iter()
-                .zip(&fields)
-                .map(|(profile, field)| {
+                .zip(fields.iter().zip(z))
+                .map(|(profile, (field, z))| {
                     let finite = profile.points.iter().filter(|(_, sum)| sum.is_finite());
                     let (values, rise) = finite.map(|(value, sum)| (*value, sum - self.sum_of_squares)).unzip();
                     ProfileCurve { field: field.clone(), values, rise, limit: z * z }

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! Where no standard deviations are stated, each measured quantity has one, which is estimated with the parameters: fits and
-//! estimates `s_q^2 = S_q / (m_q (1 - n/m))` alternate until they agree.
+//! estimates `s_q^2 = S_q / f_q` alternate until they agree. The degrees of freedom `f_q` of a quantity are its values less their
+//! leverage, Eq. (4).
 //!
 //! **Force histories.** A gauge whose clock is off by `d` and whose response has the time constant `T` shows
 //!
@@ -29,15 +30,26 @@
 //! sum, and ends with Eq. (1).
 //!
 //! **What the data say.** With `M = J^T J` the interval of a parameter is `u +- z sqrt((M^-1)_jj)`, and by the likelihood
-//! profile `S_j(u) <= S + z^2` ([`fitting::profile`]), which also holds where `S` is no parabola. Eigenvectors of `M`
-//! are the combinations that the data determine each by itself; those whose standard deviation is large they leave open.
+//! profile `S_j(u) <= S + z^2` ([`fitting::profile`]), which also holds where `S` is no parabola. The quantile `z` is the normal one
+//! for stated standard deviations, and Student's for estimated ones. Its degrees of freedom are those of Welch (1947) and
+//! Satterthwaite (1946): with `v_q` the part of quantity `q` in the variance of the parameter,
+//!
+//! ```text
+//! f = (sum v_q)^2 / sum(v_q^2 / f_q),        v_q = sum_(i in q) (C J^T)_ji^2,        C = M^-1,             (3)
+//! f_q = sum_(i in q) (1 - (J C J^T)_ii).                                                                  (4)
+//! ```
+//!
+//! A parameter that a single quantity determines has only the freedom of that quantity.
+//!
+//! Eigenvectors of `M` are the combinations that the data determine each by itself; those whose standard deviation is large they
+//! leave open.
 //! `S` follows chi-square with `m - n` degrees of freedom if the model is right. A further measurement is worth what it adds to
 //! `ln det M` ([`fitting::Information`]).
 //!
 //! | symbol | meaning |
 //! |---|---|
 //! | `m`, `n` | number of measured values (less one for each force history), of parameters |
-//! | `z` | quantile: normal for stated standard deviations, Student's with `m - n` degrees for estimated ones |
+//! | `z` | quantile: normal for stated standard deviations, Student's with `f` degrees for estimated ones |
 //! | `J` | Jacobian `dr/du` |
 
 mod data;
@@ -47,6 +59,7 @@ mod determined;
 mod estimate;
 mod forward;
 mod free;
+mod freedom;
 mod gauge;
 mod judge;
 #[cfg(feature = "files")]

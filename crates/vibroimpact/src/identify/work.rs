@@ -245,13 +245,12 @@ impl<'a> Work<'a> {
 
     /// Estimates the noise of each group from residuals; whether the estimates have settled.
     fn estimate_noise(&mut self, residuals: &[f64]) -> bool {
-        let share = self.freedom.max(1) as f64 / self.measured.len() as f64;
         let mut settled = true;
-        for place in 0..self.groups.len() {
+        for (place, freedom) in self.freedom_of_groups().into_iter().enumerate() {
             let of_group = |k: &usize| self.measured[*k].1 == place;
             let members: Vec<usize> = (0..self.measured.len()).filter(of_group).collect();
             let squares: f64 = members.iter().map(|&k| residuals[k].powi(2)).sum();
-            let factor = (squares / (members.len() as f64 * share)).sqrt();
+            let factor = (squares / freedom).sqrt();
             // a fit without any residual leaves the noise as it is
             if factor <= 1e-9 || factor.is_nan() {
                 continue;
@@ -260,6 +259,24 @@ impl<'a> Work<'a> {
             members.iter().for_each(|&k| self.sd[k] *= factor);
         }
         settled
+    }
+
+    /// Degrees of freedom `f_q` of the noise of each group, Eq. (4): its values less their leverage, at least one.
+    pub fn freedom_of_groups(&self) -> Vec<f64> {
+        let (n, m) = (self.coordinates.len(), self.measured.len());
+        let known = self.information().ok().and_then(|(rows, information)| Some((rows, information.covariance()?)));
+        let mut left = vec![0.0; self.groups.len()];
+        for (k, (_, group)) in self.measured.iter().enumerate() {
+            let leverage = known.as_ref().map_or(n as f64 / m as f64, |(rows, covariance)| {
+                let row = &rows[k * n..(k + 1) * n];
+                let along = |of: &[f64]| of.iter().zip(row).map(|(c, a)| c * a).sum::<f64>();
+                covariance.chunks_exact(n).map(along).zip(row).map(|(along, a)| along * a).sum()
+            });
+            left[*group] += 1.0 - leverage;
+        }
+        // offsets of gauges are parameters too
+        let share = self.freedom as f64 / m.saturating_sub(n).max(1) as f64;
+        left.into_iter().map(|left| (share * left).max(1.0)).collect()
     }
 
     /// The Jacobian at the parameters found, row by row, and its information.
@@ -273,7 +290,7 @@ impl<'a> Work<'a> {
     }
 
     /// The profile of each parameter. A better minimum, met on the way, takes the place of the fit.
-    pub fn profiles(&mut self, z: f64) -> Result<Vec<Profile>, InvalidInput> {
+    pub fn profiles(&mut self, z: &[f64]) -> Result<Vec<Profile>, InvalidInput> {
         let settings = Settings { tolerance: 1e-5, ..settings() };
         let mut restarts = 0;
         'again: loop {
@@ -281,9 +298,9 @@ impl<'a> Work<'a> {
             let mut profiles = Vec::new();
             for j in 0..self.coordinates.len() {
                 // where the data say nothing, the first step is modest
-                let step = z * if sds[j].is_finite() { sds[j].clamp(1e-9, 1.0) } else { 1.0 };
+                let step = z[j] * if sds[j].is_finite() { sds[j].clamp(1e-9, 1.0) } else { 1.0 };
                 let found = self.with_problem(Loss::Squares, &self.parameters, |problem| {
-                    profile(problem, &settings, &self.parameters, self.sum_of_squares, j, z * z, step)
+                    profile(problem, &settings, &self.parameters, self.sum_of_squares, j, z[j] * z[j], step)
                 });
                 let found = found?;
                 if let (Some(better), true) = (&found.better, restarts < MOST_RESTARTS) {

@@ -7,7 +7,13 @@
 //! ```
 //!
 //! which the search for least squares finds with residuals `r_i^2 = C - ln f(e_i)`: the constant `C` is larger than any
-//! logarithm of a density that occurs.
+//! logarithm of a density that occurs. A scale found so is that of the misfit on the beams of the fit, and is too small for another
+//! beam, on which the median errs by more. So the parameters `q` of the scale are found a second time, from each beam `b` as the
+//! others predict it: with `p_b` the parameters (1) of the median without beam `b`,
+//!
+//! ```text
+//! min sum_b sum_{i in b} -ln f(e_i; m_i(p_b), s_i(q)).                                      (2)
+//! ```
 
 use crate::chapters::chapter7::laws::{Datum, LAWS, Law};
 use emoc::Scatter;
@@ -72,6 +78,10 @@ type Sought = (&'static str, f64);
 pub(super) struct Model {
     pub name: &'static str,
     pub parameters: &'static [Sought],
+    /// How many of the parameters, the first, are those of the median.
+    of_median: usize,
+    /// Whether the scale is that of beams left out (2), or of the misfit (1).
+    of_beams_left_out: bool,
     predict: fn(&[f64], &Datum) -> Predicted,
 }
 
@@ -79,25 +89,40 @@ const LAW: &Law = &LAWS[0];
 const ATTACHED: &Law = &LAWS[3];
 
 /// The first is that of `emoc::ScatteredLaw`.
-pub(super) const MODELS: [Model; 5] = [
+pub(super) const MODELS: [Model; 6] = [
     Model {
         name: "law with its scatter",
         parameters: &[("mu0", 0.3), ("alpha0", 2.5), ("alpha1", 0.5), SINGLE, REPEATED, ONSET],
+        of_median: 3,
+        of_beams_left_out: true,
+        predict: |p, d| odds((LAW.restitution)(&p[..3], d), &p[3..], d),
+    },
+    Model {
+        name: "the same, scale of the misfit",
+        parameters: &[("mu0", 0.3), ("alpha0", 2.5), ("alpha1", 0.5), SINGLE, REPEATED, ONSET],
+        of_median: 3,
+        of_beams_left_out: false,
         predict: |p, d| odds((LAW.restitution)(&p[..3], d), &p[3..], d),
     },
     Model {
         name: "chapter 7's law ± a constant",
         parameters: &[("mu0", 0.3), ("alpha0", 2.5), ("alpha1", 0.5), ("scale", 0.05)],
+        of_median: 3,
+        of_beams_left_out: true,
         predict: |p, d| Predicted::Plain((LAW.restitution)(&p[..3], d), p[3]),
     },
     Model {
         name: "constant",
         parameters: &[("odds", 0.5), ("scale", 0.5)],
+        of_median: 1,
+        of_beams_left_out: true,
         predict: |p, _| Predicted::Odds(scatter(p[0] / (1.0 + p[0]), p[1])),
     },
     Model {
         name: "regression on Z and S₁",
         parameters: &[("a", 1.1), ("c", 1.1), ("d", 0.02), ("k", 0.5), SINGLE, REPEATED, ONSET],
+        of_median: 4,
+        of_beams_left_out: true,
         predict: |p, d| {
             let (z, s1) = (d.impact.z, d.impact.s1);
             // one contact, and what comes back later
@@ -109,6 +134,8 @@ pub(super) const MODELS: [Model; 5] = [
     Model {
         name: "attached modes (knows frequencies)",
         parameters: &[("c", 1.0), ("q", 1.0), SINGLE, REPEATED, ONSET],
+        of_median: 2,
+        of_beams_left_out: true,
         predict: |p, d| odds((ATTACHED.restitution)(&p[..2], d), &p[2..], d),
     },
 ];
@@ -132,21 +159,61 @@ impl Model {
         (self.predict)(parameters, datum)
     }
 
-    /// The parameters of the largest likelihood.
-    pub fn fit(&self, data: &[&Datum]) -> Result<Vec<f64>, FitError> {
-        let residuals = |p: &[f64], r: &mut [f64]| {
-            for (r, datum) in r.iter_mut().zip(data) {
-                *r = (MOST_LOG_DENSITY - self.predict(p, datum).log_density(datum.observed)).max(0.0).sqrt();
-            }
+    /// The parameters found from these beams.
+    pub fn fit(&self, beams: &[&[Datum]]) -> Result<Vec<f64>, FitError> {
+        let starts: Vec<f64> = self.parameters.iter().map(|(_, start)| *start).collect();
+        let all = self.most_likely(beams, &starts, 3)?;
+        if !self.of_beams_left_out {
+            return Ok(all);
+        }
+        let (median, scale) = all.split_at(self.of_median);
+        let without = |k: usize| {
+            let others: Vec<&[Datum]> =
+                beams.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, beam)| *beam).collect();
+            self.most_likely(&others, &all, 1)
         };
-        let parameter = |(name, start): &Sought| Parameter::positive(name, *start, (0.3 * start, 3.0 * start));
-        let problem = Problem {
-            parameters: self.parameters.iter().map(parameter).collect(),
-            count: data.len(),
-            residuals: &residuals,
-            jacobian: None,
+        let medians = (0..beams.len()).map(without).collect::<Result<Vec<_>, FitError>>()?;
+        let predicted = |q: &[f64]| -> Vec<f64> {
+            let of_beam = |(p, beam): (&Vec<f64>, &&[Datum])| {
+                let p = [&p[..self.of_median], q].concat();
+                beam.iter().map(|datum| self.predict(&p, datum).log_density(datum.observed)).collect::<Vec<f64>>()
+            };
+            medians.iter().zip(beams).flat_map(of_beam).collect()
         };
-        let settings = Settings { method: Method::Simplex, starts: 3, tolerance: 1e-8, ..Settings::default() };
-        Ok(fit(&problem, &settings)?.parameters)
+        let found = largest(&self.parameters[self.of_median..], scale, 1, beams, &predicted)?;
+        Ok([median, &found].concat())
     }
+
+    /// By equation (1).
+    fn most_likely(&self, beams: &[&[Datum]], begin: &[f64], starts: usize) -> Result<Vec<f64>, FitError> {
+        let predicted = |p: &[f64]| -> Vec<f64> {
+            let data = beams.iter().copied().flatten();
+            data.map(|datum| self.predict(p, datum).log_density(datum.observed)).collect()
+        };
+        largest(self.parameters, begin, starts, beams, &predicted)
+    }
+}
+
+/// The parameters at which the sum of logarithms of densities is largest.
+fn largest(
+    parameters: &[Sought],
+    begin: &[f64],
+    starts: usize,
+    beams: &[&[Datum]],
+    log_densities: &(dyn Fn(&[f64]) -> Vec<f64> + Sync),
+) -> Result<Vec<f64>, FitError> {
+    let residuals = |p: &[f64], r: &mut [f64]| {
+        for (r, log_density) in r.iter_mut().zip(log_densities(p)) {
+            *r = (MOST_LOG_DENSITY - log_density).max(0.0).sqrt();
+        }
+    };
+    let parameter = |((name, _), begin): (&Sought, &f64)| Parameter::positive(name, *begin, (0.3 * begin, 3.0 * begin));
+    let problem = Problem {
+        parameters: parameters.iter().zip(begin).map(parameter).collect(),
+        count: beams.iter().map(|beam| beam.len()).sum(),
+        residuals: &residuals,
+        jacobian: None,
+    };
+    let settings = Settings { method: Method::Simplex, starts, tolerance: 1e-8, ..Settings::default() };
+    Ok(fit(&problem, &settings)?.parameters)
 }

@@ -39,8 +39,8 @@ pub(super) struct Evidence {
 
 impl Evidence {
     pub fn new(model: &'static Model, beams: &[Vec<Datum>]) -> Result<Evidence, Failure> {
-        let without = |out: usize| -> Vec<&Datum> {
-            beams.iter().enumerate().filter(|(k, _)| *k != out).flat_map(|(_, beam)| beam).collect()
+        let without = |out: usize| -> Vec<&[Datum]> {
+            beams.iter().enumerate().filter(|(k, _)| *k != out).map(|(_, beam)| beam.as_slice()).collect()
         };
         let left_out = (0..beams.len())
             .map(|k| Ok(LeftOut::new(model, model.fit(&without(k))?, &beams[k])))
