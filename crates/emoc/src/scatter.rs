@@ -46,7 +46,7 @@ impl ScatteredLaw {
     /// law to all at once, the scatter to each as the others predict it. See `docs/scatter-of-the-law.md` of the repository.
     pub const BEAMS: ScatteredLaw = ScatteredLaw {
         law: Parameters { mu0: 0.312, alpha0: 2.41, alpha1: 0.492, notional_restitution: 1.0 },
-        single: 0.0788,
+        single: 0.079,
         repeated: 0.222,
         onset: 1.71,
     };
