@@ -311,6 +311,15 @@ impl Loads {
         (moved, rate)
     }
 
+    /// A bound on what the loads move the overlap of a contact by within `h` seconds from `time_s` on (m).
+    pub fn most_moved(&self, contact: usize, time_s: f64, h: f64) -> f64 {
+        let line = &self.contacts[contact];
+        let acceleration = self.acceleration(contact, time_s).abs();
+        let lines = h * (line.shift_rate.abs() + h * (0.5 * acceleration + h * line.jerk.abs() / 6.0));
+        let of = |harmonic: &Harmonic| harmonic.contacts[contact].norm() * (harmonic.omega_rad_s * h).min(2.0);
+        lines + self.harmonics.iter().map(of).sum::<f64>()
+    }
+
     /// By how much more [`Loads::moved`] moves the overlap within `h` seconds, for each second that they begin later.
     pub fn moved_later(&self, contact: usize, time_s: f64, h: f64) -> f64 {
         let mut moved = 0.5 * h * h * self.contacts[contact].jerk;

@@ -711,7 +711,7 @@ impl<'a> March<'a> {
     /// A panel with closed contacts, and what follows from it.
     fn try_panel(&mut self, level: i32, trial: &mut Trial<'a>) {
         let h = step_s(level);
-        trial.closed = self.involved(h, &mut trial.contacts);
+        trial.closed = self.closed(&mut trial.contacts);
         if !self.attempt(level, trial) {
             return self.refine(level + 1);
         }
@@ -761,26 +761,72 @@ impl<'a> March<'a> {
         self.level = level;
     }
 
-    /// The contacts of a panel of `h`: the closed ones, whose number it returns, then the open ones that could close.
-    fn involved(&mut self, h: f64, contacts: &mut Vec<usize>) -> usize {
+    /// The closed contacts, whose number it returns.
+    fn closed(&self, contacts: &mut Vec<usize>) -> usize {
         contacts.clear();
         contacts.extend((0..self.states.len()).filter(|&c| self.states[c].is_closed()));
-        let closed = contacts.len();
+        contacts.len()
+    }
+
+    /// Adds the open contacts that may close within `h` while the closed ones have these forces.
+    fn watch(&mut self, h: f64, contacts: &mut Vec<usize>, closed: usize, force: &[Nodal]) {
         let lasting = self.lasting();
         for c in 0..self.states.len() {
-            if self.states[c].is_closed() {
+            if self.states[c].is_closed() || contacts.contains(&c) {
                 continue;
             }
-            let disturbed = self.system.neighbours[c].iter().any(|&other| self.states[other].is_closed());
+            let disturbed = self.is_disturbed(c);
             if !disturbed && self.clear_until(c) <= self.time_s {
                 self.renew(c, lasting);
             }
-            if disturbed || self.clear_until(c) < self.time_s + h {
+            let near = match disturbed {
+                true => self.may_close(c, h, (&contacts[..closed], force)),
+                false => self.clear_until(c) < self.time_s + h,
+            };
+            if near {
                 (self.states[c].overlap, self.states[c].rate) = self.overlap_of_modes(c);
                 contacts.push(c);
             }
         }
-        closed
+    }
+
+    /// Whether a closed contact acts on a body of this one.
+    fn is_disturbed(&self, c: usize) -> bool {
+        self.system.neighbours[c].iter().any(|&other| self.states[other].is_closed())
+    }
+
+    /// Whether an open contact can come as far as to close within `h`. Free motion from `a` and `a'` takes a mode no farther
+    /// than `min(omega h, 2) |a| + h |a'|`; an impulse moves the overlap by no more than `h` times what it changes its rate by.
+    fn may_close(&self, c: usize, h: f64, (closed, force): (&[usize], &[Nodal])) -> bool {
+        let (links, state) = (&self.system.links, &self.states[c]);
+        let (mut overlap, mut reach, mut size) = (self.loads.overlap(c, self.time_s).0, 0.0, state.reference.abs());
+        for Span { modes, psi } in &links[c].spans {
+            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+            let [here, moved, most] = vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        [psi, omega, a, b],
+                        #[inline(always)]
+                        |[psi, omega, a, b]| {
+                            let turned = omega * h;
+                            let turned = if turned < 2.0 { turned } else { 2.0 };
+                            [psi * a, psi.abs() * (turned * a.abs() + h * b.abs()), (psi * a).abs()]
+                        },
+                    )
+                },
+            );
+            overlap += here;
+            reach += moved;
+            size += most;
+        }
+        for (other, force) in closed.iter().zip(force).filter(|(other, _)| self.system.neighbours[c].contains(other)) {
+            let impulse = h * force.iter().map(|coefficient| coefficient.abs()).sum::<f64>();
+            reach += h * impulse * (links[c].mobility * links[*other].mobility).sqrt();
+        }
+        reach += self.loads.most_moved(c, self.time_s, h);
+        // with more than rounding to spare
+        state.touch_m() - (state.reference + overlap) <= reach + 1e-12 * (size + reach)
     }
 
     /// The closed contacts' laws and first guesses on a panel of `h`.
@@ -813,23 +859,30 @@ impl<'a> March<'a> {
     fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
         let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end, turns } = trial;
-        let (contacts, closed) = (contacts.as_slice(), *closed);
-        self.tables.prepare(self.system, level, contacts, &contacts[..closed]);
+        let closed = *closed;
+        self.tables.prepare(self.system, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
         overlap.clear();
         overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
-        for (&c, overlap) in contacts[closed..].iter().zip(&mut overlap[closed..]) {
-            overlap.iter_mut().for_each(|moved| *moved += self.states[c].overlap);
-        }
         let tables = &*self.tables;
-        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
-        if !collocate(unknowns, |i, j| response(i, j).map(|r| &r.nodes), h, (newton, solved), &mut self.counts) {
+        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]).map(|r| &r.nodes);
+        if !collocate(unknowns, response, h, (newton, solved), &mut self.counts) {
             return false;
         }
         force.clear();
         force.extend(solved.iter().map(|solved| BASIS.coefficients(&solved.force)));
+        self.watch(h, contacts, closed, force);
+        if contacts.len() > closed {
+            self.tables.prepare(self.system, level, &contacts[closed..], &contacts[..closed]);
+        }
+        for &c in &contacts[closed..] {
+            let start = self.states[c].overlap;
+            overlap.push(self.free_at_nodes(level, c, turns).map(|moved| start + moved));
+        }
+        let tables = &*self.tables;
+        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
         end.clear();
         for (i, &c) in contacts.iter().enumerate() {
             let nodal = &mut overlap[i];
@@ -1021,32 +1074,57 @@ impl<'a> March<'a> {
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
                 state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate, end(i).0);
-            } else if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
-                (*clear_until, *bounds) = (now, None);
             }
             (state.overlap, state.rate) = end(i);
+        }
+        for c in 0..self.states.len() {
+            let moved = contacts.contains(&c) || self.is_disturbed(c);
+            if moved && let Phase::Open { clear_until, bounds, .. } = &mut self.states[c].phase {
+                (*clear_until, *bounds) = (now, None);
+            }
         }
         self.arrive_exactly();
     }
 
     // ---- terminal panels ----
 
-    /// The contacts of a terminal panel of at most `longest`, with series that serve up to `reach`.
-    fn window(&mut self, longest: f64, reach: f64) -> Window {
+    /// The closed contacts on a terminal panel, and one more where its closing ends it, with series that serve up to `reach`.
+    fn window(&mut self, closing: Option<usize>, reach: f64) -> Window {
         let mut contacts = Vec::new();
-        let closed = self.involved(longest, &mut contacts);
+        self.closed(&mut contacts);
         let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
         let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
-        Window::new(self.system, self.tables, &self.loads, (contacts, closed), (&overlaps, reach), moment)
+        let mut window = Window::new(self.system, self.tables, &self.loads, (contacts, &overlaps, reach), moment);
+        if let Some(c) = closing.filter(|&c| !self.states[c].is_closed()) {
+            (self.states[c].overlap, self.states[c].rate) = self.overlap_of_modes(c);
+            self.add(&mut window, c);
+        }
+        window
+    }
+
+    fn add(&mut self, window: &mut Window, c: usize) {
+        let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
+        window.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
+    }
+
+    /// Adds the open contacts that may close on a terminal panel that is solved.
+    fn watch_window(&mut self, window: &mut Window, landed: &mut Landed) {
+        let mut contacts = window.contacts.clone();
+        self.watch(landed.length, &mut contacts, window.closed, &landed.force);
+        for &c in &contacts[window.contacts.len()..] {
+            self.add(window, c);
+        }
+        window.look(landed);
     }
 
     /// Goes on to the next break of the loads or the end, `length` away.
     fn land_at(&mut self, length: f64) {
-        let window = self.window(length, length);
+        let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length);
-        let Some(landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
+        let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
+        self.watch_window(&mut window, &mut landed);
         match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
             Judgement::Meets(target, place) => self.head_for(target, place, length),
             _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
@@ -1076,14 +1154,15 @@ impl<'a> March<'a> {
 
     /// Goes to the event, expected after `expected` seconds and at most `longest` away.
     fn land(&mut self, target: Target, expected: f64, longest: f64) {
-        let window = self.window(longest, (1.0 + CARRIED) * longest);
+        let mut window = self.window(Some(target.contact), (1.0 + CARRIED) * longest);
         let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
-        let Some(landed) = self.locate(&window, target, at, expected, longest) else {
+        let Some(mut landed) = self.locate(&window, target, at, expected, longest) else {
             // not so near after all: go on, until a panel meets the event again
             return self.refine((self.level + 1).max(level_within(longest)));
         };
+        self.watch_window(&mut window, &mut landed);
         let length = landed.length;
         // the event may have come before, in a dip that this panel passed over, or another one first
         match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {

@@ -22,6 +22,7 @@ pub(crate) struct Window {
     /// Closed contacts, then open ones that are watched.
     pub contacts: Vec<usize>,
     pub closed: usize,
+    reach: f64,
     /// `g^(p)/p!` of the free motion of each contact's overlap.
     pub free: Vec<Series>,
     /// Derivatives of the responses, `[c * closed + c']`; zero where no body is shared.
@@ -42,28 +43,65 @@ pub(crate) struct Landed {
 }
 
 impl Window {
-    /// `overlaps` are those of the contacts now; the panel will be no longer than `reach` (s).
+    /// `overlaps` are those of the closed contacts now; the panel will be no longer than `reach` (s).
     pub fn new(
         system: &System,
         tables: &mut Tables,
         loads: &Loads,
-        (contacts, closed): (Vec<usize>, usize),
-        (overlaps, reach): (&[f64], f64),
-        (time_s, amplitude, rate): (f64, &[f64], &[f64]),
+        (contacts, overlaps, reach): (Vec<usize>, &[f64], f64),
+        moment: (f64, &[f64], &[f64]),
     ) -> Window {
-        let series = |(&c, overlap): (&usize, &f64)| {
-            let mut series = series_of(system, loads, c, (time_s, amplitude, rate), reach);
-            series[0] = *overlap;
-            series
-        };
-        let free = contacts.iter().zip(overlaps).map(series).collect();
-        let mut kernels = Vec::with_capacity(contacts.len() * closed);
-        for &c in &contacts {
-            for &other in &contacts[..closed] {
-                kernels.push(tables.kernel(system, c, other));
-            }
+        let closed = contacts.len();
+        let mut window = Window { contacts, closed, reach, free: Vec::new(), kernels: Vec::new() };
+        for (i, overlap) in overlaps.iter().enumerate() {
+            window.expand(system, tables, loads, (window.contacts[i], *overlap), moment);
         }
-        Window { contacts, closed, free, kernels }
+        window
+    }
+
+    /// Adds an open contact with its overlap now.
+    pub fn add(
+        &mut self,
+        system: &System,
+        tables: &mut Tables,
+        loads: &Loads,
+        (c, overlap): (usize, f64),
+        moment: (f64, &[f64], &[f64]),
+    ) {
+        self.contacts.push(c);
+        self.expand(system, tables, loads, (c, overlap), moment);
+    }
+
+    fn expand(
+        &mut self,
+        system: &System,
+        tables: &mut Tables,
+        loads: &Loads,
+        (c, overlap): (usize, f64),
+        moment: (f64, &[f64], &[f64]),
+    ) {
+        let mut series = series_of(system, loads, c, moment, self.reach);
+        series[0] = overlap;
+        self.free.push(series);
+        for other in &self.contacts[..self.closed] {
+            self.kernels.push(tables.kernel(system, c, *other));
+        }
+    }
+
+    /// Finds the overlaps of contacts that were added after the panel was solved.
+    pub fn look(&self, landed: &mut Landed) {
+        for c in landed.overlap.len()..self.free.len() {
+            let mut overlap = values(&self.free[c], landed.length);
+            for (other, solved) in landed.solved.iter().enumerate() {
+                if let Some(response) = response(&self.kernels[c * self.closed + other], landed.length) {
+                    let moved = apply(&response, &solved.force);
+                    (0..Q).for_each(|i| overlap[i] += moved[i]);
+                }
+            }
+            landed.overlap.push(overlap);
+            let end = self.end(landed, c, landed.length);
+            landed.end.push(end);
+        }
     }
 
     /// Solves the panel of this length.
