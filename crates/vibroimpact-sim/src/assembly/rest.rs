@@ -24,7 +24,7 @@
 //!
 //! An open contact stays open if that is less than its distance at equilibrium.
 
-use super::march::March;
+use super::motion::March;
 use super::state::State;
 use contact_models::{After, Branch, ContactLaw, Stage};
 use nalgebra::{DMatrix, DVector};

@@ -1,7 +1,7 @@
 //! From an assembly to a run.
 
 use super::dense::{Stretch, in_users_order};
-use super::march::March;
+use super::motion::March;
 use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{COARSER, Comparison};
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};

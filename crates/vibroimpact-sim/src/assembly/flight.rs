@@ -1,0 +1,84 @@
+//! Motion without closed contact: nothing is solved, and panels are as long as it is certain that no contact closes. Near a
+//! touch the power series of the overlaps locate it.
+
+use super::enclosure::{FlightBounds, bend_of_loads, first_closing};
+use super::motion::March;
+use super::terminal::{self, series_of};
+use crate::panel::dyadic::{level_within, step_s};
+
+/// A flight is followed by power series once the next safe step is this many levels finer than the series reach.
+const WINDOW: i32 = 2;
+
+impl<'a> March<'a> {
+    /// A step of free flight; `true` if there is none to make since the bodies have parted for good.
+    pub(super) fn fly(&mut self) -> bool {
+        self.counts.flight_steps += 1;
+        let lasting = self.lasting();
+        let mut go = f64::INFINITY;
+        for c in 0..self.states.len() {
+            // what is left of a bound is less than a new one gives
+            if self.clear_until(c) - self.time_s <= self.flown {
+                self.renew(c, lasting);
+            }
+            go = go.min(self.clear_until(c) - self.time_s);
+        }
+        if go == f64::INFINITY && self.settings.stop_when_over && self.loads.is_empty() {
+            (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
+            return true;
+        }
+        let near = level_within(self.reach);
+        if go >= lasting {
+            if lasting <= self.reach { self.coast(lasting, true) } else { self.rotate(level_within(lasting)) }
+        } else if level_within(go) < near + WINDOW {
+            self.rotate(level_within(go.min(lasting)));
+        } else {
+            let by_level = lasting > step_s(near);
+            let window = if by_level { step_s(near) } else { lasting };
+            let (mut first, mut clear): (Option<(usize, f64)>, f64) = (None, window);
+            for c in 0..self.states.len() {
+                if self.clear_until(c) >= self.time_s + window {
+                    continue;
+                }
+                let curvature = self.bounds(c).map_or(0.0, FlightBounds::curvature)
+                    + bend_of_loads(&self.loads, c, self.time_s, lasting);
+                let mut series = series_of(self.system, &self.loads, c, self.moment(), window);
+                series[0] = self.overlap_of_modes(c).0 - self.states[c].touch_m();
+                let (time, meets) = first_closing(&series, curvature, window, (self.noise(c), self.rate_noise(c)));
+                if !meets {
+                    clear = clear.min(time);
+                } else if first.is_none_or(|(_, earlier)| time < earlier) {
+                    first = Some((c, time));
+                }
+            }
+            match first {
+                Some((c, time)) if time <= clear => {
+                    self.coast(time, false);
+                    let (_, rate) = self.overlap_of_modes(c);
+                    self.states[c].rate = rate;
+                    self.touch(c, 0.0);
+                }
+                _ if clear < window => self.coast(clear, false),
+                _ if by_level => self.rotate(near),
+                _ => self.coast(window, true),
+            }
+        }
+        false
+    }
+
+    pub(super) fn rotate(&mut self, level: i32) {
+        self.flown = step_s(level);
+        self.show(step_s(level), &[], &[]);
+        self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
+        self.pass(step_s(level));
+    }
+
+    /// Free motion of any length within the series' reach; to the next break or the end where `whole`.
+    fn coast(&mut self, length: f64, whole: bool) {
+        self.show(length, &[], &[]);
+        terminal::coast(self.system, length, &mut self.amplitude, &mut self.rate);
+        self.pass(length);
+        if whole {
+            self.arrive_exactly();
+        }
+    }
+}

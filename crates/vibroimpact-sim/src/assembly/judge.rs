@@ -1,0 +1,191 @@
+//! Judges a panel that is solved: does an event function of one of its contacts fall to zero, and is the panel short enough
+//! to tell.
+
+use super::collocate::Collocated;
+use super::enclosure::{Pull, of_panel};
+use super::event::{Beginning, EventFunction, Verdict};
+use super::motion::{March, Target};
+use super::state::Touch;
+use super::system::Span;
+use crate::panel::dyadic::level_within;
+use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, truncation};
+use crate::panel::vector::{sum_over, vectorized};
+use contact_models::Boundary;
+
+/// The sum of all coefficients that a polynomial misses of `t^(3/2)`, in parts of the estimate of the next two, is less.
+const TAIL: f64 = 10.0;
+
+/// What the event functions of a panel say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Judgement {
+    Clear,
+    Doubtful,
+    Meets(Target, f64),
+}
+
+impl<'a> March<'a> {
+    /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
+    pub(super) fn judge(
+        &mut self,
+        h: f64,
+        contacts: &[usize],
+        closed: usize,
+        solved: &[Collocated],
+        overlap: &[Nodal],
+        enclosed: bool,
+    ) -> Judgement {
+        let (mut first, mut doubtful): (Option<(Target, f64)>, bool) = (None, false);
+        let pulls = if enclosed { self.pulls(&contacts[..closed]) } else { Vec::new() };
+        for (i, &c) in contacts.iter().enumerate() {
+            let state = &self.states[c];
+            let mut rho = [0.0; 3];
+            if enclosed {
+                let missed = self.tables.missed(self.system, level_within(h));
+                rho = of_panel(
+                    self.system,
+                    missed,
+                    &self.loads,
+                    c,
+                    h,
+                    (&self.amplitude, &self.rate),
+                    (&pulls, &mut self.held),
+                );
+            }
+            let noise = self.panel_noise(c, h);
+            let mut acceleration = None;
+            let (residue, rate_residue) = state.touch().map_or((0.0, 0.0), |touch| (touch.residue, touch.rate_residue));
+            let mut ask = |boundary: usize, start: f64, nodal: Nodal, per: (f64, f64)| {
+                let (per_overlap, per_rate) = (per.0.abs(), per.1.abs() / h);
+                // interpolation of a rate magnifies rounding
+                let noise = noise * (per_overlap + 50.0 * per_rate);
+                let function = EventFunction {
+                    start,
+                    nodal,
+                    rho: [0, 1, 2].map(|r| per_overlap * rho[r] + per_rate * rho.get(r + 1).copied().unwrap_or(0.0)),
+                    noise,
+                    residue: 2.0 * residue,
+                    slope_residue: 2.0 * per_overlap * rate_residue * h,
+                };
+                let beginning = || {
+                    let acceleration = *acceleration.get_or_insert_with(|| self.acceleration(c, &contacts[..closed]));
+                    Beginning {
+                        slope: (per.0 * state.rate + per.1 * acceleration) * h,
+                        bend: (per.1 == 0.0).then_some(per.0 * acceleration * h * h),
+                        unresolved: (per_overlap + per_rate) * h * h * self.unresolved(c, &contacts[..closed], solved),
+                    }
+                };
+                match function.verdict(beginning) {
+                    Verdict::Clear => {}
+                    Verdict::Doubtful => doubtful = true,
+                    Verdict::Meets(place) => {
+                        if first.is_none_or(|(_, earlier)| place < earlier) {
+                            first = Some((Target { contact: c, boundary }, place));
+                        }
+                    }
+                }
+            };
+            match state.touch() {
+                Some(touch) => {
+                    let rates = if touch.needs_rate { solved[i].rate } else { [0.0; Q] };
+                    for (which, boundary) in self.law(c).boundaries(&touch.branch).iter().enumerate() {
+                        if *boundary == Boundary::NEVER {
+                            continue;
+                        }
+                        let nodal = std::array::from_fn(|n| boundary.margin(overlap[i][n], rates[n]));
+                        let start = boundary.margin(state.overlap, state.rate);
+                        ask(which, start, nodal, (boundary.per_compression, boundary.per_rate));
+                    }
+                }
+                None => {
+                    let touch_m = state.touch_m();
+                    ask(0, touch_m - state.overlap, overlap[i].map(|overlap| touch_m - overlap), (-1.0, 0.0));
+                }
+            }
+        }
+        match first {
+            Some((target, place)) => Judgement::Meets(target, place),
+            None if doubtful => Judgement::Doubtful,
+            None => Judgement::Clear,
+        }
+    }
+
+    /// Value of an event function at the end of a terminal panel, and how fast it changes.
+    pub(super) fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
+        let state = &self.states[target.contact];
+        match state.touch() {
+            Some(touch) => {
+                let boundary = self.law(target.contact).boundaries(&touch.branch)[target.boundary];
+                let slope = boundary.per_compression * rate + boundary.per_rate * acceleration;
+                (boundary.margin(overlap, rate), slope)
+            }
+            None => (state.touch_m() - overlap, -rate),
+        }
+    }
+
+    /// Rounding of an overlap as it is summed up over a panel of `h` (m).
+    fn panel_noise(&self, c: usize, h: f64) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [omega, a, b] = [&self.system.omega, &self.amplitude, &self.rate].map(|row| &row[modes.clone()]);
+            let [sum] = vectorized(
+                #[inline(always)]
+                || {
+                    sum_over(
+                        [psi, omega, a, b],
+                        #[inline(always)]
+                        |[psi, omega, a, b]| {
+                            let turned = omega * h;
+                            [psi.abs() * ((if turned < 1.0 { turned } else { 1.0 }) * a.abs() + h * b.abs())]
+                        },
+                    )
+                },
+            );
+            sum
+        };
+        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
+        let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
+        // of the motion that the contact's momentum stands for no less is known
+        let moved = moved.max(self.states[c].speed_m_s() * h);
+        tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
+    }
+
+    /// Acceleration of the overlap of a contact now (m/s^2), while these are closed.
+    pub(super) fn acceleration(&self, c: usize, closed: &[usize]) -> f64 {
+        let (system, link) = (self.system, &self.system.links[c]);
+        let mut series = [0.0; TAYLOR];
+        self.loads.add_series(c, self.time_s, &mut series);
+        let of =
+            |(k, psi): &(usize, f64)| psi * (system.drag[*k] * self.rate[*k] + system.square[*k] * self.amplitude[*k]);
+        let free = 2.0 * series[2] - link.elastic.iter().map(of).sum::<f64>();
+        let pull = |&other: &usize| {
+            let (state, links) = (&self.states[other], &self.system.links);
+            let weight: f64 = links[c].shared(&links[other]).map(|(_, weight)| weight).sum();
+            let force = |touch: &Touch| self.law(other).force(&touch.branch, state.overlap, state.rate).force_n;
+            weight * state.touch().map_or(0.0, force)
+        };
+        free - closed.iter().map(pull).sum::<f64>()
+    }
+
+    /// By how much the acceleration of the overlap of a contact is left open by what the polynomials of the closed contacts'
+    /// forces miss (m/s^2).
+    fn unresolved(&self, c: usize, closed: &[usize], solved: &[Collocated]) -> f64 {
+        let links = &self.system.links;
+        let of = |(other, solved): (&usize, &Collocated)| {
+            // no product of weights is larger
+            let weight = (links[c].mobility * links[*other].mobility).sqrt();
+            weight * TAIL * truncation(&BASIS.coefficients(&solved.force))
+        };
+        let shares = |(other, _): &(&usize, &Collocated)| self.system.neighbours[c].contains(other);
+        closed.iter().zip(solved).filter(shares).map(of).sum()
+    }
+
+    /// The forces of closed contacts at the start of a panel.
+    fn pulls(&self, closed: &[usize]) -> Vec<Pull<'a>> {
+        let pull = |c: &usize| {
+            let (force, h) = self.states[*c].touch()?.previous?;
+            // P_n' is n (n+1) at the end of [0, 1]
+            let slope: f64 = force.iter().enumerate().map(|(n, f)| (n * (n + 1)) as f64 * f).sum();
+            Some(Pull { link: &self.system.links[*c], force_n: evaluate(&force, 1.0), rate_n_s: slope / h })
+        };
+        closed.iter().filter_map(pull).collect()
+    }
+}

@@ -1,0 +1,198 @@
+//! Terminal panels: the length is the unknown, and the end an event, a break of the loads or the end of the run.
+
+use super::collocate::Unknown;
+use super::judge::Judgement;
+use super::motion::{Horizon, March, Target};
+use super::terminal::{self, Landed, Window};
+use crate::panel::dyadic::level_within;
+use crate::panel::legendre::{BASIS, Nodal, Q, truncation};
+
+/// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
+const LANDING: f64 = 2.5;
+/// A force that the laws fixed on one length serves for others while it need not be carried on by more than this part.
+const CARRIED: f64 = 0.05;
+
+impl<'a> March<'a> {
+    /// Goes on to the next break of the loads or the end, `length` away.
+    pub(super) fn land_at(&mut self, length: f64) {
+        let mut window = self.window(None, length);
+        let mut unknowns = self.unknowns_of(&window, length);
+        let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
+            return self.refine(self.level.max(level_within(length)) + 1);
+        };
+        self.watch_window(&mut window, &mut landed);
+        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
+            Judgement::Meets(target, place) => self.head_for(target, place, length),
+            _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
+            _ => self.commit_landed(&window, &landed),
+        }
+    }
+
+    /// Goes to the event, expected after `expected` seconds and at most `longest` away.
+    pub(super) fn land(&mut self, target: Target, expected: f64, longest: f64) {
+        let mut window = self.window(Some(target.contact), (1.0 + CARRIED) * longest);
+        let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
+            return self.refine(self.level + 1);
+        };
+        let Some(mut landed) = self.locate(&window, target, at, expected, longest) else {
+            // not so near after all: go on, until a panel meets the event again
+            return self.refine((self.level + 1).max(level_within(longest)));
+        };
+        self.watch_window(&mut window, &mut landed);
+        let length = landed.length;
+        // the event may have come before, in a dip that this panel passed over, or another one first
+        match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
+            Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
+                self.head_for(other, place, length);
+                // from nearer by, lest the same end is found again
+                self.level += 1;
+                return;
+            }
+            _ => {}
+        }
+        let excess = self.excess(&window, &landed);
+        if excess > 1.0 {
+            self.landing = 0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3);
+            self.horizon = Some(Horizon { target, at_s: self.time_s + length });
+            return self.refine(self.level + 1);
+        }
+        self.commit_landed(&window, &landed);
+        self.transition(target);
+    }
+
+    /// The terminal panel of at most `longest` whose end is the event.
+    fn locate(&mut self, window: &Window, target: Target, at: usize, expected: f64, longest: f64) -> Option<Landed> {
+        let state = &self.states[target.contact];
+        let initial = self.margin(target, [state.overlap, state.rate, 0.0]).0.max(0.0);
+        let mut length = expected.clamp(1e-3 * longest, longest);
+        let mut unknowns = self.unknowns_of(window, length);
+        let (mut low, mut low_margin) = (0.0, initial);
+        let mut high: Option<(f64, f64)> = None;
+        let mut side = 0;
+        for _ in 0..60 {
+            let landed = window.attempt(length, &mut unknowns, &mut self.counts)?;
+            for (unknown, solved) in unknowns.iter_mut().zip(&landed.solved) {
+                unknown.guess = solved.force;
+            }
+            if let Some(landed) = self.carried(window, target, at, &landed) {
+                return (landed.length <= longest).then_some(landed);
+            }
+            let (margin, slope) = self.margin(target, landed.end[at]);
+            if margin.abs() <= 1e-13 * initial {
+                return Some(landed);
+            }
+            if margin > 0.0 {
+                if let Some((_, high_margin)) = &mut high
+                    && side > 0
+                {
+                    *high_margin *= 0.5;
+                }
+                (low, low_margin, side) = (length, margin, 1);
+            } else {
+                if side < 0 {
+                    low_margin *= 0.5;
+                }
+                (high, side) = (Some((length, margin)), -1);
+            }
+            let next = match high {
+                None if length >= longest => return None,
+                None => (2.0 * length).min(longest),
+                Some((high, high_margin)) => {
+                    let newton = length - margin / slope;
+                    let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
+                    let within = |x: &f64| *x > low && *x < high;
+                    match [newton, secant, 0.5 * (low + high)].into_iter().find(within) {
+                        // what follows does not depend on where within these last digits the branch is left
+                        Some(next) if (next - length).abs() > 1e-13 * high => next,
+                        _ => return Some(landed),
+                    }
+                }
+            };
+            length = next;
+        }
+        None
+    }
+
+    /// The forces of a terminal panel, cut short or carried on to where they meet the event themselves, if that is near
+    /// enough for the laws to hold there as they do at the nodes.
+    fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
+        let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
+        let (mut length, mut end) = (from.length, from.end[at]);
+        for _ in 0..8 {
+            let (margin, slope) = self.margin(target, end);
+            let next = length - margin / slope;
+            if !range.contains(&next) {
+                return None;
+            }
+            // the next of Newton's steps would be the square of this one
+            if (next - length).abs() <= 1e-7 * next {
+                return Some(window.carried(from, next));
+            }
+            (length, end) = (next, window.end(from, at, next));
+        }
+        None
+    }
+
+    /// Adds the open contacts that may close on a terminal panel that is solved.
+    fn watch_window(&mut self, window: &mut Window, landed: &mut Landed) {
+        let mut contacts = window.contacts.clone();
+        self.watch(landed.length, &mut contacts, window.closed, &landed.force);
+        for &c in &contacts[window.contacts.len()..] {
+            self.add(window, c);
+        }
+        window.look(landed);
+    }
+
+    /// The closed contacts on a terminal panel, and one more where its closing ends it, with series that serve up to `reach`.
+    fn window(&mut self, closing: Option<usize>, reach: f64) -> Window {
+        let mut contacts = Vec::new();
+        self.closed(&mut contacts);
+        let overlaps: Vec<f64> = contacts.iter().map(|&c| self.states[c].overlap).collect();
+        let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
+        let mut window = Window::new(self.system, self.tables, &self.loads, (contacts, &overlaps, reach), moment);
+        if let Some(c) = closing.filter(|&c| !self.states[c].is_closed()) {
+            (self.states[c].overlap, self.states[c].rate) = self.overlap_of_modes(c);
+            self.add(&mut window, c);
+        }
+        window
+    }
+
+    fn add(&mut self, window: &mut Window, c: usize) {
+        let moment = (self.time_s, self.amplitude.as_slice(), self.rate.as_slice());
+        window.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
+    }
+
+    /// The laws of a terminal panel's closed contacts; what moves freely is found for each length that is tried.
+    fn unknowns_of(&self, window: &Window, length: f64) -> Vec<Unknown<'a>> {
+        self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect()
+    }
+
+    fn head_for(&mut self, target: Target, place: f64, length: f64) {
+        self.counts.rejected_steps += 1;
+        if place == 0.0 {
+            self.transition(target);
+        } else {
+            self.horizon = Some(Horizon { target, at_s: self.time_s + place * length });
+        }
+    }
+
+    /// By how much the forces of a terminal panel are less well known than those of a panel must be.
+    fn excess(&self, window: &Window, landed: &Landed) -> f64 {
+        let of = |(c, force): (&usize, &Nodal)| truncation(force) * landed.length / self.impulse_tolerance(*c);
+        window.contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)
+    }
+
+    fn commit_landed(&mut self, window: &Window, landed: &Landed) {
+        let (contacts, closed) = (window.contacts.as_slice(), window.closed);
+        self.show(landed.length, &contacts[..closed], &landed.force);
+        terminal::coast(self.system, landed.length, &mut self.amplitude, &mut self.rate);
+        for (i, &c) in contacts[..closed].iter().enumerate() {
+            let (link, nodal) = (&self.system.links[c], &landed.solved[i].force);
+            terminal::push(self.system, link, landed.length, nodal, &mut self.amplitude, &mut self.rate);
+        }
+        self.pass(landed.length);
+        self.book(landed.length, contacts, closed, &landed.solved, &landed.force, |i| {
+            (landed.end[i][0], landed.end[i][1])
+        });
+    }
+}

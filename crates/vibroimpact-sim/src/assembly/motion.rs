@@ -1,0 +1,247 @@
+//! What the march carries: the modes, the contacts, and what is expected next. Every part of the march works on it.
+
+use super::dense::{Event, Stretch};
+use super::enclosure::Held;
+use super::ledger::{Account, Moment};
+use super::load::Loads;
+use super::problem::{Posed, Settings};
+use super::solution::{Counts, Observer, Reason};
+use super::state::{Phase, State};
+use super::system::{Span, System};
+use super::tables::Tables;
+use super::terminal::REACH;
+use crate::panel::dyadic::J_MIN;
+use crate::panel::vector::sum_over;
+use contact_models::{ContactLaw, Memory};
+
+/// Share of the stated tolerance that one panel may use up.
+const STEP_SHARE: f64 = 0.1;
+
+/// Which event function of which contact: a boundary of its branch, or its closing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Target {
+    pub contact: usize,
+    pub boundary: usize,
+}
+
+/// An event that is expected.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Horizon {
+    pub target: Target,
+    pub at_s: f64,
+}
+
+/// The motion on its way. Its methods are in the files of the march, each of which uses only those above it.
+pub(crate) struct March<'a> {
+    pub(super) laws: &'a [&'a dyn ContactLaw],
+    pub(super) posed: &'a Posed<'a>,
+    pub(super) system: &'a System,
+    pub(super) tables: &'a mut Tables,
+    pub(super) loads: Loads,
+    pub(super) settings: Settings,
+    pub(super) observer: &'a mut dyn Observer,
+    pub(super) time_s: f64,
+    /// What is carried of the modes, see [`super::load`].
+    pub(super) amplitude: Vec<f64>,
+    pub(super) rate: Vec<f64>,
+    pub(super) states: Vec<State>,
+    pub(super) counts: Counts,
+    /// The energy ledger, where it is wanted.
+    pub(super) account: Option<Account>,
+    /// All stretches of the motion, where they are wanted, and the events since the last of them.
+    pub(super) record: Option<Vec<Stretch>>,
+    pub(super) pending: Vec<(usize, Event)>,
+    /// Time, amplitudes and rates when the last contact opened, where the run may end there.
+    pub(super) departure: (f64, Vec<f64>, Vec<f64>),
+    /// Memory for the enclosures.
+    pub(super) held: Held,
+    /// Level on which the next panel is tried.
+    pub(super) level: i32,
+    pub(super) horizon: Option<Horizon>,
+    /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
+    pub(super) landing: f64,
+    /// Longest terminal panel for which the series serve (s).
+    pub(super) reach: f64,
+    /// Number of committed panels at which rest is looked for again.
+    pub(super) ask_rest_at: u64,
+    /// Number of committed panels at which the laws are tried, once.
+    pub(super) try_laws_at: u64,
+    /// Length of the last panel of flight (s).
+    pub(super) flown: f64,
+    pub(super) intervals: u64,
+    pub(super) last_event_s: f64,
+    pub(super) events_at_once: u64,
+    pub(super) stop: Option<Reason>,
+}
+
+impl<'a> March<'a> {
+    pub(super) fn new(
+        posed: &'a Posed<'a>,
+        system: &'a System,
+        tables: &'a mut Tables,
+        settings: Settings,
+        observer: &'a mut dyn Observer,
+    ) -> March<'a> {
+        let loads = Loads::new(posed.loads, system);
+        let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
+        for (body, places) in posed.bodies.iter().zip(&system.place) {
+            for (k, place) in places.iter().enumerate() {
+                (amplitude[*place], rate[*place]) = (body.amplitude[k], body.rate[k]);
+            }
+        }
+        loads.shift_modes(system, 0.0, -1.0, &mut amplitude, &mut rate);
+        let fastest = system.modes.iter().map(|mode| mode.omega_rad_s * (1.0 + 2.0 * mode.damping_ratio));
+        let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
+        let state = |gap: f64| State {
+            phase: Phase::Open { memory: Memory::default(), clear_until: 0.0, bounds: None },
+            overlap: 0.0,
+            rate: 0.0,
+            reference: -gap,
+            momentum: 0.0,
+            inverse_mass: 0.0,
+            statistics: Default::default(),
+        };
+        let states = posed.gaps_m.iter().map(|gap| state(*gap)).collect();
+        March {
+            laws: &posed.laws,
+            posed,
+            system,
+            tables,
+            loads,
+            settings,
+            observer,
+            time_s: 0.0,
+            amplitude,
+            rate,
+            states,
+            counts: Counts::default(),
+            account: None,
+            record: None,
+            pending: Vec::new(),
+            departure: (0.0, Vec::new(), Vec::new()),
+            held: Held::default(),
+            level: J_MIN,
+            horizon: None,
+            landing: f64::INFINITY,
+            reach: if fastest > 0.0 { REACH / fastest } else { f64::INFINITY },
+            ask_rest_at: 0,
+            try_laws_at: 0,
+            flown: 0.0,
+            intervals: 0,
+            last_event_s: -1.0,
+            events_at_once: 0,
+            stop: None,
+        }
+    }
+
+    /// What is carried now.
+    pub(super) fn here(&self) -> Moment<'_> {
+        let (amplitude, rate) = (&self.amplitude, &self.rate);
+        Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate }
+    }
+
+    /// Energy that the closed contacts store (J).
+    pub(super) fn stored_j(&self) -> f64 {
+        let of = |(state, law): (&State, &&dyn ContactLaw)| {
+            state.touch().map_or(0.0, |touch| law.stored_energy_j(&touch.branch, state.overlap))
+        };
+        self.states.iter().zip(self.laws).map(of).sum()
+    }
+
+    pub(super) fn moment(&self) -> (f64, &[f64], &[f64]) {
+        (self.time_s, &self.amplitude, &self.rate)
+    }
+
+    /// Time until the loads change or the run ends (s).
+    pub(super) fn lasting(&self) -> f64 {
+        (self.settings.end_s.min(self.loads.next_break_s()) - self.time_s).max(0.0)
+    }
+
+    pub(super) fn law(&self, c: usize) -> &'a dyn ContactLaw {
+        self.laws[c]
+    }
+
+    pub(super) fn force_at(&mut self, c: usize, (compression, rate): (f64, f64)) -> f64 {
+        self.counts.law_evaluations += 1;
+        let law = self.law(c);
+        self.states[c].touch().map_or(0.0, |touch| law.force(&touch.branch, compression, rate).force_n)
+    }
+
+    /// Overlap of a contact and its rate, from modes and loads.
+    pub(super) fn overlap_of_modes(&self, c: usize) -> (f64, f64) {
+        let link = &self.system.links[c];
+        let (shift, shift_rate) = self.loads.overlap(c, self.time_s);
+        (self.states[c].reference + (link.sum(&self.amplitude) + shift), link.sum(&self.rate) + shift_rate)
+    }
+
+    /// Rounding of an overlap that is a difference of where bodies are (m).
+    pub(super) fn noise(&self, c: usize) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [sum] = sum_over([psi, &self.amplitude[modes.clone()]], |[psi, a]| [(psi * a).abs()]);
+            sum
+        };
+        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
+        4.0 * f64::EPSILON * (moved + self.states[c].reference.abs())
+    }
+
+    /// The same of its rate (m/s).
+    pub(super) fn rate_noise(&self, c: usize) -> f64 {
+        let of = |Span { modes, psi }: &Span| {
+            let [sum] = sum_over([psi, &self.rate[modes.clone()]], |[psi, b]| [(psi * b).abs()]);
+            sum
+        };
+        4.0 * f64::EPSILON * self.system.links[c].spans.iter().map(of).sum::<f64>()
+    }
+
+    /// Impulse that a panel may get wrong (N s): a part of the momentum exchanged, but no more than what would give the
+    /// modes, light ones too, this part of the contact's energy.
+    pub(super) fn impulse_tolerance(&self, c: usize) -> f64 {
+        let (state, tolerance) = (&self.states[c], self.settings.tolerance);
+        let share = STEP_SHARE * tolerance * state.momentum;
+        let energy = tolerance * state.momentum * state.speed_m_s();
+        share.min((energy / self.system.links[c].mobility).sqrt()).max(f64::MIN_POSITIVE)
+    }
+
+    pub(super) fn clear_until(&self, c: usize) -> f64 {
+        match self.states[c].phase {
+            Phase::Open { clear_until, .. } => clear_until,
+            Phase::Closed(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether a closed contact acts on a body of this one.
+    pub(super) fn is_disturbed(&self, c: usize) -> bool {
+        self.system.neighbours[c].iter().any(|&other| self.states[other].is_closed())
+    }
+
+    pub(super) fn refine(&mut self, level: i32) {
+        self.counts.rejected_steps += 1;
+        self.level = level;
+    }
+
+    /// What was expected does not hold any more.
+    pub(super) fn forget_horizons(&mut self) {
+        self.horizon = None;
+        self.landing = f64::INFINITY;
+        for state in &mut self.states {
+            if let Phase::Open { clear_until, bounds, .. } = &mut state.phase {
+                *clear_until = clear_until.min(self.time_s);
+                *bounds = None;
+            }
+        }
+    }
+
+    /// Time goes on, with what the loads do to the rigid modes meanwhile.
+    pub(super) fn pass(&mut self, h: f64) {
+        self.loads.push_rigid(self.time_s, h, &mut self.amplitude, &mut self.rate);
+        self.time_s += h;
+    }
+
+    /// The end of the run and the breaks of loads are met to the last digit.
+    pub(super) fn arrive_exactly(&mut self) {
+        let target = self.settings.end_s.min(self.loads.next_break_s());
+        if target.is_finite() && (self.time_s - target).abs() <= 1e-12 * target {
+            self.time_s = target;
+        }
+    }
+}

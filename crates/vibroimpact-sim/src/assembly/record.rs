@@ -1,0 +1,69 @@
+//! What is kept and shown of a run: the energy ledger, the observer's panels, and the record of all stretches.
+
+use super::dense::{Panel, Seen, Stretch};
+use super::ledger::Moment;
+use super::motion::March;
+use super::state::State;
+use crate::panel::legendre::Nodal;
+
+impl<'a> March<'a> {
+    /// Shows the energy ledger and the observer a panel that is about to be committed.
+    pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Nodal]) {
+        if let Some(account) = &mut self.account {
+            let (amplitude, rate) = (&self.amplitude, &self.rate);
+            let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
+            account.panel(&start, self.tables, h, contacts, force);
+        }
+        let free = contacts.is_empty();
+        let streams = self.observer.wants_panels();
+        if h == 0.0 || !streams && self.record.is_none() {
+            return;
+        }
+        let mut stretch = self.stretch(h, contacts, force);
+        if streams {
+            let (system, loads, laws) = (self.system, &self.loads, self.laws);
+            self.observer.panel(&Panel { system, loads, laws, stretch: &stretch });
+        }
+        if let Some(record) = &mut self.record {
+            stretch.events = std::mem::take(&mut self.pending);
+            // a flight without loads is one stretch, however many panels it took to see that nothing closes
+            let flies_on =
+                |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty() && stretch.events.is_empty();
+            match record.last_mut().filter(|last| flies_on(last)) {
+                Some(last) => last.length_s = self.time_s + h - last.start_s,
+                None => record.push(stretch),
+            }
+        }
+    }
+
+    fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Nodal]) -> Stretch {
+        let seen = |state: &State| Seen { reference: state.reference, branch: state.touch().map(|touch| touch.branch) };
+        Stretch {
+            events: Vec::new(),
+            start_s: self.time_s,
+            length_s,
+            amplitude: self.amplitude.clone(),
+            rate: self.rate.clone(),
+            contacts: self.states.iter().map(seen).collect(),
+            forces: contacts.iter().copied().zip(force.iter().copied()).collect(),
+        }
+    }
+
+    /// Where the record ends, as a stretch of no length.
+    pub(super) fn last(&mut self) -> Stretch {
+        let events = std::mem::take(&mut self.pending);
+        Stretch { events, ..self.stretch(0.0, &[], &[]) }
+    }
+
+    /// The record, with the endless flight that follows where bodies have parted for good, or have never been otherwise.
+    pub(super) fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
+        let mut record = self.record.take().unwrap_or_default();
+        if parted || record.is_empty() {
+            let known = record.partition_point(|stretch| stretch.start_s < self.time_s);
+            let flight = record.drain(known..).next();
+            let events = flight.map_or_else(|| std::mem::take(&mut self.pending), |flight| flight.events);
+            record.push(Stretch { events, ..self.stretch(f64::INFINITY, &[], &[]) });
+        }
+        record
+    }
+}

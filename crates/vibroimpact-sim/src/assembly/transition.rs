@@ -1,0 +1,222 @@
+//! How contacts close, pass from one branch of their law to the next, and open. Each transition is an event of the run; time
+//! does not pass in it.
+
+use super::dense::Event;
+use super::enclosure::first_difference;
+use super::motion::{March, Target};
+use super::solution::Interval;
+use super::state::{Phase, State, Touch};
+use super::terminal::{series_of, value};
+use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
+use crate::panel::peak::Peak;
+use contact_models::{After, Branch, Memory};
+
+/// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
+const SINGULAR: f64 = 1e-4;
+
+impl<'a> March<'a> {
+    /// Contacts that touch at the start close at once.
+    pub(super) fn begin(&mut self) {
+        self.depart();
+        for c in 0..self.states.len() {
+            let (overlap, rate) = self.overlap_of_modes(c);
+            (self.states[c].overlap, self.states[c].rate) = (overlap, rate);
+            self.states[c].inverse_mass = self.system.inverse_mass(c);
+            self.states[c].momentum = self.momentum_of_loads(c);
+        }
+        // the fastest first, whose speed is the measure for those that touch without one
+        let mut order: Vec<usize> = (0..self.states.len()).collect();
+        order.sort_by(|&one, &other| self.states[other].rate.total_cmp(&self.states[one].rate));
+        for c in order {
+            let noise = self.noise(c);
+            if self.states[c].overlap > noise {
+                self.touch(c, self.states[c].overlap);
+            } else if self.states[c].overlap >= -noise && !self.parts_from_here(c) {
+                self.touch(c, 0.0);
+            }
+        }
+    }
+
+    /// Whether surfaces that touch begin to part.
+    fn parts_from_here(&self, c: usize) -> bool {
+        let reach = self.reach.min(self.settings.end_s);
+        // rigid bodies alone have no time of their own
+        let reach = if reach.is_finite() { reach } else { 1.0 };
+        let mut series = series_of(self.system, &self.loads, c, self.moment(), reach);
+        series[0] = 0.0;
+        let differs = first_difference(&series, reach, (self.noise(c), self.rate_noise(c)));
+        differs.is_some_and(|(_, overlap)| overlap < 0.0)
+    }
+
+    /// The momentum that the loads give a contact while it yields to them (N s), a scale for contacts that nothing else
+    /// has closed.
+    fn momentum_of_loads(&self, c: usize) -> f64 {
+        let inverse = self.states[c].inverse_mass;
+        let mut acceleration = self.loads.acceleration(c, 0.0).abs();
+        for load in self.posed.loads {
+            let span = self.system.span(load.body, &load.shape);
+            let links = self.system.links[c].spans.iter().filter(|link| link.modes == span.modes);
+            let drive: f64 = links.map(|link| link.psi.iter().zip(&span.psi).map(|(a, b)| a * b).sum::<f64>()).sum();
+            acceleration = acceleration.max(drive.abs() * load.force.largest());
+        }
+        let force = acceleration / inverse;
+        if !(force > 0.0 && force.is_finite()) {
+            return 0.0;
+        }
+        let law = self.law(c);
+        let branch = law.touch(&Memory::default(), 0.0);
+        let (mut low, mut high) = (-30.0f64, 10.0f64);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let found = law.force(&branch, 10f64.powf(middle), 0.0).force_n;
+            *(if found < force { &mut low } else { &mut high }) = middle;
+        }
+        (2.0 * acceleration * 10f64.powf(low)).sqrt() / inverse
+    }
+
+    /// The first contact of two surfaces that meet now, with this overlap beyond where they touch.
+    pub(super) fn touch(&mut self, c: usize, beyond: f64) {
+        let law = self.law(c);
+        let Phase::Open { memory, .. } = self.states[c].phase else { return };
+        let (overlap, _) = self.overlap_of_modes(c);
+        let link = &self.system.links[c];
+        let mobility = link.mobility;
+        // how fast the bodies approach each other, but for their vibrations; these push with their own small masses
+        let vibrates: f64 =
+            if link.rigid.is_empty() { 0.0 } else { link.elastic.iter().map(|(k, psi)| psi * self.rate[*k]).sum() };
+        let state = &mut self.states[c];
+        let inverse = state.inverse_mass;
+        state.overlap = memory.touch_m + beyond;
+        state.reference += state.overlap - overlap;
+        if beyond == 0.0 {
+            state.rate = state.rate.max(0.0);
+        }
+        let approach_speed_m_s = state.rate;
+        let rigid = approach_speed_m_s - vibrates;
+        let interval = Interval {
+            start_s: self.time_s,
+            end_s: None,
+            impulse_n_s: 0.0,
+            peak_force_n: 0.0,
+            peak_compression_m: 0.0,
+            approach_speed_m_s,
+            separation_speed_m_s: None,
+        };
+        let touch = Touch {
+            branch: law.touch(&memory, approach_speed_m_s.max(0.0)),
+            needs_rate: false,
+            residue: 0.0,
+            rate_residue: 0.0,
+            previous: None,
+            interval,
+            peak_force: Peak::NONE,
+            peak_compression: Peak::NONE,
+        };
+        // of surfaces that overlap at the start, what their compression will push
+        let stored_j = if beyond > 0.0 { law.stored_energy_j(&touch.branch, state.overlap) } else { 0.0 };
+        let speed = rigid.abs().max((2.0 * stored_j * inverse).sqrt());
+        let momentum =
+            if inverse > 0.0 { speed / inverse + (approach_speed_m_s - rigid).abs() / mobility } else { 0.0 };
+        state.phase = Phase::Closed(Box::new(touch));
+        state.momentum = state.momentum.max(momentum);
+        if state.momentum == 0.0 && inverse > 0.0 {
+            // what it will pass on comes from the others
+            let speed = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
+            self.states[c].momentum = speed / inverse;
+        }
+        let alone = self.states.iter().filter(|state| state.is_closed()).count() == 1;
+        let branch = self.states[c].touch().map(|touch| touch.branch);
+        if let Some(branch) = branch {
+            self.enter(c, branch);
+        }
+        let first = self.first_level(c);
+        self.level = if alone { first } else { self.level.max(first) };
+        self.event(c, Event::Touch { overlaps: beyond > 0.0 });
+    }
+
+    fn enter(&mut self, c: usize, branch: Branch) {
+        let law = self.law(c);
+        if let Phase::Closed(touch) = &mut self.states[c].phase {
+            touch.branch = branch;
+            touch.needs_rate =
+                law.depends_on_rate() || law.boundaries(&branch).iter().any(|boundary| boundary.per_rate != 0.0);
+        }
+        self.forget_horizons();
+    }
+
+    /// What follows where an event function has fallen to zero.
+    pub(super) fn transition(&mut self, target: Target) {
+        let c = target.contact;
+        let law = self.law(c);
+        let Some(touch) = self.states[c].touch() else {
+            return self.touch(c, 0.0);
+        };
+        let boundary = law.boundaries(&touch.branch)[target.boundary];
+        let residue = boundary.margin(self.states[c].overlap, self.states[c].rate).abs();
+        match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
+            After::Continue(branch) => {
+                self.enter(c, branch);
+                if let Phase::Closed(touch) = &mut self.states[c].phase {
+                    touch.residue = residue;
+                    touch.rate_residue = if boundary.per_rate == 0.0 { 0.0 } else { residue / boundary.per_rate.abs() };
+                }
+                self.event(c, Event::Cross(target.boundary));
+            }
+            After::Release(memory) => {
+                let (overlap, _) = self.overlap_of_modes(c);
+                let (now, rate) = (self.time_s, self.states[c].rate);
+                if let Some(interval) = self.states[c].finish(Some((now, rate))) {
+                    self.observer.interval(c, &interval);
+                }
+                self.intervals += 1;
+                let state = &mut self.states[c];
+                // the surfaces part where the law says so, not where the sum over the modes puts them
+                state.reference += state.overlap - overlap;
+                state.phase = Phase::Open { memory, clear_until: now, bounds: None };
+                self.forget_horizons();
+                self.depart();
+                self.event(c, Event::Cross(target.boundary));
+            }
+        }
+    }
+
+    /// The bodies have parted, perhaps for good: what follows is free motion.
+    fn depart(&mut self) {
+        if self.settings.stop_when_over {
+            self.departure.0 = self.time_s;
+            self.departure.1.clone_from(&self.amplitude);
+            self.departure.2.clone_from(&self.rate);
+        }
+    }
+
+    fn event(&mut self, c: usize, event: Event) {
+        if self.record.is_some() {
+            self.pending.push((c, event));
+        }
+        self.counts.events += 1;
+        self.events_at_once = if self.time_s > self.last_event_s { 0 } else { self.events_at_once + 1 };
+        self.last_event_s = self.time_s;
+    }
+
+    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
+    fn first_level(&self, c: usize) -> i32 {
+        let Some(touch) = self.states[c].touch() else { return J_MIN };
+        let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);
+        series[0] = self.states[c].overlap;
+        let law = self.law(c);
+        let allowed = self.impulse_tolerance(c) / SINGULAR;
+        let small = |j: i32| {
+            let h = step_s(j);
+            let [compression, rate, _] = value(&series, h.min(self.reach));
+            let compression = compression + rate.max(0.0) * (h - h.min(self.reach));
+            law.force(&touch.branch, compression, rate).force_n * h <= allowed
+        };
+        // the force at the end of a panel grows with the panel
+        let (mut coarse, mut fine) = (J_MIN, J_MAX);
+        while coarse < fine {
+            let middle = coarse + (fine - coarse) / 2;
+            if small(middle) { fine = middle } else { coarse = middle + 1 }
+        }
+        if self.reach.is_finite() { fine.max(level_within(4.0 * self.reach)) } else { fine }
+    }
+}

@@ -1,0 +1,162 @@
+//! A panel of `2^-j` s with closed contacts: the forces that the laws ask for, and what they do to the motion. A trial changes
+//! nothing; a panel that has been judged is committed.
+
+use super::collocate::{Collocated, Newton, Unknown, collocate};
+use super::load::Turns;
+use super::motion::March;
+use super::state::Phase;
+use crate::panel::dyadic::step_s;
+use crate::panel::legendre::{BASIS, Nodal, Q, evaluate_at, slopes};
+
+/// Share of the impulse that a panel may get wrong by which the nodal forces may miss the law.
+const NEWTON_SHARE: f64 = 1e-2;
+
+/// A panel that is tried; the memory serves one trial after the other.
+#[derive(Default)]
+pub(super) struct Trial<'a> {
+    /// Closed contacts, then open ones that could close, and how many are closed.
+    pub contacts: Vec<usize>,
+    pub closed: usize,
+    unknowns: Vec<Unknown<'a>>,
+    newton: Newton,
+    /// The closed contacts' forces, by nodes and by coefficients.
+    pub solved: Vec<Collocated>,
+    pub force: Vec<Nodal>,
+    /// All contacts' overlaps at the nodes, and at the end with their rates.
+    pub overlap: Vec<Nodal>,
+    pub end: Vec<(f64, f64)>,
+    turns: Turns,
+}
+
+impl<'a> March<'a> {
+    /// Solves for the forces of a panel; `false` if it is too long for that.
+    pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
+        let h = step_s(level);
+        let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end, turns } = trial;
+        let closed = *closed;
+        self.tables.prepare(self.system, level, contacts, contacts);
+        self.loads.turn(self.time_s, h, turns);
+        overlap.clear();
+        overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
+        unknowns.clear();
+        unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
+        let tables = &*self.tables;
+        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]).map(|r| &r.nodes);
+        if !collocate(unknowns, response, h, (newton, solved), &mut self.counts) {
+            return false;
+        }
+        force.clear();
+        force.extend(solved.iter().map(|solved| BASIS.coefficients(&solved.force)));
+        self.watch(h, contacts, closed, force);
+        if contacts.len() > closed {
+            self.tables.prepare(self.system, level, &contacts[closed..], &contacts[..closed]);
+        }
+        for &c in &contacts[closed..] {
+            let start = self.states[c].overlap;
+            overlap.push(self.free_at_nodes(level, c, turns).map(|moved| start + moved));
+        }
+        let tables = &*self.tables;
+        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
+        end.clear();
+        for (i, &c) in contacts.iter().enumerate() {
+            let nodal = &mut overlap[i];
+            let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
+            let (by_loads, rate_of_loads) = self.loads.moved_on(c, (self.time_s, h), turns, Q);
+            let mut forced = 0.0;
+            for (j, solved) in solved.iter().enumerate() {
+                if let Some(response) = response(i, j) {
+                    let (moved, speed) = response.at_end(&force[j]);
+                    forced += moved;
+                    rate += speed;
+                    if i >= closed {
+                        for j in 0..Q {
+                            for i in 0..Q {
+                                nodal[i] += response.nodes[j][i] * solved.force[j];
+                            }
+                        }
+                    }
+                }
+            }
+            if i < closed {
+                *nodal = solved[i].compression;
+            }
+            end.push((self.states[c].overlap + (moved + by_loads + forced), rate + rate_of_loads));
+        }
+        true
+    }
+
+    /// The closed contacts' laws and first guesses on a panel of `h`.
+    pub(super) fn unknowns<'s>(
+        &'s self,
+        contacts: &'s [usize],
+        h: f64,
+        free: impl Fn(usize) -> Nodal + 's,
+    ) -> impl Iterator<Item = Unknown<'a>> + 's {
+        let unknown = move |(i, &c): (usize, &usize)| {
+            let state = &self.states[c];
+            let touch = state.touch()?;
+            let guess = touch.previous.map_or([0.0; Q], |(coefficients, length)| {
+                evaluate_at(&coefficients, &BASIS.nodes.map(|s| 1.0 + s * h / length)).map(|force| force.max(0.0))
+            });
+            Some(Unknown {
+                law: self.law(c),
+                branch: touch.branch,
+                start: state.overlap,
+                free: free(i),
+                needs_rate: touch.needs_rate,
+                accuracy: NEWTON_SHARE * self.impulse_tolerance(c) / h,
+                guess,
+            })
+        };
+        contacts.iter().enumerate().filter_map(unknown)
+    }
+
+    /// By how much the overlap of a contact would have grown at the nodes if there were no contact force.
+    fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> Nodal {
+        let panel = (self.time_s, step_s(level));
+        let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
+        std::array::from_fn(|i| moved[i] + self.loads.moved_on(c, panel, turns, i).0)
+    }
+
+    pub(super) fn commit(&mut self, level: i32, trial: &Trial) {
+        let h = step_s(level);
+        let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
+        self.show(h, &contacts[..closed], &trial.force);
+        self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
+        for (i, &c) in contacts[..closed].iter().enumerate() {
+            let link = &self.system.links[c];
+            self.tables.push(level, link, &trial.force[i], &mut self.amplitude, &mut self.rate);
+        }
+        self.pass(h);
+        self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
+    }
+
+    /// Books a panel of `h` that has been made.
+    pub(super) fn book(
+        &mut self,
+        h: f64,
+        contacts: &[usize],
+        closed: usize,
+        solved: &[Collocated],
+        force: &[Nodal],
+        end: impl Fn(usize) -> (f64, f64),
+    ) {
+        self.counts.contact_steps += 1;
+        let now = self.time_s;
+        for (i, &c) in contacts.iter().enumerate() {
+            let state = &mut self.states[c];
+            if i < closed {
+                let rate = slopes(state.overlap, &solved[i].compression, h);
+                state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate, end(i).0);
+            }
+            (state.overlap, state.rate) = end(i);
+        }
+        for c in 0..self.states.len() {
+            let moved = contacts.contains(&c) || self.is_disturbed(c);
+            if moved && let Phase::Open { clear_until, bounds, .. } = &mut self.states[c].phase {
+                (*clear_until, *bounds) = (now, None);
+            }
+        }
+        self.arrive_exactly();
+    }
+}
