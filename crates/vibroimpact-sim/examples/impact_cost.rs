@@ -1,0 +1,35 @@
+//! One impact on the beam of thesis chapter 3, a hundred times over: for callgrind. See docs/performance.md.
+//!
+//! `impact_cost MODES TOLERANCE [uncertainty] [anew]`; 40 and 1e-6 when left out.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{GOLDEN, ball, hertz, pinned, settings};
+use std::hint::black_box;
+use std::time::Instant;
+use vibroimpact_sim::modal::{Settings, Solver};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    if words.len() < 2 {
+        words = ["40", "1e-6"].map(str::to_owned).into();
+    }
+    let [modes, tolerance, options @ ..] = words.as_slice() else { return Ok(()) };
+    let has = |word: &str| options.iter().any(|option| option == word);
+    let structure = pinned(modes.parse()?, 0.02, GOLDEN);
+    let settings = Settings { estimate_uncertainty: has("uncertainty"), ..settings(tolerance.parse()?) };
+    let mut solver = Solver::new(&structure)?;
+    let mut solution = solver.solve(&ball(), &hertz(), None, &settings)?;
+    let mut best = f64::INFINITY;
+    for _ in 0..100 {
+        let clock = Instant::now();
+        if has("anew") {
+            solver = Solver::new(black_box(&structure))?;
+        }
+        solution = solver.solve(black_box(&ball()), &hertz(), None, &settings)?;
+        best = best.min(clock.elapsed().as_secs_f64());
+    }
+    println!("restitution {:?}, {:.1} us at best, {:?}", solution.restitution, 1e6 * best, solution.counts);
+    Ok(())
+}

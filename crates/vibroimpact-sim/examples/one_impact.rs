@@ -1,0 +1,36 @@
+//! A ball on a structure of three modes: every contact, the rebound, and where the energy went.
+//!
+//! `cargo run --release -p vibroimpact-sim --example one_impact`
+
+use contact_models::Hertz;
+use vibroimpact_sim::infinite;
+use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // a pinned beam of 1 kg and 1 m, struck at 0.4 m
+    let mode = |k: f64| Mode {
+        omega_rad_s: 165.0 * k * k,
+        damping_ratio: 0.02,
+        shape: 2f64.sqrt() * (0.4 * std::f64::consts::PI * k).sin(),
+    };
+    let structure = Structure { modes: [1.0, 2.0, 3.0].map(mode).to_vec() };
+    let ball = Striker { mass_kg: 0.11, speed_m_s: 1.0 };
+    let solution = Solver::new(&structure)?.solve(&ball, &Hertz::new(1.8e10)?, None, &Settings::default())?;
+    for contact in &solution.sub_impacts {
+        println!(
+            "{:9.3} ms to {:9.3} ms: impulse {:8.3} mN s, largest force {:8.2} N",
+            1e3 * contact.start_s,
+            1e3 * contact.end_s,
+            1e3 * contact.impulse_n_s,
+            contact.peak_force_n
+        );
+    }
+    if let (Some(e), Some(uncertainty)) = (solution.restitution, solution.restitution_uncertainty) {
+        println!("{}: restitution {e:.9}, uncertain by {uncertainty:.0e}", solution.outcome.as_str());
+    }
+
+    // the same question for a beam without ends, from its one number S
+    let waves = infinite::solve(infinite::Structure::Beam, 15.0, &infinite::Settings::default())?;
+    println!("infinite beam, S = 15: {} separations, {:?}", waves.separations(), waves.outcome);
+    Ok(())
+}
