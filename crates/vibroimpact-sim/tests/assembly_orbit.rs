@@ -1,11 +1,12 @@
 //! Periodic motions against closed forms.
 
 use contact_models::{Law, LinearSpring};
+use std::cell::Cell;
 use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, OrbitOutcome, OrbitSettings,
-    Point, Settings, Special, find_orbit, follow_branch, run,
+    Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch, run,
 };
 
 fn point(shape: f64) -> Point {
@@ -61,6 +62,35 @@ fn an_orbit_against_a_stop_repeats_itself_and_its_multipliers_have_the_right_pro
     let found = run(&assembly, &settings, &mut ()).unwrap();
     assert!((found.amplitude[0][0] - orbit.state[0]).abs() < 1e-9 * orbit.sides[0][1].displacement_max_m.abs() + 1e-11);
     assert!((found.rate[0][0] - orbit.state[1]).abs() < 1e-8);
+}
+
+/// Stopped at ever later questions, the search tells that it was, and how near it had come.
+#[test]
+fn a_search_that_is_stopped_keeps_what_it_has_come_to() {
+    let assembly = driven(0.05, 1e-3, 1.0, 9.0);
+    let settings = OrbitSettings { transient_periods: 3, ..OrbitSettings::default() };
+    let mut closures = Vec::new();
+    for most in 0.. {
+        let asked = Cell::new(0);
+        let stop = || {
+            asked.set(asked.get() + 1);
+            asked.get() > most
+        };
+        match find_orbit_until(&assembly, &settings, &stop).unwrap() {
+            OrbitOutcome::Interrupted { closure, state } => {
+                assert_eq!(state.len(), 2);
+                closures.push(closure);
+            }
+            OrbitOutcome::Stopped(Outcome::Stopped(Reason::Interrupted)) => assert!(closures.is_empty()),
+            OrbitOutcome::Found(orbit) => {
+                assert!(orbit.closure < 1e-9);
+                break;
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(closures.len() > 1 && closures.iter().all(|closure| *closure >= 0.0), "{closures:?}");
+    assert!(closures.windows(2).all(|pair| pair[1] <= pair[0]), "{closures:?}");
 }
 
 /// A ball under gravity on a table that shakes by `A sin(omega t)`, in the table's frame, against a stiff floor with the

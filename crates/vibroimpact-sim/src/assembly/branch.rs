@@ -218,8 +218,8 @@ where
         self.settings.to - self.settings.from
     }
 
-    fn map(&self, parameter: f64) -> Result<PeriodMap<L>, E> {
-        let map = PeriodMap::new((self.build)(parameter)?, &self.settings.orbit)?;
+    fn map(&self, parameter: f64) -> Result<PeriodMap<'static, L>, E> {
+        let map = PeriodMap::new((self.build)(parameter)?, &self.settings.orbit, &|| false)?;
         let phase = self.phase_part * map.period_s();
         Ok(map.at_phase(phase))
     }

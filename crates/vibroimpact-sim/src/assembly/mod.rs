@@ -86,7 +86,7 @@ mod wave;
 pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
 pub use no_derivative::NoDerivative;
-pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit};
+pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, find_orbit_until};
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
 pub use reliability::COARSER;
 pub use solution::{

@@ -10,7 +10,7 @@
 //! contact under way is no part of `x`.
 
 use super::problem::{Assembly, Force, Settings};
-use super::solution::{ContactSample, Interval, Motion, Observer, Outcome};
+use super::solution::{ContactSample, Interval, Motion, Observer, Outcome, Reason};
 use super::solve::{Solver, run};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
@@ -111,6 +111,13 @@ pub enum OrbitOutcome {
     },
     /// A run of a period stopped before its end.
     Stopped(Outcome),
+    /// The search was stopped from outside after it had come this near.
+    Interrupted {
+        /// `|P(x) - x|`, relative to the size of the motion.
+        closure: f64,
+        /// The state then, in the order of [`Orbit::state`].
+        state: Vec<f64>,
+    },
 }
 
 /// Finds a periodic motion near where a transient from the assembly's start leads.
@@ -121,8 +128,20 @@ pub fn find_orbit<L: ContactLaw + Clone>(
     assembly: &Assembly<L>,
     settings: &OrbitSettings,
 ) -> Result<OrbitOutcome, InvalidInput> {
+    find_orbit_until(assembly, settings, &|| false)
+}
+
+/// As [`find_orbit`]; `stop` is asked now and then whether to end the search with what it has come to.
+///
+/// # Errors
+/// As [`find_orbit`].
+pub fn find_orbit_until<L: ContactLaw + Clone>(
+    assembly: &Assembly<L>,
+    settings: &OrbitSettings,
+    stop: &dyn Fn() -> bool,
+) -> Result<OrbitOutcome, InvalidInput> {
     settings.check()?;
-    let mut map = PeriodMap::new(assembly.clone(), settings)?;
+    let mut map = PeriodMap::new(assembly.clone(), settings, stop)?;
     let transient = map.transient(settings.transient_periods)?;
     match transient {
         Ok(state) => refine(&map, state, settings),
@@ -132,7 +151,7 @@ pub fn find_orbit<L: ContactLaw + Clone>(
 
 /// Newton's method from a state near an orbit.
 pub(crate) fn refine<L: ContactLaw + Clone>(
-    map: &PeriodMap<L>,
+    map: &PeriodMap<'_, L>,
     mut state: DVector<f64>,
     settings: &OrbitSettings,
 ) -> Result<OrbitOutcome, InvalidInput> {
@@ -144,8 +163,13 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
     loop {
         let scales = map.scales(&state, &image);
         let closure = map.distance(&(&image - &state), &scales);
+        let interrupted = || OrbitOutcome::Interrupted { closure, state: state.iter().copied().collect() };
+        if (map.stop)() {
+            return Ok(interrupted());
+        }
         let jacobian = match map.derivative(&state, &scales)? {
             Ok(jacobian) => jacobian,
+            Err(Outcome::Stopped(Reason::Interrupted)) => return Ok(interrupted()),
             Err(outcome) => return Ok(OrbitOutcome::Stopped(outcome)),
         };
         if closure <= settings.closure {
@@ -162,6 +186,9 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
         // a full step, or a shorter one that brings the ends nearer
         let mut part = 1.0;
         let next = loop {
+            if (map.stop)() {
+                return Ok(interrupted());
+            }
             let trial = &state + part * &step;
             if let Ok(after) = map.apply(&trial)?
                 && (map.distance(&(&after - &trial), &scales) < closure || part < 1e-3)
@@ -181,7 +208,8 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
 }
 
 /// The map of the state over a period of the loads.
-pub(crate) struct PeriodMap<L> {
+pub(crate) struct PeriodMap<'s, L> {
+    stop: &'s dyn Fn() -> bool,
     assembly: Assembly<L>,
     settings: Settings,
     forcing_period_s: f64,
@@ -191,8 +219,12 @@ pub(crate) struct PeriodMap<L> {
 
 type Reached<T> = Result<Result<T, Outcome>, InvalidInput>;
 
-impl<L: ContactLaw + Clone> PeriodMap<L> {
-    pub fn new(assembly: Assembly<L>, settings: &OrbitSettings) -> Result<PeriodMap<L>, InvalidInput> {
+impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
+    pub fn new(
+        assembly: Assembly<L>,
+        settings: &OrbitSettings,
+        stop: &'s dyn Fn() -> bool,
+    ) -> Result<PeriodMap<'s, L>, InvalidInput> {
         assembly.check()?;
         let frequencies = assembly.loads.iter().filter_map(|load| match load.force {
             Force::Harmonic { omega_rad_s, .. } => Some(omega_rad_s),
@@ -222,7 +254,7 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
         runs.stop_at_rest = false;
         runs.check()?;
         let forcing_periods = settings.forcing_periods;
-        Ok(PeriodMap { assembly, settings: runs, forcing_period_s, forcing_periods, phase_s: 0.0 })
+        Ok(PeriodMap { stop, assembly, settings: runs, forcing_period_s, forcing_periods, phase_s: 0.0 })
     }
 
     pub fn period_s(&self) -> f64 {
@@ -230,7 +262,7 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
     }
 
     /// The same map with the states taken at another moment of the loads' period.
-    pub fn at_phase(mut self, phase_s: f64) -> PeriodMap<L> {
+    pub fn at_phase(mut self, phase_s: f64) -> PeriodMap<'s, L> {
         self.set_phase(phase_s);
         self
     }
@@ -264,7 +296,7 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
 
     fn follow(&self, state: &DVector<f64>, end_s: f64, observer: &mut dyn Observer) -> Reached<DVector<f64>> {
         let settings = Settings { end_s, ..self.settings };
-        let found = run(&self.posed(state), &settings, observer)?;
+        let found = run(&self.posed(state), &settings, &mut Stoppable { stop: self.stop, observer })?;
         Ok(match found.outcome {
             Outcome::End => Ok(Self::state_of(&found.amplitude, &found.rate)),
             other => Err(other),
@@ -387,6 +419,30 @@ impl<L: ContactLaw + Clone> PeriodMap<L> {
     }
 }
 
+/// An observer whose run can be stopped from outside.
+struct Stoppable<'a> {
+    stop: &'a dyn Fn() -> bool,
+    observer: &'a mut dyn Observer,
+}
+
+impl Observer for Stoppable<'_> {
+    fn interval(&mut self, contact: usize, interval: &Interval) {
+        self.observer.interval(contact, interval);
+    }
+
+    fn panel(&mut self, panel: &dyn Motion) {
+        self.observer.panel(panel);
+    }
+
+    fn wants_panels(&self) -> bool {
+        self.observer.wants_panels()
+    }
+
+    fn interrupts(&mut self) -> bool {
+        (self.stop)()
+    }
+}
+
 /// When any contact is closed.
 #[derive(Default)]
 struct Closed(Vec<(f64, f64)>);
@@ -499,7 +555,9 @@ mod tests {
 
     #[test]
     fn the_tangent_of_a_period_is_that_of_differences() {
-        let map = PeriodMap::new(rattling(), &OrbitSettings { tolerance: 1e-12, ..OrbitSettings::default() }).unwrap();
+        let map =
+            PeriodMap::new(rattling(), &OrbitSettings { tolerance: 1e-12, ..OrbitSettings::default() }, &|| false)
+                .unwrap();
         let state = map.start();
         let mut closed = Closed::default();
         map.follow(&state, map.period_s(), &mut closed).unwrap().unwrap();

@@ -24,7 +24,7 @@ pub const EXAMPLES: &str = "Examples:
 The scene is one of bodies with a harmonic load. After a transient from its start, Newton's method finds the periodic
 motion; its Floquet multipliers tell whether it is stable. Over a field (a path as in a sweep) the branch is followed
 round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. Which motion a start
-leads to is mapped by a sweep over fields of the start.
+leads to is mapped by a sweep over fields of the start. Ctrl-C ends the search and prints what it has come to.
 
 The exit code is 0 for every result, 2 for a scene or a field that cannot be used, 1 if writing fails.";
 
@@ -72,15 +72,15 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
         transient_periods: arguments.transient,
         ..OrbitSettings::default()
     };
+    let stop = stop_on_signal()?;
     let (Some(field), Some(to)) = (&arguments.over, arguments.to) else {
-        let found = scene.orbit(&settings)?;
+        let found = scene.orbit_until(&settings, &|| stop.load(Ordering::Relaxed))?;
         return match arguments.json {
             true => export::json(&found),
             false => Ok(format!("{headline}\n\n{}{}", orbit::text(&found), signature())),
         };
     };
     let over = Over { field, from: arguments.from, to, step: arguments.step };
-    let stop = stop_on_signal()?;
     let branch = scene.orbit_branch(&over, &settings, |_| !stop.load(Ordering::Relaxed))?;
     let mut printed = match arguments.json {
         true => export::json(&branch)?,

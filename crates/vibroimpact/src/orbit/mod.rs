@@ -8,7 +8,7 @@ use invalid_input::InvalidInput;
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
-    self, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, follow_branch,
+    self, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, Reason, SideMotion, find_orbit_until, follow_branch,
 };
 
 use crate::assembly::{AssemblyScene, Posed};
@@ -59,7 +59,7 @@ pub struct PointMotion {
 /// What the search for a periodic motion came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Found {
-    /// `found`, `not found`, or `stopped`.
+    /// `found`, `not found`, `interrupted` or `stopped`.
     pub outcome: &'static str,
     /// The motion, where it was found.
     #[serde(flatten)]
@@ -68,6 +68,9 @@ pub struct Found {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_closure: Option<f64>,
 }
+
+/// The outcome of a search that was stopped from outside.
+const INTERRUPTED: &str = "interrupted";
 
 /// An orbit of a branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -124,15 +127,29 @@ impl AssemblyScene {
     /// # Errors
     /// As [`AssemblyScene::pose`]; a scene without a harmonic load.
     pub fn orbit(&self, settings: &OrbitSettings) -> Result<Found, InvalidInput> {
+        self.orbit_until(settings, &|| false)
+    }
+
+    /// As [`AssemblyScene::orbit`]; `stop` is asked now and then whether to end the search with what it has come to.
+    ///
+    /// # Errors
+    /// As [`AssemblyScene::orbit`].
+    pub fn orbit_until(&self, settings: &OrbitSettings, stop: &dyn Fn() -> bool) -> Result<Found, InvalidInput> {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
-        let found = find_orbit(&posed.assembly, &settings).map_err(|fault| posed.in_scene(fault))?;
+        let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| posed.in_scene(fault))?;
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
                 Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), nearest_closure: None }
             }
             OrbitOutcome::NotFound { closure } => {
                 Found { outcome: "not found", orbit: None, nearest_closure: Some(closure) }
+            }
+            OrbitOutcome::Interrupted { closure, .. } => {
+                Found { outcome: INTERRUPTED, orbit: None, nearest_closure: Some(closure) }
+            }
+            OrbitOutcome::Stopped(assembly::Outcome::Stopped(Reason::Interrupted)) => {
+                Found { outcome: INTERRUPTED, orbit: None, nearest_closure: None }
             }
             _ => Found { outcome: "stopped", orbit: None, nearest_closure: None },
         })

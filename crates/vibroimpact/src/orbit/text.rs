@@ -2,13 +2,20 @@
 
 use std::fmt::Write;
 
-use super::{BranchSummary, Found, OrbitSummary};
+use super::{BranchSummary, Found, INTERRUPTED, OrbitSummary};
 use crate::text::quantity;
 
 /// A periodic motion, or why there is none.
 pub fn text(found: &Found) -> String {
     match (&found.orbit, found.nearest_closure) {
         (Some(orbit), _) => orbit_text(orbit),
+        (None, Some(closure)) if found.outcome == INTERRUPTED => format!(
+            "  outcome               interrupted: the nearest motion so far misses itself by {closure:.1e} of its size after a \
+             period.\n"
+        ),
+        (None, None) if found.outcome == INTERRUPTED => {
+            "  outcome               interrupted before the search began: during the transient.\n".to_owned()
+        }
         (None, Some(closure)) => format!(
             "  outcome               not found: the motion misses itself by {closure:.1e} of its size after a period.\n  \
              A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n"
