@@ -3,6 +3,8 @@
 
 use crate::buckling::require_stable;
 use crate::chain::Chain;
+#[cfg(doc)]
+use crate::definition::Beam;
 use crate::definition::BeamSystem;
 use crate::flexure::Flexure;
 use crate::location::require_on;

@@ -5,7 +5,7 @@ use invalid_input::InvalidInput;
 /// Smallest and largest number of nodes a panel may have.
 pub(super) const NODES: std::ops::RangeInclusive<usize> = 8..=32;
 
-/// Smallest and largest `S` that [`solve`] accepts.
+/// Smallest and largest `S` that [`solve`](super::solve()) accepts.
 pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e8;
 
 /// The struck structure, which decides the kernel `K` of the Volterra equation.
@@ -28,7 +28,7 @@ pub struct Settings {
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
     /// it takes to know that it lasts.
     pub horizon: f64,
-    /// Whether to solve a second time with more nodes, for [`Solution::error`]. Default true.
+    /// Whether to solve a second time with more nodes, for [`Solution::error`](super::Solution::error). Default true.
     pub estimate_error: bool,
     /// Most panels to try before stopping ([`StopReason::Steps`](crate::StopReason)). Default 200,000. Only `S`
     /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at
