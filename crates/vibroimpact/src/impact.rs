@@ -1,12 +1,16 @@
-//! From the fields of a scene to the terms of the solver, and back again in its errors.
+//! From the fields of a scene to the terms of the solver.
 
 use contact_models::Law;
-use invalid_input::Step;
+use invalid_input::Path;
 use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
-use crate::model::{self, Kept};
+use crate::in_scene::in_scene;
+use crate::model::Kept;
 use crate::same_modes::{Seen, matched};
-use crate::scene::{self, InvalidInput, Scene, require_elastic};
+use crate::scene::json::number;
+use crate::scene::{
+    self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, require_elastic,
+};
 
 /// An impact in the terms of [`vibroimpact_sim::modal`].
 #[derive(Debug, Clone, PartialEq)]
@@ -85,50 +89,21 @@ impl Impact {
     }
 }
 
-/// The solver's error under the names that scenes use.
-pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
-    match fault.field.steps() {
-        // lists of modes have been checked by their names; these modes were computed
-        [_, Step::Index(k), Step::Field(quantity)] => {
-            let mode = k + 1;
-            let value = fault.value.as_ref().map_or_else(String::new, ToString::to_string);
-            let allowed = format!("a structure whose modes have a {quantity} of {}", fault.allowed);
-            InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
-        }
-        [Step::Field(name)] if ["mass_kg", "speed_m_s"].contains(&name.as_str()) => fault.within("striker"),
-        // an amplitude or rate out of range may come from any of the ways in which a scene states the start
-        [Step::Field(name), ..] if ["gap_m", "amplitude", "rate"].contains(&name.as_str()) => fault.within("start"),
-        _ => fault,
-    }
-}
-
 impl Scene {
-    /// The structure as the solver sees it: its modes at the point of impact and, as far as the scene asks for them, a few
-    /// remainder modes for all others. See [`Scene::impact`] for `"modes": "auto"`.
-    ///
-    /// # Errors
-    /// A value out of range, or fields of which too few or too many are given.
-    pub fn structure(&self) -> Result<Structure, InvalidInput> {
-        if let scene::Structure::DroppedRod(rod) = &self.structure {
-            return Ok(self.drop(rod, Settings::default())?.structure);
-        }
-        if model::chooses_modes(self) {
-            Ok(self.impact()?.structure)
-        } else {
-            Ok(self.structure_of(self.modes.count(), &mut Kept::default())?.0)
-        }
-    }
-
     /// The structure with its first `count` modes, or all that are listed, and how many remainder modes it has beside
     /// them.
-    fn structure_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<(Structure, usize), InvalidInput> {
+    pub(crate) fn structure_of(
+        &self,
+        count: Option<usize>,
+        kept: &mut Kept,
+    ) -> Result<(Structure, usize), InvalidInput> {
         let place = self.place();
-        let modes = if self.residual_compliance.unwrap_or(model::chooses_modes(self)) {
+        let modes = if self.residual_compliance.unwrap_or(chooses_modes(self)) {
             let enough = count.map(|count| self.structure.enough_for_remainder(count));
             let mut known = self.structure.modes_with(place, enough, &mut kept.modes)?;
             let count = count.unwrap_or(known.len()).min(known.len());
             let whole_m_n = self.structure.static_compliance_m_n(place)?;
-            if matches!((&self.structure, self.modes), (scene::Structure::Modal(_), model::Modes::Count(_))) {
+            if matches!((&self.structure, self.modes), (scene::Structure::Modal(_), Modes::Count(_))) {
                 require_elastic(&known[..count], whole_m_n)?;
             }
             let remainder = self.structure.remainder(&known, count, whole_m_n)?;
@@ -161,37 +136,6 @@ impl Scene {
         }
     }
 
-    /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
-    /// restitution needs to converge, which takes a few solves; [`Scene::choose`](crate::Scene::choose) states how well
-    /// it converged, and whether another model would do.
-    ///
-    /// # Errors
-    /// As [`Scene::structure`].
-    ///
-    /// ```
-    /// use vibroimpact::Scene;
-    ///
-    /// let scene = Scene::from_json(r#"{
-    ///     "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
-    ///         "segments": [{ "length_m": 1, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
-    ///                        "width_m": 0.011323, "thickness_m": 0.011323 }] },
-    ///     "striker": { "density_kg_m3": 7800, "radius_m": 0.015, "speed_m_s": 1 },
-    ///     "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
-    ///     "location_m": 0.4, "modes": 40
-    /// }"#)?;
-    /// let solution = scene.impact()?.solve()?;
-    /// assert!(solution.sub_impacts.len() > 1);
-    /// assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < 1.0));
-    /// # Ok::<(), vibroimpact::SceneError>(())
-    /// ```
-    pub fn impact(&self) -> Result<Impact, InvalidInput> {
-        if model::chooses_modes(self) {
-            model::settled_impact(self)
-        } else {
-            self.impact_of(self.modes.count(), &mut Kept::default())
-        }
-    }
-
     /// The impact with the first `count` modes, or all that are listed.
     pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
         self.require_yield_strength()?;
@@ -214,9 +158,38 @@ impl Scene {
             settings,
         })
     }
-}
 
-/// Static compliance of the elastic ones of these modes (m/N).
-pub(crate) fn compliance(modes: &[Mode]) -> f64 {
-    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
+    /// The fall of a rod in the terms of the solver.
+    pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
+        let left_out = |field: Path, value: Option<String>| match value {
+            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),
+            None => Ok(()),
+        };
+        let scene::Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;
+        left_out(["striker", "mass_kg"].into(), mass_kg.map(number))?;
+        left_out(["striker", "density_kg_m3"].into(), density_kg_m3.map(number))?;
+        left_out(["striker", "radius_m"].into(), radius_m.map(number))?;
+        left_out(["striker", "immovable"].into(), immovable.then(|| "true".to_owned()))?;
+        left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
+        left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
+        left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
+        left_out("residual_compliance".into(), self.residual_compliance.map(|on| on.to_string()))?;
+        left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
+        let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
+        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.first() {
+            Some("speed_m_s") => fault.within("striker"),
+            _ => fault.within("structure"),
+        })?;
+        let law = match &self.contact {
+            Contact::Hertz(stiffness) if *stiffness == HertzStiffness::default() => drop.law.into(),
+            contact => contact.law(&scene::Striker {
+                mass_kg: Some(described.rigid_body_mass_kg()),
+                radius_m: Some(0.5 * rod.diameter_m),
+                speed_m_s,
+                ..scene::Striker::default()
+            })?,
+        };
+        let vibroimpact_sim::dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
+        Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
+    }
 }

@@ -5,10 +5,10 @@ use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
-use invalid_input::Step;
+use invalid_input::{InvalidInput, Step};
 
+use crate::scene::SceneError;
 use crate::scene::told::counted;
-use crate::scene::{InvalidInput, SceneError};
 
 /// Largest file that is read (bytes).
 const MAX_FILE_BYTES: u64 = 64 << 20;

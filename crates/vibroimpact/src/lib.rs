@@ -57,6 +57,7 @@
 #![cfg_attr(not(feature = "files"), allow(dead_code))]
 
 mod impact;
+mod in_scene;
 mod input;
 mod result_file;
 mod same_modes;

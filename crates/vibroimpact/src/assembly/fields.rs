@@ -1,6 +1,6 @@
 //! What each field of a scene of bodies may hold, where a scene of one impact has no such field.
 
-use crate::scene::fields::{NOT_NEGATIVE, POSITIVE};
+use crate::scene::ranges::{NOT_NEGATIVE, POSITIVE};
 
 /// Field and what it may hold.
 pub(crate) const FIELDS: &[(&str, &str)] = &[

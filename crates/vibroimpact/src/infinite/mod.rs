@@ -4,6 +4,7 @@
 #[cfg(feature = "files")]
 mod files;
 mod history;
+mod pose;
 mod text;
 
 use invalid_input::InvalidInput;

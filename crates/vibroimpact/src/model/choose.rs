@@ -1,10 +1,10 @@
 //! Which model a scene is given to.
 
-use super::pose::{Pose, chooses_modes, modal_only};
+use super::pose::Pose;
 use super::theory::theory_of;
 use super::{Answer, Cost, Kept, Model, Modes, infinite, rigid, settle, stated};
 use crate::impact::Impact;
-use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure};
+use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure, chooses_modes, modal_only};
 
 /// An answer, and the modal problem that it came from if it came from one.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,7 +160,7 @@ fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
 }
 
 /// The modal problem with as many modes as the restitution needs to converge.
-pub(crate) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
+pub(super) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
     let kept = &mut Kept::default();
     let open = scene.with_theory(&mut Cost::default())?;
     let scene = open.as_ref().map_or(scene, |(scene, _)| scene);

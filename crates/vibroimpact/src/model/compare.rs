@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::choose::forced_tier;
-use super::pose::{Pose, modal_only};
+use super::pose::Pose;
 use super::{Answer, Cost, Kept, Model};
-use crate::scene::{InvalidInput, Scene};
+use crate::scene::{InvalidInput, Scene, modal_only};
 
 /// What [`Scene::compare`] found.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -3,10 +3,10 @@
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Settings;
 
-use super::pose::{chooses_modes, modal_only};
 use super::{Answer, Cost, Kept, Model};
-use crate::impact::{Impact, in_scene};
-use crate::scene::{InvalidInput, Scene};
+use crate::impact::Impact;
+use crate::in_scene::in_scene;
+use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
 
 /// Tolerance of the solver where the scene states none: no draw is told by itself, and the scatter of a thousand is
 /// a hundred times as large.

@@ -15,7 +15,7 @@ use vibroimpact_sim::modal::Mode;
 use super::Cost;
 use super::pose::{Pose, Source};
 use super::theory::theory_of;
-use crate::impact::compliance;
+use crate::scene::compliance;
 use crate::scene::{BeamTheory, InvalidInput};
 
 /// From one number of modes to the next.

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use vibroimpact_sim::modal::{Solver, Structure};
 
-use crate::impact::in_scene;
+use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, KnownModes};
 
 /// Modes in the tables that are kept, in all; about 5 kB each.

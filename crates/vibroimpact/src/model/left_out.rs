@@ -26,7 +26,7 @@
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
-use crate::impact::compliance;
+use crate::scene::compliance;
 
 /// The uncertainty from truncated modes in terms of the larger of two changes, weighted below, and of the energy of the
 /// remainder modes.

@@ -16,6 +16,7 @@ mod compare;
 mod draw;
 mod emoc;
 mod guess;
+mod impact;
 mod infinite;
 mod kept;
 mod left_out;
@@ -28,16 +29,12 @@ mod text;
 mod theory;
 mod uncertainty;
 
-use std::borrow::Cow;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Counts;
 
 pub use attached::largest_share;
 pub use choose::Choice;
-pub(crate) use choose::settled_impact;
 pub use compare::{Comparison, Tier};
 #[cfg(feature = "files")]
 pub(crate) use draw::Draw;
@@ -45,7 +42,6 @@ pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;
 pub use plan::{Estimate, Plan};
-pub(crate) use pose::chooses_modes;
 pub(crate) use text::small;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
 pub use uncertainty::Uncertainty;
@@ -53,106 +49,11 @@ pub use uncertainty::Uncertainty;
 #[cfg(doc)]
 use crate::Scene;
 use crate::scene::BeamTheory;
+pub(crate) use crate::scene::chooses_modes;
+pub use crate::scene::{Model, Modes};
 
 /// The restitution is wanted this well where the program chooses the modes and the scene states no tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
-
-/// The scene field `"model"`, and the model that an answer came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Model {
-    /// The program chooses.
-    #[default]
-    Auto,
-    /// The location does not move: the law's restitution at a wall.
-    Rigid,
-    /// A beam without ends, [`vibroimpact_sim::infinite`]; of an infinite plate, the plate.
-    InfiniteBeam,
-    /// Modes and resolved contacts, [`vibroimpact_sim::modal`].
-    Modal,
-    /// A law for the net restitution that integrates nothing in time.
-    Emoc,
-}
-
-impl Model {
-    /// The name in scene files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Model::Auto => "auto",
-            Model::Rigid => "rigid",
-            Model::InfiniteBeam => "infinite-beam",
-            Model::Modal => "modal",
-            Model::Emoc => "emoc",
-        }
-    }
-
-    pub(crate) fn is_auto(&self) -> bool {
-        *self == Model::Auto
-    }
-}
-
-/// The scene field `"modes"`: `"auto"`, or how many modes the structure is stated to have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Modes {
-    /// As many as the restitution needs to converge.
-    #[default]
-    Auto,
-    /// This many, from the lowest.
-    Count(usize),
-}
-
-impl Modes {
-    /// The number, if one is stated.
-    pub fn count(self) -> Option<usize> {
-        match self {
-            Modes::Auto => None,
-            Modes::Count(count) => Some(count),
-        }
-    }
-
-    pub(crate) fn is_auto(&self) -> bool {
-        *self == Modes::Auto
-    }
-}
-
-impl Serialize for Modes {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Modes::Auto => serializer.serialize_str("auto"),
-            Modes::Count(count) => serializer.serialize_u64(*count as u64),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Modes {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Modes, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Written {
-            Count(usize),
-            Word(String),
-        }
-        match Written::deserialize(deserializer) {
-            Ok(Written::Count(count)) => Ok(Modes::Count(count)),
-            Ok(Written::Word(word)) if word == "auto" => Ok(Modes::Auto),
-            _ => Err(de::Error::custom("invalid value, expected \"auto\", or a whole number from 0 to 10000")),
-        }
-    }
-}
-
-impl JsonSchema for Modes {
-    fn schema_name() -> Cow<'static, str> {
-        "Modes".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "description": "\"auto\", or how many modes the structure is stated to have",
-            "anyOf": [{ "const": "auto" }, { "type": "integer", "minimum": 0, "maximum": 10000 }]
-        })
-    }
-}
 
 /// What [`Scene::answer`] found.
 #[derive(Debug, Clone, PartialEq, Serialize)]

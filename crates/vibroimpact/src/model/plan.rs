@@ -15,11 +15,12 @@ use vibroimpact_sim::modal::Settings;
 
 use super::choose::{Choice, Tried, forced_tier, refused};
 use super::guess::guess;
-use super::pose::{Pose, chooses_modes, modal_only};
+use super::pose::Pose;
 use super::text::small;
 use super::{Cost, Kept, Model, emoc, infinite, rigid};
-use crate::impact::{Impact, in_scene};
-use crate::scene::{InvalidInput, Scene};
+use crate::impact::Impact;
+use crate::in_scene::in_scene;
+use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
 
 /// The pilot impact: which part of the modes expected to do it takes and how many at least, and the solver's tolerance.
 const PILOT_PART: usize = 2;

@@ -3,10 +3,10 @@
 use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
 
-use super::{Cost, DEFAULT_TOLERANCE, Kept, Modes};
-use crate::impact::{compliance, in_scene};
+use super::{Cost, DEFAULT_TOLERANCE, Kept};
+use crate::in_scene::in_scene;
 use crate::scene::json::number;
-use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, require_elastic};
+use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, chooses_modes, compliance, require_elastic};
 
 /// Tolerances that can be requested where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
@@ -27,29 +27,6 @@ pub(super) struct Pose<'a> {
     pub wall: Wall,
     pub source: Source<'a>,
     pub kept: &'a mut Kept,
-}
-
-/// Why there is nothing to choose and the modes are resolved as they are stated; `None` for a structure at rest that a
-/// striker of its own mass meets, which every tier can look at.
-pub(super) fn modal_only(scene: &Scene) -> Option<&'static str> {
-    if matches!(scene.structure, scene::Structure::DroppedRod(_)) {
-        Some("a dropped rod is resolved in its modes")
-    } else if scene.start.is_some() {
-        Some("the structure moves before the impact")
-    } else if scene.striker.immovable {
-        Some("the striker is an immovable stop")
-    } else {
-        None
-    }
-}
-
-/// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to converge to.
-pub(crate) fn chooses_modes(scene: &Scene) -> bool {
-    let settles = match &scene.structure {
-        scene::Structure::Modal(listed) => listed.gives_compliance(scene.location.as_deref()),
-        computed => computed.is_computed(),
-    };
-    settles && scene.modes == Modes::Auto && modal_only(scene).is_none()
 }
 
 /// The first contact, if the structure stood still: scales, and for elastic laws bounds.

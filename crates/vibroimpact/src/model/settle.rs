@@ -27,7 +27,8 @@ use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
-use crate::impact::{Impact, in_scene};
+use crate::impact::Impact;
+use crate::in_scene::in_scene;
 
 /// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
 /// says little about the rest.

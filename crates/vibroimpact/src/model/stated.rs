@@ -15,12 +15,13 @@ use vibroimpact_sim::modal::{Settings, Solution};
 use super::choose::Choice;
 use super::guess::{RAISE, fewer, resolving};
 use super::left_out::{Change, with_softer_remainder};
-use super::pose::{Pose, chooses_modes, modal_only};
+use super::pose::Pose;
 use super::settle::Conclusion;
 use super::uncertainty::Known;
 use super::{Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
-use crate::impact::{Impact, in_scene};
-use crate::scene::{InvalidInput, Scene, Structure};
+use crate::impact::Impact;
+use crate::in_scene::in_scene;
+use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
 
 /// The comparison begins with the modes that this tolerance is expected to need.
 const LOOSE: f64 = 3e-3;

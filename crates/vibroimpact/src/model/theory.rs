@@ -15,13 +15,13 @@
 
 use vibroimpact_sim::modal::Settings;
 
-use super::pose::chooses_modes;
 use super::stated::needed;
 use super::text::small;
 use super::uncertainty::Uncertainty;
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
-use crate::impact::{Impact, in_scene};
-use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure};
+use crate::impact::Impact;
+use crate::in_scene::in_scene;
+use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure, chooses_modes};
 
 /// As many modes as this tolerance needs are enough, and no more than that one is requested.
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];

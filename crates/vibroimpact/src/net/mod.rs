@@ -15,8 +15,8 @@ use emoc::{Impact, Parameters, Site};
 use serde::Serialize;
 use vibroimpact_sim::modal::{Mode, Solver};
 
-use crate::impact::in_scene;
-use crate::model::{self, Kept};
+use crate::in_scene::in_scene;
+use crate::model::Kept;
 use crate::scene::require_positive;
 use crate::scene::{InvalidInput, Scene, as_json};
 
@@ -77,7 +77,7 @@ impl Scene {
         }
         let modes = match modes {
             Some(count) => self.mode_shapes(count)?,
-            None if model::chooses_modes(self) => self.mode_shapes(LAW_MODES)?,
+            None if crate::scene::chooses_modes(self) => self.mode_shapes(LAW_MODES)?,
             None => self.structure.modes(self.place(), self.modes.count())?,
         };
         require_vibration(&modes)?;

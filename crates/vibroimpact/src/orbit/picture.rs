@@ -1,6 +1,6 @@
 //! The picture of a branch: frequency response or bifurcation diagram, stable and unstable parts apart.
 
-use super::{BranchOrbit, BranchSummary};
+use super::summary::{BranchOrbit, BranchSummary};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
 /// Amplitude and range of motion of the moving sides over the field, and the size of the largest multiplier.

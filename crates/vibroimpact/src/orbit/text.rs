@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BranchSummary, Found, INTERRUPTED, OrbitSummary};
+use super::summary::{BranchSummary, Found, INTERRUPTED, OrbitSummary};
 use crate::text::quantity;
 
 /// A periodic motion, or why there is none.

@@ -2,30 +2,20 @@
 
 use super::axis::{Axis, Scale, Tick, drawable, full_label, named_or};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle, picture};
-use super::colour::Colour;
+use super::figure::{Figure, Panel};
 use super::heat::{STRIP_PX, edges};
-use super::panel;
+use super::panel::{self, Entry, SMALL, TICK_PX};
 use super::series::Series;
 use super::text::{width_px, wrapped};
-use super::{Figure, Panel};
 use plotters::style::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::io;
 
-const INK: RGBColor = RGBColor(40, 40, 40);
 const EDGE_PX: f64 = 10.0;
 const LABEL_PX: f64 = 12.0;
-const TICK_PX: f64 = 11.0;
 const LEGEND_LINE_PX: f64 = 17.0;
 const TITLE_PX: f64 = 14.0;
 const TITLE_LINE_PX: f64 = 18.0;
-
-/// Lettering of tick labels, from which the other kinds are made.
-pub(super) const SMALL: Lettering =
-    Lettering { size_px: TICK_PX, colour: INK, horizontal: HPos::Center, vertical: VPos::Top, upright: false };
-
-/// An entry of a legend: the series whose look it explains, and the series' colour.
-pub(super) type Entry<'a> = (&'a Series, Colour);
 
 /// A panel with everything known but its place.
 struct Plan<'a> {
@@ -233,5 +223,12 @@ fn draw_panel(canvas: &Canvas, plan: &Plan, r: &Rectangle) -> io::Result<()> {
     match panel.scale() {
         Some(heat) => heat.draw_scale(canvas, r, SMALL),
         None => Ok(()),
+    }
+}
+
+impl Figure {
+    /// The picture as an SVG document.
+    pub fn svg(&self) -> io::Result<String> {
+        draw(self)
     }
 }

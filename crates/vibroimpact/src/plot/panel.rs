@@ -1,14 +1,24 @@
 //! The series of one panel.
 
-use super::Panel;
 use super::axis::{Scale, drawable};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle};
 use super::colour::Colour;
-use super::layout::{Entry, SMALL};
+use super::figure::Panel;
 use super::series::{Mark, Marker, Series};
 use super::text::width_px;
-use plotters::style::text_anchor::VPos;
+use plotters::style::RGBColor;
+use plotters::style::text_anchor::{HPos, VPos};
 use std::io;
+
+pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
+pub(super) const TICK_PX: f64 = 11.0;
+
+/// Lettering of tick labels, from which the other kinds are made.
+pub(super) const SMALL: Lettering =
+    Lettering { size_px: TICK_PX, colour: INK, horizontal: HPos::Center, vertical: VPos::Top, upright: false };
+
+/// An entry of a legend: the series whose look it explains, and the series' colour.
+pub(super) type Entry<'a> = (&'a Series, Colour);
 
 /// The series with their colours: their own, or the next of the palette.
 pub(super) fn coloured(panel: &Panel) -> impl Iterator<Item = Entry<'_>> {

@@ -5,11 +5,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal;
 
+use super::beam_theory::BeamTheory;
 use super::fittings::{Attachment, Damping, Support};
 use super::json::{number, objects};
+use super::place::require_count;
 use super::segment::Segment;
-use super::structure::require_count;
-use super::theory::BeamTheory;
 
 /// A straight beam of uniform segments, from left to right.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

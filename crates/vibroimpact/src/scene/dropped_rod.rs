@@ -2,15 +2,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use invalid_input::{InvalidInput, Path};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::dropped_rod;
-use vibroimpact_sim::modal::{Mode, Settings};
+use vibroimpact_sim::modal::Mode;
 
+use super::fields;
 use super::json::number;
-use super::{Contact, HertzStiffness, Scene, Striker, fields};
-use crate::impact::Impact;
 
 /// A rod of circular section with hemispherical ends that falls, without turning, on an immovable floor (thesis
 /// chapter 8). The roles are then these: the floor is what strikes, so that of `striker` only `speed_m_s` is given, the
@@ -101,41 +100,5 @@ impl DroppedRod {
         let area_m2 = 0.25 * PI * self.diameter_m.powi(2);
         let bending = self.length_m.powi(2) / (105.0 * (self.diameter_m / 4.0).powi(2));
         Ok((bending * cos * cos + sin * sin / 3.0) * self.length_m / (self.youngs_modulus_pa * area_m2))
-    }
-}
-
-impl Scene {
-    /// The fall of a rod in the terms of the solver.
-    pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
-        let left_out = |field: Path, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),
-            None => Ok(()),
-        };
-        let Striker { mass_kg, density_kg_m3, radius_m, immovable, speed_m_s } = self.striker;
-        left_out(["striker", "mass_kg"].into(), mass_kg.map(number))?;
-        left_out(["striker", "density_kg_m3"].into(), density_kg_m3.map(number))?;
-        left_out(["striker", "radius_m"].into(), radius_m.map(number))?;
-        left_out(["striker", "immovable"].into(), immovable.then(|| "true".to_owned()))?;
-        left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
-        left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
-        left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
-        left_out("residual_compliance".into(), self.residual_compliance.map(|on| on.to_string()))?;
-        left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
-        let described = rod.to_rod().map_err(|fault| fault.within("structure"))?;
-        let drop = described.drop(speed_m_s).map_err(|fault| match fault.field.first() {
-            Some("speed_m_s") => fault.within("striker"),
-            _ => fault.within("structure"),
-        })?;
-        let law = match &self.contact {
-            Contact::Hertz(stiffness) if *stiffness == HertzStiffness::default() => drop.law.into(),
-            contact => contact.law(&Striker {
-                mass_kg: Some(described.rigid_body_mass_kg()),
-                radius_m: Some(0.5 * rod.diameter_m),
-                speed_m_s,
-                ..Striker::default()
-            })?,
-        };
-        let dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
-        Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use invalid_input::{InvalidInput, Path, Value, cut, printable};
 
-use super::json::number;
+use super::told::number;
 
 /// Longest path of a field that a message shows (characters).
 const LONGEST_PATH: usize = 90;

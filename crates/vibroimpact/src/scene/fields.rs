@@ -5,11 +5,7 @@ use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
 use invalid_input::{Path, Step};
 
-pub(crate) const POSITIVE: &str = "a finite number greater than 0";
-pub(crate) const NOT_NEGATIVE: &str = "a finite number not less than 0";
-/// A damping ratio; the largest is that of the solver.
-pub(crate) const DAMPING: &str = "a number from 0 to 1e6";
-pub(crate) const MOST_DAMPING: f64 = 1e6;
+pub(crate) use super::ranges::{DAMPING, MOST_DAMPING, NOT_NEGATIVE, POSITIVE};
 
 /// Field and what it may hold.
 const FIELDS: &[(&str, &str)] = &[

@@ -1,13 +1,12 @@
-//! Infinite structures of a scene, and their impact in the terms of [`vibroimpact_sim::infinite`].
+//! Infinite structures of a scene.
 
-use invalid_input::{InvalidInput, Path};
+use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vibroimpact_sim::infinite;
 
 use super::error::require_positive;
 use super::json::number;
-use super::{Contact, Scene, Segment, Structure};
+use super::segment::Segment;
 
 /// An infinite Euler-Bernoulli beam: its section in one of three ways, as that of a [`Segment`]. What Timoshenko's theory
 /// needs may stand beside it: the answer then tells how the first contact would end by that theory.
@@ -50,81 +49,6 @@ pub struct InfinitePlate {
     pub density_kg_m3: f64,
     /// Thickness (m).
     pub thickness_m: f64,
-}
-
-impl Scene {
-    /// Whether the structure is infinite: [`Scene::infinite_impact`] is then the way to solve the scene, and
-    /// [`Scene::impact`] is not.
-    pub fn is_infinite(&self) -> bool {
-        matches!(self.structure, Structure::InfiniteBeam(_) | Structure::InfinitePlate(_))
-    }
-
-    /// The impact on an infinite structure in the terms of the solver.
-    ///
-    /// # Errors
-    /// A structure that is not infinite, a law other than Hertz's, fields that belong to modes, or a value out of
-    /// range.
-    ///
-    /// ```
-    /// use vibroimpact::Scene;
-    ///
-    /// // third row of thesis Table 2.1
-    /// let scene = Scene::from_json(r#"{
-    ///     "structure": { "kind": "infinite-beam", "youngs_modulus_pa": 2e11, "density_kg_m3": 7800,
-    ///                    "width_m": 0.028, "thickness_m": 0.028 },
-    ///     "striker": { "density_kg_m3": 7800, "radius_m": 0.033, "speed_m_s": 0.5 },
-    ///     "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 }
-    /// }"#)?;
-    /// assert!((scene.infinite_impact()?.groups().unwrap().s - 15.556).abs() < 0.03);
-    /// # Ok::<(), vibroimpact::SceneError>(())
-    /// ```
-    pub fn infinite_impact(&self) -> Result<infinite::Impact, InvalidInput> {
-        let left_out = |field: Path, value: Option<String>| match value {
-            Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
-            None => Ok(()),
-        };
-        self.require_yield_strength()?;
-        left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
-        left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
-        left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
-        left_out(["striker", "immovable"].into(), self.striker.immovable.then(|| "true".to_owned()))?;
-        left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
-        left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
-        left_out("tolerance".into(), self.tolerance.map(number))?;
-        let Contact::Hertz(stiffness) = &self.contact else {
-            let law = format!("\"{}\"", self.contact.law_name());
-            return Err(InvalidInput::new(["contact", "law"], law, "hertz, the law of impacts on infinite structures"));
-        };
-        let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
-        let stiffness_n_m1_5 = stiffness.of(&self.striker)?;
-        let speed_m_s = self.striker.speed_m_s;
-        match &self.structure {
-            Structure::InfiniteBeam(beam) => {
-                let section = beam.section().map_err(|fault| fault.within("structure"))?;
-                // checked even though the impact itself does without
-                beam.shear().map_err(|fault| fault.within("structure"))?;
-                let (rigidity, mass_per_length) = (section.flexural_rigidity_n_m2, section.mass_per_length_kg_m);
-                infinite::Impact::on_beam(rigidity, mass_per_length, stiffness_n_m1_5, mass_kg, speed_m_s)
-            }
-            Structure::InfinitePlate(plate) => {
-                plate.check().map_err(|fault| fault.within("structure"))?;
-                let (rigidity, mass_per_area) = (plate.flexural_rigidity_n_m(), plate.mass_per_area_kg_m2());
-                infinite::Impact::on_plate(rigidity, mass_per_area, stiffness_n_m1_5, mass_kg, speed_m_s)
-            }
-            _ => {
-                return Err(InvalidInput::new(
-                    ["structure", "kind"],
-                    format!("\"{}\"", self.structure.kind()),
-                    "infinite-beam, infinite-plate",
-                ));
-            }
-        }
-        .map_err(|fault| match fault.field.first() {
-            Some("mass_kg" | "speed_m_s") => fault.within("striker"),
-            Some("stiffness_n_m1_5") => fault.within("contact"),
-            _ => fault.within("structure"),
-        })
-    }
 }
 
 impl InfiniteBeam {
@@ -171,7 +95,7 @@ impl InfiniteBeam {
 }
 
 impl InfinitePlate {
-    fn check(&self) -> Result<(), InvalidInput> {
+    pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
         require_positive("density_kg_m3", self.density_kg_m3)?;
         require_positive("thickness_m", self.thickness_m)?;
@@ -182,11 +106,11 @@ impl InfinitePlate {
         Err(InvalidInput::new("poissons_ratio", number(self.poissons_ratio), allowed))
     }
 
-    fn flexural_rigidity_n_m(&self) -> f64 {
+    pub(crate) fn flexural_rigidity_n_m(&self) -> f64 {
         self.youngs_modulus_pa * self.thickness_m.powi(3) / (12.0 * (1.0 - self.poissons_ratio.powi(2)))
     }
 
-    fn mass_per_area_kg_m2(&self) -> f64 {
+    pub(crate) fn mass_per_area_kg_m2(&self) -> f64 {
         self.density_kg_m3 * self.thickness_m
     }
 }

@@ -16,6 +16,7 @@ use super::error::SceneError;
 use super::fields;
 use super::material::names_beside;
 use super::told::{did_you_mean, did_you_mean_one_of, shorten};
+pub(crate) use super::told::{number, quote};
 
 /// A JSON tree in which no key occurs twice (a plain `Value` keeps the last silently).
 struct Tree(Value);
@@ -246,16 +247,6 @@ pub(crate) fn split_tag<'k>(
     let named = rest.remove(tag);
     let kind = kinds.iter().find(|kind| named.as_ref().is_some_and(|named| named == *kind));
     kind.map(|kind| (*kind, rest)).ok_or_else(|| fault(tag.into(), named.as_ref()))
-}
-
-/// A value as the text of a message.
-pub(crate) fn quote(value: &Value) -> String {
-    shorten(&value.to_string())
-}
-
-/// A number as the text of a message.
-pub(crate) fn number(value: f64) -> String {
-    Number::from_f64(value).map_or_else(|| value.to_string(), |number| number.to_string())
 }
 
 fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {

@@ -1,11 +1,8 @@
 //! Modes computed for earlier scenes of the same structure.
 
 use invalid_input::InvalidInput;
-use vibroimpact_sim::modal::Mode;
 
 use super::beam::{Beam, BeamModes};
-use super::fields;
-use super::json::number;
 use super::plate::Plate;
 
 /// The modes of the last beam and of the last plate, by how many were requested: scenes of one structure share them.
@@ -62,18 +59,4 @@ impl KnownModes {
     pub(crate) fn first(&mut self, beam: &Beam, count: usize) -> Result<&BeamModes, InvalidInput> {
         self.beams.first(beam, count, Beam::modes)
     }
-}
-
-/// Accepts a damping ratio of a structure.
-pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
-    if (0.0..=fields::MOST_DAMPING).contains(&damping_ratio) {
-        return Ok(());
-    }
-    let allowed = fields::allowed("damping_ratio").unwrap_or_default();
-    Err(InvalidInput::new(["structure", "damping_ratio"], number(damping_ratio), allowed))
-}
-
-/// Modes of one damping ratio, from frequencies and shapes.
-pub(super) fn shapes_as_modes(omega_rad_s: &[f64], shapes: Vec<f64>, damping_ratio: f64) -> Vec<Mode> {
-    omega_rad_s.iter().zip(shapes).map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect()
 }

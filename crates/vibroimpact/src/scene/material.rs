@@ -10,8 +10,7 @@ use std::borrow::Cow;
 use invalid_input::InvalidInput;
 use serde_json::{Map, Value};
 
-use super::json::quote;
-use super::told::did_you_mean;
+use super::told::{did_you_mean, quote};
 
 /// A material as a norm or a handbook states it: typical, elastic, isotropic.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal::Mode;
 
-use super::known::{require_damping, shapes_as_modes};
+use super::damping::{require_damping, shapes_as_modes};
 
 /// A frequency that more polynomials would change by a smaller share than this has converged.
 pub const CONVERGED_FREQUENCY: f64 = 1e-5;

@@ -7,9 +7,10 @@ use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend, remainde
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::Mode;
 
-use super::structure::MOST_MODES;
-use super::{BeamTheory, Edge, Structure};
-use crate::impact::compliance;
+use super::beam_theory::BeamTheory;
+use super::place::MOST_MODES;
+use super::plate::Edge;
+use super::structure::Structure;
 
 /// Accepts a structure whose modes beyond those kept can be told from them: a list by at least one elastic mode.
 pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), InvalidInput> {
@@ -82,4 +83,9 @@ impl Structure {
         let mode = |mode: PointMode| Mode { omega_rad_s: mode.omega_rad_s, damping_ratio, shape: mode.shape };
         Ok(remainder.into_iter().map(mode).collect())
     }
+}
+
+/// Static compliance of the elastic ones of these modes (m/N).
+pub(crate) fn compliance(modes: &[Mode]) -> f64 {
+    modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum()
 }

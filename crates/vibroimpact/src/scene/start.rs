@@ -3,11 +3,12 @@
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vibroimpact_sim::modal::{self, Mode};
+use vibroimpact_sim::modal::Mode;
 
+use super::fields;
 use super::json::{number, objects};
-use super::structure::Place;
-use super::{Location, Scene, fields};
+use super::location::Location;
+use super::place::Place;
 
 /// How the structure moves at the start, and how far away the striker then is. Displacements and velocities
 /// are positive towards the striker. What is given adds up.
@@ -62,58 +63,9 @@ pub struct MovingMode {
 /// A mode that moves less than this at the location, as a share of the mode that moves most there, has a node there.
 const NODE: f64 = 1e-9;
 
-impl Scene {
-    /// The start in the terms of the solver, for these modes as seen from the point of impact, of which the last
-    /// `remainder` are remainder modes and rest.
-    pub(crate) fn start(&self, modes: &[Mode], remainder: usize) -> Result<Option<modal::Start>, InvalidInput> {
-        let Some(start) = &self.start else { return Ok(None) };
-        let mut posed = self.posed(start, &modes[..modes.len() - remainder])?;
-        posed.amplitude.resize(modes.len(), 0.0);
-        posed.rate.resize(modes.len(), 0.0);
-        Ok(Some(posed))
-    }
-
-    fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {
-        let mut posed = modal::Start {
-            amplitude: padded("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
-            rate: padded("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
-            gap_m: start.gap_m,
-        };
-        let here = self.place();
-        for (i, moving) in start.moving_modes.iter().enumerate() {
-            let within = |fault: InvalidInput| fault.within(("moving_modes", i)).within("start");
-            let there = moving.place(here);
-            let (k, shape) = if there == here {
-                moving.shape(modes)
-            } else {
-                let seen = self.structure.modes(there, Some(modes.len())).map_err(|fault| {
-                    // a fault of the structure itself keeps its own path
-                    if matches!(fault.field.first(), Some("location_m" | "location")) { within(fault) } else { fault }
-                })?;
-                moving.shape(&seen)
-            }
-            .map_err(within)?;
-            posed.amplitude[k] += moving.displacement_m / shape;
-            posed.rate[k] += moving.velocity_m_s / shape;
-        }
-        Ok(posed)
-    }
-}
-
-/// The values of the first modes, and 0 for the rest.
-fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
-    if first.len() > count {
-        let allowed = format!("at most {count} values, the number of modes");
-        return Err(InvalidInput::new(["start", field], format!("{} values", first.len()), allowed));
-    }
-    let mut all = first.to_vec();
-    all.resize(count, 0.0);
-    Ok(all)
-}
-
 impl MovingMode {
     /// Where the mode's motion is told.
-    fn place<'a>(&'a self, here: Place<'a>) -> Place<'a> {
+    pub(super) fn place<'a>(&'a self, here: Place<'a>) -> Place<'a> {
         match (self.location_m, self.location.as_deref()) {
             (None, None) => here,
             (location_m, location) => Place { location_m, location },

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vibroimpact_sim::modal::Mode;
 
-use super::known::{require_damping, shapes_as_modes};
+use super::damping::{require_damping, shapes_as_modes};
 
 /// A uniform string between two pinned ends, [`beam_modes::TautString`].
 ///

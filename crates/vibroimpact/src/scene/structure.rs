@@ -8,13 +8,12 @@ use vibroimpact_sim::modal;
 
 use super::beam::Beam;
 use super::dropped_rod::DroppedRod;
-use super::fields;
 use super::infinite::{InfiniteBeam, InfinitePlate};
 use super::json::{read, split_tag};
 use super::known::KnownModes;
-use super::location::Location;
 use super::modal::Modal;
 use super::modes_file::ModesFile;
+use super::place::{Place, require_count};
 use super::plate::{Edge, Plate, PlateTheory};
 use super::string::TautString;
 
@@ -54,42 +53,6 @@ macro_rules! from_kind {
 }
 
 from_kind!(Beam, TautString, Plate, Modal, ModesFile, InfiniteBeam, InfinitePlate, DroppedRod);
-
-/// Where a structure is struck or seen from: a location on it, or the name of a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place<'a> {
-    pub location_m: Option<Location>,
-    pub location: Option<&'a str>,
-}
-
-impl Place<'_> {
-    /// Refuses a location that is given; `why` says why it must not be.
-    pub(crate) fn require_none(&self, why: &str) -> Result<(), InvalidInput> {
-        self.require_no_distance(why)?;
-        self.require_no_name(why)
-    }
-
-    /// The location on a structure that has locations of its own.
-    fn on_structure(&self) -> Result<Location, InvalidInput> {
-        self.require_no_name("left out: the location on this structure is location_m")?;
-        let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
-        self.location_m.ok_or_else(missing)
-    }
-
-    pub(crate) fn require_no_distance(&self, why: &str) -> Result<(), InvalidInput> {
-        match self.location_m {
-            Some(location_m) => Err(InvalidInput::new("location_m", location_m.to_string(), why)),
-            None => Ok(()),
-        }
-    }
-
-    pub(crate) fn require_no_name(&self, why: &str) -> Result<(), InvalidInput> {
-        match self.location {
-            Some(location) => Err(InvalidInput::new("location", format!("{location:?}"), why)),
-            None => Ok(()),
-        }
-    }
-}
 
 /// How the kinds of structures are named in scene files.
 const KINDS: [&str; 8] =
@@ -276,16 +239,5 @@ impl Structure {
             Structure::DroppedRod(rod) => rod.static_compliance_m_n().map_err(|fault| fault.within("structure")),
             Structure::InfiniteBeam(_) | Structure::InfinitePlate(_) | Structure::ModesFile(_) => Err(self.no_modes()),
         }
-    }
-}
-
-/// Largest number of modes that a scene may ask for.
-pub const MOST_MODES: usize = 10_000;
-
-pub(crate) fn require_count(count: usize) -> Result<(), InvalidInput> {
-    if count <= MOST_MODES {
-        Ok(())
-    } else {
-        Err(InvalidInput::new("modes", count.to_string(), fields::allowed("modes").unwrap_or_default()))
     }
 }

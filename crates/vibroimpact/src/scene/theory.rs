@@ -1,23 +1,9 @@
 //! Which theory of bending a beam is solved by, and its neighbours: the other theory, another shear coefficient.
 
 use invalid_input::InvalidInput;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 use super::beam::Beam;
-
-/// Theory of bending of a beam.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BeamTheory {
-    /// Sections stay normal to the axis and have no rotary inertia.
-    EulerBernoulli,
-    /// With shear and rotary inertia.
-    Timoshenko,
-    /// Timoshenko's where every segment gives what it needs, and no axial force and no foundation is there; otherwise
-    /// Euler-Bernoulli's.
-    Auto,
-}
+use super::beam_theory::BeamTheory;
 
 /// How a beam differs from the one that a scene poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

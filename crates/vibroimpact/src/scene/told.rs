@@ -1,6 +1,7 @@
 //! What messages repeat of the input: short, without control characters, and with the name that was probably meant.
 
 use invalid_input::LONGEST_VALUE;
+use serde_json::{Number, Value};
 
 /// Longest name that is compared with those that are allowed (characters).
 const LONGEST_NAME: usize = 60;
@@ -17,6 +18,16 @@ pub fn counted(count: u64, one: &str, more: &str) -> String {
 /// A text cut to a length that fits a message. Cutting it again changes nothing.
 pub fn shorten(text: &str) -> String {
     invalid_input::cut(text, LONGEST_VALUE).to_string()
+}
+
+/// A value as the text of a message.
+pub(crate) fn quote(value: &Value) -> String {
+    shorten(&value.to_string())
+}
+
+/// A number as the text of a message.
+pub(crate) fn number(value: f64) -> String {
+    Number::from_f64(value).map_or_else(|| value.to_string(), |number| number.to_string())
 }
 
 /// A text that cannot steer a terminal: control characters other than line breaks and tabs, and characters that turn

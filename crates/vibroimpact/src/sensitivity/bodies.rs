@@ -8,8 +8,7 @@ use vibroimpact_sim::assembly::{
     Outcome, Parameter, Point, Settings, Solver,
 };
 
-use super::MODES;
-use super::neighbours::{Neighbours, around};
+use super::neighbours::{MODES, Neighbours, around};
 use super::refusal::refusal;
 use super::table::Table;
 use crate::assembly::{AssemblyScene, Posed};

@@ -1,7 +1,7 @@
 //! Answers that have a closed form: by their own values at the neighbours, since nothing in them is integrated.
 
-use super::Sensitivity;
 use super::neighbours::{Neighbours, around};
+use super::single::Sensitivity;
 use super::table::Table;
 use crate::emoc::Parameters;
 use crate::impact::Impact;

@@ -3,10 +3,12 @@
 use serde_json::Value;
 use vibroimpact_sim::modal::{Derivative, Mode, Stencil};
 
-use super::MODES;
 use crate::impact::Impact;
 use crate::scene::json::{number, quote};
 use crate::scene::{FieldPath, InvalidInput};
+
+/// The modes whose frequencies and shapes are differentiated too, from the lowest.
+pub(super) const MODES: usize = 10;
 
 /// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five of
 /// the digits that they have.

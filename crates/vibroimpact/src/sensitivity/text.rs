@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use invalid_input::InvalidInput;
 
+use super::bodies::BodiesSensitivity;
+use super::single::Sensitivity;
 use super::table::{Row, Table};
-use super::{BodiesSensitivity, Sensitivity};
 use crate::text::counted;
 
 /// A touch slower than this part of the fastest is near a graze.

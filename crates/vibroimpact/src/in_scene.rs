@@ -1,0 +1,20 @@
+//! Errors of the solver under the names that scenes use.
+
+use invalid_input::{InvalidInput, Step};
+
+/// The solver's error under the names that scenes use.
+pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
+    match fault.field.steps() {
+        // lists of modes have been checked by their names; these modes were computed
+        [_, Step::Index(k), Step::Field(quantity)] => {
+            let mode = k + 1;
+            let value = fault.value.as_ref().map_or_else(String::new, ToString::to_string);
+            let allowed = format!("a structure whose modes have a {quantity} of {}", fault.allowed);
+            InvalidInput::new("structure", format!("{quantity} {value} in mode {mode}"), allowed)
+        }
+        [Step::Field(name)] if ["mass_kg", "speed_m_s"].contains(&name.as_str()) => fault.within("striker"),
+        // an amplitude or rate out of range may come from any of the ways in which a scene states the start
+        [Step::Field(name), ..] if ["gap_m", "amplitude", "rate"].contains(&name.as_str()) => fault.within("start"),
+        _ => fault,
+    }
+}

@@ -1,0 +1,106 @@
+//! What is told of periodic motions and their branches.
+
+use serde::Serialize;
+
+/// A periodic motion as it is printed and written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OrbitSummary {
+    /// Period of the motion (s).
+    pub period_s: f64,
+    /// Periods of the loads in it.
+    pub forcing_periods: u32,
+    /// The moment of the loads' period at which `floquet_multipliers` compare states (s).
+    pub phase_s: f64,
+    /// By how much the motion misses itself after a period, relative to its size.
+    pub closure: f64,
+    /// Floquet multipliers, real and imaginary part, the largest first.
+    pub floquet_multipliers: Vec<[f64; 2]>,
+    /// Whether none of them lies outside the unit circle.
+    pub stable: bool,
+    /// Intervals of contact within a period, of all contacts together.
+    pub intervals_per_period: u64,
+    /// The motion of both sides of every contact.
+    pub points: Vec<PointMotion>,
+}
+
+/// One side of a contact on a periodic motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PointMotion {
+    /// Name of the contact.
+    pub contact: String,
+    /// 0 for the first of the two that the contact is between, 1 for the second.
+    pub side: usize,
+    /// Intervals of this contact within a period.
+    pub intervals_per_period: u64,
+    /// Amplitude of the displacement at the loads' lowest frequency (m).
+    pub displacement_first_harmonic_m: f64,
+    /// Largest displacement (m).
+    pub displacement_max_m: f64,
+    /// Least displacement (m).
+    pub displacement_min_m: f64,
+}
+
+/// What the search for a periodic motion came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// `found`, `not found`, `interrupted` or `stopped`.
+    pub outcome: &'static str,
+    /// The motion, where it was found.
+    #[serde(flatten)]
+    pub orbit: Option<OrbitSummary>,
+    /// How near Newton's method came where it was not, relative to the size of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest_closure: Option<f64>,
+}
+
+/// The outcome of a search that was stopped from outside.
+pub(super) const INTERRUPTED: &str = "interrupted";
+
+/// An orbit of a branch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BranchOrbit {
+    /// The field's value.
+    pub value: f64,
+    /// The motion there.
+    #[serde(flatten)]
+    pub orbit: OrbitSummary,
+}
+
+/// A point at which stability or the pattern of contacts changes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpecialPoint {
+    /// `fold`, `period doubling`, `Neimark-Sacker` or `grazing`.
+    pub kind: &'static str,
+    /// The field's value.
+    pub value: f64,
+    /// By how much that may be off.
+    pub uncertainty: f64,
+    /// Number, from 0, of the orbit that follows it.
+    pub before_orbit: usize,
+}
+
+/// A branch of periodic motions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BranchSummary {
+    /// The field that is followed.
+    pub field: String,
+    /// Whether the branch was followed to an end of the range.
+    pub complete: bool,
+    /// The orbits in order.
+    pub orbits: Vec<BranchOrbit>,
+    /// What was found between them.
+    pub special_points: Vec<SpecialPoint>,
+}
+
+/// Over which field a branch is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Over<'a> {
+    /// The field's path, as in a sweep.
+    pub field: &'a str,
+    /// First value; that of the scene when left out.
+    pub from: Option<f64>,
+    /// The value towards which the branch is followed.
+    pub to: f64,
+    /// First and longest step, as parts of the range.
+    pub step: f64,
+}

@@ -1,0 +1,56 @@
+//! The motion at the start in the terms of the solver.
+
+use invalid_input::InvalidInput;
+use vibroimpact_sim::modal::{self, Mode};
+
+use super::definition::Scene;
+use super::start::Start;
+
+impl Scene {
+    /// The start in the terms of the solver, for these modes as seen from the point of impact, of which the last
+    /// `remainder` are remainder modes and rest.
+    pub(crate) fn start(&self, modes: &[Mode], remainder: usize) -> Result<Option<modal::Start>, InvalidInput> {
+        let Some(start) = &self.start else { return Ok(None) };
+        let mut posed = self.posed(start, &modes[..modes.len() - remainder])?;
+        posed.amplitude.resize(modes.len(), 0.0);
+        posed.rate.resize(modes.len(), 0.0);
+        Ok(Some(posed))
+    }
+
+    fn posed(&self, start: &Start, modes: &[Mode]) -> Result<modal::Start, InvalidInput> {
+        let mut posed = modal::Start {
+            amplitude: padded("amplitude_m_kg0_5", &start.amplitude_m_kg0_5, modes.len())?,
+            rate: padded("rate_m_kg0_5_s", &start.rate_m_kg0_5_s, modes.len())?,
+            gap_m: start.gap_m,
+        };
+        let here = self.place();
+        for (i, moving) in start.moving_modes.iter().enumerate() {
+            let within = |fault: InvalidInput| fault.within(("moving_modes", i)).within("start");
+            let there = moving.place(here);
+            let (k, shape) = if there == here {
+                moving.shape(modes)
+            } else {
+                let seen = self.structure.modes(there, Some(modes.len())).map_err(|fault| {
+                    // a fault of the structure itself keeps its own path
+                    if matches!(fault.field.first(), Some("location_m" | "location")) { within(fault) } else { fault }
+                })?;
+                moving.shape(&seen)
+            }
+            .map_err(within)?;
+            posed.amplitude[k] += moving.displacement_m / shape;
+            posed.rate[k] += moving.velocity_m_s / shape;
+        }
+        Ok(posed)
+    }
+}
+
+/// The values of the first modes, and 0 for the rest.
+fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
+    if first.len() > count {
+        let allowed = format!("at most {count} values, the number of modes");
+        return Err(InvalidInput::new(["start", field], format!("{} values", first.len()), allowed));
+    }
+    let mut all = first.to_vec();
+    all.resize(count, 0.0);
+    Ok(all)
+}

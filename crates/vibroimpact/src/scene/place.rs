@@ -1,0 +1,53 @@
+//! Where a structure is struck, and how many modes a scene may ask for.
+
+use invalid_input::InvalidInput;
+
+use super::fields;
+use super::location::Location;
+
+/// Where a structure is struck or seen from: a location on it, or the name of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place<'a> {
+    pub location_m: Option<Location>,
+    pub location: Option<&'a str>,
+}
+
+impl Place<'_> {
+    /// Refuses a location that is given; `why` says why it must not be.
+    pub(crate) fn require_none(&self, why: &str) -> Result<(), InvalidInput> {
+        self.require_no_distance(why)?;
+        self.require_no_name(why)
+    }
+
+    /// The location on a structure that has locations of its own.
+    pub(crate) fn on_structure(&self) -> Result<Location, InvalidInput> {
+        self.require_no_name("left out: the location on this structure is location_m")?;
+        let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
+        self.location_m.ok_or_else(missing)
+    }
+
+    pub(crate) fn require_no_distance(&self, why: &str) -> Result<(), InvalidInput> {
+        match self.location_m {
+            Some(location_m) => Err(InvalidInput::new("location_m", location_m.to_string(), why)),
+            None => Ok(()),
+        }
+    }
+
+    pub(crate) fn require_no_name(&self, why: &str) -> Result<(), InvalidInput> {
+        match self.location {
+            Some(location) => Err(InvalidInput::new("location", format!("{location:?}"), why)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Largest number of modes that a scene may ask for.
+pub const MOST_MODES: usize = 10_000;
+
+pub(crate) fn require_count(count: usize) -> Result<(), InvalidInput> {
+    if count <= MOST_MODES {
+        Ok(())
+    } else {
+        Err(InvalidInput::new("modes", count.to_string(), fields::allowed("modes").unwrap_or_default()))
+    }
+}
