@@ -7,7 +7,7 @@ use vibroimpact::assembly::AnyScene;
 use vibroimpact::infinite::{self, Summary, TurningPoints};
 use vibroimpact::summary::ModeTable;
 use vibroimpact::vibroimpact_sim::infinite::{Settings, Structure, solve};
-use vibroimpact::{InvalidInput, Scene, export};
+use vibroimpact::{Scene, export};
 
 use crate::bodies;
 use crate::errors::Fault;
