@@ -176,21 +176,21 @@ impl<'a> March<'a> {
 
     /// Rounding of an overlap that is a difference of where bodies are (m).
     pub(super) fn noise(&self, c: usize) -> f64 {
-        let of = |Span { modes, psi }: &Span| {
-            let [sum] = sum_over([psi, &self.amplitude[modes.clone()]], |[psi, a]| [(psi * a).abs()]);
-            sum
-        };
-        let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
-        4.0 * f64::EPSILON * (moved + self.states[c].reference.abs())
+        self.rounding(c, &self.amplitude, self.states[c].reference.abs())
     }
 
     /// The same of its rate (m/s).
     pub(super) fn rate_noise(&self, c: usize) -> f64 {
+        self.rounding(c, &self.rate, 0.0)
+    }
+
+    /// Rounding of a sum over the modes that a contact sees, and of something beside them.
+    fn rounding(&self, c: usize, values: &[f64], beside: f64) -> f64 {
         let of = |Span { modes, psi }: &Span| {
-            let [sum] = sum_over([psi, &self.rate[modes.clone()]], |[psi, b]| [(psi * b).abs()]);
+            let [sum] = sum_over([psi, &values[modes.clone()]], |[psi, value]| [(psi * value).abs()]);
             sum
         };
-        4.0 * f64::EPSILON * self.system.links[c].spans.iter().map(of).sum::<f64>()
+        4.0 * f64::EPSILON * (self.system.links[c].spans.iter().map(of).sum::<f64>() + beside)
     }
 
     /// Impulse that a panel may get wrong (N s): a part of the momentum exchanged, but no more than what would give the

@@ -92,12 +92,9 @@ impl Window {
     pub fn look(&self, landed: &mut Landed) {
         for c in landed.overlap.len()..self.free.len() {
             let mut overlap = values(&self.free[c], landed.length);
-            for (other, solved) in landed.solved.iter().enumerate() {
-                if let Some(response) = response(&self.kernels[c * self.closed + other], landed.length) {
-                    let moved = apply(&response, &solved.force);
-                    (0..Q).for_each(|i| overlap[i] += moved[i]);
-                }
-            }
+            let kernels = &self.kernels[c * self.closed..(c + 1) * self.closed];
+            let responses: Vec<Option<Matrix>> = kernels.iter().map(|kernel| response(kernel, landed.length)).collect();
+            respond(&mut overlap, &responses, &landed.solved);
             landed.overlap.push(overlap);
             let end = self.end(landed, c, landed.length);
             landed.end.push(end);
@@ -138,12 +135,7 @@ impl Window {
     ) -> Landed {
         let force: Vec<Nodal> = solved.iter().map(|solved| BASIS.coefficients(&solved.force)).collect();
         for (c, overlap) in overlap.iter_mut().enumerate() {
-            for (other, solved) in solved.iter().enumerate() {
-                if let Some(response) = &responses[c * self.closed + other] {
-                    let moved = apply(response, &solved.force);
-                    (0..Q).for_each(|i| overlap[i] += moved[i]);
-                }
-            }
+            respond(overlap, &responses[c * self.closed..(c + 1) * self.closed], &solved);
         }
         let mut landed = Landed { length, solved, force, overlap, end: Vec::new() };
         landed.end = (0..self.free.len()).map(|c| self.end(&landed, c, length)).collect();
@@ -176,6 +168,16 @@ impl Window {
         };
         let solved = from.solved.iter().map(carried).collect();
         self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))
+    }
+}
+
+/// Adds what the closed contacts' forces do to an overlap at the nodes, by its responses to each of them.
+fn respond(overlap: &mut Nodal, responses: &[Option<Matrix>], solved: &[Collocated]) {
+    for (response, solved) in responses.iter().zip(solved) {
+        if let Some(response) = response {
+            let moved = apply(response, &solved.force);
+            (0..Q).for_each(|i| overlap[i] += moved[i]);
+        }
     }
 }
 
