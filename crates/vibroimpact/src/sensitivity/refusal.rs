@@ -1,29 +1,37 @@
 //! Why a scene has no derivatives, in words.
 
 use crate::scene::InvalidInput;
+use crate::text::significant;
 use vibroimpact_sim::modal::NoDerivative;
 
 /// As an error of the scene whose run came to this outcome; `name` tells how a contact is called.
 pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> String) -> InvalidInput {
-    let value = match why {
-        NoDerivative::Outcome => format!("a run whose outcome is {outcome:?}"),
+    let seconds = |time_s: f64| significant(time_s, 6);
+    let (value, allowed) = match why {
+        NoDerivative::Outcome => (
+            format!("a run whose outcome is {outcome:?}"),
+            "a run that reaches its end, or one impact that ends with a rebound",
+        ),
         NoDerivative::Graze { contact, time_s } => {
-            format!("{}, which touches without speed at {time_s:.6e} s", name(contact))
+            (format!("{}, which touches without speed at {} s", name(contact), seconds(time_s)), CONTACTS)
         }
         NoDerivative::Together { contact, time_s } => {
-            format!("{}, which begins with a jump beside another at {time_s:.6e} s", name(contact))
+            (format!("{}, which begins with a jump beside another at {} s", name(contact), seconds(time_s)), CONTACTS)
         }
         NoDerivative::Fork { contact, time_s } => {
-            format!("{}, whose law takes either of two courses at {time_s:.6e} s", name(contact))
+            (format!("{}, whose law takes either of two courses at {} s", name(contact), seconds(time_s)), CONTACTS)
         }
-        NoDerivative::Break { time_s } => format!("an event just where a load breaks, at {time_s:.6e} s"),
-        NoDerivative::CriticalDamping { damping_ratio } => {
-            format!("a mode whose damping changes, damped critically ({damping_ratio})")
-        }
-        NoDerivative::Infinite => "a run whose derivatives are no finite numbers".to_owned(),
-        _ => "a run without derivatives".to_owned(),
+        NoDerivative::Break { time_s } => (
+            format!("an event just where a load breaks, at {} s", seconds(time_s)),
+            "breaks of loads apart from events of contacts",
+        ),
+        NoDerivative::CriticalDamping { damping_ratio } => (
+            format!("a mode whose damping changes, with the damping ratio {damping_ratio}"),
+            "damping ratios that differ from 1, critical damping, by a millionth or more",
+        ),
+        _ => ("a run whose derivatives are no finite numbers".to_owned(), "a run with finite derivatives"),
     };
-    let allowed = "a run that ends, one impact with a rebound, and whose contacts begin with a speed, each at its own time: \
-                   elsewhere there is no derivative";
-    InvalidInput::new("scene", value, allowed)
+    InvalidInput::new("scene", value, format!("{allowed}; there is no derivative otherwise"))
 }
+
+const CONTACTS: &str = "contacts that begin with a speed, each at a time of its own";
