@@ -1,5 +1,5 @@
-//! How often the intervals of `identify` contain the truth, whether a wrong model is noticed, and how many starting points find the truth
-//! where impacts have many contacts: random tables of synthetic measurements.
+//! How often the intervals of `identify` contain the truth, whether a wrong model is noticed, and how many starting points
+//! find the truth where impacts have many contacts: random tables of synthetic measurements.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};

@@ -42,8 +42,9 @@ pub struct Scatter {
 }
 
 impl ScatteredLaw {
-    /// Fitted to the beams of thesis chapter 4 (converged modes, steel balls at 1 m/s, Hertzian contact), with 50 modes in the law: the
-    /// law to all at once, the scatter to each as the others predict it. See `docs/scatter-of-the-law.md` of the repository.
+    /// Fitted to the beams of thesis chapter 4 (converged modes, steel balls at 1 m/s, Hertzian contact), with 50 modes in
+    /// the law: the law to all beams at once, the scatter to each as the others predict it. See
+    /// `docs/scatter-of-the-law.md` of the repository.
     pub const BEAMS: ScatteredLaw = ScatteredLaw {
         law: Parameters { mu0: 0.312, alpha0: 2.41, alpha1: 0.492, notional_restitution: 1.0 },
         single: 0.079,

@@ -30,9 +30,9 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
     if value.is_infinite() { 0.0 } else { puruspe::betai(0.5 * b, 0.5 * a, b / (b + a * value)) }
 }
 
-/// `t` such that Student's variable with `freedom` degrees (which need not be a whole number; at least 1) lies within `-t..t` with probability `level` (0 to 1):
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. `None` stands for a standard deviation that is known: the normal
-/// variable.
+/// `t` such that Student's variable with `freedom` degrees lies within `-t..t` with probability `level` (0 to 1):
+/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. The degrees of freedom are at least 1 and need not be a whole number.
+/// `None` stands for a standard deviation that is known: the normal variable.
 ///
 /// ```
 /// assert!((fitting::two_sided_quantile(0.95, None) - 1.959964).abs() < 1e-6);

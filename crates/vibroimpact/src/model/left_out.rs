@@ -10,8 +10,8 @@
 //! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact. They answer slow forces as
 //! the truncated modes do; if they vibrate, the force was too fast for that. This share is known from one impact alone, and
 //! detects most accidents. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
-//! remainder modes; the modes within its spectrum are then more by a factor of up to `R^(-1/2)`. `d_s`, for lists, is the change with a single remainder mode in place of several, because the
-//! extrapolation of a list is an assumption. `d_c` is the change if the static compliance, which all of them share, is
+//! remainder modes; the modes within its spectrum are then more by a factor of up to `R^(-1/2)`. `d_s`, for lists, is the
+//! change with a single remainder mode in place of several, because the extrapolation of a list is an assumption. `d_c` is the change if the static compliance, which all of them share, is
 //! greater by its uncertainty; it is zero if that has a closed form.
 //!
 //! Where a list of modes ends before that, its last remainder modes answer forces for which they are not made, and their energy

@@ -45,9 +45,9 @@ pub enum BlurWidth {
 }
 
 impl Sweep {
-    /// The sweep that maps the spread of the restitution of a scene (of a scene of bodies, of what its sweeps tell unless they are asked)
-    /// over one or two fields (`over`), where some fields are known within a `blur` only: about the value on the map, or about the scene's own. Every point has as many draws, by the same
-    /// `seed`.
+    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), where some fields are
+    /// known within a `blur` only: about the value on the map, or about the scene's own. Of a scene of bodies it maps the
+    /// default outputs of its sweeps. Every point has as many draws, by the same `seed`.
     ///
     /// # Errors
     /// A scene that cannot be read or used, or a field or number that cannot be; a fault names the option of the command

@@ -65,7 +65,8 @@ pub struct OutputDistribution {
 }
 
 impl OutputDistribution {
-    /// Of the output of all draws by their number, not-a-number where there is none; `None` if there is none at all. `fields` are those of the indices, if they are wanted.
+    /// Of the output of all draws by their number, not-a-number where there is none; `None` if there is none at all.
+    /// `fields` are those of the indices, if these are requested.
     pub(super) fn new(outputs: &[f64], draws: Draws, fields: Option<&[String]>) -> Option<OutputDistribution> {
         let replicate = |number: usize| number / draws.impacts as usize % draws.replicates as usize;
         let mut parts = vec![Vec::new(); draws.replicates as usize];

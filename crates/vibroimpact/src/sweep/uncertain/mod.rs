@@ -18,8 +18,8 @@
 //! ```
 //!
 //! `S_j` is the share of the variance that would be gone if field `j` were known, `T_j` the share that would be left if
-//! all others were. Draws without the output (an impact without restitution, a run that was stopped) are counted by their outcome; the figures are
-//! those of the others.
+//! all others were. Draws without the output (an impact without restitution, a run that was stopped) are counted by their
+//! outcome; the figures are those of the others.
 
 mod collect;
 mod design;
