@@ -133,12 +133,12 @@ impl FlightBounds {
         let elastic = &system.links[contact].elastic;
         let n = elastic.len();
         let bound = |(k, psi): &(usize, f64)| {
-            let speed = rate[*k] / system.modes[*k].omega_rad_s;
+            let speed = rate[*k] * system.inverse[*k];
             psi.abs() * (amplitude[*k] * amplitude[*k] + speed * speed).sqrt()
         };
         let bounds: Vec<f64> = elastic.iter().map(bound).collect();
         let total: f64 = bounds.iter().sum();
-        let (mut cuts, mut below, mut curvature) = (Vec::new(), 0.0, 0.0);
+        let (mut cuts, mut below, mut curvature) = (Vec::with_capacity(24), 0.0, 0.0);
         for i in 0..=n {
             // every count up to 4, then in ratios of about 4/3
             if i <= 4 || i == n || i.leading_zeros() != (i - 1).leading_zeros() || i % (i.ilog2() as usize * 2) == 0 {
@@ -146,9 +146,9 @@ impl FlightBounds {
                 cuts.push((i, above, curvature));
             }
             if i < n {
-                let mode = &system.modes[elastic[i].0];
+                let k = elastic[i].0;
                 below += bounds[i];
-                curvature += (1.0 + 2.0 * mode.damping_ratio) * mode.omega_rad_s * mode.omega_rad_s * bounds[i];
+                curvature += (1.0 + 2.0 * system.modes[k].damping_ratio) * system.square[k] * bounds[i];
             }
         }
         FlightBounds { cuts, uses: 0 }

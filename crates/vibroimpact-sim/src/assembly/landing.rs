@@ -17,7 +17,7 @@ impl<'a> March<'a> {
     pub(super) fn land_at(&mut self, length: f64) {
         let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length);
-        let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.counts) else {
+        let Some(mut landed) = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts) else {
             return self.refine(self.level.max(level_within(length)) + 1);
         };
         self.watch_window(&mut window, &mut landed);
@@ -70,7 +70,7 @@ impl<'a> March<'a> {
         let mut high: Option<(f64, f64)> = None;
         let mut side = 0;
         for _ in 0..60 {
-            let landed = window.attempt(length, &mut unknowns, &mut self.counts)?;
+            let landed = window.attempt(length, &mut unknowns, &mut self.newton, &mut self.counts)?;
             for (unknown, solved) in unknowns.iter_mut().zip(&landed.solved) {
                 unknown.guess = solved.force;
             }

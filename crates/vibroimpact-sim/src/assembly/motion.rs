@@ -1,5 +1,6 @@
 //! What the march carries: the modes, the contacts, and what is expected next. Every part of the march works on it.
 
+use super::collocate::Newton;
 use super::dense::{Event, Stretch};
 use super::enclosure::Held;
 use super::ledger::{Account, Moment};
@@ -53,8 +54,9 @@ pub(crate) struct March<'a> {
     pub(super) pending: Vec<(usize, Event)>,
     /// Time, amplitudes and rates when the last contact opened, where the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
-    /// Memory for the enclosures.
+    /// Memory for the enclosures, and for Newton's method.
     pub(super) held: Held,
+    pub(super) newton: Newton,
     /// Level on which the next panel is tried.
     pub(super) level: i32,
     pub(super) horizon: Option<Horizon>,
@@ -120,6 +122,7 @@ impl<'a> March<'a> {
             pending: Vec::new(),
             departure: (0.0, Vec::new(), Vec::new()),
             held: Held::default(),
+            newton: Newton::default(),
             level: J_MIN,
             horizon: None,
             landing: f64::INFINITY,

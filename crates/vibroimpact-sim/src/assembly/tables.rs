@@ -5,10 +5,11 @@ use super::damping::Damping;
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
-use crate::panel::forcing::{Compliance, Terms, gather, part};
+use crate::panel::forcing::{Compliance, LANES, Way, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::vector::{sum_over, vectorized};
+use std::array;
 
 /// Response of one contact's overlap to the force of another.
 #[derive(Clone, Copy)]
@@ -129,10 +130,7 @@ impl Tables {
         }
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
         let (expanded, found) = match expanded {
-            Some(expanded) => {
-                let found = expanded.forced.again(system, step_s(j), &weights);
-                (expanded, found)
-            }
+            Some(expanded) => (expanded, Forced::again(system, step_s(j), &weights)),
             None => {
                 let (forced, found) = Forced::new(system, step_s(j), half, &weights);
                 (expanded.insert(Box::new(Expanded { forced, responses: Vec::new() })), found)
@@ -238,48 +236,47 @@ impl Forced {
         let n = system.modes.len();
         let mut at_nodes = Vec::with_capacity(n);
         let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
-        let mut sums = Sums::new(weights);
+        let mut sums = Sums::new(system, h, weights);
         for body in &system.bodies {
-            let mut terms = Terms::default();
+            let mut terms = 2;
             for k in body.clone() {
                 let mode = &system.modes[k];
-                sums.turn_to(mode, k);
-                let part = part(mode, &sums.of_mode, h, &half.of(k), &mut terms, &mut sums.compliances);
+                let way = Way::of(mode, h);
+                let part = part(mode, &way, h, &half.of(k), &mut terms);
+                sums.add(k, &way);
                 at_nodes.push(part.at_nodes);
                 for n in 0..Q {
                     amplitude[n][k] = part.end.0[n];
                     rate[n][k] = part.end.1[n];
                 }
             }
+            sums.end_body();
         }
-        (Forced { at_nodes, amplitude, rate }, sums.at_nodes(h))
+        (Forced { at_nodes, amplitude, rate }, sums.at_nodes())
     }
 
     /// Responses at the nodes summed over the modes with other weights, of a panel of `h` again: to the last bit those of
     /// [`Forced::new`].
-    fn again(&self, system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<[Nodal; Q]> {
-        let mut sums = Sums::new(weights);
+    fn again(system: &System, h: f64, weights: &[Vec<f64>]) -> Vec<[Nodal; Q]> {
+        let mut sums = Sums::new(system, h, weights);
         for body in &system.bodies {
-            let mut terms = Terms::default();
             for k in body.clone() {
-                let mode = &system.modes[k];
-                sums.turn_to(mode, k);
-                gather(mode, &sums.of_mode, h, &mut terms, &mut sums.compliances);
+                sums.add(k, &Way::of(&system.modes[k], h));
             }
+            sums.end_body();
         }
-        sums.at_nodes(h)
+        sums.at_nodes()
     }
 
-    /// What the modes with these weights do at the end.
+    /// What the elastic modes with these weights do at the end.
     fn end(&self, system: &System, weights: &[f64]) -> (Nodal, Nodal) {
-        let (mut end, mut end_rate) = ([0.0; Q], [0.0; Q]);
-        for (k, weight) in weights.iter().enumerate().filter(|(k, _)| !system.modes[*k].is_rigid()) {
-            for n in 0..Q {
-                end[n] -= weight * self.amplitude[n][k];
-                end_rate[n] -= weight * self.rate[n][k];
-            }
-        }
-        (end, end_rate)
+        let elastic = |(weight, mode): (&f64, &BodyMode)| if mode.is_rigid() { 0.0 } else { -weight };
+        let weights: Vec<f64> = weights.iter().zip(&system.modes).map(elastic).collect();
+        let sum = |row: &Vec<f64>| {
+            let [sum] = sum_over([&weights, row], |[weight, response]| [weight * response]);
+            sum
+        };
+        (array::from_fn(|n| sum(&self.amplitude[n])), array::from_fn(|n| sum(&self.rate[n])))
     }
 
     /// How far free motion moves `sum_k psi_k a_k` at the nodes.
@@ -316,29 +313,65 @@ impl Forced {
     }
 }
 
-/// Responses as they are summed, mode by mode, for each list of weights.
+/// Responses as they are summed over the modes, for each list of weights.
 struct Sums<'a> {
+    system: &'a System,
+    h: f64,
     weights: &'a [Vec<f64>],
-    of_mode: Vec<f64>,
     compliances: Vec<Compliance>,
+    /// The first slow modes that are not added yet.
+    waiting: [usize; LANES],
+    count: usize,
 }
 
 impl Sums<'_> {
-    fn new(weights: &[Vec<f64>]) -> Sums<'_> {
-        let count = weights.len();
+    fn new<'a>(system: &'a System, h: f64, weights: &'a [Vec<f64>]) -> Sums<'a> {
         let compliances = weights.iter().map(|_| Compliance::new()).collect();
-        Sums { weights, of_mode: vec![0.0; count], compliances }
+        Sums { system, h, weights, compliances, waiting: [0; LANES], count: 0 }
     }
 
-    /// Turns to a mode; rigid ones take no part.
-    fn turn_to(&mut self, mode: &BodyMode, k: usize) {
-        for (weight, weights) in self.of_mode.iter_mut().zip(self.weights) {
-            *weight = if mode.is_rigid() { 0.0 } else { weights[k] };
+    /// Adds a mode; rigid ones take no part.
+    fn add(&mut self, k: usize, way: &Way) {
+        if self.system.modes[k].is_rigid() {
+            return;
+        }
+        if let Way::Series = way {
+            self.waiting[self.count] = k;
+            self.count += 1;
+            if self.count == LANES {
+                self.add_waiting();
+            }
+            return;
+        }
+        for (compliance, weights) in self.compliances.iter_mut().zip(self.weights).filter(|(_, all)| all[k] != 0.0) {
+            compliance.add_fast(&self.system.modes[k], way, weights[k], self.h);
         }
     }
 
-    fn at_nodes(self, h: f64) -> Vec<[Nodal; Q]> {
-        self.compliances.into_iter().map(|compliance| compliance.at_nodes(h)).collect()
+    fn add_waiting(&mut self) {
+        let (count, h) = (std::mem::take(&mut self.count), self.h);
+        // the last of a body are made up by modes without weight
+        let modes = array::from_fn(|l| self.system.modes[self.waiting[l.min(count - 1)]]);
+        for (compliance, weights) in self.compliances.iter_mut().zip(self.weights) {
+            let weights = array::from_fn(|l| if l < count { weights[self.waiting[l]] } else { 0.0 });
+            if weights != [0.0; LANES] {
+                vectorized(
+                    #[inline(always)]
+                    || compliance.add_slow(&modes, &weights, h),
+                );
+            }
+        }
+    }
+
+    fn end_body(&mut self) {
+        if self.count > 0 {
+            self.add_waiting();
+        }
+        self.compliances.iter_mut().for_each(Compliance::begin_body);
+    }
+
+    fn at_nodes(&self) -> Vec<[Nodal; Q]> {
+        self.compliances.iter().map(|compliance| compliance.at_nodes(self.h)).collect()
     }
 }
 

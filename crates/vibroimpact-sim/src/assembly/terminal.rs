@@ -102,7 +102,13 @@ impl Window {
     }
 
     /// Solves the panel of this length.
-    pub fn attempt(&self, length: f64, unknowns: &mut [Unknown], counts: &mut Counts) -> Option<Landed> {
+    pub fn attempt(
+        &self,
+        length: f64,
+        unknowns: &mut [Unknown],
+        newton: &mut Newton,
+        counts: &mut Counts,
+    ) -> Option<Landed> {
         let (free, responses) = (self.free_at_nodes(length), self.responses(length));
         for (unknown, series) in unknowns.iter_mut().zip(&self.free) {
             let mut moved = *series;
@@ -111,7 +117,7 @@ impl Window {
         }
         let mut solved = Vec::new();
         let response = |c: usize, other: usize| responses[c * self.closed + other].as_ref();
-        if !collocate(unknowns, response, length, (&mut Newton::default(), &mut solved), counts) {
+        if !collocate(unknowns, response, length, (newton, &mut solved), counts) {
             return None;
         }
         Some(self.arrive(length, solved, free, &responses))

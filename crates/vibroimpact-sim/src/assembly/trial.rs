@@ -1,7 +1,7 @@
 //! A panel of `2^-j` s with closed contacts: the forces that the laws ask for, and what they do to the motion. A trial changes
 //! nothing; a panel that has been judged is committed.
 
-use super::collocate::{Collocated, Newton, Unknown, collocate};
+use super::collocate::{Collocated, Unknown, collocate};
 use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
@@ -18,7 +18,6 @@ pub(super) struct Trial<'a> {
     pub contacts: Vec<usize>,
     pub closed: usize,
     unknowns: Vec<Unknown<'a>>,
-    newton: Newton,
     /// The closed contacts' forces, by nodes and by coefficients.
     pub solved: Vec<Collocated>,
     pub force: Vec<Nodal>,
@@ -32,7 +31,7 @@ impl<'a> March<'a> {
     /// Solves for the forces of a panel; `false` if it is too long for that.
     pub(super) fn attempt(&mut self, level: i32, trial: &mut Trial<'a>) -> bool {
         let h = step_s(level);
-        let Trial { contacts, closed, unknowns, newton, solved, force, overlap, end, turns } = trial;
+        let Trial { contacts, closed, unknowns, solved, force, overlap, end, turns } = trial;
         let closed = *closed;
         self.tables.prepare(self.system, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
@@ -42,7 +41,7 @@ impl<'a> March<'a> {
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
         let tables = &*self.tables;
         let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]).map(|r| &r.nodes);
-        if !collocate(unknowns, response, h, (newton, solved), &mut self.counts) {
+        if !collocate(unknowns, response, h, (&mut self.newton, solved), &mut self.counts) {
             return false;
         }
         force.clear();

@@ -1,6 +1,6 @@
 //! The largest value of a quantity over many panels.
 
-use super::legendre::{BASIS, Nodal, Q, evaluate};
+use super::legendre::{BASIS, Nodal, Q, evaluate, evaluate_at};
 
 /// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
 /// polynomial searched once the contact is over.
@@ -24,16 +24,16 @@ impl Peak {
         let coefficients = BASIS.coefficients(&self.nodal);
         let value = |at: f64| evaluate(&coefficients, at);
         // the best of a grid, then twice the vertex of the parabola through it and its neighbours
-        let grid = 2 * Q;
+        let mut spacing = 1.0 / (2 * Q) as f64;
         let (mut at, mut best) = (0.0, value(0.0));
-        for i in 1..=grid {
-            let place = i as f64 / grid as f64;
-            let here = value(place);
-            if here > best {
-                (at, best) = (place, here);
+        for first in [1, Q + 1] {
+            let places = std::array::from_fn(|i| (first + i) as f64 * spacing);
+            for (place, here) in places.into_iter().zip(evaluate_at(&coefficients, &places)) {
+                if here > best {
+                    (at, best) = (place, here);
+                }
             }
         }
-        let mut spacing = 1.0 / grid as f64;
         for _ in 0..2 {
             let (before, after) = (value(at - spacing), value(at + spacing));
             let bend = before - 2.0 * best + after;

@@ -163,6 +163,10 @@ pub(crate) fn named_objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 
 /// Reads a `T` from a tree that must be an object; faults carry the path within `value`.
 pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
+    // to follow the path costs as much again as to read, and only a fault needs it
+    if let Ok(Object(inner)) = Object::deserialize(value) {
+        return Ok(inner);
+    }
     serde_path_to_error::deserialize(value).map(|Object(inner)| inner).map_err(|fault| {
         let told = fault.inner().to_string();
         let path = fault.path();
