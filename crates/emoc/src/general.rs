@@ -46,6 +46,12 @@ pub struct Solver {
     least_energy: Engine,
 }
 
+impl fmt::Debug for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solver").finish_non_exhaustive()
+    }
+}
+
 impl Solver {
     /// A solver with nothing to reuse yet.
     pub fn new() -> Solver {

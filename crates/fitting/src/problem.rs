@@ -3,6 +3,7 @@
 use crate::parameter::Parameter;
 use crate::report::Residuals;
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// Residuals as a function of the parameters: reads the parameters, writes every residual.
 pub type ResidualsFn<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
@@ -11,6 +12,7 @@ pub type ResidualsFn<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
 ///
 /// A residual that is NaN, infinite or beyond 1e100 marks parameters at which the model does not exist; the search
 /// stays away from them.
+#[derive(Clone)]
 pub struct Problem<'a> {
     /// The parameters, in the order in which the closures take them.
     pub parameters: Vec<Parameter>,
@@ -20,6 +22,15 @@ pub struct Problem<'a> {
     pub residuals: &'a ResidualsFn<'a>,
     /// Writes the derivative of residual `i` in parameter `j` at `i * n + j`; central differences if absent.
     pub jacobian: Option<&'a ResidualsFn<'a>>,
+}
+
+impl fmt::Debug for Problem<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Problem")
+            .field("parameters", &self.parameters)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
 }
 
 /// How to search.

@@ -5,6 +5,7 @@ use crate::problem::{Density, Event, Term, Volterra};
 use crate::solution::Solution;
 use invalid_input::InvalidInput;
 use libm::tgamma;
+use std::fmt;
 
 /// The left-hand side and start of one equation: `D^order y + sum of coefficient D^lower y = rhs`, Caputo derivatives.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,6 +83,16 @@ pub struct InitialValueProblem<'a> {
     pub breaks: Vec<f64>,
     /// Events to locate.
     pub events: Vec<Event<'a>>,
+}
+
+impl fmt::Debug for InitialValueProblem<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("InitialValueProblem")
+            .field("equations", &self.equations)
+            .field("breaks", &self.breaks)
+            .field("events", &self.events)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> InitialValueProblem<'a> {

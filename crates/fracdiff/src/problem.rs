@@ -1,5 +1,7 @@
 //! The problem: a system of weakly singular Volterra equations of the second kind.
 
+use std::fmt;
+
 /// One memory term: `coefficient * integral_0^t (t-s)^(order-1) f_density(s, y(s)) ds` in the equation of `y_unknown`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Term {
@@ -61,6 +63,15 @@ impl<'a> Event<'a> {
     pub fn terminal(mut self) -> Self {
         self.terminal = true;
         self
+    }
+}
+
+impl fmt::Debug for Event<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Event")
+            .field("direction", &self.direction)
+            .field("terminal", &self.terminal)
+            .finish_non_exhaustive()
     }
 }
 
@@ -143,14 +154,14 @@ impl<'a> Volterra<'a> {
     }
 }
 
-impl std::fmt::Debug for Volterra<'_> {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        out.debug_struct("Volterra")
+impl fmt::Debug for Volterra<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Volterra")
             .field("unknowns", &self.unknowns)
             .field("densities", &self.densities)
             .field("terms", &self.terms)
             .field("breaks", &self.breaks)
-            .field("events", &self.events.len())
+            .field("events", &self.events)
             .finish_non_exhaustive()
     }
 }

@@ -13,6 +13,7 @@ use crate::scene::{self, InvalidInput, Scene};
 use crate::summary::{RodMotion, Summary};
 
 /// The result of [`Scene::simulate`].
+#[derive(Debug, Clone)]
 pub enum Simulation {
     /// An impact on a structure with modes.
     Modal(Box<Resolved>),
@@ -28,6 +29,7 @@ pub enum Simulation {
 }
 
 /// An impact with its motion in time.
+#[derive(Debug, Clone)]
 pub struct Resolved {
     /// What was solved.
     pub impact: Impact,

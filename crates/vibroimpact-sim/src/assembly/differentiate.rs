@@ -17,6 +17,7 @@ type Monodromy = Vec<Vec<f64>>;
 
 /// A parameter, by what the assembly becomes at four neighbouring values of it. They must lie so near that everything which
 /// poses the assembly is smooth between them, and keep the number and the order of bodies, modes, contacts and loads.
+#[derive(Debug, Clone)]
 pub struct Parameter<'a, L> {
     /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
     /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.

@@ -27,7 +27,7 @@ fn part(place: usize, h: f64) -> f64 {
 }
 
 /// Loads of one frequency.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct Harmonic {
     pub omega_rad_s: f64,
     /// The steady motion `G` of each mode (m kg^1/2), and of the overlap of each contact (m).
@@ -54,14 +54,14 @@ struct Line {
 }
 
 /// One load in the order of the modes.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 struct Source {
     span: Span,
     force: Force,
 }
 
 /// All loads.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub(crate) struct Loads {
     pub harmonics: Vec<Harmonic>,
     lines: Vec<Source>,

@@ -9,6 +9,7 @@ use super::system::System;
 use super::tables::Tables;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// Follows an assembly from its start to the end of the requested time, and tells the observer what happens.
 ///
@@ -45,6 +46,12 @@ pub struct Solver<'a> {
     pub(crate) posed: Posed<'a>,
     pub(crate) system: System,
     pub(crate) tables: Tables,
+}
+
+impl fmt::Debug for Solver<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solver").finish_non_exhaustive()
+    }
 }
 
 impl<'a> Solver<'a> {

@@ -12,6 +12,7 @@ use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
+use std::fmt;
 
 pub use crate::assembly::{Derivative, NoDerivative, Stencil};
 
@@ -28,9 +29,19 @@ pub struct Posing<'a> {
     pub start: &'a Start,
 }
 
+impl fmt::Debug for Posing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Posing")
+            .field("structure", self.structure)
+            .field("striker", self.striker)
+            .field("start", self.start)
+            .finish_non_exhaustive()
+    }
+}
+
 /// A parameter, by what the impact becomes at four neighbouring values of it. They must lie so near that everything which
 /// poses the impact is smooth between them, and keep the number and the order of the modes.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Parameter<'a> {
     /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
     /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.

@@ -46,6 +46,7 @@ pub struct EnergyLedger {
 }
 
 /// The recorded motion of one impact; evaluates itself exactly at any time, given its contact force.
+#[derive(Debug, Clone)]
 pub struct History<L> {
     recorded: Recorded<L>,
     loads: Loads,
@@ -56,6 +57,7 @@ pub struct History<L> {
 }
 
 /// What a run leaves behind.
+#[derive(Debug, Clone)]
 pub(crate) struct Recorded<L> {
     pub modes: Vec<Mode>,
     /// Those of them that move the contact.

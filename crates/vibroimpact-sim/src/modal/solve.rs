@@ -14,6 +14,7 @@ use crate::assembly::tables::Tables;
 use crate::assembly::{self, Interval, Ledger, Observer};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.
@@ -103,6 +104,12 @@ impl Observer for Watch {
 
     fn wants_energy(&self) -> bool {
         self.records
+    }
+}
+
+impl fmt::Debug for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solver").field("modes", &self.modes).finish_non_exhaustive()
     }
 }
 

@@ -1,5 +1,6 @@
 //! The files of a run: intervals as they are found, histories, sections, pictures, report, the result as JSON.
 
+use std::fmt;
 use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
@@ -42,6 +43,16 @@ const PARQUET: &str = "intervals.parquet";
 
 fn blame(folder: &Path) -> impl Fn(std::io::Error) -> Failure + '_ {
     move |error| format!("cannot write to {}: {error}", folder.display()).into()
+}
+
+impl fmt::Debug for IntervalFiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("IntervalFiles")
+            .field("folder", &self.folder)
+            .field("names", &self.names)
+            .field("counts", &self.counts)
+            .finish_non_exhaustive()
+    }
 }
 
 impl IntervalFiles {

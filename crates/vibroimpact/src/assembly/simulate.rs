@@ -1,5 +1,6 @@
 //! A scene of bodies solved.
 
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{Force, Interval, Outcome, Reason, Run, Solver};
@@ -30,7 +31,18 @@ pub struct Wanted<'a> {
     pub tell: &'a mut dyn FnMut(f64),
 }
 
+impl fmt::Debug for Wanted<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Wanted")
+            .field("intervals", &self.intervals)
+            .field("reliability", &self.reliability)
+            .field("course", &self.course)
+            .finish_non_exhaustive()
+    }
+}
+
 /// What [`AssemblyScene::simulate`] found.
+#[derive(Debug, Clone)]
 pub struct Simulation {
     /// What was solved.
     pub posed: Posed,

@@ -1,6 +1,7 @@
 //! What one scene leaves for the next: the modes of its beam, the tables of its solvers.
 
 use std::collections::VecDeque;
+use std::fmt;
 
 use vibroimpact_sim::modal::{Solver, Structure};
 
@@ -40,6 +41,12 @@ pub struct Kept {
 
 /// Solvers that are kept where locations hardly ever come again: a group of draws for indices has two locations.
 const PASSING: usize = 2;
+
+impl fmt::Debug for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Kept").field("solvers", &self.solvers.len()).finish_non_exhaustive()
+    }
+}
 
 impl Kept {
     /// For scenes of one beam whose locations hardly ever come again: few tables are kept, and turned from location to location.
