@@ -1,10 +1,10 @@
-"""Steel balls dropped on a pinned steel bar in MuJoCo, with the restitution of the place in place of a constant.
+"""Steel balls dropped on a pinned steel bar in MuJoCo, with the restitution of the location in place of a constant.
 
     pip install mujoco numpy
     python bounce.py
 
 MuJoCo knows no restitution but the stiffness and damping of a contact. Before a ball touches, the law EMOC (the C header of the
-crate `emoc`, built by the C compiler here) tells the restitution at its place, with the ringing that earlier bounces have left
+crate `emoc`, built by the C compiler here) tells the restitution at its location, with the ringing that earlier bounces have left
 in the bar; the damping ratio that has this restitution is written into the ball's `solref`; MuJoCo does the contact. The
 program prints what the law asks for and what MuJoCo makes of it, and fails if the two are apart.
 """
@@ -54,7 +54,7 @@ def damping_ratio(restitution):
 
 
 class Bar:
-    """The modes of the bar at a place, and their motion."""
+    """The modes of the bar at a location, and their motion."""
 
     def __init__(self, x_m):
         number = numpy.arange(1, MODES + 1)

@@ -7,11 +7,11 @@ double emoc_strike(
     const double *law, double mass_kg, double velocity_m_s, const double *phi, const double *omega_rad_s, double *rates,
     size_t modes, double contact_s) {
     emoc_parameters parameters = {law[0], law[1], law[2], 1.0};
-    emoc_coefficients of_place;
+    emoc_coefficients of_location;
     emoc_rebound rebound;
     size_t k;
-    if (emoc_coefficients_at(&parameters, mass_kg, phi, modes, &of_place)
-        || emoc_meet(&of_place, mass_kg, velocity_m_s, phi, rates, modes, &rebound)) {
+    if (emoc_coefficients_at(&parameters, mass_kg, phi, modes, &of_location)
+        || emoc_meet(&of_location, mass_kg, velocity_m_s, phi, rates, modes, &rebound)) {
         return -1.0;
     }
     for (k = 0; k < modes; k++) {

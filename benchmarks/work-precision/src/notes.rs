@@ -25,7 +25,7 @@ of the logarithms.";
 /// What the second table shows.
 pub const EVERY_ERROR: &str = "\
 The next table is for other errors. It has the time of the fastest peer over the time of the fastest solver of the \
-workspace. *alone* means that no peer reaches the error, *nobody* that it is below what any solver or the \
+workspace. *alone* means that no peer reaches the error, *none* that it is below what any solver or the \
 reference reaches in double precision. For the infinite beam and the fractional equations the peers are the \
 general methods of `fracdiff`, which are solvers of this workspace too.";
 

@@ -97,7 +97,7 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
                     let _ = writeln!(behind, "- {problem} at {error:.0e}: only {peer} reaches it");
                     "not reached".into()
                 }
-                Standing::Nobody => "nobody".into(),
+                Standing::Nobody => "none".into(),
             });
             [problem.to_string()].into_iter().chain(cells).collect()
         })

@@ -13,10 +13,10 @@
  *
  *     double phi[2] = {1.0, 0.6}, amplitudes[2] = {0.0, 0.0}, rates[2] = {0.0, 0.0};
  *     emoc_parameters law = {0.16, 9.0, 1.5, 1.0};
- *     emoc_coefficients of_place;
+ *     emoc_coefficients of_location;
  *     emoc_rebound rebound;
- *     emoc_coefficients_at(&law, 0.2, phi, 2, &of_place);           // once for each place and striker
- *     emoc_meet(&of_place, 0.2, -1.0, phi, rates, 2, &rebound);      // rebound.velocity_m_s is the striker's
+ *     emoc_coefficients_at(&law, 0.2, phi, 2, &of_location);        // once for each location and striker
+ *     emoc_meet(&of_location, 0.2, -1.0, phi, rates, 2, &rebound);   // rebound.velocity_m_s is the striker's
  *     for (k = 0; k < 2; k++)                                         // strike the structure, and let it ring
  *         rates[k] -= phi[k] * rebound.impulse_n_s * emoc_half_sine(omega[k], contact_s);
  *     emoc_ring(omega[k], damping_ratio[k], time_s, &amplitudes[k], &rates[k]);
@@ -41,7 +41,7 @@ typedef struct {
     double notional_restitution; /* without vibration, 0 to 1 */
 } emoc_parameters;
 
-/* The coefficients of the inequalities, of a striker at a place. */
+/* The coefficients of the inequalities, of a striker at a location. */
 typedef struct {
     double ebar;  /* 0 to 1 */
     double beta0; /* not negative */
@@ -74,7 +74,7 @@ static inline int emoc_valid_(const emoc_coefficients *c, double mass_kg) {
 /* x/(1+x), without overflow. */
 static inline double emoc_saturate_(double x) { return x <= 1.0 ? x / (1.0 + x) : 1.0 / (1.0 + 1.0 / x); }
 
-/* Coefficients of a striker at a place, from the mass-normalised shapes (kg^-1/2) of n modes there, slowest first. */
+/* Coefficients of a striker at a location, from the mass-normalised shapes (kg^-1/2) of n modes there, slowest first. */
 static inline emoc_status emoc_coefficients_at(
     const emoc_parameters *law, double mass_kg, const double *phi, size_t n, emoc_coefficients *result) {
     double z = 0.0, t, x, y;

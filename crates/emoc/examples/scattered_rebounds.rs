@@ -1,4 +1,4 @@
-//! Rebounds as an engine would draw them: a ball falls on one place of a beam again and again, and each time the law gives
+//! Rebounds as an engine would draw them: a ball falls on one location of a beam again and again, and each time the law gives
 //! another restitution, from a random number of the engine's own.
 //!
 //! `cargo run --release -p emoc --features scatter --example scattered_rebounds`

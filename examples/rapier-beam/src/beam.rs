@@ -18,7 +18,7 @@ const POISSON: f64 = 0.3;
 const MODES: usize = 80;
 /// Modes in the law: to 65 kHz, as far as the 50 of the thesis's beams reach.
 pub const LAW_MODES: usize = 16;
-/// Entries of the table of places that the game looks up.
+/// Entries of the table of locations that the game looks up.
 const TABLE: usize = 300;
 /// A resolved bounce starts with the ball this high above the bar at rest: more than the bar swings.
 const ABOVE_M: f64 = 2e-3;
@@ -55,7 +55,7 @@ impl Bar {
         Ok(Bar { modes: beam.modes(MODES)?, beam, damping_ratio })
     }
 
-    /// The bar as the solver sees it from a place.
+    /// The bar as the solver sees it from a location.
     pub fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
         let shapes = self.modes.shapes_at(x_m)?;
         let damping_ratio = self.damping_ratio;
@@ -104,12 +104,12 @@ impl Bar {
         Ok(bounces)
     }
 
-    /// Fits the law's three parameters to resolved first bounces of some balls at some places.
-    pub fn law(&self, balls: &[Ball], places_m: &[f64], height_m: f64) -> Result<Law, Box<dyn Error>> {
+    /// Fits the law's three parameters to resolved first bounces of some balls at some locations.
+    pub fn law(&self, balls: &[Ball], locations_m: &[f64], height_m: f64) -> Result<Law, Box<dyn Error>> {
         let site =
             |x_m: f64| -> Result<Site, Box<dyn Error>> { Ok(Site::new(&self.modes.shapes_at(x_m)?[..LAW_MODES])?) };
         let mut seen = Vec::new();
-        for &x_m in places_m {
+        for &x_m in locations_m {
             let site = site(x_m)?;
             for &ball in balls {
                 for bounce in self.bounces(ball, x_m, height_m, 1)? {
@@ -153,14 +153,14 @@ pub struct Bounce {
 }
 
 // ANCHOR: law
-/// What the game keeps: three numbers, and what the law needs of each place.
+/// What the game keeps: three numbers, and what the law needs of each location.
 pub struct Law {
     pub parameters: Parameters,
     sites: Vec<Site>,
 }
 
 impl Law {
-    /// Restitution of a ball at a place: a look-up and a closed form.
+    /// Restitution of a ball at a location: a look-up and a closed form.
     pub fn restitution(&self, mass_kg: f64, x_m: f64) -> f64 {
         let nearest = (x_m / LENGTH_M * TABLE as f64).round() as usize;
         let site = &self.sites[nearest.min(TABLE)];

@@ -9,7 +9,7 @@ pub const STEP_S: f64 = 1.0 / 2000.0;
 const MOST_STEPS: u32 = 20_000;
 
 // ANCHOR: hook
-/// Asks for the restitution at the place of each contact.
+/// Asks for the restitution at the location of each contact.
 struct ByPlace<F>(F);
 
 impl<F: Fn(f64) -> f64 + Sync> PhysicsHooks for ByPlace<F> {

@@ -1,7 +1,7 @@
 //! Balls dropped on a vibrating bar in the physics engine rapier.
 //!
-//! A physics engine knows one restitution a pair of bodies. On a bar that is wrong by a large factor from place to
-//! place. Here the engine asks the EMOC law at each new contact, through its hook for contacts; the law costs some
+//! A physics engine knows one restitution a pair of bodies. On a bar that is wrong by a large factor from location to
+//! location. Here the engine asks the EMOC law at each new contact, through its hook for contacts; the law costs some
 //! nanoseconds. Beside it stand the engine with the best constant for each ball, and bounces with every contact
 //! resolved. A second table follows the bar's motion from bounce to bounce.
 
@@ -75,11 +75,11 @@ fn tables() -> Result<String, Box<dyn Error>> {
 
 /// The law, fitted to all balls.
 fn fitted(bar: &Bar) -> Result<Law, Box<dyn Error>> {
-    let places: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();
-    bar.law(&BALLS, &places, DROP_M)
+    let locations: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();
+    bar.law(&BALLS, &locations, DROP_M)
 }
 
-/// What becomes of a ball dropped at a place.
+/// What becomes of a ball dropped at a location.
 struct Row {
     x_m: f64,
     /// Restitution by the law.
@@ -90,9 +90,9 @@ struct Row {
 }
 
 fn compare(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Row>, Box<dyn Error>> {
-    let places: Vec<f64> = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64).collect();
-    let resolved = places.iter().map(|&x| bar.bounces(ball, x, DROP_M, BOUNCES)).collect::<Result<Vec<_>, _>>()?;
-    // the constant that fits these very places best: more than a game's author would know
+    let locations: Vec<f64> = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64).collect();
+    let resolved = locations.iter().map(|&x| bar.bounces(ball, x, DROP_M, BOUNCES)).collect::<Result<Vec<_>, _>>()?;
+    // the constant that fits these very locations best: more than a game's author would know
     let constant = resolved.iter().map(|bounces| bounces[0].restitution).sum::<f64>() / COMPARED as f64;
     let at = |x| law.restitution(ball.mass_kg(), x);
     let row = |(x_m, resolved): (f64, Vec<beam::Bounce>)| Row {
@@ -102,7 +102,7 @@ fn compare(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Row>, Box<dyn Error>>
         with_law: engine::bounces(ball, x_m, DROP_M, BOUNCES, at),
         with_constant: engine::bounces(ball, x_m, DROP_M, BOUNCES, |_| constant),
     };
-    Ok(places.into_iter().zip(resolved).map(row).collect())
+    Ok(locations.into_iter().zip(resolved).map(row).collect())
 }
 
 /// Of the engine's first bounce, against the resolved one.

@@ -18,7 +18,7 @@ const WAYS: [&str; 5] =
     ["constant", "EMOC, bar at rest", "EMOC, its own motion", "EMOC, half sine", "EMOC, true motion"];
 
 // ANCHOR: carried
-/// What the game keeps of the bar between bounces, seen from one place.
+/// What the game keeps of the bar between bounces, seen from one location.
 struct Carried<'a> {
     modes: &'a [Mode],
     motion: Start,
@@ -72,7 +72,7 @@ pub fn table() -> Result<String, Box<dyn Error>> {
                 writeln!(out, "{name:<22}{means}")?;
             }
             let counts: String = errors.iter().map(|of_bounce| format!("{:>7}", of_bounce.len())).collect();
-            writeln!(out, "places                {counts}\n")?;
+            writeln!(out, "locations             {counts}\n")?;
         }
     }
     out.truncate(out.trim_end().len());
@@ -83,13 +83,13 @@ fn mean(errors: &[[f64; WAYS.len()]], way: usize) -> String {
     if errors.is_empty() {
         return format!("{:>7}", "-");
     }
-    format!("{:7.3}", errors.iter().map(|of_place| of_place[way]).sum::<f64>() / errors.len() as f64)
+    format!("{:7.3}", errors.iter().map(|of_location| of_location[way]).sum::<f64>() / errors.len() as f64)
 }
 
-/// Errors of each way in each bounce at the places where there is one. The fall before a bounce is the resolved one's.
+/// Errors of each way in each bounce at the locations where there is one. The fall before a bounce is the resolved one's.
 fn errors(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Vec<[f64; WAYS.len()]>>, Box<dyn Error>> {
-    let places = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64);
-    let resolved = places
+    let locations = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64);
+    let resolved = locations
         .map(|x_m| Ok((x_m, bar.bounces(ball, x_m, DROP_M, BOUNCES)?)))
         .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
     let constant = resolved.iter().map(|(_, bounces)| bounces[0].restitution).sum::<f64>() / COMPARED as f64;

@@ -148,7 +148,7 @@ fn limits(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Resul
             "truncation",
             "theory",
             "coefficient",
-            "settled to",
+            "converged to",
         ],
         &lines,
     )?;

@@ -141,7 +141,7 @@ fn by_contacts(study: &mut Study, all: &[&Cell]) -> Result<(), Failure> {
         "predictable-by-contacts",
         &[
             "contacts",
-            "places and balls",
+            "locations and balls",
             "coefficient, median",
             "coefficient, below 0.02",
             "theory, median",
