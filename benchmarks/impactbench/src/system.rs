@@ -126,6 +126,25 @@ impl System {
         }
     }
 
+    /// The change of the accelerations with a small change of the state, per unit of it: the Jacobian times `v`.
+    pub fn jacobian_times(&self, states: &[State], y: &[f64], v: &[f64], out: &mut [f64]) {
+        let (a, b) = v.split_at(self.modes());
+        for k in 0..self.modes() {
+            out[k] = -self.damping[k] * b[k] - self.stiffness[k] * a[k];
+        }
+        for (c, state) in states.iter().enumerate() {
+            let State::Closed(branch) = state else { continue };
+            let (psi, gap, law) = &self.contacts[c];
+            let (xi, rate) = self.compression(c, y);
+            let (per_xi, per_rate) = self.compression(c, v);
+            let force = law.force(branch, xi, rate);
+            let force_n = force.per_compression_n_m * (per_xi + gap) + force.per_rate_n_s_m * per_rate;
+            for (out, psi) in out.iter_mut().zip(psi) {
+                *out -= psi * force_n;
+            }
+        }
+    }
+
     /// The ends of what a contact is doing: it goes on while neither margin is negative.
     pub fn margins(&self, contact: usize, state: &State, y: &[f64]) -> [f64; 2] {
         let (xi, rate) = self.compression(contact, y);

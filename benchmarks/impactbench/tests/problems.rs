@@ -1,7 +1,7 @@
 //! The problems' files, their references by further means, and the page.
 
 use contact_models::Law;
-use impactbench::codes::{dop853, own_assembly, run_all};
+use impactbench::codes::{diffsol, dop853, own_assembly, run_all};
 use impactbench::problem::{Family, LawOfContact, Problem, Quantity, What};
 use impactbench::{judge, library, outcome, report};
 use std::f64::consts::TAU;
@@ -114,14 +114,16 @@ fn sdnl105_ends_as_is_stated() {
     }
 }
 
-/// DOP853 at another tolerance, which no reference was made with.
+/// General solvers at a tolerance which no reference was made with: DOP853, and diffsol on several bodies too.
 #[test]
-fn a_general_solver_comes_near() {
+fn general_solvers_come_near() {
     let easy = [Family::Law, Family::Several, Family::Stop];
     let small = |problem: &Problem| problem.bodies.iter().all(|body| body.shape.len() <= 10);
     for problem in problems().iter().filter(|problem| easy.contains(&problem.family) && small(problem)) {
         let found = dop853(problem, &laws(problem), 1e-10, Instant::now() + Duration::from_secs(60)).unwrap();
         assert!(problem.error(&found) < 1e-6, "{}: {found:?}", problem.name);
+        let found = diffsol(problem, &laws(problem), 1e-10, Instant::now() + Duration::from_secs(60)).unwrap();
+        assert!(problem.error(&found) < 1e-4, "{}: {found:?}", problem.name);
     }
 }
 

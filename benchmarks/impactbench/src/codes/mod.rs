@@ -5,6 +5,7 @@ mod dop853;
 mod net;
 mod own;
 mod penalty;
+mod phases;
 
 use crate::outcome::Outcome;
 use crate::problem::Problem;
@@ -12,6 +13,7 @@ use contact_models::Law;
 use std::time::Instant;
 use work_precision::measure::{Effort, least_time};
 
+pub use diffsol::solve as diffsol;
 pub use dop853::solve as dop853;
 pub use own::assembly as own_assembly;
 

@@ -22,11 +22,6 @@ struct Diffsol {
     tolerance: f64,
 }
 
-/// The BDF of variable order as an integrator, for runs of one's own.
-pub fn bdf(tolerance: f64) -> impl Integrator {
-    Diffsol { formula: Formula::Bdf, tolerance }
-}
-
 /// Steps until an event or the end; returns which event.
 fn run<'a, E, S>(mut solver: S, t: &mut f64, y: &mut [f64], deadline: Instant) -> Result<Option<usize>, String>
 where

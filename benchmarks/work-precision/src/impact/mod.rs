@@ -8,7 +8,6 @@ mod own;
 mod reference;
 mod system;
 
-pub use diffsol::bdf;
 pub use drive::{Flight, Integrator, follow};
 pub use reference::{Reference, reference};
 pub use system::{Equations, Phase};
