@@ -15,8 +15,8 @@
  *     emoc_parameters law = {0.16, 9.0, 1.5, 1.0};
  *     emoc_coefficients of_location;
  *     emoc_rebound rebound;
- *     emoc_coefficients_at(&law, 0.2, phi, 2, &of_location);        // once for each location and striker
- *     emoc_meet(&of_location, 0.2, -1.0, phi, rates, 2, &rebound);   // rebound.velocity_m_s is the striker's
+ *     emoc_coefficients_at(&law, 0.2, phi, 2, &of_location);          // once for each location and striker
+ *     emoc_meet(&of_location, 0.2, -1.0, phi, rates, 2, &rebound);    // rebound.velocity_m_s is the striker's
  *     for (k = 0; k < 2; k++)                                         // strike the structure, and let it ring
  *         rates[k] -= phi[k] * rebound.impulse_n_s * emoc_half_sine(omega[k], contact_s);
  *     emoc_ring(omega[k], damping_ratio[k], time_s, &amplitudes[k], &rates[k]);
