@@ -18,6 +18,8 @@ pub enum RodEnd {
     Free,
 }
 
+invalid_input::names!(RodEnd, "end", { Fixed: "fixed", Free: "free" });
+
 #[derive(Debug, Clone)]
 pub(crate) struct Axial {
     spans: Vec<Span>,

@@ -48,6 +48,8 @@ pub enum End {
     Guided,
 }
 
+invalid_input::names!(End, "end", { Clamped: "clamped", Pinned: "pinned", Free: "free", Guided: "guided" });
+
 /// An Euler-Bernoulli beam of uniform segments, joined end to end from `x = 0` on.
 ///
 /// ```

@@ -19,6 +19,8 @@ pub enum Coordinate {
     Rotation,
 }
 
+invalid_input::names!(Coordinate, "coordinate", { Displacement: "displacement", Rotation: "rotation" });
+
 /// A beam cut into elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {

@@ -55,6 +55,13 @@ pub enum Stage {
     Slack,
 }
 
+invalid_input::names!(Stage, "stage", {
+    Single: "single",
+    Loading: "loading",
+    Unloading: "unloading",
+    Slack: "slack",
+});
+
 /// One smooth piece of a law, with the numbers the law needs to evaluate it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Branch {

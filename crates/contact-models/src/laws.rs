@@ -8,6 +8,7 @@ use crate::{
     Viscous,
 };
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// Writes the enum, its name table and its dispatch from one list of laws.
 macro_rules! laws {
@@ -85,6 +86,12 @@ impl Law {
         require_positive("mass_kg", mass_kg)?;
         require_positive("speed_m_s", speed_m_s)?;
         Ok(each!(self, law => law.wall_restitution(mass_kg, speed_m_s)))
+    }
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::Real;
 use crate::require::{require, require_fraction, require_non_negative};
+use core::fmt;
 use invalid_input::InvalidInput;
 
 /// The three coefficients of the model's inequalities (thesis Eqs. 6.6 and 6.7).
@@ -32,6 +33,12 @@ impl Branch {
             Branch::Basic => "basic",
             Branch::Outward => "outward",
         }
+    }
+}
+
+impl fmt::Display for Branch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
     }
 }
 

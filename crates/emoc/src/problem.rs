@@ -4,6 +4,7 @@ use crate::Coefficients;
 use crate::matrix::{self, symmetric_consistent};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::fmt;
 use invalid_input::InvalidInput;
 
 /// Friction at a contact, which also says how many coordinates the contact has.
@@ -228,6 +229,16 @@ pub enum Outcome {
         /// The share kept, 0 to 1.
         share: f64,
     },
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Outcome::NoImpact => f.pad("no impact"),
+            Outcome::Solved => f.pad("solved"),
+            Outcome::Relaxed { share } => write!(f, "relaxed to {share} of what was demanded"),
+        }
+    }
 }
 
 /// State after an impact at one or more contacts.

@@ -35,6 +35,7 @@ impl fmt::Debug for Problem<'_> {
 
 /// How to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Method {
     /// Levenberg-Marquardt from every start: fast and precise where residuals are smooth.
     LevenbergMarquardt,
@@ -44,6 +45,12 @@ pub enum Method {
     /// kinks: the first can stop at a kink, the second goes on along it.
     Both,
 }
+
+invalid_input::names!(Method, "method", {
+    LevenbergMarquardt: "levenberg-marquardt",
+    Simplex: "simplex",
+    Both: "both",
+});
 
 /// Settings of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +88,12 @@ pub enum Outcome {
     /// The model was not finite at the starting point, so that nothing was searched.
     NonFinite,
 }
+
+invalid_input::names!(Outcome, "outcome", {
+    Converged: "converged",
+    LimitReached: "limit reached",
+    NonFinite: "not finite",
+});
 
 /// One starting point and what became of it.
 #[derive(Debug, Clone, PartialEq)]

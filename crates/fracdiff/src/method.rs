@@ -6,6 +6,7 @@ use crate::exponential::{GalerkinStates, SumOfExponentials};
 use crate::problem::Volterra;
 use crate::solution::Solution;
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +50,12 @@ impl Method {
             Method::GalerkinStates(settings) => settings.run(problem, t_end),
             Method::Collocation(settings) => settings.run(problem, t_end),
         }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 

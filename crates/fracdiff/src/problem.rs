@@ -34,6 +34,8 @@ pub enum Direction {
     Falling,
 }
 
+invalid_input::names!(Direction, "direction", { Any: "any", Rising: "rising", Falling: "falling" });
+
 /// A function of time and solution whose sign changes are located.
 ///
 /// Signs are compared at the ends of steps, or at the ends and nodes of panels; two sign changes between neighbours of

@@ -2,6 +2,7 @@
 
 use crate::dense::Dense;
 use invalid_input::InvalidInput;
+use std::fmt;
 
 /// What ended a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +30,18 @@ pub enum Stop {
         /// Time reached.
         t: f64,
     },
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stop::EndReached => f.pad("end reached"),
+            Stop::Event { index } => write!(f, "terminal event {index}"),
+            Stop::NonFinite { t } => write!(f, "a function is not finite at t = {t}"),
+            Stop::NoConvergence { t } => write!(f, "Newton's method does not converge at t = {t}"),
+            Stop::PanelLimit { t } => write!(f, "the largest number of panels was used up at t = {t}"),
+        }
+    }
 }
 
 /// A located sign change of an event function.

@@ -24,6 +24,7 @@
 extern crate alloc;
 
 mod error;
+mod names;
 mod path;
 mod told;
 mod value;

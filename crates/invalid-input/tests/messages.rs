@@ -75,3 +75,23 @@ fn a_parent_can_be_taken_away() {
     assert_eq!(within.clone().without("segments"), within);
     assert_eq!(within.without("structure"), fault);
 }
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    Up,
+    Down,
+}
+
+invalid_input::names!(Way, "way", { Up: "up", Down: "down" });
+
+#[test]
+fn names_are_written_and_read() {
+    for way in [Way::Up, Way::Down] {
+        assert_eq!(way.to_string().parse(), Ok(way));
+        assert_eq!(way.to_string(), way.as_str());
+    }
+    assert_eq!(format!("{:>6}", Way::Up), "    up");
+    let fault = "sideways\u{1b}".parse::<Way>().unwrap_err().within("walk");
+    assert_eq!(fault.field, "walk.way");
+    assert_eq!(fault.to_string(), "walk.way = sideways\\u{1b} is not allowed: one of up, down");
+}

@@ -22,6 +22,16 @@ pub enum StopReason {
     Law,
 }
 
+invalid_input::names!(StopReason, "stopped_by", {
+    Steps: "steps",
+    FinestStep: "finest step",
+    SubImpacts: "sub-impacts",
+    LawRange: "law range",
+    Flight: "flight",
+    DigitsExhausted: "digits exhausted",
+    Law: "law",
+});
+
 impl StopReason {
     /// All reasons.
     pub const ALL: [StopReason; 7] = [
@@ -33,23 +43,6 @@ impl StopReason {
         StopReason::DigitsExhausted,
         StopReason::Law,
     ];
-
-    /// The reason as a word for tables and files.
-    ///
-    /// ```
-    /// assert_eq!(vibroimpact_sim::StopReason::LawRange.as_str(), "law range");
-    /// ```
-    pub fn as_str(self) -> &'static str {
-        match self {
-            StopReason::Steps => "steps",
-            StopReason::FinestStep => "finest step",
-            StopReason::SubImpacts => "sub-impacts",
-            StopReason::LawRange => "law range",
-            StopReason::Flight => "flight",
-            StopReason::DigitsExhausted => "digits exhausted",
-            StopReason::Law => "law",
-        }
-    }
 
     /// One sentence on what was reached, and what to do about it.
     pub fn advice(self) -> &'static str {

@@ -5,8 +5,9 @@ mod gallery;
 use gallery::{gallery, named, restitution};
 use proptest::prelude::*;
 use serde_json::Value;
-use vibroimpact::model::Modes;
-use vibroimpact::scene::{Contact, Modal, Structure};
+use vibroimpact::assembly::AxialEnd;
+use vibroimpact::model::{Model, Modes};
+use vibroimpact::scene::{BeamTheory, Contact, Edge, End, Modal, PlateTheory, Structure};
 use vibroimpact::{Scene, SceneError};
 
 #[test]
@@ -24,6 +25,28 @@ fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
         assert!(energy.residual_j.abs() < allowed * energy.initial_j, "{name}: {energy:?}");
         assert!(scene.description.is_some_and(|text| !text.is_empty()), "{name}");
     }
+}
+
+/// Each value's name is the one in scene files, and reads back.
+macro_rules! named_as_in_scenes {
+    ($($kind:ident: $($value:ident),+;)+) => {$($(
+        assert_eq!(serde_json::to_value($kind::$value).unwrap(), $kind::$value.as_str());
+        assert_eq!($kind::$value.to_string().parse(), Ok($kind::$value));
+    )+)+};
+}
+
+#[test]
+fn enums_have_the_names_of_scene_files() {
+    named_as_in_scenes! {
+        Model: Auto, Rigid, InfiniteBeam, Modal, Emoc;
+        BeamTheory: EulerBernoulli, Timoshenko, Auto;
+        End: Clamped, Pinned, Free, Guided;
+        Edge: Clamped, Pinned, Free;
+        PlateTheory: Kirchhoff, Mindlin;
+        AxialEnd: Fixed, Free;
+    }
+    let fault = "glued".parse::<End>().unwrap_err();
+    assert_eq!(fault.to_string(), "end = glued is not allowed: one of clamped, pinned, free, guided");
 }
 
 #[test]

@@ -14,8 +14,11 @@ pub enum Edge {
     Free,
 }
 
+invalid_input::names!(Edge, "edge", { Clamped: "clamped", Pinned: "pinned", Free: "free" });
+
 /// The theory by which a plate bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum PlateTheory {
     /// Thin plate: normals stay normal, and carry no inertia of rotation.
     Kirchhoff,

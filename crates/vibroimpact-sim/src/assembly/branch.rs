@@ -78,17 +78,12 @@ pub enum Special {
     Grazing,
 }
 
-impl Special {
-    /// The name for tables and files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Special::Fold => "fold",
-            Special::PeriodDoubling => "period doubling",
-            Special::NeimarkSacker => "Neimark-Sacker",
-            Special::Grazing => "grazing",
-        }
-    }
-}
+invalid_input::names!(Special, "special", {
+    Fold: "fold",
+    PeriodDoubling: "period doubling",
+    NeimarkSacker: "Neimark-Sacker",
+    Grazing: "grazing",
+});
 
 /// An orbit of a branch.
 #[derive(Debug, Clone, PartialEq)]

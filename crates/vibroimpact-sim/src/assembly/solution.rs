@@ -1,5 +1,7 @@
 //! The result of a run, and what an observer sees while it is under way.
 
+use std::fmt;
+
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -36,6 +38,16 @@ pub enum Reason {
     Interrupted,
 }
 
+invalid_input::names!(Reason, "stopped_by", {
+    Steps: "limit of steps",
+    Intervals: "limit of intervals",
+    FinestStep: "finest step",
+    LawRange: "range of the contact law",
+    Chatter: "contacts that open and close without time going on",
+    Law: "contact law that breaks its contract",
+    Interrupted: "interrupted",
+});
+
 impl Outcome {
     /// The outcome as a word for tables and files.
     pub fn as_str(self) -> &'static str {
@@ -48,17 +60,11 @@ impl Outcome {
     }
 }
 
-impl Reason {
-    /// The reason as words for tables and files.
-    pub fn as_str(self) -> &'static str {
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Reason::Steps => "limit of steps",
-            Reason::Intervals => "limit of intervals",
-            Reason::FinestStep => "finest step",
-            Reason::LawRange => "range of the contact law",
-            Reason::Chatter => "contacts that open and close without time going on",
-            Reason::Law => "contact law that breaks its contract",
-            Reason::Interrupted => "interrupted",
+            Outcome::Stopped(reason) => write!(f, "stopped: {reason}"),
+            ended => f.pad(ended.as_str()),
         }
     }
 }

@@ -17,6 +17,8 @@ pub enum Structure {
     Plate,
 }
 
+invalid_input::names!(Structure, "structure", { Beam: "beam", Plate: "plate" });
+
 /// Accuracy and extent of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {

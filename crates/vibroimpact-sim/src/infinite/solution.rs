@@ -8,9 +8,11 @@ use super::problem::Structure;
 use super::rule::{Kind, Tables, gauss, series};
 use super::units::Units;
 use crate::StopReason;
+use std::fmt;
 
 /// How an impact ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// The body leaves for good: after the last separation it does not move towards the structure.
     Rebound,
@@ -40,6 +42,15 @@ impl Outcome {
         match self {
             Outcome::Stopped(reason) => Some(reason),
             _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Outcome::Stopped(reason) => write!(f, "stopped: {reason}"),
+            ended => f.pad(ended.as_str()),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The result of an impact.
 
 use crate::StopReason;
+use std::fmt;
+
 pub use crate::assembly::Counts;
 
 /// How an impact ended.
@@ -34,6 +36,15 @@ impl Outcome {
         match self {
             Outcome::Stopped(reason) => Some(reason),
             _ => None,
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Outcome::Stopped(reason) => write!(f, "stopped: {reason}"),
+            ended => f.pad(ended.as_str()),
         }
     }
 }

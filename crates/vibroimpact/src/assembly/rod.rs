@@ -47,6 +47,8 @@ pub enum AxialEnd {
     Free,
 }
 
+invalid_input::names!(AxialEnd, "end", { Fixed: "fixed", Free: "free" });
+
 /// A uniform piece of a rod: its length, and its section in one of three ways: axial rigidity and mass per length;
 /// material and area; or material and diameter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -247,6 +247,6 @@ pub fn telling_time(solution: &Solution) -> f64 {
     let last = solution.contacts.last().map_or(0.0, |contact| contact.end.unwrap_or(contact.start));
     match solution.outcome {
         Outcome::Rebound => 1.5 * last,
-        Outcome::Sustained | Outcome::Stopped(_) => solution.known_until,
+        _ => solution.known_until,
     }
 }

@@ -68,6 +68,8 @@ pub enum End {
     Guided,
 }
 
+invalid_input::names!(End, "end", { Clamped: "clamped", Pinned: "pinned", Free: "free", Guided: "guided" });
+
 impl Beam {
     /// A beam of these ends, with no segments yet and all else left out.
     pub fn new(ends: [End; 2]) -> Beam {

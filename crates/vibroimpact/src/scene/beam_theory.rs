@@ -15,3 +15,9 @@ pub enum BeamTheory {
     /// Euler-Bernoulli's.
     Auto,
 }
+
+invalid_input::names!(BeamTheory, "theory", {
+    EulerBernoulli: "euler-bernoulli",
+    Timoshenko: "timoshenko",
+    Auto: "auto",
+});

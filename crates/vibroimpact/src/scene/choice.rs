@@ -23,18 +23,15 @@ pub enum Model {
     Emoc,
 }
 
-impl Model {
-    /// The name in scene files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Model::Auto => "auto",
-            Model::Rigid => "rigid",
-            Model::InfiniteBeam => "infinite-beam",
-            Model::Modal => "modal",
-            Model::Emoc => "emoc",
-        }
-    }
+invalid_input::names!(Model, "model", {
+    Auto: "auto",
+    Rigid: "rigid",
+    InfiniteBeam: "infinite-beam",
+    Modal: "modal",
+    Emoc: "emoc",
+});
 
+impl Model {
     pub(crate) fn is_auto(&self) -> bool {
         *self == Model::Auto
     }

@@ -58,6 +58,8 @@ pub enum Edge {
     Free,
 }
 
+invalid_input::names!(Edge, "edge", { Clamped: "clamped", Pinned: "pinned", Free: "free" });
+
 /// The theory by which a plate bends.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -68,6 +70,8 @@ pub enum PlateTheory {
     /// With both, for a plate pinned along all edges whose number of modes is stated.
     Mindlin,
 }
+
+invalid_input::names!(PlateTheory, "theory", { Kirchhoff: "kirchhoff", Mindlin: "mindlin" });
 
 impl Plate {
     /// An undamped thin plate: length and width, thickness (m), Young's modulus (Pa), Poisson's ratio, density (kg/m^3),
