@@ -11,6 +11,8 @@ use std::f64::consts::PI;
 
 /// How an end of a rod is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum RodEnd {
     /// No displacement.
     Fixed,

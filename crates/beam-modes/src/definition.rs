@@ -2,6 +2,8 @@
 
 /// A uniform stretch of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Segment {
     /// Length, m.
     pub length_m: f64,
@@ -37,6 +39,8 @@ impl Segment {
 
 /// How an end of a beam is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum End {
     /// No displacement, no slope.
     Clamped,
@@ -63,6 +67,8 @@ invalid_input::names!(End, "end", { Clamped: "clamped", Pinned: "pinned", Free: 
 /// # Ok::<(), beam_modes::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Beam {
     /// Segments from left to right.
     pub segments: Vec<Segment>,
@@ -84,6 +90,8 @@ impl Beam {
 
 /// What Timoshenko's theory needs of a segment beside its rigidity and mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ShearSection {
     /// Shear rigidity `kappa G A`, N.
     pub shear_rigidity_n: f64,
@@ -93,6 +101,8 @@ pub struct ShearSection {
 
 /// Springs and masses fixed to a beam at one location. Each of them may be zero, and is by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Attachment {
     /// Distance from the left end, m.
     pub location_m: f64,
@@ -108,6 +118,8 @@ pub struct Attachment {
 
 /// A rigid support between the ends: no displacement, no moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Support {
     /// Distance from the left end, m.
     pub location_m: f64,
@@ -136,6 +148,8 @@ pub struct Support {
 /// # Ok::<(), beam_modes::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct BeamSystem {
     /// Segments and ends.
     pub beam: Beam,

@@ -12,6 +12,8 @@ use invalid_input::InvalidInput;
 
 /// What a degree of freedom measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Coordinate {
     /// Displacement of the node, m.
     Displacement,

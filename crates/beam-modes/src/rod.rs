@@ -13,6 +13,8 @@ use std::f64::consts::PI;
 
 /// A uniform stretch of a rod.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct RodSegment {
     /// Length, m.
     pub length_m: f64,
@@ -35,6 +37,8 @@ pub struct RodSegment {
 /// # Ok::<(), beam_modes::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Rod {
     /// Segments from left to right.
     pub segments: Vec<RodSegment>,

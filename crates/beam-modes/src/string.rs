@@ -24,6 +24,8 @@ use std::f64::consts::PI;
 /// # Ok::<(), beam_modes::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TautString {
     /// Length between the ends (m).
     pub length_m: f64,

@@ -29,6 +29,8 @@ use invalid_input::InvalidInput;
 /// # Ok::<(), contact_models::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Felt {
     /// Static stiffness `Q0` (N/m^p).
     pub stiffness_n_m_n: f64,

@@ -19,6 +19,8 @@ use invalid_input::InvalidInput;
 /// falls, and a contact that is pressed on after a slow touch would be frozen; below
 /// `lowest_approach_speed_m_s` the damping grows no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Flores {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,

@@ -21,6 +21,8 @@ use invalid_input::InvalidInput;
 /// # Ok::<(), contact_models::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Hertz {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,

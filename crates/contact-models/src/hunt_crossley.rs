@@ -18,6 +18,8 @@ use invalid_input::InvalidInput;
 /// |---|---|---|---|---|---|---|---|
 /// | obtained | 0.952 | 0.909 | 0.833 | 0.768 | 0.663 | 0.581 | 0.516 |
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct HuntCrossley {
     /// Stiffness `k` (N/m^n).
     pub stiffness_n_m_n: f64,

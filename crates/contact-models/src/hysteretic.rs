@@ -38,6 +38,8 @@ use invalid_input::InvalidInput;
 /// loop of loading and unloading raises `theta`, and gives back slightly more work than it took.
 /// The stored energy is a quadrature of some microseconds, the force a single power.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Hysteretic {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,

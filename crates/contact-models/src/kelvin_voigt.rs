@@ -18,6 +18,8 @@ use invalid_input::InvalidInput;
 /// e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),   beyond zeta = 1 with acosh and zeta^2 - 1.
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct KelvinVoigt {
     /// Stiffness `k` (N/m).
     pub stiffness_n_m: f64,

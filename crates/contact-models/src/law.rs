@@ -3,6 +3,8 @@
 /// A half plane of the `(xi, xi_dot)` plane in which a branch is valid:
 /// `per_compression * xi + per_rate * xi_dot >= level`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Boundary {
     /// Coefficient of the compression.
     pub per_compression: f64,
@@ -44,6 +46,8 @@ impl Boundary {
 
 /// What kind of smooth piece a branch is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Stage {
     /// The law's only curve, valid for loading and unloading alike.
     Single,
@@ -64,6 +68,8 @@ invalid_input::names!(Stage, "stage", {
 
 /// One smooth piece of a law, with the numbers the law needs to evaluate it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Branch {
     /// The kind of piece.
     pub stage: Stage,
@@ -75,6 +81,8 @@ pub struct Branch {
 
 /// What outlives a contact: all zero for a fresh surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Memory {
     /// Compression at which the surfaces touch (m): zero, or the permanent indentation.
     pub touch_m: f64,
@@ -84,6 +92,8 @@ pub struct Memory {
 
 /// What follows when a branch meets one of its boundaries.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum After {
     /// Contact goes on along another branch.
     Continue(Branch),
@@ -93,6 +103,8 @@ pub enum After {
 
 /// Contact force and its two partial derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Force {
     /// Force (N).
     pub force_n: f64,

@@ -15,9 +15,15 @@ macro_rules! laws {
     ($($(#[$doc:meta])* $variant:ident = $name:literal,)*) => {
         /// Every law of the crate behind one type, for scenes that choose their law at run time.
         #[derive(Debug, Clone, Copy, PartialEq)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[cfg_attr(feature = "serde", serde(tag = "law"))]
         #[non_exhaustive]
         pub enum Law {
-            $($(#[$doc])* $variant($variant),)*
+            $(
+                $(#[$doc])*
+                #[cfg_attr(feature = "serde", serde(rename = $name))]
+                $variant($variant),
+            )*
         }
 
         $(impl From<$variant> for Law {

@@ -9,6 +9,8 @@ use invalid_input::InvalidInput;
 /// Source: textbook (W. Goldsmith, *Impact*, 1960, ch. 4). Valid for contacts whose area does not
 /// grow with the load, and as a penalty in place of a rigid stop. Tensile tail: none.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LinearSpring {
     /// Stiffness `k` (N/m).
     pub stiffness_n_m: f64,

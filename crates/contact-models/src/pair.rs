@@ -5,6 +5,8 @@ use invalid_input::InvalidInput;
 
 /// One of two elastic bodies where they touch: an isotropic material and a sphere's curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Body {
     /// Young's modulus `E` (Pa).
     pub youngs_modulus_pa: f64,

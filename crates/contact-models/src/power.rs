@@ -21,6 +21,8 @@ use invalid_input::InvalidInput;
 /// # Ok::<(), contact_models::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Power {
     /// Stiffness `k` (N/m^n).
     pub stiffness_n_m_n: f64,

@@ -21,6 +21,8 @@ const MOST_STEPS: u32 = 100_000;
 
 /// Restitutions of a law at a fixed step, over all phases of the first touch within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Stepped {
     /// The least.
     pub lowest: f64,

@@ -26,6 +26,8 @@ use std::f64::consts::PI;
 /// deformation without hardening or rate effects; the indentation belongs to one spot, so that
 /// every contact of a striker with this memory is at the same place. Tensile tail: none.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Thornton {
     /// Effective modulus `E*` (Pa).
     pub effective_modulus_pa: f64,

@@ -6,6 +6,8 @@ use invalid_input::InvalidInput;
 
 /// The contact at one moment of a prescribed motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TracePoint {
     /// Time (s).
     pub time_s: f64,

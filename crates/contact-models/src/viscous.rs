@@ -12,6 +12,8 @@ use invalid_input::InvalidInput;
 /// speed, as `1 - (2/3) c v0` for small `c v0`. The thesis's `c = 0.08` s/m gives 0.9494 at
 /// 1 m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Viscous {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,

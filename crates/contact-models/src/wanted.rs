@@ -39,6 +39,8 @@ use invalid_input::InvalidInput;
 
 /// What a contact shall do.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Wanted {
     /// Speed of parting over speed of approach, from 0.001 to 1.
     pub restitution: f64,
@@ -52,6 +54,8 @@ pub struct Wanted {
 
 /// Parameters of a contact in MuJoCo, for a constant impedance.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Solref {
     /// `timeconst` (s); infinite without damping, where only the direct form can say so.
     pub time_constant_s: f64,

@@ -7,6 +7,8 @@ use invalid_input::InvalidInput;
 
 /// The three coefficients of the model's inequalities (thesis Eqs. 6.6 and 6.7).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Coefficients<T = f64> {
     /// `ebar`: restitution demanded of the contact points, 0 to 1 (Eq. 6.6).
     pub ebar: T,
@@ -18,6 +20,8 @@ pub struct Coefficients<T = f64> {
 
 /// Which of the two inequalities determine the rebound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Branch {
     /// The restitution inequality (6.6) alone: `e = ebar / (1 + Z)`. The outward inequality is slack,
     /// or only just met.
@@ -44,6 +48,8 @@ impl fmt::Display for Branch {
 
 /// The solution of P_0, made dimensionless with the speed of approach `u = -v_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Rebound<T = f64> {
     /// `e = v_f / u`, from 0 to `ebar`.
     pub restitution: T,
@@ -94,6 +100,8 @@ impl<T: Real> Rebound<T> {
 /// Partial derivatives of the restitution in what the closed form takes. At the kink they are those of the
 /// branch reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CoefficientGradient<T = f64> {
     /// In `ebar`.
     pub per_ebar: T,

@@ -62,6 +62,8 @@ pub struct MovingImpact<'a> {
 
 /// The result of the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct MovingRebound {
     /// Velocity of the striker, positive away from the structure (m/s).
     pub velocity_m_s: f64,

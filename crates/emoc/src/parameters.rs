@@ -7,6 +7,8 @@ use invalid_input::InvalidInput;
 
 /// What the model needs to know of a location on a structure: three numbers out of its mode shapes there.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Site<T = f64> {
     /// `sum_k phi_k(b)^2` over the active modes (1/kg).
     pub sum_phi_squared_per_kg: T,
@@ -27,6 +29,8 @@ impl<T: Real> Site<T> {
 
 /// The dimensionless numbers of one impact (Eqs. 7.3, 7.6, 7.7).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Impact<T = f64> {
     /// Mass `m` of the striker (kg); for a dropped tilted rod the effective mass of Eq. 8.9.
     pub mass_kg: T,
@@ -63,6 +67,8 @@ impl<T: Real> Impact<T> {
 ///
 /// The thesis takes the three as positive; 0 is allowed here and means its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Parameters<T = f64> {
     /// `mu_0`, the moderated mass ratio coefficient (Eq. 7.4).
     pub mu0: T,
@@ -85,6 +91,8 @@ impl<T: Real> Default for Parameters<T> {
 /// all grow with it). Exact on either side of the kink where [`Rebound::kink_margin`] is zero; at it they are
 /// those of the branch reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ParameterGradient<T = f64> {
     /// In `mu_0`.
     pub per_mu0: T,

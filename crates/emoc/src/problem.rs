@@ -9,6 +9,8 @@ use invalid_input::InvalidInput;
 
 /// Friction at a contact, which also says how many coordinates the contact has.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Friction {
     /// None: one coordinate, along the normal.
     None,
@@ -48,6 +50,8 @@ impl Friction {
 
 /// One contact: its friction and its coefficients in the outward inequalities.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Contact {
     /// Friction, and with it the number of coordinates.
     pub friction: Friction,
@@ -57,6 +61,8 @@ pub struct Contact {
 
 /// One mode of the vibrating structure.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Mode {
     /// Modal speed `a_k'` before the impact (kg^1/2 m/s).
     pub rate: f64,
@@ -71,6 +77,8 @@ pub struct Mode {
 /// `sum_k shape_k a_k'` counts in the same direction, so that the contact opens at
 /// `g = velocity - sum_k shape_k a_k'`. Every contact listed is closed at the moment of impact.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Problem {
     /// The contacts.
     pub contacts: Vec<Contact>,
@@ -216,6 +224,8 @@ impl Problem {
 
 /// How a solution came about.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Outcome {
     /// No contact is closing: nothing happens.
@@ -243,6 +253,8 @@ impl fmt::Display for Outcome {
 
 /// State after an impact at one or more contacts.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Solution {
     /// How it came about.
     pub outcome: Outcome,

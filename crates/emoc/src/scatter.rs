@@ -19,6 +19,8 @@ use invalid_input::InvalidInput;
 
 /// The law's parameters and those of its scatter (3).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ScatteredLaw {
     /// The law for the median.
     pub law: Parameters,
@@ -32,6 +34,8 @@ pub struct ScatteredLaw {
 
 /// The distribution of the restitution of one impact, by equation (1).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Scatter {
     /// The median, as a share of the notional restitution: from 0 to 1.
     pub median_share: f64,

@@ -21,6 +21,8 @@ pub struct SingleImpact<'a> {
 
 /// What a quadratic program found for a [`SingleImpact`].
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct SingleSolution {
     /// `e = v_f / u`.
     pub restitution: f64,

@@ -24,6 +24,8 @@ pub struct Information {
 
 /// A direction in the space of the coordinates, and how well the observations determine it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Direction {
     /// Unit vector; its largest entry is positive.
     pub vector: Vec<f64>,

@@ -10,6 +10,8 @@ use invalid_input::InvalidInput;
 
 /// An interval for a parameter, in its own unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Interval {
     /// Lower end.
     pub low: f64,

@@ -5,6 +5,8 @@ use invalid_input::InvalidInput;
 /// The numbers that a parameter may take. A restricted parameter is sought in a coordinate `u` without
 /// restriction, so that no method can leave the range.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Range {
     /// Any number: `u = p`.
     Free,
@@ -21,6 +23,8 @@ pub enum Range {
 
 /// A parameter: where it may lie and where to look for it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Parameter {
     /// Name, for messages.
     pub name: String,

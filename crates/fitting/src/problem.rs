@@ -35,6 +35,8 @@ impl fmt::Debug for Problem<'_> {
 
 /// How to search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Method {
     /// Levenberg-Marquardt from every start: fast and precise where residuals are smooth.
@@ -54,6 +56,8 @@ invalid_input::names!(Method, "method", {
 
 /// Settings of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Settings {
     /// Default [`Method::Both`].
     pub method: Method,
@@ -79,13 +83,17 @@ impl Default for Settings {
 
 /// How a search ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Outcome {
     /// At a minimum, by the method's own tests.
     Converged,
     /// At the limit of evaluations; the parameters are the best seen.
+    #[cfg_attr(feature = "serde", serde(rename = "limit reached"))]
     LimitReached,
     /// The model was not finite at the starting point, so that nothing was searched.
+    #[cfg_attr(feature = "serde", serde(rename = "not finite"))]
     NonFinite,
 }
 
@@ -97,6 +105,8 @@ invalid_input::names!(Outcome, "outcome", {
 
 /// One starting point and what became of it.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Start {
     /// The starting point.
     pub from: Vec<f64>,
@@ -110,6 +120,8 @@ pub struct Start {
 
 /// A fit.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Fit {
     /// The parameters found, in their own units.
     pub parameters: Vec<f64>,

@@ -21,6 +21,8 @@ const NEAR: f64 = 3e-3;
 
 /// The profile of one parameter.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Profile {
     /// Values of the parameter, rising, and the least sum of squares with it held there.
     pub points: Vec<(f64, f64)>,

@@ -2,6 +2,8 @@
 
 /// How large residuals are.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Residuals {
     /// How many.
     pub count: usize,

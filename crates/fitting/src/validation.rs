@@ -9,6 +9,8 @@ use invalid_input::InvalidInput;
 
 /// One group left out.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Fold {
     /// The group's label.
     pub label: usize,
@@ -24,6 +26,8 @@ pub struct Fold {
 
 /// The result of leaving out one group after the other.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CrossValidation {
     /// One entry a group, in the order of the labels.
     pub folds: Vec<Fold>,

@@ -9,6 +9,8 @@ use std::fmt;
 
 /// The left-hand side and start of one equation: `D^order y + sum of coefficient D^lower y = rhs`, Caputo derivatives.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Equation {
     /// Highest order, 0.01 to 16.
     pub order: f64,

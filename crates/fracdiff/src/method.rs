@@ -10,6 +10,8 @@ use std::fmt;
 
 /// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Method {
     /// Gruenwald-Letnikov weights: first order, equal steps.

@@ -4,6 +4,8 @@ use std::fmt;
 
 /// One memory term: `coefficient * integral_0^t (t-s)^(order-1) f_density(s, y(s)) ds` in the equation of `y_unknown`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Term {
     /// The component of `y` in whose equation the term stands.
     pub unknown: usize,
@@ -24,6 +26,8 @@ impl Term {
 
 /// Which sign changes of an event function count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Direction {
     /// Both.
     #[default]

@@ -6,6 +6,8 @@ use std::fmt;
 
 /// What ended a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Stop {
     /// The final time was reached.
@@ -46,6 +48,8 @@ impl fmt::Display for Stop {
 
 /// A located sign change of an event function.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct EventHit {
     /// Index into the problem's events.
     pub event: usize,
@@ -59,6 +63,8 @@ pub struct EventHit {
 
 /// What a run cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Counts {
     /// Evaluations of the density.
     pub evaluations: u64,

@@ -5,6 +5,8 @@ use invalid_input::InvalidInput;
 
 /// How an edge of a plate is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Edge {
     /// Neither displacement nor slope.
     Clamped,
@@ -18,6 +20,8 @@ invalid_input::names!(Edge, "edge", { Clamped: "clamped", Pinned: "pinned", Free
 
 /// The theory by which a plate bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PlateTheory {
     /// Thin plate: normals stay normal, and carry no inertia of rotation.
@@ -47,6 +51,8 @@ pub enum PlateTheory {
 /// # Ok::<(), beam_modes::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Plate {
     /// Length `a`, along `x` (m).
     pub length_m: f64,

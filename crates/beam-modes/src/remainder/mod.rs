@@ -30,6 +30,8 @@ use quadrature::{Atom, gauss_quadrature, power_law_atoms};
 
 /// A mode as seen from one point of the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PointMode {
     /// Natural frequency, rad/s.
     pub omega_rad_s: f64,

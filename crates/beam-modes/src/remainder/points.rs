@@ -7,6 +7,8 @@ use invalid_input::InvalidInput;
 
 /// A mode as seen from several points of a structure.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct PointsMode {
     /// Natural frequency, rad/s.
     pub omega_rad_s: f64,

@@ -27,6 +27,8 @@ const ROUNDINGS: f64 = 50.0;
 
 /// Settings of the collocation method.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Collocation {
     /// Error allowed for a panel, relative to the largest magnitude each component of the solution has had so far,
     /// but not below some roundings of the forcing, which the memory may cancel. From 1e-14 to 0.1; default 1e-12.

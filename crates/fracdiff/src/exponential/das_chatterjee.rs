@@ -21,6 +21,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 /// # Ok::<(), fracdiff::InvalidInput>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct DasChatterjee {
     /// `N x N`, symmetric and positive definite, row-major.
     pub a: Vec<f64>,

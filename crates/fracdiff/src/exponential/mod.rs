@@ -15,6 +15,8 @@ use march::{Kernel, Mesh};
 
 /// Settings of the sum of exponentials.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SumOfExponentials {
     /// Number of steps, shared out to the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
     pub steps: usize,
@@ -58,6 +60,8 @@ impl SumOfExponentials {
 /// A kernel `t^(order-1)`, `order = m + 1 - alpha`, is `t^m` times the sum of exponentials that the states stand for;
 /// `alpha` must lie between 0.05 and 0.95 (or be 0, which needs no states).
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct GalerkinStates {
     /// Internal states for each order; default 50 (thesis A.1).
     pub states: usize,

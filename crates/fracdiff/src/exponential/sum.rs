@@ -6,6 +6,8 @@ use libm::tgamma;
 
 /// `sum of weights * exp(-rates * t)`, an approximation of a kernel.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ExponentialSum {
     /// Decay rates, not negative.
     pub rates: Vec<f64>,

@@ -7,6 +7,8 @@ use libm::tgamma;
 
 /// Settings of the quadrature of functions.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Quadrature {
     /// Error sought, relative to the integral of the magnitude of the function; 1e-15 to 0.1, default 1e-13.
     pub tolerance: f64,
@@ -32,6 +34,8 @@ impl Quadrature {
 
 /// A value and the difference between the last two rules, a bound on its error for functions that are smooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Estimate {
     /// The value.
     pub value: f64,
