@@ -81,6 +81,7 @@ pub mod report;
 pub mod scene;
 pub mod sensitivity;
 pub mod simulate;
+mod stop_word;
 pub mod summary;
 #[cfg(feature = "files")]
 pub mod sweep;

@@ -5,10 +5,13 @@ use serde_json::Value;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{Groups, Solution};
 
+use crate::export::{self, Failure};
 use crate::infinite;
 use crate::model::{Answer, Uncertainty};
 use crate::scene::{InvalidInput, Scene, Structure};
-use crate::summary::{Contact, Cost, Energy, RodMotion, Summary, word};
+use crate::simulate::Simulation;
+use crate::stop_word::word;
+use crate::summary::{Contact, Cost, Energy, RodMotion, Summary};
 use crate::trust::Check;
 
 /// What `simulate --json` prints and `result.json` holds. The keys are always the same; what a model does not resolve is
@@ -84,6 +87,23 @@ pub struct SubImpact {
     pub peak_force_n: f64,
     /// Largest compression (m).
     pub peak_compression_m: f64,
+}
+
+impl Simulation {
+    /// What `simulate --json` prints; `scene` is the one that was solved.
+    ///
+    /// # Errors
+    /// As [`Scene::simulate`], for a simulation of another scene.
+    pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
+        let scene = &self.scene(scene);
+        let trust = scene.trust(self)?;
+        let result = match self {
+            Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
+            Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
+            Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
+        };
+        export::json(&ResultFile { trust, ..result })
+    }
 }
 
 impl ResultFile {

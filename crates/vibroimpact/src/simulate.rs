@@ -4,11 +4,10 @@ use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Groups};
 use vibroimpact_sim::modal::{History, Settings, Structure};
 
-use crate::export::{self, Failure, Table};
+use crate::export::{self, Table};
 use crate::impact::Impact;
 use crate::infinite as infinite_structure;
 use crate::model::{Answer, Kept, Model};
-use crate::result_file::ResultFile;
 use crate::scene::{self, InvalidInput, Scene};
 use crate::summary::{RodMotion, Summary};
 
@@ -104,21 +103,6 @@ impl Scene {
 }
 
 impl Simulation {
-    /// What `simulate --json` prints; `scene` is the one that was solved.
-    ///
-    /// # Errors
-    /// As [`Scene::simulate`], for a simulation of another scene.
-    pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
-        let scene = &self.scene(scene);
-        let trust = scene.trust(self)?;
-        let result = match self {
-            Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
-            Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
-            Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
-        };
-        export::json(&ResultFile { trust, ..result })
-    }
-
     /// The scene as it was solved: with the theory of bending that answered, where `scene` leaves it open.
     pub fn scene(&self, scene: &Scene) -> Scene {
         scene.as_answered(match self {

@@ -2,7 +2,8 @@
 
 use crate::impact::Impact;
 use crate::model::{Answer, Uncertainty};
-use serde::{Serialize, Serializer};
+use crate::stop_word::word;
+use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
@@ -42,12 +43,6 @@ pub struct Summary {
     pub counts: Cost,
     /// The model, the reason for it, and how near it came to the tolerance; null if no choice was made.
     pub choice: Option<Answer>,
-}
-
-/// A reason as its word, or null.
-#[allow(clippy::trivially_copy_pass_by_ref, clippy::ref_option)] // the signature that serde asks for
-pub(crate) fn word<S: Serializer>(reason: &Option<StopReason>, serializer: S) -> Result<S::Ok, S::Error> {
-    reason.map(StopReason::as_str).serialize(serializer)
 }
 
 /// How a dropped rod moves as a rigid body, vibration aside.

@@ -1,7 +1,7 @@
 //! The beams of the chapters in modes.
 
 use super::Failure;
-use super::impact::Material;
+use super::material::Material;
 use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
 use vibroimpact_sim::modal::{Mode, Structure};

@@ -2,19 +2,11 @@
 
 use super::Failure;
 use super::beam::Beam;
+use super::material::Material;
 use contact_models::{Body, Hertz, Law};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Striker, Structure};
-
-/// An isotropic elastic material, the same for beam and ball (thesis sections 3.3.1 and 4.2).
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Material {
-    pub youngs_modulus_pa: f64,
-    pub poissons_ratio: f64,
-    pub density_kg_m3: f64,
-}
 
 /// A solid ball.
 #[derive(Debug, Clone, Copy)]

@@ -14,6 +14,7 @@ mod choice;
 mod ensemble;
 mod figures;
 mod impact;
+mod material;
 mod scatter;
 pub mod statement;
 mod study;

@@ -10,8 +10,7 @@ use serde_json::Value;
 
 use crate::scene::json::{objects, read};
 use crate::scene::require_positive;
-use crate::scene::schema::one_of_sets as of_sets;
-use crate::scene::sets::one_of_sets;
+use crate::scene::sets::{one_of_sets, schema_of_sets};
 
 /// A straight rod of uniform segments along `x`, whose points move along it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -53,7 +52,7 @@ invalid_input::names!(AxialEnd, "end", { Fixed: "fixed", Free: "free" });
 /// material and area; or material and diameter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(extend("oneOf" = of_sets(&SECTIONS)))]
+#[schemars(extend("oneOf" = schema_of_sets(&SECTIONS)))]
 pub struct AxialSegment {
     /// Length (m).
     pub length_m: f64,

@@ -28,7 +28,7 @@ pub struct Summary {
     /// `rebound`, `sustained` or `stopped`.
     pub outcome: &'static str,
     /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
-    #[serde(serialize_with = "crate::summary::word")]
+    #[serde(serialize_with = "crate::stop_word::word")]
     pub stopped_by: Option<StopReason>,
     /// Number of separations.
     pub separations: usize,

@@ -1,22 +1,10 @@
 //! Which model a scene is given to.
 
+use super::choice::{Choice, Tried};
 use super::pose::Pose;
-use super::theory::theory_of;
 use super::{Answer, Cost, Kept, Model, Modes, infinite, rigid, settle, stated};
 use crate::impact::Impact;
 use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure, chooses_modes, modal_only};
-
-/// An answer, and the modal problem that it came from if it came from one.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Choice {
-    /// What was found, by what.
-    pub answer: Answer,
-    /// The modal problem last solved, to be recorded; `None` for the other models.
-    pub impact: Option<Impact>,
-}
-
-/// What became of a tier: an answer, or why it does not apply.
-pub(super) type Tried = Result<Result<Choice, String>, InvalidInput>;
 
 impl Scene {
     /// Chooses the model and answers: restitution, how well it is known, why this model, at what cost.
@@ -84,7 +72,7 @@ impl Scene {
         if let Some((_, why)) = &open {
             choice.answer.reason += &format!("; {why}");
         }
-        choice.answer.theory = theory_of(scene);
+        choice.answer.theory = scene.structure.bending_theory();
         choice.answer.cost = cost;
         Ok(choice)
     }

@@ -11,7 +11,7 @@
 use vibroimpact_sim::modal::Mode;
 
 use super::attached::largest_share;
-use super::choose::{Choice, Tried};
+use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::{CLOSED_FORM, Known};

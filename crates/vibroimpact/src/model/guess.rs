@@ -13,15 +13,12 @@
 use vibroimpact_sim::modal::Mode;
 
 use super::Cost;
-use super::pose::{Pose, Source};
-use super::theory::theory_of;
+use super::pose::{MOST_MODES, Pose, Source};
 use crate::scene::compliance;
 use crate::scene::{BeamTheory, InvalidInput};
 
 /// From one number of modes to the next.
 pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
-/// More modes than this are not tried.
-pub(super) const MOST_MODES: usize = 1500;
 /// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, whose `c_N` falls as
 /// `1/omega_N` only while remainder modes do as well as for the others; and of all else, where `R` grows no faster than the
 /// number of modes. It converges at about twice the number: from too few it takes one step more, from too many every step
@@ -84,7 +81,7 @@ pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), 
 
 /// The number of modes at which `R` is so many times that of the guess.
 pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<usize, InvalidInput> {
-    let [first, order] = match theory_of(pose.scene) {
+    let [first, order] = match pose.scene.structure.bending_theory() {
         Some(BeamTheory::Timoshenko) => TARGET_WITH_SHEAR,
         Some(_) => TARGET,
         None => TARGET_OF_OTHERS,

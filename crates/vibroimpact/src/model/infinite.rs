@@ -28,7 +28,7 @@ use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Outcome};
 use vibroimpact_sim::modal::Mode;
 
-use super::choose::{Choice, Tried};
+use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::Known;

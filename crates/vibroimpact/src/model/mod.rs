@@ -11,6 +11,7 @@
 //! beside the others. All of it is deterministic.
 
 mod attached;
+mod choice;
 mod choose;
 mod compare;
 mod draw;
@@ -34,7 +35,7 @@ use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Counts;
 
 pub use attached::largest_share;
-pub use choose::Choice;
+pub use choice::Choice;
 pub use compare::{Comparison, Tier};
 #[cfg(feature = "files")]
 pub(crate) use draw::Draw;
@@ -65,7 +66,7 @@ pub struct Answer {
     /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
     /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
-    #[serde(serialize_with = "crate::summary::word")]
+    #[serde(serialize_with = "crate::stop_word::word")]
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
     pub restitution: Option<f64>,

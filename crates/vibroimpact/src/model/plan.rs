@@ -13,7 +13,8 @@
 use serde::Serialize;
 use vibroimpact_sim::modal::Settings;
 
-use super::choose::{Choice, Tried, forced_tier, refused};
+use super::choice::{Choice, Tried};
+use super::choose::{forced_tier, refused};
 use super::guess::guess;
 use super::pose::Pose;
 use super::text::small;

@@ -11,6 +11,8 @@ use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, chooses
 /// Tolerances that can be requested where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
+/// More modes than this are not tried.
+pub(super) const MOST_MODES: usize = 1500;
 /// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
 const UNEXCITED: f64 = 1e-6;
 
@@ -216,7 +218,7 @@ impl Source<'_> {
     /// How many modes there are at most.
     pub fn most(&self) -> usize {
         match self {
-            Source::Beam { .. } => super::guess::MOST_MODES,
+            Source::Beam { .. } => MOST_MODES,
             Source::Computed { structure, .. } => structure.most_modes(),
             Source::Listed { modes, .. } => modes.len(),
         }

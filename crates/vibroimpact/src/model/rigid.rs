@@ -14,7 +14,7 @@
 //! add to it, and `e` lies between that and 1. Laws that dissipate have no such bound; for them `epsilon` itself has
 //! to be a thousand times below the tolerance.
 
-use super::choose::{Choice, Tried};
+use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
 use super::text::small;
 use super::uncertainty::{CLOSED_FORM, Known};

@@ -18,7 +18,7 @@
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
 
-use super::choose::Choice;
+use super::choice::Choice;
 use super::guess::{fewer, guess, more, resolution_of};
 use super::left_out::{
     Change, at_the_end, energy_of_remainder, too_short, with_one_remainder_mode, with_softer_remainder,

@@ -12,7 +12,7 @@
 
 use vibroimpact_sim::modal::{Settings, Solution};
 
-use super::choose::Choice;
+use super::choice::Choice;
 use super::guess::{RAISE, fewer, resolving};
 use super::left_out::{Change, with_softer_remainder};
 use super::pose::Pose;

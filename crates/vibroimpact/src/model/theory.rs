@@ -164,39 +164,3 @@ impl Scene {
         Ok(Answer { restitution_uncertainty: uncertainty.whole(), uncertainty, not_known, ..answer })
     }
 }
-
-/// Why the theory of a structure is not compared with another.
-pub(super) fn why_not_judged(structure: &Structure) -> &'static str {
-    match structure {
-        Structure::Modal(_) | Structure::ModesFile(_) => {
-            "the modes are given; how well they describe the structure is not known here"
-        }
-        Structure::InfinitePlate(_) | Structure::Plate(_) => {
-            "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
-        }
-        Structure::TautString(_) => "a string has no shear, and turns without inertia",
-        Structure::Beam(beam) if beam.axial_force_n != 0.0 || beam.foundation_n_m2 != 0.0 => {
-            "with axial force or foundation only Euler-Bernoulli's theory can be solved, which leaves out shear and rotary \
-             inertia"
-        }
-        Structure::Beam(beam) if beam.theory_variants().is_ok_and(|variants| !variants.is_empty()) => {
-            "not compared with another here, which takes further impacts"
-        }
-        Structure::Beam(_) => {
-            "Euler-Bernoulli theory leaves out shear and rotary inertia; with poissons_ratio in every segment Timoshenko's \
-             theory shows their effect"
-        }
-        _ => {
-            "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \
-             thicknesses"
-        }
-    }
-}
-
-/// The theory by which the beam of a scene is solved.
-pub(super) fn theory_of(scene: &Scene) -> Option<BeamTheory> {
-    match &scene.structure {
-        Structure::Beam(beam) => beam.solved_by().ok(),
-        _ => None,
-    }
-}

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::theory::why_not_judged;
-use crate::scene::Scene;
+use crate::scene::{Scene, Structure};
 
 /// The solver's part where nothing is solved: the restitution has a closed form.
 pub(super) const CLOSED_FORM: f64 = 0.0;
@@ -71,6 +70,34 @@ impl Known {
     /// The same if there is a restitution that it could be of.
     pub fn of(self, restitution: Option<f64>) -> Known {
         if restitution.is_some() { self } else { Known::default() }
+    }
+}
+
+/// Why the theory of a structure is not compared with another.
+fn why_not_judged(structure: &Structure) -> &'static str {
+    match structure {
+        Structure::Modal(_) | Structure::ModesFile(_) => {
+            "the modes are given; how well they describe the structure is not known here"
+        }
+        Structure::InfinitePlate(_) | Structure::Plate(_) => {
+            "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
+        }
+        Structure::TautString(_) => "a string has no shear, and turns without inertia",
+        Structure::Beam(beam) if beam.axial_force_n != 0.0 || beam.foundation_n_m2 != 0.0 => {
+            "with axial force or foundation only Euler-Bernoulli's theory can be solved, which leaves out shear and rotary \
+             inertia"
+        }
+        Structure::Beam(beam) if beam.theory_variants().is_ok_and(|variants| !variants.is_empty()) => {
+            "not compared with another here, which takes further impacts"
+        }
+        Structure::Beam(_) => {
+            "Euler-Bernoulli theory leaves out shear and rotary inertia; with poissons_ratio in every segment Timoshenko's \
+             theory shows their effect"
+        }
+        _ => {
+            "Euler-Bernoulli theory leaves out shear and rotary inertia, which slow waves shorter than some ten \
+             thicknesses"
+        }
     }
 }
 

@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::material::{MATERIAL, MATERIALS, NUMBERS, names_beside};
 use super::segment::SECTIONS;
+use super::sets::schema_of_sets;
 use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
 
@@ -62,7 +63,7 @@ fn dependent_fields() -> Value {
         properties.insert(field.to_owned(), json!({ "type": kind }));
         json!({ "required": [field], "properties": properties })
     };
-    let mass_or_sphere = one_of_sets(&[&["mass_kg"], &["density_kg_m3", "radius_m"]]);
+    let mass_or_sphere = schema_of_sets(&[&["mass_kg"], &["density_kg_m3", "radius_m"]]);
     // a radius may stand beside a mass, for the contact
     let mut mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
     or_material(&mut mass_or_sphere);
@@ -95,18 +96,6 @@ fn dependent_fields() -> Value {
         of_kind(&["dropped-rod"], any(), json!({ "properties": rod })),
         of_kind(&struck, any(), json!({ "properties": { "striker": striker } })),
     ])
-}
-
-/// Exactly one of the sets of fields is given, and nothing of the others. A field that is null is not given.
-pub(crate) fn one_of_sets(sets: &[&[&str]]) -> Value {
-    let all = sets.concat();
-    let set = |set: &&[&str]| {
-        let kind = |field: &str| if set.contains(&field) { "number" } else { "null" };
-        let properties: Map<String, Value> =
-            all.iter().map(|field| ((*field).to_owned(), json!({ "type": kind(field) }))).collect();
-        json!({ "required": set, "properties": properties })
-    };
-    sets.iter().map(set).collect()
 }
 
 /// The sets, in one of which a field may stand or not.
@@ -221,7 +210,7 @@ fn refine(schema: &mut Schema) {
     let has_section = SECTIONS.concat().iter().all(|field| properties.contains_key(*field));
     // what is put in below is no object of the format, and is gone through again
     if has_section && schema.get("type").is_some() {
-        schema.insert("oneOf".to_owned(), one_of_sets(&SECTIONS));
+        schema.insert("oneOf".to_owned(), schema_of_sets(&SECTIONS));
     }
 }
 

@@ -1,6 +1,7 @@
 //! Quantities that can be given in more than one way, each way a set of fields.
 
 use invalid_input::InvalidInput;
+use serde_json::{Map, Value, json};
 
 use super::json::number;
 
@@ -21,6 +22,18 @@ pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Re
         return Err(InvalidInput::new(field, number(value), allowed));
     }
     Ok(nearest)
+}
+
+/// Exactly one of the sets of fields is given, and nothing of the others. A field that is null is not given.
+pub(crate) fn schema_of_sets(sets: &[&[&str]]) -> Value {
+    let all = sets.concat();
+    let set = |set: &&[&str]| {
+        let kind = |field: &str| if set.contains(&field) { "number" } else { "null" };
+        let properties: Map<String, Value> =
+            all.iter().map(|field| ((*field).to_owned(), json!({ "type": kind(field) }))).collect();
+        json!({ "required": set, "properties": properties })
+    };
+    sets.iter().map(set).collect()
 }
 
 #[cfg(test)]

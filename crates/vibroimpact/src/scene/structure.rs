@@ -7,6 +7,7 @@ use serde_json::Value;
 use vibroimpact_sim::modal;
 
 use super::beam::Beam;
+use super::beam_theory::BeamTheory;
 use super::dropped_rod::DroppedRod;
 use super::infinite::{InfiniteBeam, InfinitePlate};
 use super::json::{read, split_tag};
@@ -59,6 +60,14 @@ const KINDS: [&str; 8] =
     ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate", "dropped-rod"];
 
 impl Structure {
+    /// The theory by which a beam with modes is solved.
+    pub(crate) fn bending_theory(&self) -> Option<BeamTheory> {
+        match self {
+            Structure::Beam(beam) => beam.solved_by().ok(),
+            _ => None,
+        }
+    }
+
     pub(crate) fn from_value(value: &Value) -> Result<Structure, InvalidInput> {
         let (kind, rest) = split_tag(value, "kind", &KINDS)?;
         let rest = Value::Object(rest);

@@ -7,7 +7,7 @@ use invalid_input::InvalidInput;
 use super::Status;
 use super::definition::Sweep;
 use super::error::SweepError;
-use super::folder::Part;
+use super::part::Part;
 use super::row::{Row, columns};
 use super::table::Kind;
 use super::threads::{self, Sink};

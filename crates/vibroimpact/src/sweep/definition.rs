@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use super::error::SweepError;
 use super::evaluate;
 use super::file::{self, Contents, MAX_POINTS, canonical_text};
-use super::folder::Part;
+use super::part::Part;
 use super::results::Results;
 use super::uncertain::Uncertain;
 use super::values::{Axis, AxisValues, Random, json_number};
@@ -141,7 +141,7 @@ impl Sweep {
 
     /// The numbers of chunks of a part after which it is asked whether more are needed; the last is all that there are.
     pub(super) fn stages(&self, part: Part) -> Vec<u64> {
-        let chunks = part.chunks(self);
+        let chunks = part.chunks(self.chunks());
         match &self.uncertain {
             // without a grid
             Some(uncertain) if self.is_adaptive() => {

@@ -5,17 +5,14 @@ use std::io::BufReader;
 
 use super::definition::Sweep;
 use super::error::SweepError;
-use super::folder::{Folder, Part, RESULTS, json, read_json, settle, write_durably};
+use super::folder::{DISTRIBUTION, Folder, RESULTS, SUMMARY, TABLE, json, read_json, settle, write_durably};
+use super::part::Part;
 use super::pictures::Pictures;
 use super::report;
 use super::row::{Row, columns};
 use super::table::Table;
 use super::tally::Tally;
 use super::uncertain::{self, Collector, Uncertain};
-
-pub(super) const TABLE: &str = "results.parquet";
-pub(super) const SUMMARY: &str = "summary.json";
-pub(super) const DISTRIBUTION: &str = "distribution.csv";
 
 /// Makes the rest of a folder's files, whose rows are complete. A part has a summary only: the rest is made when the
 /// parts are merged.
@@ -89,7 +86,7 @@ fn each_row(
     let mut table = csv::Reader::from_reader(BufReader::with_capacity(1 << 20, file));
     let mut cells = csv::StringRecord::new();
     let mut tally = Tally::default();
-    let first = part.chunks(sweep).start;
+    let first = part.chunks(sweep.chunks()).start;
     let there = sweep.first_of_chunk(first)..sweep.first_of_chunk(first + folder.progress().chunks);
     for point in there {
         // after the last row nothing is read, and an empty row is refused

@@ -6,7 +6,6 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -14,42 +13,9 @@ use serde_json::Value;
 
 use super::definition::Sweep;
 use super::error::SweepError;
+use super::part::Part;
 use super::row;
 use super::threads::Sink;
-
-/// One of the parts into which a sweep is divided: neighbouring chunks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Part {
-    /// Which part, from 1.
-    pub number: u64,
-    /// How many there are.
-    pub of: u64,
-}
-
-impl Part {
-    /// The whole sweep.
-    pub const WHOLE: Part = Part { number: 1, of: 1 };
-
-    /// Reads `K/N`, as in `3/8`.
-    pub fn parse(text: &str) -> Option<Part> {
-        let (number, of) = text.split_once('/')?;
-        let part = Part { number: number.parse().ok()?, of: of.parse().ok()? };
-        (part.number >= 1 && part.number <= part.of && part.of <= 1_000_000).then_some(part)
-    }
-
-    /// The chunks of this part.
-    pub(super) fn chunks(self, sweep: &Sweep) -> Range<u64> {
-        // at most 1e10 chunks and 1e6 parts: the products are exact
-        let bound = |parts: u64| sweep.chunks() * parts / self.of;
-        bound(self.number - 1)..bound(self.number)
-    }
-
-    /// The points of this part.
-    pub(super) fn points(self, sweep: &Sweep) -> Range<u64> {
-        let chunks = self.chunks(sweep);
-        sweep.first_of_chunk(chunks.start)..sweep.first_of_chunk(chunks.end)
-    }
-}
 
 /// What a folder says of itself, in `sweep.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,19 +64,13 @@ pub(super) struct Folder {
 
 pub(super) const RECORD: &str = "sweep.json";
 pub(super) const RESULTS: &str = "results.csv";
+pub(super) const TABLE: &str = "results.parquet";
+pub(super) const SUMMARY: &str = "summary.json";
+pub(super) const DISTRIBUTION: &str = "distribution.csv";
 const PROGRESS: &str = "progress.json";
 const LOCK: &str = "lock";
 /// What a sweep writes beside its record. Where there is no record these are another's, and are not replaced.
-const WRITTEN: [&str; 8] = [
-    RESULTS,
-    PROGRESS,
-    super::finish::TABLE,
-    super::finish::SUMMARY,
-    super::finish::DISTRIBUTION,
-    "report.html",
-    "report.md",
-    "figures",
-];
+const WRITTEN: [&str; 8] = [RESULTS, PROGRESS, TABLE, SUMMARY, DISTRIBUTION, "report.html", "report.md", "figures"];
 
 impl Folder {
     /// Opens the folder of a sweep to begin, or to go on.

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::finish;
-use super::folder::{Finished, Folder, Part, RESULTS, look_into};
+use super::folder::{Finished, Folder, RESULTS, look_into};
+use super::part::Part;
 use super::row;
 use super::tally::Tally;
 use super::threads::Sink;
@@ -63,7 +64,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
         return finish::summary(&folder);
     }
     for (number, (path, part)) in &found {
-        let chunks = Part { number: *number, of }.chunks(&sweep);
+        let chunks = Part { number: *number, of }.chunks(sweep.chunks());
         // those that an earlier merge, cut off, has already copied
         if folder.progress().chunks >= chunks.end {
             continue;

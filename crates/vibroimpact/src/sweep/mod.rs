@@ -44,6 +44,7 @@ mod labels;
 mod merge;
 #[cfg(feature = "mpi")]
 pub mod mpi;
+mod part;
 mod pictures;
 mod predictability;
 mod quantities;
@@ -65,8 +66,8 @@ pub use columns::{Column, MOST_IN_MEMORY, run_in_memory};
 pub use definition::Sweep;
 pub use error::SweepError;
 pub use file::FORMAT_VERSION;
-pub use folder::Part;
 pub use merge::merge;
+pub use part::Part;
 pub use predictability::{Blur, BlurWidth, Over};
 pub use schema::schema;
 pub use tally::{Extremes, FailedPoint, Tally};
@@ -90,8 +91,9 @@ pub struct Status {
 
 impl Status {
     fn of(sweep: &Sweep, part: Part, sink: &impl Sink) -> Status {
-        let all = part.points(sweep);
-        let done = sweep.first_of_chunk(part.chunks(sweep).start + sink.chunks());
+        let chunks = part.chunks(sweep.chunks());
+        let all = sweep.first_of_chunk(chunks.start)..sweep.first_of_chunk(chunks.end);
+        let done = sweep.first_of_chunk(chunks.start + sink.chunks());
         Status { done: done - all.start, points: all.end - all.start }
     }
 

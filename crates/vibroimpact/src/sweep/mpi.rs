@@ -16,7 +16,8 @@ use super::assembly::{Assembly, Order};
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::finish;
-use super::folder::{Folder, Part};
+use super::folder::Folder;
+use super::part::Part;
 use super::row;
 use super::tally::Tally;
 use super::threads::{BETWEEN_WRITES, Sink};
@@ -113,7 +114,7 @@ fn lead(
     stop: &AtomicBool,
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
-    let chunks = part.chunks(sweep);
+    let chunks = part.chunks(sweep.chunks());
     let workers = world.size() as usize - 1;
     let mut assembly = Assembly::new((chunks.start + folder.progress().chunks)..chunks.end, workers);
     let mut waiting: Vec<mpi::Rank> = Vec::new();

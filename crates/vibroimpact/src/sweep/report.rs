@@ -3,7 +3,7 @@
 use std::io;
 
 use super::definition::Sweep;
-use super::finish::DISTRIBUTION;
+use super::folder::DISTRIBUTION;
 use super::row::cell;
 use super::tally::Tally;
 use super::uncertain::{Sampling, Sequence};

@@ -10,7 +10,7 @@ use super::Status;
 use super::assembly::{Assembly, Order};
 use super::definition::Sweep;
 use super::error::SweepError;
-use super::folder::Part;
+use super::part::Part;
 use super::row;
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
@@ -51,7 +51,7 @@ pub(super) fn compute(
     tell: &mut dyn FnMut(Status),
 ) -> Result<(), SweepError> {
     let threads = if threads == 0 { thread::available_parallelism().map_or(1, usize::from) } else { threads };
-    let first = part.chunks(sweep).start;
+    let first = part.chunks(sweep.chunks()).start;
     let begun = (first + sink.chunks())..(first + until);
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
     // a writer that fails ends the workers too

@@ -2,7 +2,7 @@
 //! against the location: Fig. 3.15.
 
 use super::Case;
-use super::scatter::{self, MANY, extremes, off_the_mean, reduction, scatter};
+use super::scatter::{self, AtBoth, MANY, extremes, off_the_mean, reduction, scatter};
 use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution, restitution_and_sub_impacts};
 use crate::chapters::impact::{Ball, Row, Setup};
@@ -51,9 +51,6 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     balls(study, case, scatter(&modal[1], MANY))?;
     scan(study, case)
 }
-
-/// A curve at each of the two locations.
-pub(super) type AtBoth = [Vec<Row>; 2];
 
 fn none() -> AtBoth {
     [Vec::new(), Vec::new()]

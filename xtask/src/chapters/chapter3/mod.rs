@@ -11,7 +11,8 @@ pub(super) mod scatter;
 
 use super::Failure;
 use super::beam::{Beam, End, segment};
-use super::impact::{Ball, Material, Setup};
+use super::impact::{Ball, Setup};
+use super::material::Material;
 use super::study::Study;
 use contact_models::{Hysteretic, Law, Viscous};
 use serde::Deserialize;

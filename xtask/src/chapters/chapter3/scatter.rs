@@ -1,6 +1,5 @@
 //! What the text of chapter 3 says of the scatter of the restitution over the numbers of modes, and how that is measured.
 
-use super::convergence::AtBoth;
 use crate::chapters::figures::Curve;
 use crate::chapters::impact::Row;
 use crate::chapters::statement::Statement;
@@ -13,6 +12,9 @@ const REDUCED: f64 = 0.5;
 /// A scatter of at least this share is none.
 const NOT_REDUCED: f64 = 0.7;
 const PLACES: [&str; 2] = ["b = 0.4", "b = 0.618"];
+
+/// A curve at each of the two locations.
+pub(super) type AtBoth = [Vec<Row>; 2];
 
 /// Restitutions of the rows with at least so many modes.
 fn from(rows: &[Row], least: usize) -> impl Iterator<Item = f64> + '_ {

@@ -9,7 +9,8 @@ pub(super) mod trends;
 
 use super::Failure;
 use super::beam::{Beam, End, segment};
-use super::impact::{Ball, Material, Setup};
+use super::impact::{Ball, Setup};
+use super::material::Material;
 use super::statement::Statement;
 use super::study::Study;
 use serde::Deserialize;

@@ -31,7 +31,7 @@ mod phase_speeds;
 mod predictable;
 mod tables;
 
-use super::impact::Material;
+use super::material::Material;
 use super::study::Study;
 use super::{Failure, chapter3, chapter4};
 

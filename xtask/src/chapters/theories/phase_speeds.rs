@@ -3,7 +3,7 @@
 use super::{Coefficient, coefficients};
 use crate::chapters::Failure;
 use crate::chapters::chapter3::Case;
-use crate::chapters::impact::Material;
+use crate::chapters::material::Material;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use serde::Serialize;

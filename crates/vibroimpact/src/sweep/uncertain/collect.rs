@@ -1,7 +1,8 @@
 //! From the rows of a sweep to distributions for each point of its grid, and to their table.
 
 use super::design::{Draws, Uncertain};
-use super::estimate::{Estimate, OutputDistribution};
+use super::estimate::OutputDistribution;
+use super::figure::Estimate;
 use crate::scene::json::number;
 use crate::sweep::definition::Sweep;
 use crate::sweep::row::{Row, cell, line};

@@ -5,21 +5,13 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::design::Draws;
+use super::figure::{Estimate, mean, standard_deviation};
 use super::indices::{SobolIndices, indices};
 
 /// The shares of which quantiles are told.
 pub(super) const SHARES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 /// Bars of the histogram.
 const BARS: usize = 50;
-
-/// A figure and its sampling error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
-    /// The figure, from all draws.
-    pub value: f64,
-    /// Its standard error, from the scatter over the replicates; null where some have no such figure.
-    pub standard_error: Option<f64>,
-}
 
 /// A quantile and its sampling error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -111,24 +103,6 @@ impl OutputDistribution {
     pub(super) fn quantile(&self, share: f64) -> Option<&Quantile> {
         self.quantiles.iter().find(|quantile| quantile.share == share)
     }
-}
-
-impl Estimate {
-    /// From the figure of all draws and those of the replicates.
-    pub(super) fn new(value: f64, replicates: impl Iterator<Item = f64>) -> Estimate {
-        let found: Vec<f64> = replicates.collect();
-        let squared = standard_deviation(&found).powi(2) / (found.len() as f64 - 1.0);
-        Estimate { value, standard_error: Some(squared.sqrt()).filter(|error| error.is_finite()) }
-    }
-}
-
-pub(super) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn standard_deviation(values: &[f64]) -> f64 {
-    let mean = mean(values);
-    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// The value below which a share of sorted values lies, linear between neighbours; not a number if there are none.

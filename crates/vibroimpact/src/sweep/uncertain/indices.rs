@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::design::Draws;
-use super::estimate::{Estimate, mean};
+use super::figure::{Estimate, mean};
 
 /// How much of the variance a field answers for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -25,6 +25,7 @@ mod collect;
 mod design;
 mod distribution;
 mod estimate;
+mod figure;
 mod file;
 mod indices;
 mod pictures;
@@ -33,7 +34,8 @@ mod text;
 
 pub use design::{Output, Sampling, Sequence, Uncertain};
 pub use distribution::Distribution;
-pub use estimate::{Estimate, Histogram, OutputDistribution, Quantile};
+pub use estimate::{Histogram, OutputDistribution, Quantile};
+pub use figure::Estimate;
 pub use indices::SobolIndices;
 
 pub(super) use collect::{Collector, Distributions, table};

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::estimate::{Estimate, OutputDistribution};
+use super::estimate::OutputDistribution;
+use super::figure::Estimate;
 use crate::text::significant;
 
 /// Characters before the figures.
