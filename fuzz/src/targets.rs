@@ -43,9 +43,9 @@ fn infinite_structure(impact: &infinite::Impact) {
     let Ok(groups) = impact.groups() else { return };
     let Ok(solution) = infinite::solve(impact.structure, groups.s, &settings) else { return };
     let (mut now, mut speed) = (0.0, 1.0);
-    for contact in &solution.contacts {
+    for contact in &solution.sub_impacts {
         assert!(contact.start >= now && contact.closing_speed > 0.0, "{contact:?} after {now}");
-        let slower = contact.body_speed_at_end.unwrap_or(speed);
+        let slower = contact.striker_velocity_at_end.map_or(speed, |velocity| -velocity);
         assert!(slower <= speed && slower >= -1.0, "{contact:?} at {speed}");
         (now, speed) = (contact.end.unwrap_or(now), slower);
     }

@@ -55,12 +55,12 @@ fn own_settings(tolerance: f64) -> Settings {
         1e-7.. => 12,
         _ => 20,
     };
-    Settings { nodes, tolerance, estimate_error: false, ..Settings::default() }
+    Settings { nodes, tolerance, estimate_uncertainty: false, ..Settings::default() }
 }
 
 /// Every change of contact: separation, touch, separation, and so on.
 fn changes(solution: &Solution) -> Vec<f64> {
-    let ends = solution.contacts.iter().flat_map(|contact| [Some(contact.start), contact.end]);
+    let ends = solution.sub_impacts.iter().flat_map(|contact| [Some(contact.start), contact.end]);
     ends.flatten().skip(1).collect()
 }
 
@@ -142,9 +142,9 @@ pub fn rows(effort: &Effort) -> Result<Vec<Row>, String> {
         let own = Solver { name: "vibroimpact infinite", origin: Origin::Own, cost_unit: "panels" };
         rows.extend(sweep(name, own, &effort.tolerances(3, 14), effort, |tolerance| {
             // no further than the others, which stop at the first separation
-            let settings = Settings { max_contacts: 1, ..own_settings(tolerance) };
+            let settings = Settings { max_sub_impacts: 1, ..own_settings(tolerance) };
             let solution = solve(Structure::Beam, s, &settings).map_err(|error| error.to_string())?;
-            let first = solution.contacts.first().and_then(|contact| contact.duration).ok_or("no separation")?;
+            let first = solution.sub_impacts.first().and_then(|contact| contact.duration).ok_or("no separation")?;
             let ratio = solution.first_rebound_ratio().ok_or("no separation")?;
             Ok(Found { cost: solution.panels_tried as u64, errors: errors(first, ratio) })
         }));

@@ -5,13 +5,13 @@ use std::hint::black_box;
 use vibroimpact_sim::infinite::{Settings, Structure, solve, turning_point};
 
 fn impacts(criterion: &mut Criterion) {
-    let once = Settings { estimate_error: false, ..Settings::default() };
+    let once = Settings { estimate_uncertainty: false, ..Settings::default() };
     for s in [1.0, 15.0, 1e3] {
         criterion.bench_function(&format!("infinite/S={s}/once"), |bencher| {
             bencher.iter(|| solve(Structure::Beam, black_box(s), &once).unwrap().separations())
         });
         criterion.bench_function(&format!("infinite/S={s}/with error estimate"), |bencher| {
-            bencher.iter(|| solve(Structure::Beam, black_box(s), &Settings::default()).unwrap().error)
+            bencher.iter(|| solve(Structure::Beam, black_box(s), &Settings::default()).unwrap().relative_uncertainty)
         });
     }
     criterion

@@ -13,12 +13,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let [s, tolerance, nodes, options @ ..] = words.as_slice() else { return Ok(()) };
     let has = |word: &str| options.iter().any(|option| option == word);
-    let (s, estimate_error) = (s.parse()?, has("estimate"));
+    let (s, estimate_uncertainty) = (s.parse()?, has("estimate"));
     let settings = Settings {
         tolerance: tolerance.parse()?,
         nodes: nodes.parse()?,
-        estimate_error,
-        max_contacts: if has("first") { 1 } else { usize::MAX },
+        estimate_uncertainty,
+        max_sub_impacts: if has("first") { 1 } else { usize::MAX },
         ..Settings::default()
     };
     let mut solution = solve(Structure::Beam, s, &settings)?;
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "{} separations, first ratio {:?}, error {:?}, {} panels of {} tried, {:.1} us at best",
         solution.separations(),
         solution.first_rebound_ratio(),
-        solution.error,
+        solution.relative_uncertainty,
         solution.panels,
         solution.panels_tried,
         1e6 * best

@@ -9,7 +9,7 @@ pub enum StopReason {
     /// A contact asked for steps finer than the finest, `2^-200` s, or the times of a run for more digits than a number
     /// has.
     FinestStep,
-    /// As many contacts as allowed (`max_sub_impacts`; of an infinite structure `max_contacts`) were found.
+    /// As many contacts as allowed (`max_sub_impacts`) were found.
     SubImpacts,
     /// A compression or its rate went beyond [`contact_models::LARGEST`], up to which laws are defined.
     LawRange,

@@ -39,14 +39,21 @@ fn on_both_sides_of_every_change() {
         if let Some(count) = separations {
             assert_eq!(solution.separations(), count, "{name}: S = {s}");
             // the number of contacts is certain, and so are their times; only where one grazes do digits go
-            assert!(solution.error.unwrap() < 1e-3, "{name}: S = {s}: {:?}", solution.error);
+            assert!(
+                solution.relative_uncertainty.unwrap() < 1e-3,
+                "{name}: S = {s}: {:?}",
+                solution.relative_uncertainty
+            );
         } else {
             // what is certain ends where times leave the range of numbers, or digits the body's speed
             let certain = solution.certain_separations.unwrap();
             assert!(certain > 50, "{name}: S = {s}: {certain} of {}", solution.separations());
             assert_eq!(solution.rebound_ratio(), None, "{name}");
         }
-        assert!(solution.contacts.windows(2).all(|pair| pair[0].end.is_some_and(|end| end < pair[1].start)), "{name}");
+        assert!(
+            solution.sub_impacts.windows(2).all(|pair| pair[0].end.is_some_and(|end| end < pair[1].start)),
+            "{name}"
+        );
     }
 }
 
@@ -58,8 +65,8 @@ fn a_graze_is_seen_from_both_sides() {
         let mut last = f64::INFINITY;
         for aside in [1e-4, 1e-6, 1e-8] {
             let (below, above) = (run(point.s * (1.0 - aside)), run(point.s * (1.0 + aside)));
-            let parted = below.contacts[point.n - 1].end.unwrap();
-            let flight = below.contacts[point.n].start - parted;
+            let parted = below.sub_impacts[point.n - 1].end.unwrap();
+            let flight = below.sub_impacts[point.n].start - parted;
             assert!(flight > 0.0 && flight < last, "n = {}: {flight:e}", point.n);
             // a gap that opens as the square of time is as deep as the distance from the turning point, and as long as
             // its square root: three shrink by a hundred each, the flight by ten
@@ -90,7 +97,7 @@ fn what_is_certain_just_above_the_critical_value() {
         // each of them in its time: other numbers of nodes find them too
         let other =
             solve(Structure::Beam, s, &Settings { nodes: 26, tolerance: 1e-12, ..Settings::default() }).unwrap();
-        for (a, b) in solution.contacts.iter().zip(&other.contacts).take(certain) {
+        for (a, b) in solution.sub_impacts.iter().zip(&other.sub_impacts).take(certain) {
             assert!((a.start - b.start).abs() <= 0.5 * b.start, "S = {s}: {} {}", a.start, b.start);
         }
     }
@@ -111,13 +118,13 @@ proptest! {
     fn any_s(power in -12.0..8.0f64, plate in any::<bool>()) {
         let structure = if plate { Structure::Plate } else { Structure::Beam };
         let s = 10f64.powf(power);
-        let solution = solve(structure, s, &Settings { estimate_error: false, max_panels: 2_000, ..Settings::default() }).unwrap();
-        let mut speed = 1.0;
-        for contact in &solution.contacts {
+        let solution = solve(structure, s, &Settings { estimate_uncertainty: false, max_panels: 2_000, ..Settings::default() }).unwrap();
+        let mut velocity = -1.0;
+        for contact in &solution.sub_impacts {
             prop_assert!(contact.closing_speed > 0.0 && contact.duration.is_none_or(|duration| duration > 0.0));
-            prop_assert!(contact.body_speed_at_start == speed);
-            speed = contact.body_speed_at_end.unwrap_or(speed);
-            prop_assert!(speed <= contact.body_speed_at_start && speed >= -1.0);
+            prop_assert!(contact.striker_velocity_at_start == velocity);
+            velocity = contact.striker_velocity_at_end.unwrap_or(velocity);
+            prop_assert!(velocity >= contact.striker_velocity_at_start && velocity <= 1.0);
         }
         if let Some(ratio) = solution.rebound_ratio() {
             prop_assert!((0.0..=1.0).contains(&ratio));
@@ -125,7 +132,7 @@ proptest! {
         for i in 0..=50 {
             let time = solution.known_until.min(1e3) * f64::from(i) / 50.0;
             let state = solution.at(time).unwrap();
-            prop_assert!(state.force >= 0.0 && state.body_displacement.is_finite() && state.structure_speed.is_finite());
+            prop_assert!(state.force >= 0.0 && state.striker_displacement.is_finite() && state.structure_velocity.is_finite());
         }
     }
 
@@ -154,7 +161,7 @@ proptest! {
             prop_assert_eq!(a.separations(), b.separations());
             if let (Some(x), Some(y)) = (a.rebound_ratio(), b.rebound_ratio()) {
                 // S itself differs by rounding; the restitution falls with less than its own size a decade of S
-                let stated = a.error.unwrap_or(1.0) + b.error.unwrap_or(1.0) + 1e-12;
+                let stated = a.relative_uncertainty.unwrap_or(1.0) + b.relative_uncertainty.unwrap_or(1.0) + 1e-12;
                 prop_assert!((x - y).abs() <= 2.0 * stated, "{} {}", x, y);
             }
         }

@@ -234,15 +234,15 @@ fn the_infinite_structures() {
         let solution = infinite::solve(structure, s, &settings(nodes, 10f64.powf(tolerance))).unwrap();
         assert_eq!(solution.separations(), reference.separations(), "S = {s}");
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a / b - 1.0).abs() };
-        let error = solution.contacts.iter().zip(&reference.contacts).fold(0.0_f64, |error, (a, b)| {
+        let error = solution.sub_impacts.iter().zip(&reference.sub_impacts).fold(0.0_f64, |error, (a, b)| {
             let duration = a.duration.zip(b.duration).map_or(0.0, |(a, b)| relative(a, b));
-            let speed = a.body_speed_at_end.zip(b.body_speed_at_end);
+            let speed = a.striker_velocity_at_end.zip(b.striker_velocity_at_end);
             let speed = speed.map_or(0.0, |(x, y)| (x - y).abs() / y.abs().max(2.0 * a.closing_speed));
             error.max(relative(a.start, b.start)).max(duration).max(speed)
         });
         // rounding: no more digits are stated than 15, and the reference has no more than about 13
-        let stated = solution.error.unwrap().max(1e-15);
-        let beyond = (error - reference.error.unwrap().max(1e-13)).max(0.0);
+        let stated = solution.relative_uncertainty.unwrap().max(1e-15);
+        let beyond = (error - reference.relative_uncertainty.unwrap().max(1e-13)).max(0.0);
         coverage.note(beyond, stated, || format!("{structure:?} S = {s}, {nodes} nodes, 10^{tolerance}"));
     }
     coverage.assert("infinite", 80);

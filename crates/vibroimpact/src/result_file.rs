@@ -196,23 +196,25 @@ impl ResultFile {
         let answer = scene.infinite_answer(groups, solution);
         let found = infinite::Summary::new(solution, Some(groups));
         let momentum = scene.infinite_impact()?.mass_kg * groups.speed_m_s;
-        let mut compression = vec![0.0_f64; solution.contacts.len()];
+        let mut compression = vec![0.0_f64; solution.sub_impacts.len()];
         for extremum in &solution.extrema {
             if let Some(peak) = compression.get_mut(extremum.contact) {
                 *peak = peak.max(extremum.compression);
             }
         }
-        let contacts = solution.contacts.iter().zip(&found.contacts).zip(compression);
+        let contacts = solution.sub_impacts.iter().zip(&found.contacts).zip(compression);
         let contacts = contacts.map(|((contact, told), compression)| SubImpact {
             start_s: groups.time_s * contact.start,
             end_s: contact.end.map(|end| groups.time_s * end),
-            impulse_n_s: contact.body_speed_at_end.map(|end| momentum * (contact.body_speed_at_start - end)),
+            impulse_n_s: contact
+                .striker_velocity_at_end
+                .map(|end| momentum * (end - contact.striker_velocity_at_start)),
             peak_force_n: groups.force_n * told.peak_force,
             peak_compression_m: groups.displacement_m * compression,
         });
         Ok(ResultFile {
             sub_impacts: Some(contacts.collect()),
-            end_s: solution.contacts.last().and_then(|contact| contact.end).map(|end| groups.time_s * end),
+            end_s: solution.sub_impacts.last().and_then(|contact| contact.end).map(|end| groups.time_s * end),
             infinite: Some(found),
             ..ResultFile::of_answer(scene, &answer)
         })

@@ -332,7 +332,7 @@ fn the_bound_on_reflections_holds() {
         for damping in [0.0, 0.03, 0.1] {
             for s in [1e-5, 0.01, 0.3, 1.2] {
                 let (stiffness, solution, unit_s) = infinite_beam(s, damping);
-                let duration = solution.contacts[0].duration.unwrap() * unit_s;
+                let duration = solution.sub_impacts[0].duration.unwrap() * unit_s;
                 for z in [2.0f64, 3.0, 5.0, 9.0, 20.0] {
                     let place = (z * duration).sqrt();
                     let length = 5.0 * place;
@@ -356,15 +356,16 @@ fn the_bound_on_reflections_holds() {
 fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
     let (stiffness, solution, unit_s) = infinite_beam(15.0, 0.0);
     assert_eq!(solution.separations(), 4);
-    let ends: Vec<f64> = solution.contacts.iter().filter_map(|contact| contact.end).map(|end| end * unit_s).collect();
+    let ends: Vec<f64> =
+        solution.sub_impacts.iter().filter_map(|contact| contact.end).map(|end| end * unit_s).collect();
     // waves of 40 rad in the first contact are back from the ends after the fourth: d = c_g t / 2
     let length = 2.0 * ends[3] * (40.0 / ends[0]).sqrt();
     let count = (5.0 / ends[0].sqrt() * length) as usize;
     let found = finite_beam([End::Pinned, End::Pinned], length, 0.5 * length, stiffness, 0.0, count);
     assert_eq!(found.sub_impacts.len(), 4);
-    for (finite, endless) in found.sub_impacts.iter().zip(&solution.contacts) {
+    for (finite, endless) in found.sub_impacts.iter().zip(&solution.sub_impacts) {
         let (start, end) = (endless.start * unit_s, endless.end.unwrap() * unit_s);
-        let impulse = endless.body_speed_at_start - endless.body_speed_at_end.unwrap();
+        let impulse = endless.striker_velocity_at_end.unwrap() - endless.striker_velocity_at_start;
         assert!((finite.start_s - start).abs() < 1e-4 * end, "{start} {finite:?}");
         assert!((finite.end_s - end).abs() < 1e-4 * end, "{end} {finite:?}");
         assert!((finite.impulse_n_s - impulse).abs() < 1e-4, "{impulse} {finite:?}");

@@ -156,15 +156,15 @@ pub fn on_infinite_structures() -> Vec<Problem> {
     for (structure, s) in cases {
         let solve = move |settings: infinite::Settings| -> Result<Found, Failure> {
             let solution = infinite::solve(structure, s, &settings)?;
-            let mut values = vec![solution.contacts.len() as f64];
-            for contact in &solution.contacts {
-                values.extend([contact.start, contact.body_speed_at_start]);
-                values.extend(contact.duration.into_iter().chain(contact.body_speed_at_end));
+            let mut values = vec![solution.sub_impacts.len() as f64];
+            for contact in &solution.sub_impacts {
+                values.extend([contact.start, -contact.striker_velocity_at_start]);
+                values.extend(contact.duration.into_iter().chain(contact.striker_velocity_at_end.map(|end| -end)));
             }
             let costs = vec![("panels", solution.panels as u64), ("panels_tried", solution.panels_tried as u64)];
             Ok(Found { values, costs })
         };
-        let once = infinite::Settings { estimate_error: false, ..Default::default() };
+        let once = infinite::Settings { estimate_uncertainty: false, ..Default::default() };
         let tight = infinite::Settings { nodes: 28, tolerance: 1e-13, ..once };
         let name = match structure {
             Beam => "beam",

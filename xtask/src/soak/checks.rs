@@ -215,26 +215,28 @@ fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict
     let solved = infinite::solve(structure, s.clamp(1e-12, 1e8), &settings);
     let solution = solved.map_err(|fault| format!("a sound S was refused: {fault}"))?;
     verdict.outcome = solution.outcome.stopped_by().map_or(solution.outcome.as_str(), StopReason::as_str);
-    verdict.contacts = solution.contacts.len();
+    verdict.contacts = solution.sub_impacts.len();
     verdict.steps = solution.panels_tried as u64;
     check(solution.panels_tried <= settings.max_panels + 1_000, || format!("{} panels", solution.panels_tried))?;
     let (mut now, mut speed) = (0.0, 1.0);
-    for (i, contact) in solution.contacts.iter().enumerate() {
-        finite(&format!("contact {i}"), [contact.start, contact.closing_speed, contact.body_speed_at_start])?;
+    for (i, contact) in solution.sub_impacts.iter().enumerate() {
+        finite(&format!("contact {i}"), [contact.start, contact.closing_speed, contact.striker_velocity_at_start])?;
         finite(
             &format!("contact {i}"),
-            contact.end.into_iter().chain(contact.duration).chain(contact.body_speed_at_end),
+            contact.end.into_iter().chain(contact.duration).chain(contact.striker_velocity_at_end),
         )?;
         let ordered = contact.start >= now && contact.closing_speed > 0.0 && contact.duration.is_none_or(|d| d > 0.0);
         check(ordered, || format!("{contact:?} after {now}"))?;
         // a force that presses only slows the body down
-        let slower = contact.body_speed_at_end.unwrap_or(speed);
+        let slower = contact.striker_velocity_at_end.map_or(speed, |velocity| -velocity);
         check(slower <= speed && slower >= -1.0, || format!("body speed from {speed} to {slower}"))?;
         (now, speed) = (contact.end.unwrap_or(now), slower);
     }
     verdict.energy_gain = speed * speed - 1.0;
     check(solution.rebound_ratio().is_none_or(|e| (0.0..=1.0).contains(&e)), || "rebound beyond 0 to 1".into())?;
-    check(solution.error.is_none_or(|error| error >= 0.0), || format!("error {:?}", solution.error))
+    check(solution.relative_uncertainty.is_none_or(|error| error >= 0.0), || {
+        format!("error {:?}", solution.relative_uncertainty)
+    })
 }
 
 /// The closed form, and the quadratic program in its two unknowns against it.

@@ -15,7 +15,7 @@ pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     if let Some(s) = problem.infinite_beam_s {
         return sweep(problem, "vibroimpact, infinite beam", &tolerances, effort, |tolerance, _| {
             let settings =
-                infinite::Settings { max_contacts: 1, tolerance, estimate_error: false, ..Default::default() };
+                infinite::Settings { max_sub_impacts: 1, tolerance, estimate_uncertainty: false, ..Default::default() };
             let solution = infinite::solve(infinite::Structure::Beam, s, &settings).map_err(|e| e.to_string())?;
             Ok(vec![solution.first_rebound_ratio().ok_or("no separation")?])
         });

@@ -24,9 +24,9 @@ pub struct Impact {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Young's modulus (Pa).
-    pub young_modulus_pa: f64,
+    pub youngs_modulus_pa: f64,
     /// Poisson's ratio, above -1 and at most 0.5.
-    pub poisson_ratio: f64,
+    pub poissons_ratio: f64,
     /// Density (kg/m^3).
     pub density_kg_m3: f64,
 }
@@ -54,19 +54,19 @@ pub struct Groups {
 
 impl Material {
     /// Steel as in thesis 2.2.3: 200 GPa, 0.3, 7800 kg/m^3.
-    pub const STEEL: Material = Material { young_modulus_pa: 200e9, poisson_ratio: 0.3, density_kg_m3: 7800.0 };
+    pub const STEEL: Material = Material { youngs_modulus_pa: 200e9, poissons_ratio: 0.3, density_kg_m3: 7800.0 };
 
     fn check(&self) -> Result<(), InvalidInput> {
-        InvalidInput::require_positive("young_modulus_pa", self.young_modulus_pa)?;
+        InvalidInput::require_positive("youngs_modulus_pa", self.youngs_modulus_pa)?;
         InvalidInput::require_positive("density_kg_m3", self.density_kg_m3)?;
-        let ratio = self.poisson_ratio > -1.0 && self.poisson_ratio <= 0.5;
-        InvalidInput::unless(ratio, "poisson_ratio", self.poisson_ratio, "above -1, at most 0.5")
+        let ratio = self.poissons_ratio > -1.0 && self.poissons_ratio <= 0.5;
+        InvalidInput::unless(ratio, "poissons_ratio", self.poissons_ratio, "above -1, at most 0.5")
     }
 
     /// Hertz stiffness `2 E sqrt(R) / (3 (1 - nu^2))` (N/m^1.5) of a body with local radius `R` on a
     /// flat surface of the same material (thesis 2.2.1).
     pub fn hertz_stiffness(&self, radius_m: f64) -> f64 {
-        2.0 * self.young_modulus_pa * radius_m.sqrt() / (3.0 * (1.0 - self.poisson_ratio.powi(2)))
+        2.0 * self.youngs_modulus_pa * radius_m.sqrt() / (3.0 * (1.0 - self.poissons_ratio.powi(2)))
     }
 }
 
@@ -114,7 +114,7 @@ impl Impact {
         InvalidInput::require_positive("thickness_m", thickness_m)?;
         InvalidInput::require_positive("radius_m", radius_m)?;
         Impact::on_beam(
-            material.young_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
+            material.youngs_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
             material.density_kg_m3 * width_m * thickness_m,
             material.hertz_stiffness(radius_m),
             4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,
@@ -154,7 +154,7 @@ impl Impact {
         InvalidInput::require_positive("thickness_m", thickness_m)?;
         InvalidInput::require_positive("radius_m", radius_m)?;
         Impact::on_plate(
-            material.young_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poisson_ratio.powi(2))),
+            material.youngs_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poissons_ratio.powi(2))),
             material.density_kg_m3 * thickness_m,
             material.hertz_stiffness(radius_m),
             4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,

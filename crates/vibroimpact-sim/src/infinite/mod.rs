@@ -68,6 +68,6 @@ pub use asymptotic::{Attached, attached, displacement_eq_2_47};
 pub use groups::{Groups, Impact, Material};
 pub use problem::{S_RANGE, Settings, Structure};
 pub use semi_analytical::FirstContact;
-pub use solution::{Contact, Extremum, Outcome, Solution, State};
+pub use solution::{Extremum, Outcome, Solution, State, SubImpact};
 pub use solve::solve;
 pub use turning::{CriticalS, MOST_TURNING_POINTS, TurningPoint, critical_s, turning_point, turning_points};

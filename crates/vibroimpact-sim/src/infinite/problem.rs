@@ -30,8 +30,8 @@ pub struct Settings {
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
     /// it takes to know that it lasts.
     pub horizon: f64,
-    /// Whether to solve a second time with more nodes, for [`Solution::error`](super::Solution::error). Default true.
-    pub estimate_error: bool,
+    /// Whether to solve a second time with more nodes, for [`Solution::relative_uncertainty`](super::Solution::relative_uncertainty). Default true.
+    pub estimate_uncertainty: bool,
     /// Most panels to try before stopping ([`StopReason::Steps`](crate::StopReason)). Default 200,000. Only `S`
     /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at
     /// a relative distance of 1e-3, 1,008 at 1e-5, 4,401 at 1e-6 and more than 16,000 at 1e-7; nearer still times leave
@@ -39,7 +39,7 @@ pub struct Settings {
     pub max_panels: usize,
     /// Most contacts to follow: 1 for the first alone. Where the body would come back once more, the run stops
     /// ([`StopReason::SubImpacts`](crate::StopReason)), known up to the next touch. Default: no limit.
-    pub max_contacts: usize,
+    pub max_sub_impacts: usize,
 }
 
 impl Default for Settings {
@@ -48,9 +48,9 @@ impl Default for Settings {
             nodes: 20,
             tolerance: 1e-10,
             horizon: 0.0,
-            estimate_error: true,
+            estimate_uncertainty: true,
             max_panels: 200_000,
-            max_contacts: usize::MAX,
+            max_sub_impacts: usize::MAX,
         }
     }
 }
@@ -63,6 +63,6 @@ impl Settings {
         let horizon = (0.0..=1e12).contains(&self.horizon);
         InvalidInput::unless(horizon, "horizon", self.horizon, "0 to 1e12 (units of T)")?;
         InvalidInput::unless(self.max_panels > 0, "max_panels", self.max_panels, "at least 1")?;
-        InvalidInput::unless(self.max_contacts > 0, "max_contacts", self.max_contacts, "at least 1")
+        InvalidInput::unless(self.max_sub_impacts > 0, "max_sub_impacts", self.max_sub_impacts, "at least 1")
     }
 }

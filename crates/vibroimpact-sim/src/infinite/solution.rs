@@ -16,7 +16,7 @@ use std::fmt;
 pub enum Outcome {
     /// The body leaves for good: after the last separation it does not move towards the structure.
     Rebound,
-    /// Contact does not end. Decided once relative oscillations of the force about that of an
+    /// SubImpact does not end. Decided once relative oscillations of the force about that of an
     /// attached body ([`attached`](super::attached)) have shrunk below one half over two natural
     /// periods, at a time from which the beam's damping outweighs everything that makes them grow
     /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
@@ -55,9 +55,9 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// One contact. Times in units of `T`, speeds in units of `v`, positive towards the structure.
+/// One interval of contact. Times in units of `T`, velocities in units of `v`, positive away from the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
+pub struct SubImpact {
     /// Time of touch.
     pub start: f64,
     /// Time of separation; `None` in sustained contact.
@@ -66,10 +66,10 @@ pub struct Contact {
     pub duration: Option<f64>,
     /// Rate of compression at touch.
     pub closing_speed: f64,
-    /// Speed of the body at touch.
-    pub body_speed_at_start: f64,
-    /// Speed of the body at separation; below zero: away from the structure.
-    pub body_speed_at_end: Option<f64>,
+    /// Velocity of the striker at touch.
+    pub striker_velocity_at_start: f64,
+    /// Velocity of the striker at separation.
+    pub striker_velocity_at_end: Option<f64>,
 }
 
 /// A local extremum of the compression during contact.
@@ -85,23 +85,41 @@ pub struct Extremum {
     pub minimum: bool,
 }
 
-/// Motion at one time, in units of `T`, `v`, `v T` and `F`, positive towards the structure.
+/// Motion at one time, in units of `T`, `v`, `v T` and `F`. Displacements are positive away from the structure, as those of
+/// [`modal::Sample`](crate::modal::Sample).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
     /// Compression, or minus the gap.
     pub compression: f64,
     /// Its rate.
     pub compression_rate: f64,
-    /// Contact force.
+    /// SubImpact force.
     pub force: f64,
-    /// Displacement of the body since first touch.
-    pub body_displacement: f64,
-    /// Speed of the body.
-    pub body_speed: f64,
+    /// Displacement of the striker since first touch.
+    pub striker_displacement: f64,
+    /// Velocity of the striker.
+    pub striker_velocity: f64,
     /// Displacement of the struck point.
     pub structure_displacement: f64,
-    /// Speed of the struck point.
-    pub structure_speed: f64,
+    /// Velocity of the struck point.
+    pub structure_velocity: f64,
+}
+
+impl State {
+    /// From the compression, its rate and the force, and the travel and speed of the striker towards the structure.
+    fn new([compression, compression_rate, force]: [f64; 3], travel: f64, speed: f64) -> State {
+        // not the negative, which would make a zero negative
+        let away = |towards: f64| 0.0 - towards;
+        State {
+            compression,
+            compression_rate,
+            force,
+            striker_displacement: away(travel),
+            striker_velocity: away(speed),
+            structure_displacement: away(travel - compression),
+            structure_velocity: away(speed - compression_rate),
+        }
+    }
 }
 
 /// Contacts of two solutions are the same while the relative difference of their times is smaller.
@@ -133,14 +151,14 @@ pub struct Solution {
     /// How the impact ends.
     pub outcome: Outcome,
     /// Every contact in order.
-    pub contacts: Vec<Contact>,
+    pub sub_impacts: Vec<SubImpact>,
     /// Local extrema of the compression during contact, in order.
     pub extrema: Vec<Extremum>,
     /// Estimated relative error of contact starts, durations and speeds of the body at separation:
     /// three times the largest difference between this solution and one with more nodes, and what
     /// the tolerance leaves open where the two agree by accident (1e-5 of it). Infinite if the two
     /// differ in the number of contacts or in the outcome. `None` if not asked for.
-    pub error: Option<f64>,
+    pub relative_uncertainty: Option<f64>,
     /// How many separations, from the first, both solutions have at the same times, to half of these. Beyond them nothing
     /// is known. `None` if no second solution was requested.
     pub certain_separations: Option<usize>,
@@ -161,9 +179,9 @@ impl Solution {
             structure,
             s,
             outcome: Outcome::Stopped(StopReason::Steps),
-            contacts: Vec::new(),
+            sub_impacts: Vec::new(),
             extrema: Vec::new(),
-            error: None,
+            relative_uncertainty: None,
             certain_separations: None,
             known_until: 0.0,
             panels: 0,
@@ -174,8 +192,8 @@ impl Solution {
         }
     }
 
-    pub(super) fn push_contact(&mut self, contact: Contact, units: Units, pieces: Vec<Piece>, body_travel: f64) {
-        self.contacts.push(contact);
+    pub(super) fn push_contact(&mut self, contact: SubImpact, units: Units, pieces: Vec<Piece>, body_travel: f64) {
+        self.sub_impacts.push(contact);
         self.records.push(Record { units, pieces, body_travel });
     }
 
@@ -197,9 +215,9 @@ impl Solution {
         self.flights.first().map(|flight| -flight.departure.body)
     }
 
-    /// Decimal digits that two resolutions agree on (see [`error`](Self::error)), at most 15.
+    /// Decimal digits that two resolutions agree on (see [`relative_uncertainty`](Self::relative_uncertainty)), at most 15.
     pub fn digits(&self) -> Option<f64> {
-        self.error.map(|error| (-error.max(1e-15).log10()).max(0.0))
+        self.relative_uncertainty.map(|error| (-error.max(1e-15).log10()).max(0.0))
     }
 
     /// Motion at a time (units of `T`); `None` for a time below zero or beyond
@@ -208,10 +226,10 @@ impl Solution {
         if !(time >= 0.0 && time <= self.known_until) {
             return None;
         }
-        let index = self.contacts.partition_point(|contact| contact.start <= time).checked_sub(1)?;
+        let index = self.sub_impacts.partition_point(|contact| contact.start <= time).checked_sub(1)?;
         match self.flights.get(index).filter(|flight| time > flight.start) {
             Some(flight) => Some(flight.state(time - flight.start)),
-            None => self.in_contact(index, time - self.contacts[index].start),
+            None => self.in_contact(index, time - self.sub_impacts[index].start),
         }
     }
 
@@ -220,7 +238,7 @@ impl Solution {
     /// digits left for what happens within a contact. `None` outside the contact.
     pub fn in_contact(&self, index: usize, after_touch: f64) -> Option<State> {
         let record = self.records.get(index)?;
-        let contact = self.contacts.get(index)?;
+        let contact = self.sub_impacts.get(index)?;
         let theta = after_touch / record.units.time;
         let last = record.pieces.last()?;
         let end = last.start + last.h;
@@ -239,72 +257,60 @@ impl Solution {
         let since = panel.h * elapsed;
         let impulse_total = units.impulse * (piece.impulse + impulse);
         let moment_total = units.impulse * units.time * (piece.moment + piece.impulse * since + moment);
-        let body_speed = contact.body_speed_at_start - impulse_total;
-        let body_displacement = record.body_travel + contact.body_speed_at_start * after_touch - moment_total;
-        Some(State {
-            compression,
-            compression_rate,
-            force: self.s.sqrt() * compression * compression.sqrt(),
-            body_displacement,
-            body_speed,
-            structure_displacement: body_displacement - compression,
-            structure_speed: body_speed - compression_rate,
-        })
+        let speed_at_start = -contact.striker_velocity_at_start;
+        let travel = record.body_travel + speed_at_start * after_touch - moment_total;
+        let force = self.s.sqrt() * compression * compression.sqrt();
+        Some(State::new([compression, compression_rate, force], travel, speed_at_start - impulse_total))
     }
 
-    /// Displacement of the body at the end of the last contact recorded.
+    /// Travel of the striker towards the structure up to the end of the last contact recorded.
     pub(super) fn body_travel_at_end(&self) -> f64 {
-        let (Some(record), Some(contact)) = (self.records.last(), self.contacts.last()) else { return 0.0 };
+        let (Some(record), Some(contact)) = (self.records.last(), self.sub_impacts.last()) else { return 0.0 };
         let Some(piece) = record.pieces.last() else { return record.body_travel };
         let tables = Tables::get(self.structure, self.nodes);
         let panel = piece.panel(tables);
         let moment = piece.moment + piece.impulse * panel.h + panel.moment(tables);
         let time = record.units.time * (panel.start + panel.h);
-        record.body_travel + contact.body_speed_at_start * time - record.units.impulse * record.units.time * moment
+        record.body_travel
+            - contact.striker_velocity_at_start * time
+            - record.units.impulse * record.units.time * moment
     }
 
     /// Sets the error estimate from a finer solution.
     pub(super) fn compare(&mut self, finer: &Solution, tolerance: f64) {
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a / b - 1.0).abs() };
-        let certain = |(a, b): &(&Contact, &Contact)| {
+        let certain = |(a, b): &(&SubImpact, &SubImpact)| {
             let ends = a.duration.zip(b.duration);
             relative(a.start, b.start) < SAME && ends.is_some_and(|(a, b)| relative(a, b) < SAME)
         };
-        self.certain_separations = Some(self.contacts.iter().zip(&finer.contacts).take_while(certain).count());
-        if self.outcome != finer.outcome || self.contacts.len() != finer.contacts.len() {
-            self.error = Some(f64::INFINITY);
+        self.certain_separations = Some(self.sub_impacts.iter().zip(&finer.sub_impacts).take_while(certain).count());
+        if self.outcome != finer.outcome || self.sub_impacts.len() != finer.sub_impacts.len() {
+            self.relative_uncertainty = Some(f64::INFINITY);
             if (self.outcome == Outcome::Rebound) != (finer.outcome == Outcome::Rebound) {
                 // whether the body leaves or comes back depends on digits that are not there
                 self.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
             }
             return;
         }
-        let error = self.contacts.iter().zip(&finer.contacts).fold(0.0_f64, |error, (a, b)| {
+        let error = self.sub_impacts.iter().zip(&finer.sub_impacts).fold(0.0_f64, |error, (a, b)| {
             let duration = a.duration.zip(b.duration).map_or(0.0, |(a, b)| relative(a, b));
             // the body's speed may pass through zero: measured against its change if that is larger
             let change = 2.0 * a.closing_speed;
-            let speed =
-                a.body_speed_at_end.zip(b.body_speed_at_end).map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
+            let speed = a
+                .striker_velocity_at_end
+                .zip(b.striker_velocity_at_end)
+                .map_or(0.0, |(a, b)| (a - b).abs() / b.abs().max(change));
             error.max(relative(a.start, b.start)).max(duration).max(speed)
         });
-        self.error = Some(3.0 * error + 1e-5 * tolerance);
+        self.relative_uncertainty = Some(3.0 * error + 1e-5 * tolerance);
     }
 }
 
 impl Flight {
     fn state(&self, tau: f64) -> State {
         let (compression, compression_rate) = self.departure.state(tau);
-        let body_speed = self.departure.body;
-        let body_displacement = self.body_travel + body_speed * tau;
-        State {
-            compression,
-            compression_rate,
-            force: 0.0,
-            body_displacement,
-            body_speed,
-            structure_displacement: body_displacement - compression,
-            structure_speed: body_speed - compression_rate,
-        }
+        let speed = self.departure.body;
+        State::new([compression, compression_rate, 0.0], self.body_travel + speed * tau, speed)
     }
 }
 

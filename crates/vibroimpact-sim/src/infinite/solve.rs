@@ -3,7 +3,7 @@
 use super::contact::{Ending, March};
 use super::history::History;
 use super::problem::{S_RANGE, Settings, Structure};
-use super::solution::{Contact, Extremum, Flight, Outcome, Solution};
+use super::solution::{Extremum, Flight, Outcome, Solution, SubImpact};
 use super::units::Touch;
 use crate::StopReason;
 use invalid_input::InvalidInput;
@@ -19,7 +19,7 @@ pub fn solve(structure: Structure, s: f64, settings: &Settings) -> Result<Soluti
     InvalidInput::unless(S_RANGE.contains(&s), "s", s, "a number from 1e-12 to 1e8")?;
     settings.check()?;
     let mut solution = run(structure, s, settings);
-    if settings.estimate_error {
+    if settings.estimate_uncertainty {
         let finer = Settings {
             nodes: (settings.nodes + 4).min(32),
             tolerance: (0.1 * settings.tolerance).max(1e-14),
@@ -52,18 +52,18 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         let body = departure.body;
         let end = touch.time + duration;
         solution.extrema.extend(march.turns.iter().map(|turn| Extremum {
-            contact: solution.contacts.len(),
+            contact: solution.sub_impacts.len(),
             time: touch.time + turn.after,
             compression: turn.compression,
             minimum: turn.minimum,
         }));
-        let contact = Contact {
+        let contact = SubImpact {
             start: touch.time,
             end: ended.then_some(end),
             duration: ended.then_some(duration),
             closing_speed: touch.closing,
-            body_speed_at_start: touch.body,
-            body_speed_at_end: ended.then_some(body),
+            striker_velocity_at_start: -touch.body,
+            striker_velocity_at_end: ended.then_some(-body),
         };
         history = march.history;
         solution.push_contact(contact, march.units, march.pieces, body_travel);
@@ -80,7 +80,7 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
             return solution;
         };
         let late = (end + time > LATEST).then_some(StopReason::DigitsExhausted);
-        let limit = (solution.contacts.len() >= settings.max_contacts).then_some(StopReason::SubImpacts);
+        let limit = (solution.sub_impacts.len() >= settings.max_sub_impacts).then_some(StopReason::SubImpacts);
         if let Some(reason) = limit.or(late) {
             solution.known_until = end + time;
             solution.outcome = Outcome::Stopped(reason);

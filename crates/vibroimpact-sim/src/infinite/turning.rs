@@ -34,7 +34,7 @@ pub struct TurningPoint {
 
 /// The three resolutions.
 fn resolutions() -> [Settings; 3] {
-    let base = Settings { estimate_error: false, ..Settings::default() };
+    let base = Settings { estimate_uncertainty: false, ..Settings::default() };
     [base, Settings { nodes: 24, tolerance: 1e-11, ..base }, Settings { nodes: 18, tolerance: 1e-11, ..base }]
 }
 

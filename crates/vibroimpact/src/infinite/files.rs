@@ -73,7 +73,7 @@ pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>, until:
     let units = Units::new(groups);
     let [time_unit, force_unit, displacement_unit, speed_unit] = units.names;
     let until = samples.last().map_or(0.0, |sample| sample.time);
-    let first = solution.contacts.first().and_then(|contact| contact.end);
+    let first = solution.sub_impacts.first().and_then(|contact| contact.end);
     let wide = first.filter(|first| until > WIDE * first);
     let time_axis = || {
         let axis = Axis::new("time").unit(time_unit);
@@ -84,8 +84,8 @@ pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>, until:
     };
     let column = |of: &dyn Fn(&Sample) -> f64| samples.iter().map(of).collect::<Vec<f64>>();
     let time = column(&|sample| units.time * sample.time);
-    let starts: Vec<f64> = solution.contacts.iter().map(|c| units.time * c.start).collect();
-    let ends: Vec<f64> = solution.contacts.iter().map(|c| units.time * c.end.unwrap_or(until)).collect();
+    let starts: Vec<f64> = solution.sub_impacts.iter().map(|c| units.time * c.start).collect();
+    let ends: Vec<f64> = solution.sub_impacts.iter().map(|c| units.time * c.end.unwrap_or(until)).collect();
     let panel = |label: &str, unit: &str, height_px: f64| {
         Panel::new(time_axis().unlabelled(), Axis::new(label).unit(unit))
             .height(height_px)
@@ -94,17 +94,15 @@ pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>, until:
     let line = |of: &dyn Fn(&Sample) -> f64| Series::line(&time, &column(of));
     let displacement = panel("displacement", displacement_unit, 150.0)
         .with(
-            line(&|s| -units.displacement * s.state.structure_displacement)
-                .label("structure")
-                .colour(Colour::Vermilion),
+            line(&|s| units.displacement * s.state.structure_displacement).label("structure").colour(Colour::Vermilion),
         )
-        .with(line(&|s| -units.displacement * s.state.body_displacement).label("striker").colour(Colour::Blue));
+        .with(line(&|s| units.displacement * s.state.striker_displacement).label("striker").colour(Colour::Blue));
     let velocity = panel("velocity", speed_unit, 110.0)
         .with(Series::horizontal_rule(0.0))
-        .with(line(&|s| -units.speed * s.state.body_speed).colour(Colour::Blue));
+        .with(line(&|s| units.speed * s.state.striker_velocity).colour(Colour::Blue));
     let force = column(&|sample| units.force * sample.state.force);
     let peaks: Vec<Peak> = solution
-        .contacts
+        .sub_impacts
         .iter()
         .zip(&Summary::new(solution, None).contacts)
         .map(|(contact, found)| {

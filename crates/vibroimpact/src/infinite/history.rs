@@ -56,13 +56,13 @@ pub fn history(solution: &Solution, groups: Option<&Groups>, until: Option<f64>)
         columns: vec![
             column(format!("time{time}"), &|s| units.time * s.time),
             column(format!("structure_displacement{displacement}"), &|s| {
-                0.0 - units.displacement * s.state.structure_displacement
+                units.displacement * s.state.structure_displacement
             }),
             column(format!("striker_displacement{displacement}"), &|s| {
-                0.0 - units.displacement * s.state.body_displacement
+                units.displacement * s.state.striker_displacement
             }),
-            column(format!("structure_velocity{speed}"), &|s| 0.0 - units.speed * s.state.structure_speed),
-            column(format!("striker_velocity{speed}"), &|s| 0.0 - units.speed * s.state.body_speed),
+            column(format!("structure_velocity{speed}"), &|s| units.speed * s.state.structure_velocity),
+            column(format!("striker_velocity{speed}"), &|s| units.speed * s.state.striker_velocity),
             column(format!("compression{displacement}"), &|s| units.displacement * s.state.compression),
             column(format!("force{force}"), &|s| units.force * s.state.force),
         ],

@@ -106,7 +106,7 @@ impl Summary {
     /// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
     /// ```
     pub fn new(solution: &Solution, groups: Option<&Groups>) -> Summary {
-        let mut peaks = vec![0.0_f64; solution.contacts.len()];
+        let mut peaks = vec![0.0_f64; solution.sub_impacts.len()];
         for extremum in &solution.extrema {
             let force = solution.s.sqrt() * extremum.compression.max(0.0).powf(1.5);
             if let Some(peak) = peaks.get_mut(extremum.contact) {
@@ -114,7 +114,7 @@ impl Summary {
             }
         }
         let contacts: Vec<Contact> = solution
-            .contacts
+            .sub_impacts
             .iter()
             .zip(peaks)
             .map(|(contact, peak_force)| Contact {
@@ -133,7 +133,7 @@ impl Summary {
             certain_separations: solution.certain_separations,
             rebound_ratio: solution.rebound_ratio(),
             first_rebound_ratio: solution.first_rebound_ratio(),
-            relative_error: solution.error.filter(|error| error.is_finite()),
+            relative_error: solution.relative_uncertainty.filter(|error| error.is_finite()),
             digits: solution.digits(),
             physical: groups.map(|groups| Physical::new(groups, solution.rebound_ratio(), &contacts)),
             contacts,
@@ -219,15 +219,15 @@ pub struct Sample {
 pub fn samples(solution: &Solution, until: f64, count: usize) -> Vec<Sample> {
     let until = until.min(solution.known_until);
     let count = count.max(2);
-    let first = solution.contacts.first().and_then(|contact| contact.end).unwrap_or(until).min(until);
+    let first = solution.sub_impacts.first().and_then(|contact| contact.end).unwrap_or(until).min(until);
     let least = 1e-3 * first;
     let ratio = (until / least).ln();
     let even = (0..=count).map(|i| until * i as f64 / count as f64);
     let in_ratio = (0..count).map(|i| least * (ratio * i as f64 / count as f64).exp());
     let sample = |time: f64| solution.at(time).map(|state| Sample { time, state });
     let mut samples: Vec<Sample> = even.chain(in_ratio).filter_map(sample).collect();
-    let each = (count / solution.contacts.len().max(1)).max(12);
-    for (index, contact) in solution.contacts.iter().enumerate().take_while(|(_, contact)| contact.start <= until) {
+    let each = (count / solution.sub_impacts.len().max(1)).max(12);
+    for (index, contact) in solution.sub_impacts.iter().enumerate().take_while(|(_, contact)| contact.start <= until) {
         let duration = contact.duration.unwrap_or(until - contact.start);
         samples.extend((0..=each).filter_map(|i| {
             let after = duration * i as f64 / each as f64;
@@ -244,7 +244,7 @@ pub fn samples(solution: &Solution, until: f64, count: usize) -> Vec<Sample> {
 /// How far a picture of the whole impact should reach (units of `T`): past the last separation, or into sustained
 /// contact.
 pub fn telling_time(solution: &Solution) -> f64 {
-    let last = solution.contacts.last().map_or(0.0, |contact| contact.end.unwrap_or(contact.start));
+    let last = solution.sub_impacts.last().map_or(0.0, |contact| contact.end.unwrap_or(contact.start));
     match solution.outcome {
         Outcome::Rebound => 1.5 * last,
         _ => solution.known_until,

@@ -234,14 +234,14 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     if once && groups.s > CRITICAL_S {
         return Ok(Err(format!("the striker would not leave an infinite beam at once (S = {})", small(groups.s))));
     }
-    let settings = infinite::Settings { tolerance: 1e-8, nodes: 12, estimate_error: false, ..Default::default() };
+    let settings = infinite::Settings { tolerance: 1e-8, nodes: 12, estimate_uncertainty: false, ..Default::default() };
     let solution = match infinite::solve(infinite::Structure::Beam, groups.s, &settings) {
         Ok(solution) => solution,
         Err(fault) => return Ok(Err(format!("S = {} cannot be solved: {}", small(groups.s), fault.allowed))),
     };
     cost.solves += 1;
     cost.panels += solution.panels_tried as u64;
-    let ended = solution.contacts.last().and_then(|contact| contact.end);
+    let ended = solution.sub_impacts.last().and_then(|contact| contact.end);
     let duration_s = ended.unwrap_or(f64::INFINITY) * groups.time_s;
     let (bound, z) = beam.reflections(duration_s);
 
@@ -254,7 +254,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let reach = reach(modes, impulse, beam_mass);
     let departs = ratio.unwrap_or(0.0) * speed * (beam.undisturbed_s() - duration_s);
     // twice: from where it was left to where it started, and beyond
-    let free = solution.contacts.len() == 1 && departs > 2.0 * reach;
+    let free = solution.sub_impacts.len() == 1 && departs > 2.0 * reach;
 
     // relative to the rigid-body motion of the beam, as elsewhere
     let relative = 1.0 + mass * rigid;
@@ -295,7 +295,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
         outcome: solution.outcome.as_str(),
         stopped_by: solution.outcome.stopped_by(),
         restitution,
-        sub_impact_count: Some(solution.contacts.len()),
+        sub_impact_count: Some(solution.sub_impacts.len()),
         ..Answer::new(Model::InfiniteBeam, pose.tolerance, known, reason)
     };
     Ok(Ok((Choice { answer, impact: None }, uncertainty)))
@@ -322,7 +322,10 @@ impl Scene {
     pub(crate) fn infinite_answer(&self, groups: &infinite::Groups, solution: &infinite::Solution) -> Answer {
         let restitution = solution.rebound_ratio();
         // relative to the change of speed
-        let uncertainty = restitution.zip(solution.error).map(|(e, error)| error * (1.0 + e)).filter(|u| u.is_finite());
+        let uncertainty = restitution
+            .zip(solution.relative_uncertainty)
+            .map(|(e, error)| error * (1.0 + e))
+            .filter(|u| u.is_finite());
         let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
         let kind = self.structure.kind().replace('-', " ");
         let reason = format!("the structure is an {kind}: S = {}", small(groups.s));
@@ -332,7 +335,7 @@ impl Scene {
             outcome: solution.outcome.as_str(),
             stopped_by: solution.outcome.stopped_by(),
             restitution,
-            sub_impact_count: Some(solution.contacts.len()),
+            sub_impact_count: Some(solution.sub_impacts.len()),
             settled: settled || solution.outcome == Outcome::Sustained,
             cost: Cost { solves: 2, panels: solution.panels_tried as u64, ..Cost::default() },
             ..Answer::new(Model::InfiniteBeam, super::DEFAULT_TOLERANCE, known, reason)

@@ -78,7 +78,7 @@ impl Course {
                 let samples = times.into_iter().flatten().zip(forces.into_iter().flatten());
                 let samples: Vec<[f64; 2]> = samples.map(|(time, force)| [*time, *force]).collect();
                 let mut pulses = Vec::new();
-                for (i, contact) in solution.contacts.iter().enumerate() {
+                for (i, contact) in solution.sub_impacts.iter().enumerate() {
                     let Some(end) = contact.end else { continue };
                     let [start_s, end_s] = [contact.start, end].map(|time| groups.time_s * time);
                     let force: Vec<[f64; 2]> =
@@ -94,7 +94,7 @@ impl Course {
                     });
                 }
                 pulses.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
-                let last = solution.contacts.last().and_then(|contact| contact.end);
+                let last = solution.sub_impacts.last().and_then(|contact| contact.end);
                 let interaction_s = last.map(|end| groups.time_s * end);
                 Course { pulses, modes: Vec::new(), interaction_s, moves: true }
             }

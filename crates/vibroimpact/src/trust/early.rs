@@ -101,7 +101,7 @@ pub(super) fn response(scene: &Scene, solution: &Solution, time_unit_s: f64) -> 
     let scene::Structure::InfiniteBeam(beam) = &scene.structure else { return Ok(None) };
     let in_structure = |fault: InvalidInput| fault.within("structure");
     let (bending, shear) = (beam.section().map_err(in_structure)?, beam.shear().map_err(in_structure)?);
-    let duration_s = solution.contacts.first().and_then(|contact| contact.duration).map(|t| t * time_unit_s);
+    let duration_s = solution.sub_impacts.first().and_then(|contact| contact.duration).map(|t| t * time_unit_s);
     let (Some(shear), Some(duration_s), Some(slender)) = (shear, duration_s, solution.first_rebound_ratio()) else {
         return Ok(None);
     };
@@ -151,7 +151,7 @@ mod tests {
             let scene = scene(radius_m);
             let groups = scene.infinite_impact().unwrap().groups().unwrap();
             let exact = infinite::solve(infinite::Structure::Beam, groups.s, &infinite::Settings::default()).unwrap();
-            let duration_s = groups.time_s * exact.contacts[0].duration.unwrap();
+            let duration_s = groups.time_s * exact.sub_impacts[0].duration.unwrap();
             let found = first_rebound_ratio(modes(slender, duration_s), &scene).unwrap().unwrap();
             let ratio = exact.first_rebound_ratio().unwrap();
             assert!((found - ratio).abs() < 1e-4, "{radius_m}: {found} {ratio}");

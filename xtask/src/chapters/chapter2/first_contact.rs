@@ -96,7 +96,7 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
         marks.0.push(pair.speed);
         marks.1.push(contact.mass);
         let full = solved(contact.s, 0.0)?;
-        let end = 1.05 * full.contacts.first().and_then(|first| first.end).unwrap_or(contact.duration());
+        let end = 1.05 * full.sub_impacts.first().and_then(|first| first.end).unwrap_or(contact.duration());
         let rows: Vec<ForceRow> = (0..=300)
             .map(|i| end * f64::from(i) / 300.0)
             .map(|time| ForceRow {

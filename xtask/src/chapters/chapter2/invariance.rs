@@ -95,7 +95,7 @@ fn groups(units: &Units) -> Result<Groups, Failure> {
 /// The force in the units of the set, from Eqs. 2.7 as they stand, and its largest difference from the solution for `S`.
 fn in_own_units(set: usize, units: &Units, groups: &Groups) -> Result<(Vec<Row>, f64), Failure> {
     let nondimensional = solved(groups.s, 0.0)?;
-    let end = 1.3 * nondimensional.contacts.first().and_then(|contact| contact.end).ok_or("no separation")?;
+    let end = 1.3 * nondimensional.sub_impacts.first().and_then(|contact| contact.end).ok_or("no separation")?;
     let (v, k) = (units.speed, units.stiffness);
     let force = move |x: f64| k * x.max(0.0).powf(1.5);
     let equation =

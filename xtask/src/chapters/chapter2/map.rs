@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
-use vibroimpact_sim::infinite::{Contact, CriticalS, Outcome, TurningPoint, critical_s, turning_points};
+use vibroimpact_sim::infinite::{CriticalS, Outcome, SubImpact, TurningPoint, critical_s, turning_points};
 
 /// How close to a turning point its curves are drawn, as a share of the distance from the critical `S`.
 const CLOSE: f64 = 1e-6;
@@ -20,7 +20,7 @@ struct Point {
     s: f64,
     outcome: Outcome,
     separations: usize,
-    contacts: Vec<Contact>,
+    contacts: Vec<SubImpact>,
 }
 
 /// One contact of one value of `S`; times in units of `T`.
@@ -55,7 +55,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     let point = |&s: &f64| {
         let solution = solved(s, 0.0)?;
         let separations = solution.separations();
-        Ok(Point { s, outcome: solution.outcome, separations, contacts: solution.contacts })
+        Ok(Point { s, outcome: solution.outcome, separations, contacts: solution.sub_impacts })
     };
     let start = Instant::now();
     let (points, turnings) = rayon::join(|| study.sweep(&values, 1, point), || turning_points(count));
@@ -67,7 +67,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     ));
     let row = |point: &Point| {
         let s = point.s;
-        let one = move |(i, c): (usize, &Contact)| Row { s, contact: i + 1, start: c.start, end: c.end };
+        let one = move |(i, c): (usize, &SubImpact)| Row { s, contact: i + 1, start: c.start, end: c.end };
         point.contacts.iter().enumerate().map(one).collect::<Vec<_>>()
     };
     study.csv("fig-2-08.csv", &points.iter().flat_map(row).collect::<Vec<_>>())?;
@@ -189,7 +189,7 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
 /// The place of the inset of Fig. 2.8: late contacts at S = 1.72.
 fn inset(study: &mut Study) -> Result<(), Failure> {
     let solution = solved(1.72, 0.0)?;
-    let ends: Vec<f64> = solution.contacts.iter().take(TRACKED).filter_map(|contact| contact.end).collect();
+    let ends: Vec<f64> = solution.sub_impacts.iter().take(TRACKED).filter_map(|contact| contact.end).collect();
     let last = ends.iter().copied().fold(0.0, f64::max);
     let statement = Statement::loose(
         format!("end of contact {TRACKED} at S = 1.72 (10⁵ T)"),
@@ -240,7 +240,7 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     for k in 0..most {
         // start and end of a contact in one colour
         let colour = if k == 0 { Colour::Purple } else { Colour::of_series(k - 1) };
-        let value = |of: fn(&Contact) -> Option<f64>| -> Vec<f64> {
+        let value = |of: fn(&SubImpact) -> Option<f64>| -> Vec<f64> {
             points.iter().map(|point| point.contacts.get(k).and_then(of).unwrap_or(f64::NAN)).collect()
         };
         let (mut starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));

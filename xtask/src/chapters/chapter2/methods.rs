@@ -74,7 +74,8 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let (mut rows, mut timings) = (Vec::new(), Vec::new());
     for (s, end) in PROBLEMS {
         let with = |nodes: usize, tolerance: f64| -> Result<Solution, Failure> {
-            let settings = Settings { nodes, tolerance, horizon: end, estimate_error: false, ..Settings::default() };
+            let settings =
+                Settings { nodes, tolerance, horizon: end, estimate_uncertainty: false, ..Settings::default() };
             Ok(solve(Structure::Beam, s, &settings)?)
         };
         let reference = with(28, 1e-13)?;

@@ -119,8 +119,8 @@ impl Course {
         let column = |of: fn(&Sample) -> f64, factor: f64| samples.iter().map(|sample| factor * of(sample)).collect();
         Course {
             time: column(|sample| sample.time, 1.0),
-            beam: column(|sample| sample.state.structure_displacement, -unit),
-            body: column(|sample| sample.state.body_displacement, -unit),
+            beam: column(|sample| sample.state.structure_displacement, unit),
+            body: column(|sample| sample.state.striker_displacement, unit),
             compression: column(|sample| sample.state.compression, unit),
             force: column(|sample| sample.state.force, 1.0),
         }
@@ -140,7 +140,7 @@ impl Course {
 
 /// Solves with the default accuracy, without error estimate, up to `horizon` in sustained contact.
 fn solved(s: f64, horizon: f64) -> Result<Solution, Failure> {
-    Ok(solve(Structure::Beam, s, &Settings { horizon, estimate_error: false, ..Settings::default() })?)
+    Ok(solve(Structure::Beam, s, &Settings { horizon, estimate_uncertainty: false, ..Settings::default() })?)
 }
 
 /// `count` numbers from `low` to `high` in equal ratios.

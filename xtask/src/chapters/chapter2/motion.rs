@@ -17,7 +17,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let course = Course::new(*s, &samples(solution, *until, if study.quick { 200 } else { 800 }));
         study.csv(&format!("fig-2-03-s-{s:e}.csv"), &course.rows())?;
         let time = Axis::new("time").unit("T").limits(0.0, *until);
-        let several = solution.contacts.len() > 1;
+        let several = solution.sub_impacts.len() > 1;
         let force =
             if several { Axis::new("force").unit("F").log().limits(1e-5, 3.0) } else { Axis::new("force").unit("F") };
         let motion = Panel::new(time.clone(), Axis::new("displacement").unit("D"))
@@ -67,9 +67,9 @@ fn oscillations(study: &mut Study) -> Result<(), Failure> {
 
 /// The largest such ratio in the contact that lasts.
 fn growth_of_swings(s: f64) -> Result<f64, Failure> {
-    let start = |solution: &Solution| solution.contacts.last().map_or(0.0, |last| last.start);
+    let start = |solution: &Solution| solution.sub_impacts.last().map_or(0.0, |last| last.start);
     let solution = solved(s, 3.0 * start(&solved(s, 0.0)?))?;
-    let last = solution.contacts.len().saturating_sub(1);
+    let last = solution.sub_impacts.len().saturating_sub(1);
     let turns = solution.extrema.iter().filter(|turn| turn.contact == last);
     let turns: Vec<f64> = turns.map(|turn| turn.compression).collect();
     // the force falls beneath its oscillations

@@ -41,7 +41,7 @@ fn on_a_dashpot(s: f64, steps: usize) -> f64 {
 /// Section 2.1: a plate answers as a dashpot does.
 fn plate(study: &mut Study) -> Result<(), Failure> {
     study.section("Zener's plate, a dashpot");
-    let settings = Settings { estimate_error: false, ..Settings::default() };
+    let settings = Settings { estimate_uncertainty: false, ..Settings::default() };
     let (mut worst, mut lines) = (0.0_f64, Vec::new());
     for s in [1e-4, 1e-2, 0.1, 1.0, 3.0] {
         let Some(ratio) = solve(Structure::Plate, s, &settings)?.first_rebound_ratio() else { continue };
@@ -146,7 +146,7 @@ fn straightness(y: &[f64]) -> f64 {
 /// Largest force and duration of every contact that ends.
 fn contacts(s: f64) -> Result<[Vec<f64>; 2], Failure> {
     let solution: Solution = solved(s, 0.0)?;
-    let durations: Vec<f64> = solution.contacts.iter().filter_map(|contact| contact.duration).collect();
+    let durations: Vec<f64> = solution.sub_impacts.iter().filter_map(|contact| contact.duration).collect();
     let largest = |k: usize| {
         let of = solution.extrema.iter().filter(|extremum| extremum.contact == k && !extremum.minimum);
         s.sqrt() * of.map(|extremum| extremum.compression).fold(0.0, f64::max).powf(1.5)
@@ -210,7 +210,7 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
     let distances = in_ratio(1e-3, 1e-1, 5);
     let times = study.sweep(&distances, 1, |distance| {
         let solution = solved(critical + distance, 0.0)?;
-        let start = |k: usize| solution.contacts.get(k).map(|contact| contact.start).ok_or("a contact is missing");
+        let start = |k: usize| solution.sub_impacts.get(k).map(|contact| contact.start).ok_or("a contact is missing");
         Ok([start(1)?, start(LATE - 1)?])
     })?;
     let lines = distances.iter().zip(&times);

@@ -49,7 +49,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             let ours = solution.separations() as f64;
             study.claim(Statement::printed(quantity, "2.4, Fig. 2.7", &separations.to_string(), ours));
         }
-        let start = solution.contacts.last().map_or(1.0, |contact| contact.start).max(1.0);
+        let start = solution.sub_impacts.last().map_or(1.0, |contact| contact.start).max(1.0);
         let own: Vec<ErrorRow> = in_ratio(1.01 * start, until, 60)
             .into_iter()
             .filter_map(|time| {
@@ -58,8 +58,8 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
                 Some(ErrorRow {
                     s: *s,
                     time,
-                    error_eq_2_47: relative(displacement_eq_2_47(time), state.body_displacement),
-                    error_attached: relative(attached(Structure::Beam, time).displacement, state.body_displacement),
+                    error_eq_2_47: relative(displacement_eq_2_47(time), -state.striker_displacement),
+                    error_attached: relative(attached(Structure::Beam, time).displacement, -state.striker_displacement),
                     error_compression: relative(compression_eq_2_47(*s, time), s.cbrt() * state.compression),
                 })
             })
