@@ -30,8 +30,8 @@ pub fn scene(bytes: &[u8]) {
     }
     let Ok(impact) = scene.impact() else { return };
     let settings = Settings { max_steps: 500, max_sub_impacts: 50, ..impact.settings };
-    let solved = Solver::new(&impact.structure)
-        .and_then(|mut solver| solver.solve(&impact.striker, &impact.law, None, &settings));
+    let solved =
+        Solver::new(&impact.structure).and_then(|solver| solver.solve(&impact.striker, &impact.law, None, &settings));
     if let Ok(solution) = solved {
         sound(&solution);
     }
@@ -80,8 +80,7 @@ pub fn data_table(bytes: &[u8]) {
 pub fn impact(bytes: &[u8]) {
     let mut unstructured = Unstructured::new(bytes);
     if let Ok((structure, striker, law, start, settings)) = posed(&mut unstructured) {
-        let solved =
-            Solver::new(&structure).and_then(|mut solver| solver.solve(&striker, &law, start.as_ref(), &settings));
+        let solved = Solver::new(&structure).and_then(|solver| solver.solve(&striker, &law, start.as_ref(), &settings));
         if let Ok(solution) = solved {
             sound(&solution);
         }

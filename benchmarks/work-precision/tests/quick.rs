@@ -16,7 +16,7 @@ fn the_workspaces_solver_agrees_with_quadruple_precision() {
         let reference = impact::reference(impact.name).unwrap();
         assert!(reference.restitution_error < 1e-12, "{}: {:e}", impact.name, reference.restitution_error);
         let settings = Settings { tolerance: 1e-12, estimate_uncertainty: false, ..Settings::default() };
-        let mut solver = Solver::new(&impact.structure).unwrap();
+        let solver = Solver::new(&impact.structure).unwrap();
         let solution = solver.solve(&impact.striker, &impact.law, None, &settings).unwrap();
         let error = (solution.restitution.unwrap() - reference.outcome.restitution).abs();
         // without damping rounding alone is amplified to 1e-6

@@ -16,13 +16,13 @@ fn impacts(criterion: &mut Criterion) {
         let structure = pinned(modes, damping, GOLDEN);
         for (tolerance, name) in ACCURACIES {
             let settings = Settings { estimate_uncertainty: false, ..settings(tolerance) };
-            let mut solver = Solver::new(&structure).unwrap();
+            let solver = Solver::new(&structure).unwrap();
             criterion.bench_function(&format!("impact/N={modes}/{name}/tables reused"), |bencher| {
                 bencher.iter(|| solver.solve(black_box(&ball()), &hertz(), None, &settings).unwrap().restitution)
             });
             criterion.bench_function(&format!("impact/N={modes}/{name}/anew"), |bencher| {
                 bencher.iter(|| {
-                    let mut solver = Solver::new(black_box(&structure)).unwrap();
+                    let solver = Solver::new(black_box(&structure)).unwrap();
                     solver.solve(&ball(), &hertz(), None, &settings).unwrap().restitution
                 })
             });
@@ -47,13 +47,13 @@ fn derivatives(criterion: &mut Criterion) {
         let settings = Settings::default();
         criterion.bench_function(&format!("impact/N={modes}/with its uncertainty, anew"), |bencher| {
             bencher.iter(|| {
-                let mut solver = Solver::new(black_box(&structure)).unwrap();
+                let solver = Solver::new(black_box(&structure)).unwrap();
                 solver.solve(&striker, &law, None, &settings).unwrap().restitution_uncertainty
             })
         });
         criterion.bench_function(&format!("derivatives/N={modes}/ten parameters, anew"), |bencher| {
             bencher.iter(|| {
-                let mut solver = Solver::new(black_box(&structure)).unwrap();
+                let solver = Solver::new(black_box(&structure)).unwrap();
                 solver.differentiate(&striker, &law, None, &settings, &parameters).unwrap().nearest_graze
             })
         });

@@ -311,7 +311,7 @@ fn one_impact_has_the_ledger_of_the_solver_of_impacts() {
     let law: Law = Viscous::with_restitution(1.7945e10, 0.95, 1.0).unwrap().into();
     for (n, damping_ratio) in [(5, 0.02), (40, 0.02), (40, 0.6), (40, 1.1)] {
         let (assembly, modes) = chapter_3(n, damping_ratio, law);
-        let mut solver = modal::Solver::new(&modal::Structure { modes }).unwrap();
+        let solver = modal::Solver::new(&modal::Structure { modes }).unwrap();
         let striker = modal::Striker { mass_kg: 0.1103, speed_m_s: 1.0 };
         let wanted = modal::Settings { tolerance: 1e-10, estimate_uncertainty: false, ..Default::default() };
         let (solution, history) = solver.record(&striker, &law, None, &wanted).unwrap();

@@ -54,7 +54,7 @@ fn an_assembly_of_one_contact_is_the_impact() {
         for n in [5, 40] {
             let modes = beam(n, 0.02);
             let structure = modal::Structure { modes: modes.clone() };
-            let mut solver = modal::Solver::new(&structure).unwrap();
+            let solver = modal::Solver::new(&structure).unwrap();
             let striker = modal::Striker { mass_kg: 0.1103, speed_m_s: 1.0 };
             let settings = modal::Settings { estimate_uncertainty: false, ..Default::default() };
             let found = solver.solve(&striker, &law, None, &settings).unwrap();

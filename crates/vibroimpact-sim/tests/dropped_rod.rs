@@ -54,7 +54,7 @@ fn an_upright_rod_rebounds_fully_the_softer_the_contact() {
         let mut drop = upright.drop(1.0).unwrap();
         drop.law = Hertz::new(stiffness).unwrap();
         let settings = Settings { tolerance: 1e-9, ..Settings::default() };
-        let mut solver = Solver::new(&drop.structure).unwrap();
+        let solver = Solver::new(&drop.structure).unwrap();
         let e = solver.solve(&drop.surface, &drop.law, Some(&drop.start), &settings).unwrap().restitution.unwrap();
         assert!(e <= 1.0 + 1e-9);
         if stiffness < 1e9 {
@@ -70,7 +70,7 @@ fn a_tilted_rod_keeps_vibration_and_gains_no_energy() {
     for degrees in [0.0f64, 20.0, 45.0, 70.0, 89.0] {
         let rod = rod(0.3, degrees.to_radians());
         let drop = rod.drop(1.0).unwrap();
-        let mut solver = Solver::new(&drop.structure).unwrap();
+        let solver = Solver::new(&drop.structure).unwrap();
         let settings = Settings { tolerance: 1e-10, ..Settings::default() };
         let (solution, history) = solver.record(&drop.surface, &drop.law, Some(&drop.start), &settings).unwrap();
         assert_eq!(solution.outcome, Outcome::Rebound, "{degrees}");
@@ -111,7 +111,7 @@ fn the_sdnl111_benchmark_is_met() {
     let none = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let law = LinearSpring::new(1e12).unwrap();
     let settings = Settings { tolerance: 1e-6, ..Settings::default() };
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let (solution, history) = solver.record(&none, &law, Some(&start), &settings).unwrap();
     for line in include_str!("data/sdnl111_two_rods_axial.csv").lines().skip(1) {
         let (time, exact) = line.split_once(',').unwrap();

@@ -316,8 +316,8 @@ fn surfaces_that_part_at_once() {
     let striker = Striker { mass_kg: 870.0, speed_m_s: 1.9e-4 };
     let law = LankaraniNikravesh { stiffness_n_m1_5: 2055.0, restitution: 0.67, lowest_approach_speed_m_s: 1e-6 };
     let law = Law::from(law);
-    let mut solver = Solver::new(&structure).unwrap();
-    let mut at = |tolerance: f64| solver.solve(&striker, &law, Some(&start), &settings(tolerance)).unwrap();
+    let solver = Solver::new(&structure).unwrap();
+    let at = |tolerance: f64| solver.solve(&striker, &law, Some(&start), &settings(tolerance)).unwrap();
     let reference = at(1e-11);
     assert!(reference.sub_impacts.len() > 1 && reference.sub_impacts[0].end_s < 1e-4, "{reference:?}");
     for tolerance in [1e-4, 1e-5, 1e-6, 1e-8] {
@@ -356,7 +356,7 @@ fn a_stop_at_the_end_of_a_swing() {
             let rate = vec![0.1 * (100.0 * at_rest_time).sin(), 0.05 * (500.0 * at_rest_time).sin()];
             let now = amplitude[0] + 0.5 * amplitude[1];
             let start = Start { amplitude, rate, gap_m: gap - now };
-            let mut solver = Solver::new(&structure).unwrap();
+            let solver = Solver::new(&structure).unwrap();
             let limits = Settings { max_sub_impacts: 1, ..settings(1e-9) };
             let solution = solver.solve(&stop, &law, Some(&start), &limits).unwrap();
             assert_eq!(!solution.sub_impacts.is_empty(), contact, "{aside:e} {gap} {:?}", solution.outcome);
@@ -376,7 +376,7 @@ fn a_stop_at_the_end_of_a_swing() {
 fn contacts_that_come_and_go() {
     let once = Settings { estimate_uncertainty: false, ..settings(1e-9) };
     let count = |b: f64| {
-        let mut solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
+        let solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
         solver.solve(&ball(), &hertz(), None, &once).unwrap().sub_impacts.len()
     };
     let places: Vec<f64> = (0..=40).map(|i| 0.3 + 0.01 * f64::from(i)).collect();
@@ -411,7 +411,7 @@ fn contacts_that_come_and_go() {
 
 /// Between the contacts found, the surfaces never overlap: no contact was missed.
 fn no_overlap(b: f64) {
-    let mut solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
+    let solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
     let (solution, history) = solver.record(&ball(), &hertz(), None, &settings(1e-9)).unwrap();
     let deepest = solution.sub_impacts.iter().map(|contact| contact.peak_compression_m).fold(0.0, f64::max);
     let flights = solution.sub_impacts.windows(2).map(|pair| (pair[0].end_s, pair[1].start_s));
@@ -434,7 +434,7 @@ proptest! {
         mass_kg in decades(-6.0, 4.0),
         speed_m_s in decades(-6.0, 3.0),
     ) {
-        let mut solver = Solver::new(&structure).unwrap();
+        let solver = Solver::new(&structure).unwrap();
         let settings = Settings { max_steps: 20_000, ..settings(1e-8) };
         let solution = solver.solve(&Striker { mass_kg, speed_m_s }, &law, None, &settings).unwrap();
         prop_assert!(solution.outcome != Outcome::NoContact);
@@ -467,7 +467,7 @@ fn few_modes_and_a_stiff_remainder_at_loose_tolerances() {
     structure.modes.extend(remainder.map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
     let striker = Striker { mass_kg: 0.0001016356302612917, speed_m_s: 0.5837524201245173 };
     let law = Law::from(Hertz::new(4357452.9971862845).unwrap());
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let reference = solver.solve(&striker, &law, None, &settings(1e-12)).unwrap();
     let expected = reference.restitution.unwrap();
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9] {

@@ -202,7 +202,7 @@ fn the_dropped_rod() {
             damping_ratio,
         };
         let drop = rod.drop(speed_m_s).unwrap();
-        let (law, mut solver) = (Law::from(drop.law), Solver::new(&drop.structure).unwrap());
+        let (law, solver) = (Law::from(drop.law), Solver::new(&drop.structure).unwrap());
         let mut at = |tolerance: f64| {
             let settings = Settings { max_steps: 20_000, ..settings(tolerance) };
             solver.solve(&drop.surface, &law, Some(&drop.start), &settings).unwrap()

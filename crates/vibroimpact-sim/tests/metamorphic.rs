@@ -114,9 +114,9 @@ proptest! {
     /// An impact without losses, run backwards from its end, gives the striker its speed back.
     #[test]
     fn time_reversed(structure in ordinary_structure(Just(0.0)), striker in ordinary_striker(), law in conservative_law()) {
-        let mut solver = Solver::new(&structure).unwrap();
+        let solver = Solver::new(&structure).unwrap();
         // there and back again at a tolerance: the speed returned
-        let mut round_trip = |tolerance: f64| {
+        let round_trip = |tolerance: f64| {
             let there = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
             let rate = there.rate.iter().map(|rate| -rate).collect();
             let start = Start { amplitude: there.amplitude, rate, gap_m: 0.0 };

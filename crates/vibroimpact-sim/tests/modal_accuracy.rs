@@ -88,7 +88,7 @@ fn the_energy_balance_closes() {
         (pinned_with_remainder(40, 0.02, GOLDEN), hertz()),
         (pinned(40, 0.02, 0.4), Law::from(Viscous::new(1.7945e10, 0.08).unwrap())),
     ] {
-        let mut solver = Solver::new(&structure).unwrap();
+        let solver = Solver::new(&structure).unwrap();
         let (_, history) = solver.record(&ball(), &law, None, &settings(1e-11)).unwrap();
         let energy = history.energy_ledger();
         assert!((energy.initial_j - 0.5 * 0.11027).abs() < 1e-16);
@@ -141,7 +141,7 @@ fn the_sdnl32_benchmark_is_met() {
     let structure = Structure { modes };
     let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let law = LinearSpring::new(18_000.0).unwrap();
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let (_, history) = solver.record(&stop, &law, Some(&start), &settings(1e-10)).unwrap();
     let table = include_str!("data/sdnl32_pinned_beam_elastic_stop_k18000.csv");
     let mut compared = 0;
@@ -162,7 +162,7 @@ fn the_sdnl32_benchmark_is_met() {
 #[test]
 fn history_and_solution_tell_the_same_story() {
     let structure = pinned(25, 0.0, 0.4);
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let (solution, history) = solver.record(&ball(), &hertz(), None, &settings(1e-10)).unwrap();
     assert_eq!(solution.outcome, Outcome::Rebound);
     let at_end = history.at(solution.end_s);
@@ -199,7 +199,7 @@ fn a_history_shows_the_force_of_the_law() {
     ];
     for structure in [pinned(25, 0.02, 0.4), pinned_with_remainder(25, 0.02, 0.4)] {
         for law in laws {
-            let mut solver = Solver::new(&structure).unwrap();
+            let solver = Solver::new(&structure).unwrap();
             let (solution, history) = solver.record(&ball(), &law, None, &settings(1e-7)).unwrap();
             let largest = solution.sub_impacts.iter().map(|contact| contact.peak_force_n).fold(0.0, f64::max);
             for contact in &solution.sub_impacts {

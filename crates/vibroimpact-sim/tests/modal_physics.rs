@@ -49,7 +49,7 @@ fn other_units_give_the_same_restitution() {
 #[test]
 fn an_undamped_impact_run_backwards_returns_to_its_start() {
     let structure = pinned(10, 0.0, GOLDEN);
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let there = solver.solve(&ball(), &hertz(), None, &settings(1e-12)).unwrap();
     let start = Start { amplitude: there.amplitude.clone(), rate: there.rate.iter().map(|v| -v).collect(), gap_m: 0.0 };
     let back = Striker { mass_kg: 0.11027, speed_m_s: there.striker_velocity_m_s };
@@ -74,7 +74,7 @@ fn without_modes_the_restitution_is_the_laws_own() {
         HuntCrossley::with_restitution(1e9, 1.5, 0.6, 1.0).unwrap().into(),
         Thornton::new(1.1e11, 0.015, 1e9).unwrap().into(),
     ];
-    let mut solver = Solver::new(&Structure::default()).unwrap();
+    let solver = Solver::new(&Structure::default()).unwrap();
     for law in laws {
         let expected = law.wall_restitution(0.11027, 1.0).unwrap();
         let solution = solver.solve(&ball(), &law, None, &settings(1e-10)).unwrap();
@@ -126,7 +126,7 @@ fn a_distant_striker_arrives_when_it_should() {
     let mut start = Start::at_rest(40);
     start.gap_m = 0.25;
     let structure = pinned(40, 0.02, GOLDEN);
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let late = solver.solve(&ball(), &hertz(), Some(&start), &settings(1e-10)).unwrap();
     let now = solver.solve(&ball(), &hertz(), None, &settings(1e-10)).unwrap();
     assert!((late.sub_impacts[0].start_s - 0.25).abs() < 1e-15);
@@ -153,7 +153,7 @@ fn heavy_damping_and_coinciding_modes_are_ordinary() {
 #[test]
 fn limits_end_a_run_with_what_it_found() {
     let structure = pinned(25, 0.0, 0.4);
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let few = Settings { max_sub_impacts: 1, ..settings(1e-9) };
     let solution = solver.solve(&ball(), &hertz(), None, &few).unwrap();
     assert_eq!((solution.outcome, solution.sub_impacts.len()), (Outcome::Stopped(StopReason::SubImpacts), 1));
@@ -167,7 +167,7 @@ fn limits_end_a_run_with_what_it_found() {
 #[test]
 fn costs_are_the_same_on_every_run() {
     let structure = pinned(40, 0.02, GOLDEN);
-    let mut solver = Solver::new(&structure).unwrap();
+    let solver = Solver::new(&structure).unwrap();
     let first = solver.solve(&ball(), &hertz(), None, &settings(1e-9)).unwrap();
     assert_eq!(first, solver.solve(&ball(), &hertz(), None, &settings(1e-9)).unwrap());
     assert_eq!(first, Solver::new(&structure).unwrap().solve(&ball(), &hertz(), None, &settings(1e-9)).unwrap());
@@ -185,8 +185,8 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     ] {
         assert_eq!(Solver::new(&structure(bad)).err().unwrap().field, field);
     }
-    let mut solver = Solver::new(&structure(good)).unwrap();
-    let mut fails = |striker: Striker, start: Option<Start>, settings: Settings| {
+    let solver = Solver::new(&structure(good)).unwrap();
+    let fails = |striker: Striker, start: Option<Start>, settings: Settings| {
         solver.solve(&striker, &hertz(), start.as_ref(), &settings).unwrap_err().field
     };
     let fine = Settings::default();

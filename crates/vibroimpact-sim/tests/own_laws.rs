@@ -43,7 +43,7 @@ impl ContactLaw for Endless {
 fn a_law_that_breaks_its_contract_ends_with_that_reason() {
     for law in [Endless { limit_m: f64::INFINITY }, Endless { limit_m: 1e-5 }] {
         assert!(check_contract(&law, 1e-4, 1.0).is_err());
-        let mut solver = Solver::new(&pinned(10, 0.02, 0.3)).unwrap();
+        let solver = Solver::new(&pinned(10, 0.02, 0.3)).unwrap();
         let solution = solver.solve(&ball(), &law, None, &settings(1e-9)).unwrap();
         assert_eq!(solution.outcome, Outcome::Stopped(StopReason::Law));
         assert!(solution.counts.contact_steps <= 50_000, "{:?}", solution.counts);

@@ -1,9 +1,10 @@
-//! A solver that is turned from place to place of a structure finds what a new one finds, to the last bit.
+//! A solver that is turned from place to place of a structure, or shared by threads, finds what a new one finds, to the last
+//! bit.
 
 mod common;
 
 use common::{ball, hertz, pinned, settings};
-use vibroimpact_sim::modal::{Settings, Solver, Structure};
+use vibroimpact_sim::modal::{Settings, Solver, Start, Striker, Structure};
 
 #[test]
 fn a_solver_turned_to_another_place_is_as_a_new_one() {
@@ -32,4 +33,42 @@ fn a_structure_that_is_none_is_refused_and_the_solver_stays_as_it_was() {
     let settings = settings(1e-5);
     let new = Solver::new(&beam).unwrap().solve(&ball(), &hertz(), None, &settings);
     assert_eq!(solver.solve(&ball(), &hertz(), None, &settings), new);
+}
+
+/// Threads build the tables of a solver together and find what each would find alone. Strikers differ, as do the rigid modes
+/// then; one of them stands still, and the motion is recorded with its ledger by every other thread.
+#[test]
+fn threads_share_a_solver_and_find_the_same_bits() {
+    let beam = pinned(40, 0.02, 0.618);
+    let settings = settings(1e-5);
+    let strikers: Vec<Striker> = (1..=8).map(|i| Striker { mass_kg: 0.02 * f64::from(i), ..ball() }).collect();
+    let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
+    let swings = Start { rate: (0..40).map(|k| if k == 0 { 0.1 } else { 0.0 }).collect(), ..Start::at_rest(40) };
+    let alone = |striker: &Striker, start: Option<&Start>| {
+        let found = Solver::new(&beam).unwrap().record(striker, &hertz(), start, &settings);
+        found.map(|(solution, history)| (solution, history.energy_ledger())).unwrap()
+    };
+    let expected: Vec<_> = strikers.iter().map(|striker| alone(striker, None)).collect();
+    let stopped = alone(&stop, Some(&swings));
+    for _ in 0..4 {
+        let shared = Solver::new(&beam).unwrap();
+        let find = |i: usize| {
+            for turn in 0..strikers.len() {
+                let k = (i + turn) % strikers.len();
+                if (i + turn).is_multiple_of(2) {
+                    let solution = shared.solve(&strikers[k], &hertz(), None, &settings).unwrap();
+                    assert_eq!(solution, expected[k].0);
+                } else {
+                    let (solution, history) = shared.record(&strikers[k], &hertz(), None, &settings).unwrap();
+                    assert_eq!((solution, history.energy_ledger()), expected[k]);
+                }
+            }
+            let (solution, _) = shared.record(&stop, &hertz(), Some(&swings), &settings).unwrap();
+            assert_eq!(solution, stopped.0);
+        };
+        std::thread::scope(|scope| {
+            let find = &find;
+            (0..strikers.len()).for_each(|i| drop(scope.spawn(move || find(i))));
+        });
+    }
 }

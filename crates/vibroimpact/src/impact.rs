@@ -46,7 +46,7 @@ impl Impact {
     /// # Errors
     /// A value out of range, by its name in a scene.
     pub fn solve(&self) -> Result<Solution, InvalidInput> {
-        let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
+        let solver = Solver::new(&self.structure).map_err(in_scene)?;
         solver.solve(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 
@@ -55,7 +55,7 @@ impl Impact {
     /// # Errors
     /// As [`Impact::solve`].
     pub fn record(&self) -> Result<(Solution, History<Law>), InvalidInput> {
-        let mut solver = Solver::new(&self.structure).map_err(in_scene)?;
+        let solver = Solver::new(&self.structure).map_err(in_scene)?;
         solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
 }

@@ -20,7 +20,7 @@ fn tighter_than(tolerance: f64) -> f64 {
 
 /// The impacts at all speeds: restitutions, and the counts in all.
 fn at_all_speeds(impact: &Impact, tolerance: f64) -> Result<Found, Failure> {
-    let mut solver = Solver::new(&impact.structure)?;
+    let solver = Solver::new(&impact.structure)?;
     let settings = Settings { tolerance, estimate_uncertainty: false, ..impact.settings };
     let mut values = Vec::new();
     let mut total = Counts::default();

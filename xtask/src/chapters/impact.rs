@@ -67,20 +67,20 @@ impl Setup<'_> {
     }
 
     /// The impact on a solver made for the same beam, location and modes.
-    pub fn solve_with(&self, solver: &mut Solver) -> Result<Row, Failure> {
+    pub fn solve_with(&self, solver: &Solver) -> Result<Row, Failure> {
         let solution = solver.solve(&self.striker(), &self.law, None, &Setup::settings())?;
         Ok(Row::new(self, &solution))
     }
 
     /// The same without an estimate of the uncertainty, for tables of which only counts and means are told.
-    pub fn solve_once_with(&self, solver: &mut Solver) -> Result<Row, Failure> {
+    pub fn solve_once_with(&self, solver: &Solver) -> Result<Row, Failure> {
         let settings = Settings { estimate_uncertainty: false, ..Setup::settings() };
         Ok(Row::new(self, &solver.solve(&self.striker(), &self.law, None, &settings)?))
     }
 
     /// The impact.
     pub fn solve(&self) -> Result<Row, Failure> {
-        self.solve_with(&mut self.solver()?)
+        self.solve_with(&self.solver()?)
     }
 
     /// The impact with its motion in time.

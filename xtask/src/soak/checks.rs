@@ -110,7 +110,7 @@ fn modal_impact(case: &Modal, verdict: &mut Verdict) -> Result<(), String> {
     let Modal { structure, striker, law, start, settings } = case;
     verdict.outcome = "refused";
     let refused = |fault| format!("a sound impact was refused: {fault}");
-    let mut solver = Solver::new(structure).map_err(refused)?;
+    let solver = Solver::new(structure).map_err(refused)?;
     let solution = solver.solve(striker, law, start.as_ref(), settings).map_err(refused)?;
     verdict.outcome = solution.outcome.stopped_by().map_or(solution.outcome.as_str(), StopReason::as_str);
     verdict.contacts = solution.sub_impacts.len();

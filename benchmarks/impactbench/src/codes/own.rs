@@ -97,7 +97,7 @@ impl Single {
     fn solve(&self, tolerance: f64) -> Answer {
         let text = |error: vibroimpact_sim::InvalidInput| error.to_string();
         let settings = modal::Settings { tolerance, estimate_uncertainty: false, ..Default::default() };
-        let mut solver = modal::Solver::new(&self.structure).map_err(text)?;
+        let solver = modal::Solver::new(&self.structure).map_err(text)?;
         let found = solver.solve(&self.striker, &self.law, None, &settings).map_err(text)?;
         Ok(vec![found.striker_velocity_m_s])
     }

@@ -10,30 +10,36 @@ use crate::panel::dyadic::step_s;
 use crate::panel::legendre::{Matrix, Nodal, Q, apply, dot};
 use std::array;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// The forms of all modes on one level.
 pub(crate) struct Damping {
-    /// Loss by `a^2`, `a b` and `b^2`, mode by mode.
+    by_mode: OnceLock<ByMode>,
+    /// `[c][c']`, where asked for: loss by `F_n F'_m`, summed over the modes.
+    pairs: Vec<OnceLock<Box<Matrix>>>,
+}
+
+/// Mode by mode.
+struct ByMode {
+    /// Loss by `a^2`, `a b` and `b^2`.
     free: Vec<[f64; 3]>,
     /// Loss by `a g_n` and `b g_n`.
     cross: Vec<(Nodal, Nodal)>,
-    /// `[c][c']`, where asked for: loss by `F_n F'_m`, summed over the modes.
-    pairs: Vec<Option<Box<Matrix>>>,
 }
 
 impl Damping {
     pub fn new(system: &System) -> Damping {
-        let pairs = std::iter::repeat_with(|| None).take(system.links.len().pow(2)).collect();
-        Damping { free: Vec::new(), cross: Vec::new(), pairs }
+        let pairs = std::iter::repeat_with(OnceLock::new).take(system.links.len().pow(2)).collect();
+        Damping { by_mode: OnceLock::new(), pairs }
     }
 
     /// Makes sure that everything about level `j` is there for these contacts.
-    pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize]) {
+    pub fn prepare(&self, system: &System, j: i32, contacts: &[usize]) {
         let mut missing: Vec<(usize, Vec<f64>, Box<Matrix>)> = Vec::new();
         for (i, &c) in contacts.iter().enumerate() {
             for &other in contacts[..=i].iter().filter(|other| system.neighbours[c].contains(other)) {
                 let place = c * system.links.len() + other;
-                if self.pairs[place].is_none() {
+                if self.pairs[place].get().is_none() {
                     let mut weights = vec![0.0; system.modes.len()];
                     system.links[c].shared(&system.links[other]).for_each(|(k, weight)| weights[k] = weight);
                     missing.push((place, weights, Box::new([[0.0; Q]; Q])));
@@ -43,13 +49,12 @@ impl Damping {
         if missing.is_empty() {
             return;
         }
-        self.free.clear();
-        self.cross.clear();
+        let (mut free, mut cross) = (Vec::with_capacity(system.modes.len()), Vec::with_capacity(system.modes.len()));
         for (k, mode) in system.modes.iter().enumerate() {
             let Form { bb, bq, qq } = Form::of(mode, step_s(j));
             let square = system.square[k];
-            self.free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
-            self.cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
+            free.push([square * square * qq[0][0], -2.0 * square * bq[0], bb]);
+            cross.push((qq[0].map(|value| -2.0 * square * value), bq.map(|value| 2.0 * value)));
             for (_, weights, sum) in missing.iter_mut().filter(|(_, weights, _)| weights[k] != 0.0) {
                 for n in 0..Q {
                     for m in 0..Q {
@@ -58,8 +63,10 @@ impl Damping {
                 }
             }
         }
+        // where another thread was first, it has found the same
+        let _ = self.by_mode.set(ByMode { free, cross });
         for (place, _, sum) in missing {
-            self.pairs[place] = Some(sum);
+            let _ = self.pairs[place].set(sum);
         }
     }
 
@@ -73,9 +80,10 @@ impl Damping {
         force: &[Nodal],
     ) -> f64 {
         let mut lost = 0.0;
+        let Some(ByMode { free, cross }) = self.by_mode.get() else { return lost };
         for body in damped {
             let motion = amplitude[body.clone()].iter().zip(&rate[body.clone()]);
-            for ([aa, ab, bb], (a, b)) in self.free[body.clone()].iter().zip(motion) {
+            for ([aa, ab, bb], (a, b)) in free[body.clone()].iter().zip(motion) {
                 lost += (aa * a + ab * b) * a + bb * b * b;
             }
         }
@@ -83,7 +91,7 @@ impl Damping {
             let mut by_motion = [0.0; Q];
             for span in system.links[c].spans.iter().filter(|span| damped.contains(&span.modes)) {
                 let motion = amplitude[span.modes.clone()].iter().zip(&rate[span.modes.clone()]);
-                let table = self.cross[span.modes.clone()].iter();
+                let table = cross[span.modes.clone()].iter();
                 for (((from_a, from_b), psi), (a, b)) in table.zip(&span.psi).zip(motion) {
                     let (a, b) = (psi * a, psi * b);
                     for n in 0..Q {
@@ -93,7 +101,7 @@ impl Damping {
             }
             lost -= dot(&by_motion, &force[i]);
             for (j, &other) in contacts[..=i].iter().enumerate() {
-                if let Some(pair) = &self.pairs[c * system.links.len() + other] {
+                if let Some(pair) = self.pairs[c * system.links.len() + other].get() {
                     let twice = if j < i { 2.0 } else { 1.0 };
                     lost += twice * dot(&force[i], &apply(pair, &force[j]));
                 }

@@ -3,6 +3,7 @@
 use super::change::Change;
 use super::no_derivative::NoDerivative;
 use super::problem::{Assembly, Point, Posed, Settings};
+use super::responses::Responses;
 use super::solution::{Interval, Observer, Outcome, Run};
 use super::solve::{Solver, follow};
 use super::stencil::Stencil;
@@ -189,7 +190,7 @@ impl Solver<'_> {
     /// # Errors
     /// As [`Solver::run`], and for neighbours that are no such assemblies.
     pub fn differentiate<L: ContactLaw>(
-        &mut self,
+        &self,
         settings: &Settings,
         parameters: &[Parameter<L>],
     ) -> Result<Differentiated, InvalidInput> {
@@ -232,12 +233,12 @@ impl Solver<'_> {
     /// How all modes at the end, amplitudes and then rates, change with all of them at the start, body by body: `[at the start]
     /// [at the end]`, with how the run ended. `None` where there is no derivative.
     pub(crate) fn monodromy(
-        &mut self,
+        &self,
         settings: &Settings,
     ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
-        let (run, stretches) = follow(posed, (system, tables), settings, &mut (), true);
+        let (run, stretches) = follow(posed, (system, tables, &mut Responses::new()), settings, &mut (), true);
         if run.outcome != Outcome::End {
             return Ok((run.outcome, Err(NoDerivative::Outcome)));
         }
@@ -294,14 +295,14 @@ impl Solver<'_> {
 
     /// One run with its changes, and how nearly it grazes; `end_s` has the changes of the requested time.
     fn along(
-        &mut self,
+        &self,
         settings: &Settings,
         (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
         expansions: &mut Expansions,
     ) -> (Run, Vec<Vec<Interval>>, AllChanges) {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
-        let (run, stretches) = follow(posed, (system, tables), settings, &mut watch, true);
+        let (run, stretches) = follow(posed, (system, tables, &mut Responses::new()), settings, &mut watch, true);
         let zeros = vec![0.0; changes.len()];
         let fixed = match run.outcome {
             Outcome::Parted => None,

@@ -100,7 +100,7 @@ impl Account {
     }
 
     /// Books a panel of `h` that is about to be made, with Legendre coefficients of the contacts' forces.
-    pub fn panel(&mut self, start: &Moment, tables: &mut Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
+    pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
         let system = start.system;
         if !self.damped.is_empty() {
             if contacts.is_empty() {

@@ -69,6 +69,7 @@ mod orbit;
 pub(crate) mod problem;
 mod record;
 mod reliability;
+pub(crate) mod responses;
 mod rest;
 mod solution;
 pub(crate) mod solve;

@@ -6,6 +6,7 @@ use super::enclosure::Held;
 use super::ledger::{Account, Moment};
 use super::load::Loads;
 use super::problem::{Posed, Settings};
+use super::responses::Responses;
 use super::solution::{Counts, Observer, Reason};
 use super::state::{Phase, State};
 use super::system::{Span, System};
@@ -37,7 +38,8 @@ pub(crate) struct March<'a> {
     pub(super) laws: &'a [&'a dyn ContactLaw],
     pub(super) posed: &'a Posed<'a>,
     pub(super) system: &'a System,
-    pub(super) tables: &'a mut Tables,
+    pub(super) tables: &'a Tables,
+    pub(super) responses: &'a mut Responses,
     pub(super) loads: Loads,
     pub(super) settings: Settings,
     pub(super) observer: &'a mut dyn Observer,
@@ -80,7 +82,7 @@ impl<'a> March<'a> {
     pub(super) fn new(
         posed: &'a Posed<'a>,
         system: &'a System,
-        tables: &'a mut Tables,
+        (tables, responses): (&'a Tables, &'a mut Responses),
         settings: Settings,
         observer: &'a mut dyn Observer,
     ) -> March<'a> {
@@ -109,6 +111,7 @@ impl<'a> March<'a> {
             posed,
             system,
             tables,
+            responses,
             loads,
             settings,
             observer,

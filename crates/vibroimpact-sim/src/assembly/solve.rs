@@ -4,6 +4,7 @@ use super::dense::{Stretch, in_users_order};
 use super::motion::March;
 use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{COARSER, Comparison};
+use super::responses::Responses;
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
 use super::tables::Tables;
@@ -71,9 +72,9 @@ impl<'a> Solver<'a> {
     ///
     /// # Errors
     /// As [`run`].
-    pub fn run(&mut self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
+    pub fn run(&self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         settings.check()?;
-        Ok(follow(&self.posed, (&self.system, &mut self.tables), settings, observer, false).0)
+        Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::new()), settings, observer, false).0)
     }
 
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
@@ -85,7 +86,7 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// As [`run`].
     pub fn reliable_until(
-        &mut self,
+        &self,
         settings: &Settings,
         intervals: &[Vec<Interval>],
         end_s: f64,
@@ -103,12 +104,12 @@ impl<'a> Solver<'a> {
 /// otherwise one of no length ends it.
 pub(crate) fn follow(
     posed: &Posed,
-    (system, tables): (&System, &mut Tables),
+    (system, tables, responses): (&System, &Tables, &mut Responses),
     settings: &Settings,
     observer: &mut dyn Observer,
     record: bool,
 ) -> (Run, Vec<Stretch>) {
-    let mut march = March::new(posed, system, tables, *settings, observer);
+    let mut march = March::new(posed, system, (tables, responses), *settings, observer);
     march.record = record.then(Vec::new);
     let outcome = march.follow();
     let mut stretches = march.recorded(outcome == Outcome::Parted);

@@ -1,5 +1,6 @@
 //! Tables of panels `h = 2^-j` s: free motion and forced response of every mode, and the response of every contact to
-//! the force of another. All of them are filled as they are first asked for.
+//! the force of another. They do not depend on the masses of rigid bodies. Each is made when it is first asked for and does
+//! not change from then on, so that runs and threads share them and find the same.
 
 use super::damping::Damping;
 use super::interpolation::Missed;
@@ -10,6 +11,7 @@ use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::vector::{sum_over, vectorized};
 use std::array;
+use std::sync::OnceLock;
 
 /// Response of one contact's overlap to the force of another.
 #[derive(Clone, Copy)]
@@ -34,28 +36,22 @@ pub(crate) struct Forced {
 /// The same on one level, with the responses of pairs of contacts.
 struct Expanded {
     forced: Forced,
-    /// `[c][c']`, where asked for.
-    responses: Vec<Option<Box<Pair>>>,
-}
-
-/// The response of the elastic modes, and that of all.
-struct Pair {
-    elastic: Response,
-    whole: Response,
+    /// `[c][c']`, where asked for: the response of the elastic modes.
+    elastic: Vec<OnceLock<Box<Response>>>,
 }
 
 #[derive(Default)]
 struct Level {
-    rotation: Option<Box<Rotation>>,
-    expanded: Option<Box<Expanded>>,
-    damping: Option<Box<Damping>>,
-    missed: Option<Box<Missed>>,
+    rotation: OnceLock<Rotation>,
+    expanded: OnceLock<Expanded>,
+    damping: OnceLock<Damping>,
+    missed: OnceLock<Missed>,
 }
 
 pub(crate) struct Tables {
-    levels: Vec<Level>,
+    levels: Vec<OnceLock<Box<Level>>>,
     /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where asked for.
-    kernels: Vec<Option<[f64; TAYLOR]>>,
+    kernels: Vec<OnceLock<[f64; TAYLOR]>>,
     contacts: usize,
 }
 
@@ -63,90 +59,73 @@ impl Tables {
     pub fn new(system: &System) -> Tables {
         let contacts = system.links.len();
         // one level more than is stepped on, for the half steps of the finest
-        let levels = std::iter::repeat_with(Level::default).take((J_MAX - J_MIN + 2) as usize).collect();
-        Tables { levels, kernels: vec![None; contacts * contacts], contacts }
+        let levels = std::iter::repeat_with(OnceLock::new).take((J_MAX - J_MIN + 2) as usize).collect();
+        Tables { levels, kernels: unset(contacts), contacts }
     }
 
     /// Free motion over one panel of level `j`.
-    pub fn rotation(&mut self, system: &System, j: i32) -> &Rotation {
-        let level = &mut self.levels[(j - J_MIN) as usize];
-        level.rotation.get_or_insert_with(|| Box::new(Rotation::new(&system.modes, step_s(j))))
+    pub fn rotation(&self, system: &System, j: i32) -> &Rotation {
+        self.level(j).rotation.get_or_init(|| Rotation::new(&system.modes, step_s(j)))
     }
 
     /// What interpolation misses on level `j`.
-    pub fn missed(&mut self, system: &System, j: i32) -> &Missed {
-        let level = &mut self.levels[(j - J_MIN) as usize];
-        level.missed.get_or_insert_with(|| Box::new(Missed::new(system, step_s(j))))
+    pub fn missed(&self, system: &System, j: i32) -> &Missed {
+        self.level(j).missed.get_or_init(|| Missed::new(system, step_s(j)))
     }
 
     /// What modal damping takes on level `j` while these contacts are closed; only the energy ledger asks.
-    pub fn damping(&mut self, system: &System, j: i32, contacts: &[usize]) -> &Damping {
-        let level = &mut self.levels[(j - J_MIN) as usize];
-        let damping = level.damping.get_or_insert_with(|| Box::new(Damping::new(system)));
+    pub fn damping(&self, system: &System, j: i32, contacts: &[usize]) -> &Damping {
+        let damping = self.level(j).damping.get_or_init(|| Damping::new(system));
         damping.prepare(system, j, contacts);
         damping
     }
 
-    /// For a system that differs in the weights of rigid modes alone: nothing else has to be made anew.
-    pub fn change_rigid_modes(&mut self, system: &System) {
-        for (j, level) in (J_MIN..).zip(&mut self.levels) {
-            let Some(expanded) = &mut level.expanded else { continue };
-            for (at, pair) in expanded.responses.iter_mut().enumerate() {
-                if let Some(pair) = pair {
-                    let links = [at / self.contacts, at % self.contacts].map(|c| &system.links[c]);
-                    pair.whole = pair.elastic.with_rigid(links[0].shared_rigid(links[1]), step_s(j));
-                }
+    /// For a system that differs in the weights of the elastic modes: what does not depend on them stays.
+    pub fn change_weights(&mut self) {
+        for level in self.levels.iter_mut().filter_map(OnceLock::get_mut) {
+            level.damping = OnceLock::new();
+            if let Some(expanded) = level.expanded.get_mut() {
+                expanded.elastic = unset(self.contacts);
             }
         }
+        self.kernels = unset(self.contacts);
     }
 
-    /// For a system that differs in the weights of all modes: what does not depend on them stays.
-    pub fn change_weights(&mut self) {
-        for level in &mut self.levels {
-            level.damping = None;
-            if let Some(expanded) = &mut level.expanded {
-                expanded.responses.iter_mut().for_each(|pair| *pair = None);
-            }
-        }
-        self.kernels.iter_mut().for_each(|kernel| *kernel = None);
+    fn level(&self, j: i32) -> &Level {
+        self.levels[(j - J_MIN) as usize].get_or_init(Default::default)
     }
 
     /// Makes sure that everything about level `j` is there for these contacts and these forces.
-    pub fn prepare(&mut self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
+    pub fn prepare(&self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
         self.rotation(system, j);
-        self.rotation(system, j + 1);
-        let (level, finer) = self.levels.split_at_mut((j + 1 - J_MIN) as usize);
-        let Some(half) = finer[0].rotation.as_deref() else { return };
         let count = self.contacts;
-        let expanded = &mut level[(j - J_MIN) as usize].expanded;
+        let expanded = self.expanded(j);
         let pairs: Vec<(usize, usize)> = contacts
             .iter()
             .flat_map(|&c| forces.iter().map(move |&other| (c, other)))
             .filter(|(c, other)| system.neighbours[*c].contains(other))
-            .filter(|(c, other)| expanded.as_ref().is_none_or(|level| level.responses[c * count + other].is_none()))
+            .filter(|(c, other)| expanded.as_ref().is_none_or(|level| level.elastic[c * count + other].get().is_none()))
             .collect();
         if expanded.is_some() && pairs.is_empty() {
             return;
         }
         let weights: Vec<Vec<f64>> = pairs.iter().map(|(c, other)| system.shared(*c, *other)).collect();
-        let (expanded, found) = match expanded {
-            Some(expanded) => (expanded, Forced::again(system, step_s(j), &weights)),
-            None => {
-                let (forced, found) = Forced::new(system, step_s(j), half, &weights);
-                (expanded.insert(Box::new(Expanded { forced, responses: Vec::new() })), found)
-            }
-        };
-        expanded.responses.resize_with(count * count, || None);
+        let mut found = None;
+        let expanded = self.level(j).expanded.get_or_init(|| {
+            let (forced, sums) = Forced::new(system, step_s(j), self.rotation(system, j + 1), &weights);
+            found = Some(sums);
+            Expanded { forced, elastic: unset(count) }
+        });
+        let found = found.unwrap_or_else(|| Forced::again(system, step_s(j), &weights));
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
-            let elastic = Response { nodes, end, end_rate };
-            let whole = elastic.with_rigid(system.links[c].shared_rigid(&system.links[other]), step_s(j));
-            expanded.responses[c * count + other] = Some(Box::new(Pair { elastic, whole }));
+            // where another thread was first, it has found the same
+            let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate }));
         }
     }
 
     fn expanded(&self, j: i32) -> Option<&Expanded> {
-        self.levels[(j - J_MIN) as usize].expanded.as_deref()
+        self.level(j).expanded.get()
     }
 
     /// How far free motion moves the overlap of a contact at the nodes. Needs [`Tables::prepare`].
@@ -154,15 +133,16 @@ impl Tables {
         self.expanded(j).map_or([0.0; Q], |level| level.forced.free_at_nodes(&link.spans, amplitude, rate))
     }
 
-    /// Response of contact `c` to the force of `other`, if they share a body. Needs [`Tables::prepare`].
-    pub fn response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
-        self.expanded(j)?.responses[c * self.contacts + other].as_deref().map(|pair| &pair.whole)
+    /// Response of contact `c` to the force of `other` by the elastic modes, if they share a body. Needs
+    /// [`Tables::prepare`].
+    pub fn elastic_response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
+        self.expanded(j)?.elastic[c * self.contacts + other].get().map(|response| &**response)
     }
 
     /// How far free motion over a panel moves the overlap of a contact, and its rate then.
     pub fn free_at_end(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> (f64, f64) {
         let (mut moved, mut speed) = (0.0, 0.0);
-        let Some(rotation) = self.levels[(j - J_MIN) as usize].rotation.as_deref() else { return (moved, speed) };
+        let Some(rotation) = self.level(j).rotation.get() else { return (moved, speed) };
         let Rotation { p11_less_1, p12, p21, p22 } = rotation;
         for Span { modes, psi } in &link.spans {
             let [less, p12, p21, p22, a, b] =
@@ -185,7 +165,7 @@ impl Tables {
     }
 
     /// Free motion of all modes over one panel.
-    pub fn rotate(&mut self, system: &System, j: i32, amplitude: &mut [f64], rate: &mut [f64]) {
+    pub fn rotate(&self, system: &System, j: i32, amplitude: &mut [f64], rate: &mut [f64]) {
         self.rotation(system, j).apply(amplitude, rate);
     }
 
@@ -197,9 +177,9 @@ impl Tables {
     }
 
     /// Derivatives at zero of the response of contact `c` to an impulse of `other`.
-    pub fn kernel(&mut self, system: &System, c: usize, other: usize) -> [f64; TAYLOR] {
+    pub fn kernel(&self, system: &System, c: usize, other: usize) -> [f64; TAYLOR] {
         let (one, other_link) = (&system.links[c], &system.links[other]);
-        let mut kernel = *self.kernels[c * self.contacts + other].get_or_insert_with(|| {
+        let mut kernel = *self.kernels[c * self.contacts + other].get_or_init(|| {
             let mut kernel = [0.0; TAYLOR];
             for (k, weight) in one.shared(other_link).filter(|(k, _)| !system.modes[*k].is_rigid()) {
                 let (mut here, mut next) = (0.0, weight);
@@ -213,6 +193,11 @@ impl Tables {
         kernel[1] += one.shared_rigid(other_link);
         kernel
     }
+}
+
+/// For every pair of so many contacts, nothing yet.
+fn unset<T>(contacts: usize) -> Vec<OnceLock<T>> {
+    std::iter::repeat_with(OnceLock::new).take(contacts * contacts).collect()
 }
 
 /// `state[k] -= psi[k] sum_n table[n][k] force[n]`, in one pass.
@@ -425,9 +410,9 @@ mod tests {
     #[test]
     fn the_response_of_two_bodies_is_the_sum_of_theirs() {
         let nodes = |system: &System| {
-            let mut tables = Tables::new(system);
+            let tables = Tables::new(system);
             tables.prepare(system, 0, &[0], &[0]);
-            tables.response(0, 0, 0).map(|response| response.nodes).unwrap()
+            tables.elastic_response(0, 0, 0).map(|response| response.nodes).unwrap()
         };
         let (fast, slow) = ([4.0, 5.5], [1e-3, 2e-3]);
         let both = nodes(&between([&fast, &slow]));

@@ -46,7 +46,7 @@ impl Window {
     /// `overlaps` are those of the closed contacts now; the panel will be no longer than `reach` (s).
     pub fn new(
         system: &System,
-        tables: &mut Tables,
+        tables: &Tables,
         loads: &Loads,
         (contacts, overlaps, reach): (Vec<usize>, &[f64], f64),
         moment: (f64, &[f64], &[f64]),
@@ -63,7 +63,7 @@ impl Window {
     pub fn add(
         &mut self,
         system: &System,
-        tables: &mut Tables,
+        tables: &Tables,
         loads: &Loads,
         (c, overlap): (usize, f64),
         moment: (f64, &[f64], &[f64]),
@@ -75,7 +75,7 @@ impl Window {
     fn expand(
         &mut self,
         system: &System,
-        tables: &mut Tables,
+        tables: &Tables,
         loads: &Loads,
         (c, overlap): (usize, f64),
         moment: (f64, &[f64], &[f64]),

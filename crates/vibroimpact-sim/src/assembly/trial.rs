@@ -33,14 +33,14 @@ impl<'a> March<'a> {
         let h = step_s(level);
         let Trial { contacts, closed, unknowns, solved, force, overlap, end, turns } = trial;
         let closed = *closed;
-        self.tables.prepare(self.system, level, contacts, contacts);
+        self.responses.prepare(self.system, self.tables, level, contacts, contacts);
         self.loads.turn(self.time_s, h, turns);
         overlap.clear();
         overlap.extend(contacts.iter().map(|&c| self.free_at_nodes(level, c, turns)));
         unknowns.clear();
         unknowns.extend(self.unknowns(&contacts[..closed], h, |i| overlap[i]));
-        let tables = &*self.tables;
-        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]).map(|r| &r.nodes);
+        let (system, responses) = (self.system, &*self.responses);
+        let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]).map(|r| &r.nodes);
         if !collocate(unknowns, response, h, (&mut self.newton, solved), &mut self.counts) {
             return false;
         }
@@ -48,18 +48,19 @@ impl<'a> March<'a> {
         force.extend(solved.iter().map(|solved| BASIS.coefficients(&solved.force)));
         self.watch(h, contacts, closed, force);
         if contacts.len() > closed {
-            self.tables.prepare(self.system, level, &contacts[closed..], &contacts[..closed]);
+            let (open, closed) = (&contacts[closed..], &contacts[..closed]);
+            self.responses.prepare(self.system, self.tables, level, open, closed);
         }
         for &c in &contacts[closed..] {
             let start = self.states[c].overlap;
             overlap.push(self.free_at_nodes(level, c, turns).map(|moved| start + moved));
         }
-        let tables = &*self.tables;
-        let response = |i: usize, j: usize| tables.response(level, contacts[i], contacts[j]);
+        let (system, tables, responses) = (self.system, self.tables, &*self.responses);
+        let response = |i: usize, j: usize| responses.of(system, level, contacts[i], contacts[j]);
         end.clear();
         for (i, &c) in contacts.iter().enumerate() {
             let nodal = &mut overlap[i];
-            let (moved, mut rate) = tables.free_at_end(level, &self.system.links[c], &self.amplitude, &self.rate);
+            let (moved, mut rate) = tables.free_at_end(level, &system.links[c], &self.amplitude, &self.rate);
             let (by_loads, rate_of_loads) = self.loads.moved_on(c, (self.time_s, h), turns, Q);
             let mut forced = 0.0;
             for (j, solved) in solved.iter().enumerate() {

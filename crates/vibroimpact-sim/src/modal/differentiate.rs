@@ -132,7 +132,7 @@ impl Solver {
     /// # Errors
     /// As [`Solver::solve`], and for neighbours with another number of modes.
     pub fn differentiate(
-        &mut self,
+        &self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
@@ -152,14 +152,14 @@ impl Solver {
             }
         }
         let moved = self.moved_by(parameters);
-        let mut other = (moved != self.moved()).then(|| self.moving(moved));
+        let other = (moved != self.moved()).then(|| self.moving(moved));
         let at_rest = Start::at_rest(count);
         let impact = Impact { striker, law, start: start.unwrap_or(&at_rest), settings };
-        other.as_mut().unwrap_or(self).along_all(&impact, parameters)
+        other.as_ref().unwrap_or(self).along_all(&impact, parameters)
     }
 
     /// The impact at its tolerance and at a coarser one, differentiated along both.
-    fn along_all(&mut self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
+    fn along_all(&self, impact: &Impact, parameters: &[Parameter]) -> Result<Differentiated, InvalidInput> {
         let Impact { striker, law, start, settings } = *impact;
         let (solution, fine) = self.solve_into(striker, law, Some(start), settings, Keep::Motion)?;
         let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);

@@ -20,7 +20,7 @@
 //! An impact is the smallest assembly ([`crate::assembly`] describes the method): two bodies, of which the striker is one rigid
 //! mode, and one contact (`posed.rs`). The modes are propagated exactly. The only unknown is the force, a polynomial on each
 //! panel. A bound on the motion gives a time before which no contact can occur, and the impact ends when none can occur any
-//! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws.
+//! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws, and threads share them.
 //!
 //! The uncertainty of the restitution is estimated from two coarser solutions: one with 32 times the tolerance, and one with
 //! eight times, whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger

@@ -7,14 +7,15 @@ use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit;
 use crate::StopReason;
 use crate::assembly::dense::Stretch;
-use crate::assembly::problem::Posed;
+use crate::assembly::responses::Responses;
 use crate::assembly::solve::follow;
 use crate::assembly::system::System;
 use crate::assembly::tables::Tables;
-use crate::assembly::{self, Interval, Ledger, Observer};
+use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::fmt;
+use std::sync::OnceLock;
 
 /// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
 /// unnoticed.
@@ -30,7 +31,7 @@ const AMPLIFIED: f64 = 5.0;
 const LEAST: f64 = 3e-3;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
-/// strikers, speeds and laws cost less.
+/// strikers, speeds and laws cost less. Threads may share one solver: each finds, to the last bit, what it would find alone.
 ///
 /// ```
 /// use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solver, Start, Striker, Structure};
@@ -39,7 +40,7 @@ const LEAST: f64 = 3e-3;
 /// // one mode at 50 Hz of a 1 kg beam, hit at its middle by a ball of 0.1 kg
 /// let mode = Mode { omega_rad_s: 314.0, damping_ratio: 0.02, shape: 2f64.sqrt() };
 /// let structure = Structure { modes: vec![mode] };
-/// let mut solver = Solver::new(&structure)?;
+/// let solver = Solver::new(&structure)?;
 /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
 /// let law = Hertz::new(1.8e10).unwrap();
 /// let solution = solver.solve(&ball, &law, None, &Settings::default())?;
@@ -52,10 +53,10 @@ pub struct Solver {
     modes: Vec<Mode>,
     /// Those that move the contact.
     moved: Vec<usize>,
-    /// Tables of the structure, with the system that they were last made for.
-    kept: Option<(System, Tables)>,
+    /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
+    tables: [OnceLock<Tables>; 2],
     /// The same structure in another unit of time, once it was needed.
-    otherwise: Option<Box<Solver>>,
+    otherwise: OnceLock<Box<Solver>>,
 }
 
 /// An impact to be solved.
@@ -65,6 +66,13 @@ pub(crate) struct Impact<'a> {
     pub law: &'a dyn ContactLaw,
     pub start: &'a Start,
     pub settings: &'a Settings,
+}
+
+/// An impact as an assembly, for all runs of it.
+struct Lowered {
+    assembly: Assembly<()>,
+    system: System,
+    responses: Responses,
 }
 
 /// What is kept of a run beside its result.
@@ -135,15 +143,22 @@ impl Solver {
     }
 
     fn turn_to_modes(&mut self, modes: Vec<Mode>) {
-        if let Some(otherwise) = &mut self.otherwise {
+        if let Some(otherwise) = self.otherwise.get_mut() {
             otherwise.turn_to_modes(time_unit::modes(&modes));
         }
-        self.moved = moved(&modes);
-        self.modes = modes;
+        let moved = moved(&modes);
+        let same = moved.len() == self.moved.len()
+            && moved.iter().zip(&self.moved).all(|(new, old)| modes[*new].of_body() == self.modes[*old].of_body());
+        if same {
+            self.tables.iter_mut().filter_map(OnceLock::get_mut).for_each(Tables::change_weights);
+        } else {
+            self.tables = Default::default();
+        }
+        (self.modes, self.moved) = (modes, moved);
     }
 
     fn unchecked(modes: Vec<Mode>) -> Solver {
-        Solver { moved: moved(&modes), modes, kept: None, otherwise: None }
+        Solver { moved: moved(&modes), modes, tables: Default::default(), otherwise: OnceLock::new() }
     }
 
     /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
@@ -151,7 +166,7 @@ impl Solver {
     /// # Errors
     /// Names the field, its value and what would be allowed, for input that poses no impact problem.
     pub fn solve(
-        &mut self,
+        &self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
@@ -165,7 +180,7 @@ impl Solver {
     /// # Errors
     /// As [`Solver::solve`].
     pub fn record<L: ContactLaw + Clone>(
-        &mut self,
+        &self,
         striker: &Striker,
         law: &L,
         start: Option<&Start>,
@@ -189,7 +204,7 @@ impl Solver {
     }
 
     pub(crate) fn solve_into(
-        &mut self,
+        &self,
         striker: &Striker,
         law: &dyn ContactLaw,
         start: Option<&Start>,
@@ -215,12 +230,13 @@ impl Solver {
         )?;
 
         let impact = Impact { striker, law, start, settings };
-        let mut run = self.run(&impact, settings.tolerance.min(LOOSEST), keep);
+        let mut lowered = self.lower(&impact);
+        let mut run = self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
         let mut counts = run.counts;
         let restitution = self.restitution(&run, striker, start);
         let restitution_uncertainty = restitution
             .filter(|_| settings.estimate_uncertainty)
-            .map(|value| self.uncertainty(value, &impact, &mut counts));
+            .map(|value| self.uncertainty(value, &impact, &mut lowered, &mut counts));
         let solution = Solution {
             outcome: run.outcome,
             restitution,
@@ -237,31 +253,31 @@ impl Solver {
 
     /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
     /// certain.
-    fn uncertainty(&mut self, value: f64, impact: &Impact, counts: &mut Counts) -> f64 {
+    fn uncertainty(&self, value: f64, impact: &Impact, lowered: &mut Lowered, counts: &mut Counts) -> f64 {
         let settings = impact.settings;
         let coarser = |factor: f64| factor * settings.tolerance.min(LOOSEST);
-        let same = self.again(impact, coarser(COARSER), counts);
+        let same = self.again(impact, lowered, coarser(COARSER), counts);
         let other = {
             let modes = &self.modes;
-            let solver = self.otherwise.get_or_insert_with(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
+            let solver = self.otherwise.get_or_init(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
             let (striker, start) = (time_unit::striker(impact.striker), time_unit::start(impact.start));
             let law = time_unit::Law(impact.law);
             let impact = Impact { striker: &striker, law: &law, start: &start, settings };
-            solver.again(&impact, coarser(OTHERWISE), counts)
+            solver.again(&impact, &mut solver.lower(&impact), coarser(OTHERWISE), counts)
         };
         let (Some(same), Some(other)) = (same, other) else { return 1.0 };
         let mut spread = (same - value).abs().max((other - value).abs());
         let mut times = ORDINARY;
         if spread > settings.tolerance {
-            let Some(third) = self.again(impact, coarser(THIRD), counts) else { return 1.0 };
+            let Some(third) = self.again(impact, lowered, coarser(THIRD), counts) else { return 1.0 };
             (spread, times) = (spread.max((third - value).abs()), AMPLIFIED);
         }
         (LEAST * settings.tolerance + times * spread).min(f64::MAX)
     }
 
     /// The restitution of the same impact at another tolerance.
-    fn again(&mut self, impact: &Impact, tolerance: f64, counts: &mut Counts) -> Option<f64> {
-        let run = self.run(impact, tolerance, Keep::Result);
+    fn again(&self, impact: &Impact, lowered: &mut Lowered, tolerance: f64, counts: &mut Counts) -> Option<f64> {
+        let run = self.run_lowered(impact, lowered, tolerance, Keep::Result);
         *counts += run.counts;
         self.restitution(&run, impact.striker, impact.start)
     }
@@ -279,9 +295,19 @@ impl Solver {
         &self.moved
     }
 
-    pub(crate) fn run(&mut self, impact: &Impact, tolerance: f64, keep: Keep) -> Run {
-        let Impact { striker, law, start, settings } = *impact;
-        let assembly = posed::assembly(&self.modes, &self.moved, striker, start);
+    pub(crate) fn run(&self, impact: &Impact, tolerance: f64, keep: Keep) -> Run {
+        self.run_lowered(impact, &mut self.lower(impact), tolerance, keep)
+    }
+
+    fn lower(&self, impact: &Impact) -> Lowered {
+        let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
+        let system = System::new(&assembly.with_laws(Vec::new()));
+        Lowered { assembly, system, responses: Responses::new() }
+    }
+
+    fn run_lowered(&self, impact: &Impact, lowered: &mut Lowered, tolerance: f64, keep: Keep) -> Run {
+        let Impact { law, start, settings, .. } = *impact;
+        let Lowered { assembly, system, responses } = lowered;
         let posed = assembly.with_laws(vec![law]);
         let wanted = assembly::Settings {
             end_s: f64::INFINITY,
@@ -293,8 +319,8 @@ impl Solver {
             rest_from_s: if keep == Keep::Record { settings.until_s } else { 0.0 },
         };
         let mut watch = Watch { intervals: Vec::new(), records: keep == Keep::Record };
-        let (system, tables) = self.tables(&posed);
-        let (run, stretches) = follow(&posed, (system, tables), &wanted, &mut watch, keep != Keep::Result);
+        let tables = self.tables[usize::from(posed.bodies.len() == 1)].get_or_init(|| Tables::new(system));
+        let (run, stretches) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep != Keep::Result);
         let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
             assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
@@ -323,25 +349,6 @@ impl Solver {
             energy: run.energy,
             stretches,
         }
-    }
-
-    /// The system of an assembly, and its tables, of which all that concerns the structure is kept.
-    fn tables(&mut self, posed: &Posed) -> (&System, &mut Tables) {
-        let system = System::new(posed);
-        let same = self.kept.take().filter(|(last, _)| last.modes == system.modes);
-        let tables = match same {
-            Some((last, mut tables)) => {
-                if last.links[0].elastic != system.links[0].elastic {
-                    tables.change_weights();
-                } else if last.links[0].rigid != system.links[0].rigid {
-                    tables.change_rigid_modes(&system);
-                }
-                tables
-            }
-            None => Tables::new(&system),
-        };
-        let (system, tables) = self.kept.insert((system, tables));
-        (system, tables)
     }
 
     pub(crate) fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {

@@ -82,7 +82,7 @@ pub struct Impact {
 impl Impact {
     /// At rest and touching, at this tolerance.
     pub fn solve(&self, tolerance: f64) -> Solution {
-        let mut solver = Solver::new(&self.structure).unwrap();
+        let solver = Solver::new(&self.structure).unwrap();
         solver.solve(&self.striker, &self.law, None, &super::settings(tolerance)).unwrap()
     }
 }
@@ -143,7 +143,7 @@ pub struct EdgeImpact {
 
 impl EdgeImpact {
     pub fn solve(&self, settings: &Settings) -> Solution {
-        let mut solver = Solver::new(&self.structure).unwrap();
+        let solver = Solver::new(&self.structure).unwrap();
         solver.solve(&self.striker, &self.law, self.start.as_ref(), settings).unwrap()
     }
 }

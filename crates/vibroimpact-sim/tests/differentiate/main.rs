@@ -124,7 +124,7 @@ impl Posed {
     }
 
     fn solve(&self, tolerance: f64) -> Solution {
-        let mut solver = Solver::new(&self.structure).unwrap();
+        let solver = Solver::new(&self.structure).unwrap();
         let settings = Settings { estimate_uncertainty: false, ..settings(tolerance) };
         solver.solve(&self.striker, &self.law, Some(&self.start), &settings).unwrap()
     }
@@ -138,7 +138,7 @@ impl Posed {
             let neighbours = near.each_ref().map(Posed::posing);
             parameters.push(Parameter { offsets, neighbours, changes_law: which == 5 });
         }
-        let mut solver = Solver::new(&self.structure).unwrap();
+        let solver = Solver::new(&self.structure).unwrap();
         solver.differentiate(&self.striker, &self.law, Some(&self.start), &settings(tolerance), &parameters).unwrap()
     }
 
@@ -299,7 +299,7 @@ fn bad_parameters_are_named() {
     let other = Posed::new(&pinned(2, 0.02, 0.3), ball(), hertz());
     let field = |offsets: [f64; 4], of: &Posed| {
         let parameter = Parameter { offsets, neighbours: [of.posing(); 4], changes_law: false };
-        let mut solver = Solver::new(&posed.structure).unwrap();
+        let solver = Solver::new(&posed.structure).unwrap();
         solver.differentiate(&ball(), &hertz(), None, &settings(1e-9), &[parameter]).unwrap_err().field
     };
     assert_eq!(field([1.0, 1.0, 2.0, 3.0], &posed), "parameters[0].offsets");

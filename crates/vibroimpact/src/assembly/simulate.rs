@@ -104,7 +104,7 @@ impl AssemblyScene {
         let contacts = posed.contacts.len();
         let mut watch = Watch::new(contacts, wanted.intervals, wanted.take, course, period_s, wanted.stop, wanted.tell);
         let in_scene = |fault| posed.in_scene(fault);
-        let mut solver = Solver::new(&posed.assembly).map_err(in_scene)?;
+        let solver = Solver::new(&posed.assembly).map_err(in_scene)?;
         let run = solver.run(&posed.settings, &mut watch).map_err(in_scene)?;
         let Watch { intervals, left_out, fault, course, moments, .. } = watch;
         let steady = moments.and_then(|moments| moments.steady());

@@ -60,7 +60,7 @@ impl Kept {
     }
 
     /// A solver for a structure, with the tables that it has from before.
-    pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&mut Solver, InvalidInput> {
+    pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&Solver, InvalidInput> {
         let known = self.solvers.iter().position(|(kept, _)| kept == structure);
         let last = match known.and_then(|place| self.solvers.remove(place)) {
             Some(known) => known,
@@ -86,6 +86,6 @@ impl Kept {
         });
         let fit = fit.count();
         self.solvers.truncate(1 + fit);
-        Ok(&mut self.solvers[0].1)
+        Ok(&self.solvers[0].1)
     }
 }

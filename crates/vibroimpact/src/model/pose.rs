@@ -117,7 +117,7 @@ impl<'a> Pose<'a> {
             estimate_uncertainty: false,
             ..settings
         };
-        let mut rigid = Solver::new(&Structure::default()).map_err(in_scene)?;
+        let rigid = Solver::new(&Structure::default()).map_err(in_scene)?;
         rigid.solve(&striker, &law, None, &checked).map_err(in_scene)?;
         let source = match &scene.structure {
             scene::Structure::Beam(beam) => {

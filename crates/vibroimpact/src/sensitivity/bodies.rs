@@ -122,7 +122,7 @@ fn differentiate(base: &Posed, around: &[Neighbours<Posed>]) -> Result<Different
         });
     }
     let in_scene = |fault| base.in_scene(fault);
-    let mut solver = Solver::new(&base.assembly).map_err(in_scene)?;
+    let solver = Solver::new(&base.assembly).map_err(in_scene)?;
     let settings = Settings { max_steps: MOST_PANELS, ..base.settings };
     let found = solver.differentiate(&settings, &parameters).map_err(in_scene)?;
     if found.run.outcome == Outcome::Stopped(vibroimpact_sim::assembly::Reason::Steps) {

@@ -95,7 +95,7 @@ fn differentiate(
         let neighbours = at.each_ref().map(|impact| impact.posing(&at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
     }
-    let mut solver = Solver::new(&base.structure).map_err(in_scene)?;
+    let solver = Solver::new(&base.structure).map_err(in_scene)?;
     let Impact { striker, law, start, .. } = base;
     let settings = Settings { tolerance: base.settings.tolerance, ..Settings::default() };
     let found = solver.differentiate(striker, law, start.as_ref(), &settings, &parameters).map_err(in_scene)?;

@@ -88,7 +88,7 @@ fn first_rebound_ratio(modes: Vec<Mode>, scene: &Scene) -> Result<Option<f64>, I
     let settings =
         Settings { tolerance: TOLERANCE, estimate_uncertainty: false, max_sub_impacts: 1, ..Settings::default() };
     // numbers beyond what the solver of modes takes are no reason to refuse an answer without them
-    let Ok(mut solver) = Solver::new(&Structure { modes }) else { return Ok(None) };
+    let Ok(solver) = Solver::new(&Structure { modes }) else { return Ok(None) };
     let Ok(found) = solver.solve(&striker, &law, None, &settings) else { return Ok(None) };
     let momentum = impact.mass_kg * impact.speed_m_s;
     let ratio = found.sub_impacts.first().map(|contact| contact.impulse_n_s / momentum - 1.0);

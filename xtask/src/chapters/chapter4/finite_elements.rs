@@ -40,8 +40,8 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         let damping_ratio = setup.damping_ratio;
         let pairs = discrete.omega_rad_s().iter().zip(shapes);
         let modes = pairs.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-        let mut solver = Solver::new(&Structure { modes })?;
-        Ok((setup.solve()?, setup.solve_with(&mut solver)?))
+        let solver = Solver::new(&Structure { modes })?;
+        Ok((setup.solve()?, setup.solve_with(&solver)?))
     })?;
     let rows: Vec<BothRow> = all
         .iter()

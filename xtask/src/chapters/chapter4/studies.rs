@@ -25,10 +25,10 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
         study.thin(&exponents, 7).iter().map(|x| case.parameters.speed_m_s * p.factor.powf(*x)).collect();
     let found = study.sweep(&p.locations_m, speeds.len(), |&location_m| {
         let setup = case.setup(beam, ball, location_m);
-        let mut solver = setup.solver()?;
+        let solver = setup.solver()?;
         speeds
             .iter()
-            .map(|&speed_m_s| Setup { speed_m_s, ..setup }.solve_with(&mut solver))
+            .map(|&speed_m_s| Setup { speed_m_s, ..setup }.solve_with(&solver))
             .collect::<Result<Vec<Row>, Failure>>()
     })?;
     let curve = |(k, rows): (usize, &Vec<Row>)| {

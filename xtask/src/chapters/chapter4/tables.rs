@@ -71,7 +71,7 @@ pub(in crate::chapters) fn of_beams<'a>(
     case: &Case,
     beams: &'a [Beam],
     (modes, residual): (usize, bool),
-    solve: impl Fn(&Setup, &mut Solver) -> Result<Row, Failure> + Sync,
+    solve: impl Fn(&Setup, &Solver) -> Result<Row, Failure> + Sync,
 ) -> Result<Vec<Table<'a>>, Failure> {
     let balls = study.thin(&case.balls, 4);
     let lists: Vec<Vec<f64>> = beams.iter().map(|beam| study.thin(&case.places(beam), 9)).collect();
@@ -79,8 +79,8 @@ pub(in crate::chapters) fn of_beams<'a>(
         beams.iter().zip(&lists).flat_map(|(beam, list)| list.iter().map(move |&b| (beam, b))).collect();
     let results = study.sweep(&places, balls.len(), |&(beam, location_m)| {
         let at = |ball: &Ball| Setup { modes, residual, ..case.setup(beam, *ball, location_m) };
-        let mut solver = at(&balls[0]).solver()?;
-        balls.iter().map(|ball| solve(&at(ball), &mut solver)).collect::<Result<Vec<Row>, Failure>>()
+        let solver = at(&balls[0]).solver()?;
+        balls.iter().map(|ball| solve(&at(ball), &solver)).collect::<Result<Vec<Row>, Failure>>()
     })?;
     let mut results = results.into_iter();
     let table = |(beam, places_m): (&'a Beam, Vec<f64>)| {

@@ -124,10 +124,10 @@ fn tables<'a>(
     let places: Vec<(&Beam, f64)> =
         variants.iter().zip(&lists).flat_map(|(variant, list)| list.iter().map(move |&b| (&variant.beam, b))).collect();
     let results = study.sweep(&places, balls.len(), |&(beam, location_m)| {
-        let mut solver = case.setup(beam, balls[0], location_m).solver()?;
+        let solver = case.setup(beam, balls[0], location_m).solver()?;
         balls
             .iter()
-            .map(|ball| case.setup(beam, *ball, location_m).solve_once_with(&mut solver))
+            .map(|ball| case.setup(beam, *ball, location_m).solve_once_with(&solver))
             .collect::<Result<Vec<Row>, Failure>>()
     })?;
     let mut results = results.into_iter();

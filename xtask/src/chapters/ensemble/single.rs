@@ -54,12 +54,12 @@ fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Fa
     let exponents = [0.0, -1.0, -0.5, 0.5, 1.0];
     let rows = study.sweep(&places, exponents.len(), |&(variant, location_m)| {
         let setup = case.setup(&variant.beam, ball, location_m);
-        let mut solver = setup.solver()?;
+        let solver = setup.solver()?;
         let e = exponents
             .iter()
             .map(|x| {
                 let speed_m_s = case.parameters.speed_m_s * p.factor.powf(*x);
-                Ok(Setup { speed_m_s, ..setup }.solve_with(&mut solver)?.e())
+                Ok(Setup { speed_m_s, ..setup }.solve_with(&solver)?.e())
             })
             .collect::<Result<Vec<f64>, Failure>>()?;
         let (step_m, slim_thickness_fraction) = variant.step.unwrap_or((f64::NAN, 1.0));

@@ -38,8 +38,8 @@ fn impacts(
         ..case.setup(location_m, modes)
     };
     let Some(first) = balls.first() else { return Ok(Vec::new()) };
-    let mut solver = at(first).solver()?;
-    balls.iter().map(|ball| at(ball).solve_with(&mut solver)).collect()
+    let solver = at(first).solver()?;
+    balls.iter().map(|ball| at(ball).solve_with(&solver)).collect()
 }
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {

@@ -81,8 +81,8 @@ fn one_beam(case: &Case, beam: &Beam, location_m: f64, balls: &[Ball]) -> Result
         ..case.setup(location_m, MODES)
     };
     let Some(first) = balls.first() else { return Ok(Vec::new()) };
-    let mut solver = at(first).solver()?;
-    balls.iter().map(|ball| at(ball).solve_once_with(&mut solver)).collect()
+    let solver = at(first).solver()?;
+    balls.iter().map(|ball| at(ball).solve_once_with(&solver)).collect()
 }
 
 fn picture(study: &mut Study, places: &[f64], diameters: &[u32], cells: &[Vec<Cell>]) -> Result<(), Failure> {
