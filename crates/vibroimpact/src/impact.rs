@@ -146,17 +146,15 @@ impl Scene {
         }
         let (structure, remainder_modes) = self.structure_of(count, kept)?;
         let start = self.start(&structure.modes, remainder_modes)?;
-        Ok(Impact {
-            structure,
-            remainder_modes,
-            striker: Striker {
-                mass_kg: self.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
-                speed_m_s: self.striker.speed_m_s,
-            },
-            law: self.contact.law(&self.striker)?,
-            start,
-            settings,
-        })
+        let striker = self.posed_striker()?;
+        let law = self.contact.law(&self.striker)?;
+        Ok(Impact { structure, remainder_modes, striker, law, start, settings })
+    }
+
+    /// The striker in the terms of the solvers.
+    pub(crate) fn posed_striker(&self) -> Result<Striker, InvalidInput> {
+        let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
+        Ok(Striker { mass_kg, speed_m_s: self.striker.speed_m_s })
     }
 
     /// The fall of a rod in the terms of the solver.

@@ -2,6 +2,7 @@
 
 use invalid_input::{InvalidInput, Path};
 use vibroimpact_sim::infinite;
+use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
 use crate::scene::{Contact, Scene, Structure};
@@ -43,9 +44,8 @@ impl Scene {
             let law = format!("\"{}\"", self.contact.law_name());
             return Err(InvalidInput::new(["contact", "law"], law, "hertz, the law of impacts on infinite structures"));
         };
-        let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
+        let Striker { mass_kg, speed_m_s } = self.posed_striker()?;
         let stiffness_n_m1_5 = stiffness.of(&self.striker)?;
-        let speed_m_s = self.striker.speed_m_s;
         match &self.structure {
             Structure::InfiniteBeam(beam) => {
                 let section = beam.section().map_err(|fault| fault.within("structure"))?;

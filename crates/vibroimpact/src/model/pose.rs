@@ -98,10 +98,7 @@ impl<'a> Pose<'a> {
     /// Poses a scene that is not infinite.
     pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
         scene.require_yield_strength()?;
-        let striker = Striker {
-            mass_kg: scene.striker.mass_kg().map_err(|fault| fault.within("striker"))?,
-            speed_m_s: scene.striker.speed_m_s,
-        };
+        let striker = scene.posed_striker()?;
         let law = scene.contact.law(&scene.striker)?;
         let chosen = chooses_modes(scene);
         let settings = Settings::default();
