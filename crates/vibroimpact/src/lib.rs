@@ -54,7 +54,7 @@
 //! rotation. Gravity and friction are left out during the impact. The mathematics, with its symbols, is in the crates that solve.
 
 // without files some helpers of sweeps and pictures have no user
-#![cfg_attr(not(feature = "files"), allow(dead_code))]
+#![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
 
 mod impact;
 mod in_scene;
