@@ -97,8 +97,6 @@ pub struct Differentiated {
 pub(crate) const COARSER: f64 = 32.0;
 /// Uncertainty divided by the difference from them.
 const TIMES: f64 = 10.0;
-/// What a derivative may miss of its size in any case, in tolerances of the run: two motions can agree by chance.
-const BY_CHANCE: f64 = 5.0;
 /// Digits that differences of the neighbours lose: what a derivative may miss of its size besides.
 const ROUNDING: f64 = 1e-10;
 
@@ -122,10 +120,11 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// At this tolerance of the run, from neighbours with these offsets, which magnify the rounding of what poses it.
+    /// At this tolerance of the run, from neighbours with these offsets, which magnify the rounding of what poses it. Two motions
+    /// can agree by chance: a derivative may miss as large a part of itself as the coarser one is solved to in any case.
     pub fn new(tolerance: f64, offsets: &[f64; 4]) -> Known {
         let nearest = offsets.iter().map(|offset| offset.abs()).filter(|offset| *offset > 0.0).fold(f64::MAX, f64::min);
-        Known { relative: BY_CHANCE * tolerance + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
+        Known { relative: COARSER * tolerance + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
     }
 
     /// A derivative of this output, with that along the coarser motion.
