@@ -4,8 +4,8 @@ mod gallery;
 
 use gallery::{gallery, named, restitution};
 use proptest::prelude::*;
-use serde_json::Value;
-use vibroimpact::assembly::AxialEnd;
+use serde_json::{Value, json};
+use vibroimpact::assembly::{AnyScene, AxialEnd};
 use vibroimpact::model::{Model, Modes};
 use vibroimpact::scene::{BeamTheory, Contact, Edge, End, Modal, PlateTheory, Structure};
 use vibroimpact::{Scene, SceneError};
@@ -123,6 +123,47 @@ fn every_law_of_contact_models_can_be_named() {
         let message = Scene::from_json(&slip).unwrap_err().to_string();
         assert!(message.contains(scene.contact.law_name()), "{message}");
     }
+}
+
+/// A scene of the gallery as a tree.
+fn tree(name: &str) -> Value {
+    serde_json::from_str(&named(name).to_json()).unwrap()
+}
+
+/// A number that its law refuses is told by the name that it has in the scene.
+#[test]
+fn faults_of_a_law_name_the_field_of_the_scene() {
+    for contact in [
+        json!({ "law": "hertz", "stiffness_n_m1_5": 1e9 }),
+        json!({ "law": "viscous", "stiffness_n_m1_5": 1e9, "restitution": 0.9 }),
+        json!({ "law": "hysteretic", "stiffness_n_m1_5": 1e9, "theta_m": 1.6, "beta": 1.4, "k_bar": 0.4 }),
+        json!({ "law": "linear-spring", "stiffness_n_m": 1e6 }),
+        json!({ "law": "power", "stiffness_n_m_n": 1e9, "exponent": 1.4 }),
+        json!({ "law": "felt", "stiffness_n_m_n": 1e12, "exponent": 2.5, "retardation_time_s": 1e-5 }),
+        json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.5 }),
+        json!({ "law": "hunt-crossley", "stiffness_n_m1_5": 1e9, "restitution": 0.8 }),
+        json!({ "law": "hunt-crossley", "stiffness_n_m_n": 1e8, "exponent": 1.3, "damping_s_m": 0.1 }),
+        json!({ "law": "lankarani-nikravesh", "stiffness_n_m1_5": 1e9, "restitution": 0.9 }),
+        json!({ "law": "flores", "stiffness_n_m1_5": 1e9, "restitution": 0.6 }),
+        json!({ "law": "elastoplastic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "yield_pressure_pa": 1e9 }),
+    ] {
+        for (key, _) in contact.as_object().unwrap().iter().filter(|(_, value)| value.is_number()) {
+            let mut scene = tree("pinned-beam-small-ball");
+            scene["contact"] = contact.clone();
+            scene["contact"][key] = json!(-3.5);
+            let fault = Scene::from_value(&scene).and_then(|scene| scene.impact().map(|_| ())).unwrap_err();
+            assert_eq!(fault.field.to_string(), format!("contact.{key}"), "{contact}");
+        }
+    }
+}
+
+#[test]
+fn what_a_scene_lacks_is_named() {
+    let mut scene = tree("pinned-beam-small-ball");
+    scene["structure"] = json!({ "kind": "modal", "omega_rad_s": [100], "points": {} });
+    assert_eq!(Scene::from_value(&scene).unwrap_err().field.to_string(), "structure.points");
+    let bodiless = json!({ "contacts": [], "end_s": 1 });
+    assert_eq!(AnyScene::from_value(&bodiless).unwrap_err().field.to_string(), "bodies");
 }
 
 #[test]

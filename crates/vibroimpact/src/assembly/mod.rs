@@ -80,10 +80,13 @@ impl AnyScene {
     /// # Errors
     /// As [`Scene::from_value`] and [`AssemblyScene::from_value`].
     pub fn from_value(value: &Value) -> Result<AnyScene, InvalidInput> {
-        match value.get("bodies") {
-            Some(_) => Ok(AnyScene::Bodies(Box::new(AssemblyScene::from_value(value)?))),
-            None => Ok(AnyScene::Impact(Box::new(Scene::from_value(value)?))),
-        }
+        // contacts without a structure want bodies, of which the fault then tells
+        let of_bodies =
+            value.get("bodies").is_some() || value.get("contacts").is_some() && value.get("structure").is_none();
+        Ok(match of_bodies {
+            true => AnyScene::Bodies(Box::new(AssemblyScene::from_value(value)?)),
+            false => AnyScene::Impact(Box::new(Scene::from_value(value)?)),
+        })
     }
 
     /// Reads a scene from a file: TOML if its name ends in `.toml`, JSON otherwise. Tables that the scene names are read

@@ -227,15 +227,20 @@ impl Contact {
                 .map(Law::from)
             }
             Contact::HuntCrossley { stiffness, stiffness_n_m_n, exponent, damping_s_m, restitution } => {
-                let (k, n) = match (stiffness_n_m_n, exponent) {
-                    (None, None) => (stiffness.of(striker)?, 1.5),
-                    general => stiffness.or_general(general)?,
+                let hertzian = stiffness_n_m_n.is_none() && exponent.is_none();
+                let (k, n) = match hertzian {
+                    true => (stiffness.of(striker)?, 1.5),
+                    false => stiffness.or_general((stiffness_n_m_n, exponent))?,
                 };
-                match damping(("damping_s_m", damping_s_m), restitution)? {
+                let law = match damping(("damping_s_m", damping_s_m), restitution)? {
                     Damping::Given(c) => HuntCrossley::new(k, n, c),
                     Damping::FromRestitution(e) => HuntCrossley::with_restitution(k, n, e, speed),
-                }
-                .map(Law::from)
+                };
+                law.map(Law::from).map_err(|fault| match fault.field.first() {
+                    // the scene states Hertz's stiffness
+                    Some("stiffness_n_m_n") if hertzian => InvalidInput { field: "stiffness_n_m1_5".into(), ..fault },
+                    _ => fault,
+                })
             }
             Contact::LankaraniNikravesh { stiffness, restitution, lowest_approach_speed_m_s } => {
                 LankaraniNikravesh::new(stiffness.of(striker)?, restitution).and_then(|law| {

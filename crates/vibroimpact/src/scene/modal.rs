@@ -79,7 +79,11 @@ impl Modal {
                 "a list of at least one frequency; an immovable surface is a striker with \"immovable\": true";
             return Err(InvalidInput::new("omega_rad_s", "[]", allowed));
         }
-        if modal.shape_at_location.is_empty() && value.get("points").is_none() {
+        if modal.points.is_empty() && value.get("points").is_some() {
+            let allowed = "at least one point by its name, each with its shape; or give shape_at_location";
+            return Err(InvalidInput::new("points", "{}", allowed));
+        }
+        if modal.shape_at_location.is_empty() && modal.points.is_empty() {
             let allowed = "a list of finite numbers, one a mode; or give points, each with its shape";
             return Err(match value.get("shape_at_location") {
                 Some(_) => InvalidInput::new("shape_at_location", "[]", allowed),
