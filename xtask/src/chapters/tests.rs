@@ -68,6 +68,16 @@ fn check_chapter(part: Part, figures: &[&str], tables: &[&str]) {
 }
 
 #[test]
+fn the_whole_thesis_is_reproduced_in_its_quick_form() {
+    let folder = tempfile::tempdir().unwrap();
+    run_all(folder.path(), true, None).unwrap();
+    for chapter in 2..=8 {
+        let folder = folder.path().join(format!("chapter-{chapter}"));
+        assert!(fs::read_dir(&folder).is_ok_and(|files| files.count() > 2), "{}", folder.display());
+    }
+}
+
+#[test]
 fn chapter_2_is_complete_and_the_same_on_any_number_of_threads() {
     let figures = [
         "fig-2-03",
