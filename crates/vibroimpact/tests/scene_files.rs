@@ -380,7 +380,7 @@ fn points_of_a_modal_structure_are_named() {
         (with("/structure/points/tip/shape", json!([1, 1e200])), "structure.points.tip.shape[1]"),
         (with("/structure/points/tip", json!([1])), "structure.points.tip"),
         (with("/structure/points/tip/colour", json!(1)), "structure.points.tip.colour"),
-        (with("/structure/points", json!({})), "location"),
+        (with("/structure/points", json!({})), "structure.points"),
         (with("/structure/shape_at_location", json!([1, 1])), "structure.shape_at_location"),
         (with("/structure/static_compliance_m_n", json!(1)), "structure.static_compliance_m_n"),
     ] {
