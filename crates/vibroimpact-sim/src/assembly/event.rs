@@ -169,9 +169,6 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
     if length <= FINEST {
         return Some(from + half);
     }
-    if falls_once(b, level) {
-        return Some(from + length * only_root(b, level, FINEST / length));
-    }
     let (mut left, mut right) = ([0.0; POINTS], *b);
     for i in 0..POINTS {
         left[i] = right[0];
@@ -180,50 +177,6 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
         }
     }
     first_at_or_below(&left, level, from, half).or_else(|| first_at_or_below(&right, level, from + half, half))
-}
-
-/// Whether the coefficients, of which the first is above the level, go below it for good. A polynomial has no more roots than
-/// its Bernstein coefficients have changes of sign, so that it then falls through the level once.
-fn falls_once(b: &[f64; POINTS], level: f64) -> bool {
-    let above = b.iter().take_while(|b| **b > level).count();
-    b[above..].iter().all(|b| *b < level)
-}
-
-/// Where it does, to within `finest`: by false positions, of which the end that stays is weighted half (Illinois).
-fn only_root(b: &[f64; POINTS], level: f64, finest: f64) -> f64 {
-    let (mut low, mut high) = ((0.0, b[0] - level), (1.0, b[POINTS - 1] - level));
-    let mut last = 0.0;
-    while high.0 - low.0 > finest {
-        let place = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-        let margin = bernstein_sum(b, place) - level;
-        if (place - last).abs() <= 0.1 * finest || margin == 0.0 {
-            return place;
-        }
-        if margin > 0.0 {
-            if place > last {
-                high.1 *= 0.5;
-            }
-            low = (place, margin);
-        } else {
-            if place < last {
-                low.1 *= 0.5;
-            }
-            high = (place, margin);
-        }
-        last = place;
-    }
-    0.5 * (low.0 + high.0)
-}
-
-/// The polynomial with these Bernstein coefficients at `s`, by de Casteljau's steps.
-fn bernstein_sum(b: &[f64; POINTS], s: f64) -> f64 {
-    let mut values = *b;
-    for last in (1..POINTS).rev() {
-        for k in 0..last {
-            values[k] += s * (values[k + 1] - values[k]);
-        }
-    }
-    values[0]
 }
 
 /// From values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to
