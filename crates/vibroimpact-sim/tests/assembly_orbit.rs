@@ -1,6 +1,6 @@
 //! Periodic motions against closed forms.
 
-use contact_models::{Law, LinearSpring};
+use contact_models::{KelvinVoigt, Law, LinearSpring};
 use std::cell::Cell;
 use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
@@ -221,4 +221,37 @@ fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
     let folds: Vec<f64> = branch.special.iter().filter(|p| p.kind == Special::Fold).map(|p| p.parameter).collect();
     assert!(folds.len() >= 2 && folds[0] > 10.5, "{folds:?} {:?}", branch.special);
     assert!(branch.points.iter().any(|point| !point.orbit.stable));
+}
+
+/// A body of two modes against a damped stop: where the motion of one period loses its stability to one with a second frequency, a
+/// pair of complex multipliers has the size 1, and it is larger on one side only.
+#[test]
+fn a_pair_of_multipliers_leaves_the_unit_circle_at_a_neimark_sacker_point() {
+    let driven = |omega_rad_s: f64| -> Result<Assembly<Law>, InvalidInput> {
+        let mode = |omega_rad_s| BodyMode { omega_rad_s, damping_ratio: 0.0255 };
+        let law = Law::from(KelvinVoigt::new(81_040.0, 6.69)?);
+        let tip = Point::OfBody { body: 0, shape: vec![0.376, 0.658] };
+        let force = Force::Harmonic { force_n: 1.0, omega_rad_s, phase_rad: 0.0 };
+        Ok(Assembly {
+            bodies: vec![Body::at_rest(vec![mode(7.12), mode(17.15)])],
+            contacts: vec![Contact { sides: [Point::Ground, tip], gap_m: 0.0, law }],
+            loads: vec![Load { body: 0, shape: vec![0.985, 0.783], force }],
+        })
+    };
+    let branch = follow_branch(driven, &BranchSettings::over(16.9, 17.9), |_| true).unwrap();
+    let found: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::NeimarkSacker).collect();
+    assert_eq!(found.len(), 1, "{:?}", branch.special);
+    // by the multipliers of the neighbours on the branch, between which it lies
+    let size = |k: usize| {
+        let orbit: &vibroimpact_sim::assembly::Orbit = &branch.points[k].orbit;
+        let complex = orbit.floquet_multipliers.iter().filter(|m| m[1] != 0.0);
+        complex.map(|m| m[0].hypot(m[1])).fold(0.0, f64::max)
+    };
+    let [before, after] = [found[0].before_orbit - 1, found[0].before_orbit];
+    let [low, high] = [before, after].map(|k| branch.points[k].parameter);
+    assert!((size(before) - 1.0) * (size(after) - 1.0) < 0.0);
+    let between = low + (high - low) * (1.0 - size(before)) / (size(after) - size(before));
+    assert!((found[0].parameter - between).abs() < 0.1 * (high - low), "{} {between}", found[0].parameter);
+    assert!(found[0].uncertainty < 1e-6);
+    assert_ne!(branch.points[before].orbit.stable, branch.points[after].orbit.stable);
 }
