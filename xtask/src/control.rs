@@ -102,13 +102,15 @@ fn draws(radius_m: f64, blur: f64, sequence: &str, count: usize, progress: &Prog
 }
 
 fn row(radius_m: f64, sequence: &str, draws: &[Draw]) -> String {
+    let restitutions: Vec<f64> = draws.iter().map(|draw| draw.restitution).collect();
+    let centre = mean(&restitutions);
     let model = |terms: usize| -> Vec<f64> {
-        let count = draws.len() as f64;
-        let project = |k: usize| draws.iter().map(|draw| draw.terms[k] * draw.restitution).sum::<f64>() / count;
+        // without the mean, whose product with the scatter of a term would hide a small slope
+        let product = |k: usize, draw: &Draw| draw.terms[k] * (draw.restitution - centre);
+        let project = |k: usize| draws.iter().map(|draw| product(k, draw)).sum::<f64>() / draws.len() as f64;
         let weights: Vec<f64> = (0..terms).map(project).collect();
         draws.iter().map(|draw| weights.iter().zip(&draw.terms).map(|(weight, term)| weight * term).sum()).collect()
     };
-    let restitutions: Vec<f64> = draws.iter().map(|draw| draw.restitution).collect();
     let (linear, quadratic) = (model(LINEAR), model(5));
     let means = by_replicate(&restitutions, mean);
     let gain_of = |of: &[f64], figure: &dyn Fn(&[f64]) -> f64| {

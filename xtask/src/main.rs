@@ -3,6 +3,7 @@
 mod bench;
 mod book;
 mod chapters;
+mod control;
 mod examples;
 mod fuzz;
 mod identification;
@@ -125,6 +126,8 @@ enum Task {
     },
     /// Test identification: random tables of synthetic measurements with noise
     StudyIdentify(identification::Wanted),
+    /// Measure what a control by derivatives would gain over plain draws of uncertain fields
+    StudyControl(control::Wanted),
 }
 
 fn main() -> ExitCode {
@@ -169,6 +172,7 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
         Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
         Task::StudyIdentify(wanted) => say(&identification::run(&wanted)?),
+        Task::StudyControl(wanted) => say(&control::run(&wanted)?),
     }
 }
 
