@@ -138,6 +138,7 @@ impl FlightBounds {
         };
         let bounds: Vec<f64> = elastic.iter().map(bound).collect();
         let total: f64 = bounds.iter().sum();
+        // room for the cuts of a hundred modes
         let (mut cuts, mut below, mut curvature) = (Vec::with_capacity(24), 0.0, 0.0);
         for i in 0..=n {
             // every count up to 4, then in ratios of about 4/3

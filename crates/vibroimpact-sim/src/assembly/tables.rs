@@ -6,10 +6,10 @@ use super::damping::Damping;
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
 use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
-use crate::panel::forcing::{Compliance, LANES, Way, part};
+use crate::panel::forcing::{Compliance, Way, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
-use crate::panel::vector::{sum_over, vectorized};
+use crate::panel::vector::{LANES, sum_over, vectorized};
 use std::array;
 use std::sync::OnceLock;
 
@@ -352,7 +352,7 @@ impl Sums<'_> {
         if self.count > 0 {
             self.add_waiting();
         }
-        self.compliances.iter_mut().for_each(Compliance::begin_body);
+        self.compliances.iter_mut().for_each(Compliance::end_body);
     }
 
     fn at_nodes(&self) -> Vec<[Nodal; Q]> {

@@ -9,7 +9,7 @@ use super::solution::Counts;
 use super::system::{Link, Span, System};
 use super::tables::Tables;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, RECIPROCAL, TAYLOR, apply, dot, evaluate, evaluate_at};
-use crate::panel::vector::vectorized;
+use crate::panel::vector::{LANES, vectorized};
 use std::array;
 
 /// The series are used while the fastest motion turns by at most this many radians.
@@ -308,9 +308,6 @@ pub(crate) fn series_of(
     loads.add_series(contact, time_s, &mut series);
     series
 }
-
-/// Modes taken at a time, for the vector units.
-const LANES: usize = 4;
 
 /// One value of each of the modes from `k` on; zeros beyond the last.
 #[inline(always)]

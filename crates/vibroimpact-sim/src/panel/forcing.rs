@@ -14,7 +14,7 @@
 
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
 use super::oscillator::{BodyMode, NEARLY_CRITICAL, Propagator, propagate, response};
-use super::vector::vectorized;
+use super::vector::{LANES, sum_of_lanes, vectorized};
 use num_complex::Complex64;
 use std::array;
 
@@ -78,9 +78,6 @@ pub(crate) struct Compliance {
     legendre: Matrix,
 }
 
-/// Slow modes taken at a time, for the vector units.
-pub(crate) const LANES: usize = 4;
-
 impl Compliance {
     pub fn new() -> Compliance {
         Compliance {
@@ -112,8 +109,8 @@ impl Compliance {
         }
     }
 
-    /// What the modes of one body need of their series does not depend on another body.
-    pub fn begin_body(&mut self) {
+    /// Ends a body: what the modes of the next need of their series does not depend on it.
+    pub fn end_body(&mut self) {
         self.terms = 2;
     }
 
@@ -156,7 +153,7 @@ impl Compliance {
                 }
                 let mut compliance = [[0.0; Q]; Q];
                 for (lanes, power) in self.impulse[..self.most_terms].iter().zip(&basis.power) {
-                    let kernel = h * ((lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+                    let kernel = h * sum_of_lanes(*lanes);
                     for j in 0..Q {
                         for i in 0..Q {
                             compliance[j][i] -= kernel * power[j][i];

@@ -5,8 +5,8 @@
 use pulp::Arch;
 use std::sync::LazyLock;
 
-/// Partial sums of a sum over modes.
-const LANES: usize = 4;
+/// Partial sums of a sum over modes, and modes taken at a time.
+pub(crate) const LANES: usize = 4;
 
 static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
 
@@ -14,6 +14,12 @@ static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
 #[inline]
 pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     ARCH.dispatch(work)
+}
+
+/// The sum that the partial sums make up.
+#[inline(always)]
+pub(crate) fn sum_of_lanes(lanes: [f64; LANES]) -> f64 {
+    (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])
 }
 
 /// `sum term(values of mode k)`, of rows of equal length.
@@ -34,7 +40,7 @@ pub(crate) fn sum_over<const ROWS: usize, const OUT: usize>(
             }
         }
     }
-    let mut total = sums.map(|lanes| (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]));
+    let mut total = sums.map(sum_of_lanes);
     for i in 0..n % LANES {
         let terms = term(chunks.map(|(_, rest)| rest[i]));
         for out in 0..OUT {
