@@ -10,8 +10,8 @@ use super::stencil::Stencil;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
-/// Nearer to critical damping, in `|1 - zeta^2|`, a change of the damping has no digits.
-const CRITICAL: f64 = 1e-6;
+/// Nearer to critical damping, in `|1 - zeta^2|`, `c_1` and `c_2` would magnify what panels miss of the force times the time.
+const CRITICAL: f64 = 0.1;
 
 /// What a unit of a parameter changes, by modes in the order of [`System`].
 pub(crate) struct Change<'a> {
@@ -31,8 +31,8 @@ pub(crate) struct Change<'a> {
     pub stencil: Stencil<4>,
     /// Whether frequencies or dampings change.
     pub moves_modes: bool,
-    /// The damping ratio of a mode whose damping changes and is next to critical, where `c_1` and `c_2` have no digits.
-    pub critical: Option<f64>,
+    /// The modes next to critical damping, by how much their damping ratios change: `c_1` and `c_2` have none of it.
+    pub critical: Vec<(usize, f64)>,
 }
 
 impl<'a> Change<'a> {
@@ -50,7 +50,7 @@ impl<'a> Change<'a> {
             loads: LoadChange::new(posed, stencil),
             stencil,
             moves_modes: false,
-            critical: None,
+            critical: Vec::new(),
         };
         for (body, places) in system.place.iter().enumerate() {
             let bodies = posed.map(|posed| &posed.bodies[body]);
@@ -63,12 +63,13 @@ impl<'a> Change<'a> {
                     let by_omega = stencil.slope(bodies.map(|body| body.modes[k].omega_rad_s)) / mode.omega_rad_s;
                     let by_zeta = stencil.slope(bodies.map(|body| body.modes[k].damping_ratio));
                     let to_critical = (1.0 - zeta) * (1.0 + zeta);
-                    let by_zeta = if by_zeta == 0.0 { 0.0 } else { by_zeta / to_critical };
+                    change.stretch[place] = by_omega;
                     if by_zeta != 0.0 && to_critical.abs() < CRITICAL {
-                        change.critical = Some(zeta);
+                        change.critical.push((place, by_zeta));
+                    } else if by_zeta != 0.0 {
+                        change.fade[place] = mode.omega_rad_s * by_zeta / to_critical;
+                        change.stretch[place] -= zeta * by_zeta / to_critical;
                     }
-                    change.fade[place] = mode.omega_rad_s * by_zeta;
-                    change.stretch[place] = by_omega - zeta * by_zeta;
                 }
             }
         }
@@ -101,7 +102,7 @@ impl<'a> Change<'a> {
             loads: None,
             stencil: Stencil::central(1.0),
             moves_modes: false,
-            critical: None,
+            critical: Vec::new(),
         };
         let started = if of_rate { &mut change.rate } else { &mut change.amplitude };
         started[place] = 1.0;

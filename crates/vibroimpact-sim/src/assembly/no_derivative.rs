@@ -32,11 +32,6 @@ pub enum NoDerivative {
         /// When (s).
         time_s: f64,
     },
-    /// The damping of a mode changes that is damped critically, or so nearly that no digits would be left.
-    CriticalDamping {
-        /// Of the mode.
-        damping_ratio: f64,
-    },
     /// The derivatives are no finite numbers.
     Infinite,
 }

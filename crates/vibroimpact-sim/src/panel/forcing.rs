@@ -119,14 +119,15 @@ impl Compliance {
         match way {
             Way::Series => {}
             Way::ByParts(sums) => sums.add_to(self, weight),
-            Way::Quadrature => self.add_by_quadrature(mode, weight, h),
+            Way::Quadrature => self.add_response(weight, h, |t| response(mode, t).0),
         }
     }
 
-    fn add_by_quadrature(&mut self, mode: &BodyMode, weight: f64, h: f64) {
+    /// Adds with this weight what moves so far after a time under unit Legendre forces.
+    pub fn add_response(&mut self, weight: f64, h: f64, moved: impl Fn(f64) -> Nodal) {
         let basis = &*BASIS;
         for i in 0..Q {
-            let to_node = response(mode, basis.nodes[i] * h).0;
+            let to_node = moved(basis.nodes[i] * h);
             for n in 0..Q {
                 for m in 0..=n {
                     self.legendre[n][i] -= weight * basis.restricted[i][n][m] * to_node[m];

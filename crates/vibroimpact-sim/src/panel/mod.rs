@@ -1,5 +1,6 @@
 //! One panel of time: the force on it as a polynomial, and what a vibrating mode does meanwhile, exactly.
 
+pub(crate) mod by_damping;
 pub(crate) mod dyadic;
 pub(crate) mod forcing;
 pub(crate) mod legendre;

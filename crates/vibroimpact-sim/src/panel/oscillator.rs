@@ -85,8 +85,17 @@ pub(crate) fn response(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
     (moments.map(|e| h * e.im / omega_d), moments.map(|e| h * (lambda * e).im / omega_d))
 }
 
-/// As [`response`], for any damping, on panels that grow away from the end of the step.
+/// As [`response`], for any damping.
 fn response_by_quadrature(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
+    response_of(mode, h, |t| {
+        let kernel = propagate(mode, t);
+        (kernel.p12, kernel.p22)
+    })
+}
+
+/// As [`response`], for any kernel of displacement and velocity that changes with the time as this mode does, on panels that
+/// grow away from the end of the step.
+pub(crate) fn response_of(mode: &BodyMode, h: f64, kernel: impl Fn(f64) -> (f64, f64)) -> (Nodal, Nodal) {
     let (mut displacement, mut velocity) = ([0.0; Q], [0.0; Q]);
     let fastest = mode.omega_rad_s * 2.0 * mode.damping_ratio;
     let mut from = 0.0;
@@ -94,11 +103,11 @@ fn response_by_quadrature(mode: &BodyMode, h: f64) -> (Nodal, Nodal) {
     while from < 1.0 {
         for &(x, w) in &BASIS.fine {
             let u = from + (to - from) * x;
-            let kernel = propagate(mode, u * h);
+            let (moved, speed) = kernel(u * h);
             let weight = w * (to - from) * h;
             for (n, p) in legendre(1.0 - u).into_iter().enumerate() {
-                displacement[n] += weight * kernel.p12 * p;
-                velocity[n] += weight * kernel.p22 * p;
+                displacement[n] += weight * moved * p;
+                velocity[n] += weight * speed * p;
             }
         }
         from = to;

@@ -25,10 +25,6 @@ pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> 
             format!("an event just where a load breaks, at {} s", seconds(time_s)),
             "breaks of loads apart from events of contacts",
         ),
-        NoDerivative::CriticalDamping { damping_ratio } => (
-            format!("a mode whose damping changes, with the damping ratio {damping_ratio}"),
-            "damping ratios that differ from 1, critical damping, by a millionth or more",
-        ),
         _ => ("a run whose derivatives are no finite numbers".to_owned(), "a run with finite derivatives"),
     };
     InvalidInput::new("scene", value, format!("{allowed}; there is no derivative otherwise"))

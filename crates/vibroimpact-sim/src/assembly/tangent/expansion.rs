@@ -1,11 +1,13 @@
 //! All modes on one length of panels, with responses weighed as the changes need them.
 
+use super::panel::add;
 use crate::assembly::change::Change;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tables::{Forced, with_rigid_modes};
+use crate::panel::by_damping::ByDamping;
 use crate::panel::dyadic::{Rotation, level_within, step_s};
 use crate::panel::legendre::{Nodal, Q};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 /// Free motion and responses of all modes on one length of panels, with what the changes weigh them by.
@@ -16,6 +18,30 @@ pub(super) struct Expansion {
     pub own: Vec<[Nodal; Q]>,
     /// The same for each change: the weights of `F`, and of `t F` and `t F'` where modes change.
     pub changed: Vec<Vec<[Option<[Nodal; Q]>; 3]>>,
+    /// The modes next to critical damping whose damping changes.
+    critical: BTreeMap<usize, ByDamping>,
+}
+
+impl Expansion {
+    /// The modes next to critical damping whose damping a change moves, and by how much.
+    pub fn critical<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = (usize, f64, &'a ByDamping)> {
+        change.critical.iter().filter_map(|(k, by_zeta)| Some((*k, *by_zeta, self.critical.get(k)?)))
+    }
+
+    /// Adds to what `F` is weighed by what the responses of these modes change, with the products of the contacts' weights.
+    fn add_critical(&mut self, changes: &[Change], products: &[Vec<f64>]) {
+        for (change, pairs) in changes.iter().zip(&mut self.changed) {
+            for (k, by_zeta) in &change.critical {
+                let Some(mode) = self.critical.get(k) else { continue };
+                for (product, [of_force, _, _]) in products.iter().zip(&mut *pairs) {
+                    let of_force = of_force.get_or_insert([[0.0; Q]; Q]);
+                    for (column, response) in of_force.iter_mut().zip(&mode.compliance) {
+                        add(column, by_zeta * product[*k], response);
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Expansions of panels whose length comes again, by that length and the contacts that are closed: for one system and the
@@ -88,10 +114,17 @@ impl Expansions {
                 with_rigid_modes(*elastic, rigid.map(|(_, weight)| weight).sum(), h)
             })
             .collect();
+        let by_damping = |(k, _): &(usize, f64)| {
+            let mode = &system.modes[*k];
+            (*k, if closed.is_empty() { ByDamping::of_free_motion(mode, h) } else { ByDamping::new(mode, h) })
+        };
+        let critical = changes.iter().flat_map(|change| &change.critical).map(by_damping).collect();
         let pick = |place: &[Option<usize>; 3]| place.map(|place| place.map(|i| whole[i]));
         let changed = places.chunks(n.max(1) * n.max(1)).map(|places| places.iter().map(pick).collect()).collect();
         let own = whole[..n * n].to_vec();
-        let expansion = Rc::new(Expansion { rotation, forced, own, changed });
+        let mut expansion = Expansion { rotation, forced, own, changed, critical };
+        expansion.add_critical(changes, &weights[..n * n]);
+        let expansion = Rc::new(expansion);
         if step_s(level_within(h)) == h {
             self.0.insert(key, expansion.clone());
         }

@@ -19,7 +19,9 @@
 //! ```
 //!
 //! where `y` is the motion of the same mode under other forces, for which the propagators and responses of the panel
-//! serve. Nothing is integrated numerically. At critical damping, `zeta = 1`, a change of damping has no such form.
+//! serve. Next to critical damping, `zeta = 1`, `c_1` and `c_2` would magnify what the panel misses of `t f`. Such a mode
+//! keeps what `domega` alone makes of them, and adds the derivatives of its free motion and of its responses by `zeta`, which
+//! have a closed form of their own ([`ByDamping`](crate::panel::by_damping::ByDamping)).
 //!
 //! # The forces
 //! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
@@ -100,9 +102,6 @@ pub(crate) fn tangents(
     (changes, end_s): (&[Change], Option<&[f64]>),
     expansions: &mut Expansions,
 ) -> Result<Tangents, NoDerivative> {
-    if let Some(damping_ratio) = changes.iter().find_map(|change| change.critical) {
-        return Err(NoDerivative::CriticalDamping { damping_ratio });
-    }
     let mut walk = Walk::new(posed, system, changes, expansions);
     for (i, stretch) in stretches.iter().enumerate() {
         // events that begin the record are met on a panel of no length

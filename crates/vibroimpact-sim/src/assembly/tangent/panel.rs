@@ -6,7 +6,7 @@ use crate::assembly::dense::Stretch;
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
-use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, evaluate, slopes};
+use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, dot, evaluate, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
@@ -178,6 +178,11 @@ impl Walk<'_> {
             for i in 0..Q {
                 found[i] += BASIS.nodes[i] * h * timed[i];
             }
+            for (k, by_zeta, mode) in expansion.critical(change) {
+                let weight = by_zeta * system.links[c].weight(k);
+                add(&mut found, weight * a[k], &mode.at_nodes.0);
+                add(&mut found, weight * b[k], &mode.at_nodes.1);
+            }
             for (found, s) in found.iter_mut().zip(BASIS.nodes).filter(|_| !self.loads.is_empty()) {
                 *found += tangent.time_s * self.loads.moved_later(c, from.start_s, s * h);
             }
@@ -239,6 +244,16 @@ impl Walk<'_> {
                     }
                 },
             );
+        }
+        for (k, by_zeta, mode) in expansion.critical(change) {
+            let [mut by_mode, mut by_mode_rate] = mode.free.map(|[by_a, by_b]| by_a * a[k] + by_b * b[k]);
+            for own in solved.iter() {
+                let psi = system.links[own.contact].weight(k);
+                by_mode -= psi * dot(&mode.end.0, &own.force);
+                by_mode_rate -= psi * dot(&mode.end.1, &own.force);
+            }
+            amplitude[k] += by_zeta * by_mode;
+            rate[k] += by_zeta * by_mode_rate;
         }
         Moved { amplitude, rate, force, overlap }
     }
