@@ -148,11 +148,12 @@ impl System {
     /// The ends of what a contact is doing: it goes on while neither margin is negative.
     pub fn margins(&self, contact: usize, state: &State, y: &[f64]) -> [f64; 2] {
         let (xi, rate) = self.compression(contact, y);
-        let boundaries = match state {
-            State::Open(memory) => [Boundary::compression_rises_to(memory.touch_m), Boundary::NEVER],
-            State::Closed(branch) => self.contacts[contact].2.boundaries(branch),
+        let boundary = |which| match state {
+            State::Open(memory) => (which == 0).then_some(Boundary::compression_rises_to(memory.touch_m)),
+            State::Closed(branch) => self.contacts[contact].2.boundary(branch, which),
         };
-        boundaries.map(|boundary| boundary.margin(xi, rate))
+        // no law here has more than two
+        [0, 1].map(|which| boundary(which).unwrap_or(Boundary::NEVER).margin(xi, rate))
     }
 
     /// What a contact does after it has met an end.

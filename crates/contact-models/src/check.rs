@@ -5,13 +5,14 @@
 //! | numbers are finite everywhere | an iteration may step beyond a branch |
 //! | no pull within a branch | surfaces part where the law says so, and nowhere else |
 //! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
-//! | [`depends_on_rate`](ContactLaw::depends_on_rate) says whether it does | the rate is computed only where it is requested |
+//! | the force depends on the rate on all of a branch, as `per_rate_n_s_m` says, or nowhere on it | the rate is computed only where it matters |
+//! | a branch has an end of boundaries | all of them are watched |
 //! | the force is continuous from branch to branch, and zero at a release | events carry no impulse |
 //! | a branch is valid where it begins, and few follow each other between two instants | time goes on |
 //! | a complete contact returns no more work than it took | energy is not made |
 
 use crate::trace::{MOST_EVENTS, State, first_met, trace};
-use crate::{Branch, ContactLaw, Force, Memory};
+use crate::{Boundary, Branch, ContactLaw, Force, MOST_BOUNDARIES, Memory, boundaries};
 
 /// A promise that a law has not kept, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,9 +49,14 @@ pub enum Promise {
         /// The one that differences of its force show.
         found: f64,
     },
-    /// A law whose force depends on the rate says so.
-    #[error("the force depends on the rate, and the law says that it does not")]
+    /// A force that depends on the rate says so by its derivative, from the beginning of the branch on.
+    #[error(
+        "the force depends on the rate, where the derivative that the law states, here or before on the branch, says that it does not"
+    )]
     Rate,
+    /// The boundaries of a branch come to an end.
+    #[error("a branch has more than {MOST_BOUNDARIES} boundaries")]
+    Boundaries,
     /// The force is continuous from one branch to the next, and zero where surfaces part.
     #[error("the force jumps from {before_n:e} N to {after_n:e} N where a branch ends")]
     Continuous {
@@ -94,14 +100,14 @@ const INSTANTS: u32 = 40;
 /// The first promise that is not kept.
 ///
 /// ```
-/// use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory, Promise, Stage, check_contract};
+/// use contact_models::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Promise, Stage, check_contract};
 ///
 /// /// A spring whose stated stiffness is wrong.
 /// struct Wrong;
 ///
 /// impl ContactLaw for Wrong {
 ///     fn touch(&self, _: &Memory, _: f64) -> Branch {
-///         Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
+///         Branch { stage: Stage::Single, anchor_m: 0.0, internal: Internal::NONE }
 ///     }
 ///     fn force(&self, _: &Branch, xi: f64, _: f64) -> Force {
 ///         Force { force_n: 1e6 * xi.clamp(0.0, 1.0), per_compression_n_m: 2e6, per_rate_n_s_m: 0.0 }
@@ -109,14 +115,11 @@ const INSTANTS: u32 = 40;
 ///     fn stored_energy_j(&self, _: &Branch, xi: f64) -> f64 {
 ///         5e5 * xi.clamp(0.0, 1.0).powi(2)
 ///     }
-///     fn boundaries(&self, _: &Branch) -> [Boundary; 2] {
-///         [Boundary::compression_falls_to(0.0), Boundary::NEVER]
+///     fn boundary(&self, _: &Branch, which: usize) -> Option<Boundary> {
+///         (which == 0).then_some(Boundary::compression_falls_to(0.0))
 ///     }
 ///     fn cross(&self, _: &Branch, _: usize, _: f64, _: f64) -> After {
 ///         After::Release(Memory::default())
-///     }
-///     fn depends_on_rate(&self) -> bool {
-///         false
 ///     }
 /// }
 ///
@@ -148,6 +151,8 @@ pub fn check_contract_along(
         (sizes.0.max(xi.abs()), sizes.1.max(rate.abs()))
     };
     let sizes = times_s.iter().fold((0.0, 0.0), largest);
+    // whether the force on the branch depends on the rate, once there is a force
+    let mut by_rate: Option<bool> = None;
     for pair in times_s.windows(2) {
         let (mut from, to) = (pair[0], pair[1]);
         let mut events = 0;
@@ -159,9 +164,9 @@ pub fn check_contract_along(
             if at.branch.is_some() {
                 at.crosses_to(&next)?;
             }
-            (state, from) = (next, time);
+            (state, from, by_rate) = (next, time, None);
         }
-        Place { law, branch: state.branch(), motion: motion(to), sizes }.holds()?;
+        Place { law, branch: state.branch(), motion: motion(to), sizes }.holds(&mut by_rate)?;
     }
     // what comes back of a contact is bound where it is over
     let Ok(path) = trace(&law, times_s, &motion) else { return Ok(()) };
@@ -202,10 +207,11 @@ impl Place<'_> {
         ROUNDING * (force.force_n.abs() + force.per_compression_n_m.abs() * xi + force.per_rate_n_s_m.abs() * rate)
     }
 
-    /// The promises of a point within a branch.
-    fn holds(&self) -> Result<(), Breach> {
+    /// The promises of a point within a branch, on which the force depends on the rate or not.
+    fn holds(&self, by_rate: &mut Option<bool>) -> Result<(), Breach> {
         let (Some(branch), (xi, rate)) = (self.branch, self.motion) else { return Ok(()) };
         let law = self.law;
+        self.require(law.boundary(&branch, MOST_BOUNDARIES).is_none(), || Promise::Boundaries)?;
         let force = law.force(&branch, xi, rate);
         self.finite(&force)?;
         for far in [1e3, 1e30] {
@@ -217,9 +223,10 @@ impl Place<'_> {
         self.require(stored.is_finite() && stored >= 0.0, || Promise::Finite)?;
         let force_n = force.force_n;
         self.require(force_n >= -self.rounding(&force), || Promise::Push { force_n })?;
-        if !law.depends_on_rate() {
-            let same = law.force(&branch, xi, 0.5 * rate).force_n == force_n && force.per_rate_n_s_m == 0.0;
-            self.require(same, || Promise::Rate)?;
+        let here = force.per_rate_n_s_m != 0.0;
+        self.require(here || law.force(&branch, xi, 0.5 * rate).force_n == force_n, || Promise::Rate)?;
+        if force_n != 0.0 {
+            self.require(*by_rate.get_or_insert(here) || !here, || Promise::Rate)?;
         }
         self.derivatives_are_those_of(&branch, &force)
     }
@@ -227,12 +234,12 @@ impl Place<'_> {
     fn derivatives_are_those_of(&self, branch: &Branch, force: &Force) -> Result<(), Breach> {
         let (law, (xi, rate)) = (self.law, self.motion);
         // away from the branch's ends and from where it began, by which powers may be anchored
-        let ends = law.boundaries(branch);
+        let ends: Vec<Boundary> = boundaries(law, branch).collect();
         let end = ends.iter().filter(|end| end.per_rate == 0.0 && end.per_compression > 0.0);
         let end = end.map(|end| end.level / end.per_compression).fold(0.0, f64::max);
         let depth = (xi - end).min((xi - branch.anchor_m).abs());
         let (by_xi, by_rate) = (STEP * depth, STEP * rate.abs());
-        let room = |end: &crate::Boundary| {
+        let room = |end: &Boundary| {
             end.margin(xi, rate) > 2.0 * (end.per_compression.abs() * by_xi + end.per_rate.abs() * by_rate)
         };
         // nearer to its end a force is too small for its differences to tell
@@ -263,7 +270,7 @@ impl Place<'_> {
         let (before_n, after_n) = (before.force_n, after.force_n);
         self.require((before_n - after_n).abs() <= allowed, || Promise::Continuous { before_n, after_n })?;
         let Some(branch) = next.branch() else { return Ok(()) };
-        let inside = law.boundaries(&branch).iter().all(|end| {
+        let inside = boundaries(law, &branch).all(|end| {
             let size = end.per_compression.abs() * self.sizes.0 + end.per_rate.abs() * self.sizes.1;
             end.margin(xi, rate) >= -ROUNDING * (size + end.level.abs())
         });

@@ -23,7 +23,7 @@ macro_rules! conservative_law {
 
         impl $crate::ContactLaw for $law {
             fn touch(&self, _memory: &$crate::Memory, _approach_speed_m_s: f64) -> $crate::Branch {
-                $crate::Branch { stage: $crate::Stage::Single, anchor_m: 0.0, internal: 0.0 }
+                $crate::Branch { stage: $crate::Stage::Single, anchor_m: 0.0, internal: $crate::Internal::NONE }
             }
 
             fn force(&self, _branch: &$crate::Branch, compression_m: f64, _rate_m_s: f64) -> $crate::Force {
@@ -35,16 +35,12 @@ macro_rules! conservative_law {
                 $crate::conservative::stored_energy_j(self, compression_m)
             }
 
-            fn boundaries(&self, _branch: &$crate::Branch) -> [$crate::Boundary; 2] {
-                [$crate::Boundary::compression_falls_to(0.0), $crate::Boundary::NEVER]
+            fn boundary(&self, _branch: &$crate::Branch, which: usize) -> Option<$crate::Boundary> {
+                (which == 0).then_some($crate::Boundary::compression_falls_to(0.0))
             }
 
             fn cross(&self, _branch: &$crate::Branch, _which: usize, _xi: f64, _rate: f64) -> $crate::After {
                 $crate::After::Release($crate::Memory::default())
-            }
-
-            fn depends_on_rate(&self) -> bool {
-                false
             }
         }
     };

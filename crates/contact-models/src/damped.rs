@@ -34,7 +34,7 @@ pub(crate) trait Damped {
     fn damping_s_m(&self, approach_speed_m_s: f64) -> f64;
 }
 
-/// The contract for a [`Damped`] law. The branch's `internal` is `D`.
+/// The contract for a [`Damped`] law. The branch's internal variable is `D`.
 macro_rules! damped_law {
     ($law:ty) => {
         impl $law {
@@ -46,7 +46,7 @@ macro_rules! damped_law {
 
         impl $crate::ContactLaw for $law {
             fn touch(&self, _memory: &$crate::Memory, approach_speed_m_s: f64) -> $crate::Branch {
-                let internal = self.damping_s_m(approach_speed_m_s);
+                let internal = [self.damping_s_m(approach_speed_m_s)].into();
                 $crate::Branch { stage: $crate::Stage::Single, anchor_m: 0.0, internal }
             }
 
@@ -58,16 +58,12 @@ macro_rules! damped_law {
                 $crate::damped::stored_energy_j(self, compression_m)
             }
 
-            fn boundaries(&self, branch: &$crate::Branch) -> [$crate::Boundary; 2] {
-                $crate::damped::boundaries(branch)
+            fn boundary(&self, branch: &$crate::Branch, which: usize) -> Option<$crate::Boundary> {
+                $crate::damped::boundary(branch, which)
             }
 
             fn cross(&self, branch: &$crate::Branch, which: usize, _xi: f64, _rate: f64) -> $crate::After {
                 $crate::damped::cross(branch, which)
-            }
-
-            fn depends_on_rate(&self) -> bool {
-                true
             }
         }
     };
@@ -89,14 +85,21 @@ fn elastic(law: &impl Damped, compression_m: f64) -> (f64, f64) {
     power_of(law.stiffness(), law.exponent(), compression_m)
 }
 
-/// Force on the branch; `branch.internal` is `D`.
+/// The branch's `D` (s/m).
+fn damping_of(branch: &Branch) -> f64 {
+    let [damping_s_m] = branch.internal.into();
+    damping_s_m
+}
+
+/// Force on the branch.
 pub(crate) fn force(law: &impl Damped, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
     if branch.stage == Stage::Slack {
         return Force::ZERO;
     }
     let (f, slope) = elastic(law, compression_m);
-    let factor = 1.0 + branch.internal * bounded(rate_m_s);
-    Force { force_n: f * factor, per_compression_n_m: slope * factor, per_rate_n_s_m: f * branch.internal }
+    let damping_s_m = damping_of(branch);
+    let factor = 1.0 + damping_s_m * bounded(rate_m_s);
+    Force { force_n: f * factor, per_compression_n_m: slope * factor, per_rate_n_s_m: f * damping_s_m }
 }
 
 /// Energy in the spring.
@@ -105,10 +108,13 @@ pub(crate) fn stored_energy_j(law: &impl Damped, compression_m: f64) -> f64 {
 }
 
 /// The contact ends at `xi = 0`; between pressing and slack lies `1 + D xi_dot = 0`.
-pub(crate) fn boundaries(branch: &Branch) -> [Boundary; 2] {
+pub(crate) fn boundary(branch: &Branch, which: usize) -> Option<Boundary> {
     let side = if branch.stage == Stage::Slack { -1.0 } else { 1.0 };
-    let pulls = Boundary { per_compression: 0.0, per_rate: side * branch.internal, level: -side };
-    [Boundary::compression_falls_to(0.0), pulls]
+    match which {
+        0 => Some(Boundary::compression_falls_to(0.0)),
+        1 => Some(Boundary { per_compression: 0.0, per_rate: side * damping_of(branch), level: -side }),
+        _ => None,
+    }
 }
 
 pub(crate) fn cross(branch: &Branch, which: usize) -> After {

@@ -1,9 +1,9 @@
 //! Felt of piano hammers: a power law with retarded recovery.
 
 use crate::conservative::power_of;
-use crate::kelvin_voigt::{cross_recovering, recovering_boundaries};
+use crate::kelvin_voigt::{cross_recovering, recovering_boundary};
 use crate::range::{bounded, require_positive};
-use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage};
 use invalid_input::InvalidInput;
 
 /// `F = Q0 (u^p + alpha d(u^p)/dt)` while that pushes, with `u = <xi>`.
@@ -70,7 +70,7 @@ impl Felt {
 
 impl ContactLaw for Felt {
     fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
+        Branch { stage: Stage::Single, anchor_m: 0.0, internal: Internal::NONE }
     }
 
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
@@ -93,17 +93,13 @@ impl ContactLaw for Felt {
         power_of(self.stiffness_n_m_n, self.exponent, xi).0 * xi / (self.exponent + 1.0)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
         // the force is Q0 u^(p-1) (u + alpha p u'), and pushes where the bracket is positive
-        recovering_boundaries(branch, 1.0, self.retardation_time_s * self.exponent)
+        recovering_boundary(branch, which, 1.0, self.retardation_time_s * self.exponent)
     }
 
     fn cross(&self, branch: &Branch, which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
         cross_recovering(branch, which)
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        true
     }
 }
 

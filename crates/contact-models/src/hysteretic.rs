@@ -98,7 +98,8 @@ impl Hysteretic {
     /// not valid, the tangent continues it.
     fn theta(&self, branch: &Branch, xi: f64) -> (f64, f64) {
         let goal = self.goal(branch.stage);
-        let distance = branch.internal - goal;
+        let [theta_a] = branch.internal.into();
+        let distance = theta_a - goal;
         let (anchor, here) = (self.shifted(branch.anchor_m), self.shifted(xi));
         let (sign, ratio) = if branch.stage == Stage::Unloading { (1.0, here / anchor) } else { (-1.0, anchor / here) };
         if ratio <= 1.0 {
@@ -106,7 +107,7 @@ impl Hysteretic {
             (goal + distance * share, sign * self.k_bar * distance * share / here)
         } else {
             let slope = sign * self.k_bar * distance / anchor;
-            (branch.internal + slope * (here - anchor), slope)
+            (theta_a + slope * (here - anchor), slope)
         }
     }
 
@@ -114,15 +115,15 @@ impl Hysteretic {
     pub(crate) fn wall_restitution(&self, mass_kg: f64, speed_m_s: f64) -> f64 {
         let loading = self.touch(&Memory::default(), speed_m_s);
         let energy = 0.5 * mass_kg * speed_m_s * speed_m_s;
-        let peak = (2.5 * energy / (self.stiffness_n_m1_5 * (1.0 + loading.internal))).powf(0.4);
+        let peak = (2.5 * energy / (self.stiffness_n_m1_5 * (1.0 + self.goal(Stage::Loading)))).powf(0.4);
         (self.stored_energy_j(&loading, peak) / energy).sqrt()
     }
 }
 
 impl ContactLaw for Hysteretic {
-    /// The branch's `internal` is `theta` at the anchor.
+    /// The branch's internal variable is `theta` at the anchor.
     fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        Branch { stage: Stage::Loading, anchor_m: 0.0, internal: self.goal(Stage::Loading) }
+        Branch { stage: Stage::Loading, anchor_m: 0.0, internal: [self.goal(Stage::Loading)].into() }
     }
 
     fn force(&self, branch: &Branch, compression_m: f64, _rate_m_s: f64) -> Force {
@@ -152,10 +153,12 @@ impl ContactLaw for Hysteretic {
         self.stiffness_n_m1_5 * xi * xi * xi.sqrt() * (0.4 * floor + excess * moment)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        match branch.stage {
-            Stage::Unloading => [Boundary::compression_falls_to(0.0), Boundary::rate_rises_to(0.0)],
-            _ => [Boundary::rate_falls_to(0.0), Boundary::NEVER],
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        match (branch.stage, which) {
+            (Stage::Unloading, 0) => Some(Boundary::compression_falls_to(0.0)),
+            (Stage::Unloading, 1) => Some(Boundary::rate_rises_to(0.0)),
+            (Stage::Loading, 0) => Some(Boundary::rate_falls_to(0.0)),
+            _ => None,
         }
     }
 
@@ -165,10 +168,6 @@ impl ContactLaw for Hysteretic {
         }
         let xi = bounded(compression_m).max(0.0);
         let stage = if branch.stage == Stage::Unloading { Stage::Loading } else { Stage::Unloading };
-        After::Continue(Branch { stage, anchor_m: xi, internal: self.theta(branch, xi).0 })
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
+        After::Continue(Branch { stage, anchor_m: xi, internal: [self.theta(branch, xi).0].into() })
     }
 }

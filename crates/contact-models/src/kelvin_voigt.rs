@@ -1,7 +1,7 @@
 //! Spring and dashpot in parallel.
 
 use crate::range::{bounded, require_positive};
-use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage};
 use invalid_input::InvalidInput;
 
 /// `F = k xi + c xi_dot` while that pushes.
@@ -66,13 +66,20 @@ impl KelvinVoigt {
 }
 
 /// Half planes of a law that pushes where `per_compression xi + per_rate xi_dot > 0` and recovers elsewhere (slack).
-pub(crate) fn recovering_boundaries(branch: &Branch, per_compression: f64, per_rate: f64) -> [Boundary; 2] {
+pub(crate) fn recovering_boundary(
+    branch: &Branch,
+    which: usize,
+    per_compression: f64,
+    per_rate: f64,
+) -> Option<Boundary> {
     let formula =
-        |side: f64| Boundary { per_compression: side * per_compression, per_rate: side * per_rate, level: 0.0 };
-    match branch.stage {
-        Stage::Slack => [Boundary::compression_falls_to(0.0), formula(-1.0)],
+        |side: f64| Some(Boundary { per_compression: side * per_compression, per_rate: side * per_rate, level: 0.0 });
+    match (branch.stage, which) {
+        (Stage::Slack, 0) => Some(Boundary::compression_falls_to(0.0)),
+        (Stage::Slack, 1) => formula(-1.0),
         // the formula stops pushing before the compression is gone
-        _ => [formula(1.0), Boundary::NEVER],
+        (Stage::Single, 0) => formula(1.0),
+        _ => None,
     }
 }
 
@@ -113,7 +120,7 @@ pub(crate) fn damping_ratio(restitution: f64) -> f64 {
 
 impl ContactLaw for KelvinVoigt {
     fn touch(&self, _memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        Branch { stage: Stage::Single, anchor_m: 0.0, internal: 0.0 }
+        Branch { stage: Stage::Single, anchor_m: 0.0, internal: Internal::NONE }
     }
 
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
@@ -130,15 +137,11 @@ impl ContactLaw for KelvinVoigt {
         0.5 * self.stiffness_n_m * xi * xi
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        recovering_boundaries(branch, self.stiffness_n_m, self.damping_n_s_m)
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        recovering_boundary(branch, which, self.stiffness_n_m, self.damping_n_s_m)
     }
 
     fn cross(&self, branch: &Branch, which: usize, _compression_m: f64, _rate_m_s: f64) -> After {
         cross_recovering(branch, which)
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        true
     }
 }

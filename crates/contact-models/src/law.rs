@@ -1,5 +1,7 @@
 //! The contract between a law and an integrator.
 
+use crate::internal::Internal;
+
 /// A half plane of the `(xi, xi_dot)` plane in which a branch is valid:
 /// `per_compression * xi + per_rate * xi_dot >= level`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +46,7 @@ impl Boundary {
     }
 }
 
-/// What kind of smooth piece a branch is.
+/// What kind of smooth piece a branch is: a name for its law to go by, and for those who read its branches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -57,14 +59,9 @@ pub enum Stage {
     Unloading,
     /// The law's formula would pull; the force is zero while the surfaces recover.
     Slack,
+    /// A kind of the law's own, by a number that only the law reads.
+    Own(u8),
 }
-
-invalid_input::names!(Stage, "stage", {
-    Single: "single",
-    Loading: "loading",
-    Unloading: "unloading",
-    Slack: "slack",
-});
 
 /// One smooth piece of a law, with the numbers the law needs to evaluate it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,8 +72,8 @@ pub struct Branch {
     pub stage: Stage,
     /// Compression at which the branch began (m), where the law needs it.
     pub anchor_m: f64,
-    /// The law's internal variable at that compression; each law states its meaning.
-    pub internal: f64,
+    /// The law's internal variables, as far as they fix the branch; each law states their meaning.
+    pub internal: Internal,
 }
 
 /// What outlives a contact: all zero for a fresh surface.
@@ -86,8 +83,8 @@ pub struct Branch {
 pub struct Memory {
     /// Compression at which the surfaces touch (m): zero, or the permanent indentation.
     pub touch_m: f64,
-    /// The law's own history variable; each law states its meaning.
-    pub internal: f64,
+    /// The law's internal variables that last; each law states their meaning.
+    pub internal: Internal,
 }
 
 /// What follows when a branch meets one of its boundaries.
@@ -126,22 +123,28 @@ pub trait ContactLaw {
     fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch;
 
     /// Force and derivatives on a branch. Outside the branch's boundaries it returns a finite,
-    /// continuous extension, so that an iteration may step over them.
+    /// continuous extension, so that an iteration may step over them. On a branch the force depends on the rate either
+    /// wherever it is not zero or nowhere, which an integrator sees from `per_rate_n_s_m`.
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force;
 
     /// Energy (J) that the contact would give back if it were unloaded from here slowly and
     /// without reversal until it releases. What the bodies put in beyond that is dissipated.
     fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64;
 
-    /// The half planes within which the branch is valid. A branch may begin on one of them
-    /// (unloading begins where the rate is zero): it is met when its margin falls below zero.
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2];
+    /// The half planes within which the branch is valid, numbered from zero on: `None` after the last. A branch may begin on
+    /// one of them (unloading begins where the rate is zero): it is met when its margin falls below zero.
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary>;
 
     /// What follows when boundary number `which` is met at this compression and rate.
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After;
+}
 
-    /// Whether the force depends on the rate of compression.
-    fn depends_on_rate(&self) -> bool;
+/// More boundaries than any branch has; a law that offers more has no end of them.
+pub const MOST_BOUNDARIES: usize = 256;
+
+/// All boundaries of a branch, in the order of their numbers, up to [`MOST_BOUNDARIES`].
+pub fn boundaries<L: ContactLaw + ?Sized>(law: &L, branch: &Branch) -> impl Iterator<Item = Boundary> {
+    (0..MOST_BOUNDARIES).map_while(move |which| law.boundary(branch, which))
 }
 
 /// References, boxes and shared pointers to a law are laws themselves.
@@ -160,16 +163,12 @@ macro_rules! stands_for_a_law {
                 (**self).stored_energy_j(branch, compression_m)
             }
 
-            fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-                (**self).boundaries(branch)
+            fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+                (**self).boundary(branch, which)
             }
 
             fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
                 (**self).cross(branch, which, compression_m, rate_m_s)
-            }
-
-            fn depends_on_rate(&self) -> bool {
-                (**self).depends_on_rate()
             }
         }
     )*};

@@ -114,15 +114,11 @@ impl ContactLaw for Law {
         each!(self, law => law.stored_energy_j(branch, compression_m))
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        each!(self, law => law.boundaries(branch))
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        each!(self, law => law.boundary(branch, which))
     }
 
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
         each!(self, law => law.cross(branch, which, compression_m, rate_m_s))
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        each!(self, law => law.depends_on_rate())
     }
 }

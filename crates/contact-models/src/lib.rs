@@ -4,10 +4,14 @@
 //! other) and its rate (m/s) into the normal force `F` (N). Laws with memory (hysteresis,
 //! plasticity, damping that depends on the speed of approach) are made of smooth *branches*:
 //! within a [`Branch`] the force is a smooth function of `(xi, xi_dot)`, and the branch is valid
-//! inside an intersection of half planes ([`Boundary`]). An integrator follows one branch until it
+//! inside an intersection of half planes ([`Boundary`]), as many as the law needs. An integrator follows one branch until it
 //! meets a boundary, locates it, and asks the law what comes [`next`](ContactLaw::cross): another
 //! branch, or the release of the contact. No law has a kink inside a branch, so a high-order
 //! integrator keeps its order.
+//!
+//! What a law knows beyond compression and rate are its *internal variables* ([`Internal`]): those that fix a branch stand in
+//! the [`Branch`], those that outlive a contact in the [`Memory`]. Both are small copies, so that an integrator may try a step
+//! and forget it.
 //!
 //! | symbol | meaning | unit | thesis |
 //! |---|---|---|---|
@@ -77,6 +81,7 @@ mod flores;
 mod hertz;
 mod hunt_crossley;
 mod hysteretic;
+mod internal;
 mod kelvin_voigt;
 mod lankarani_nikravesh;
 mod law;
@@ -102,10 +107,11 @@ pub use flores::Flores;
 pub use hertz::Hertz;
 pub use hunt_crossley::HuntCrossley;
 pub use hysteretic::Hysteretic;
+pub use internal::Internal;
 pub use invalid_input::InvalidInput;
 pub use kelvin_voigt::KelvinVoigt;
 pub use lankarani_nikravesh::LankaraniNikravesh;
-pub use law::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+pub use law::{After, Boundary, Branch, ContactLaw, Force, MOST_BOUNDARIES, Memory, Stage, boundaries};
 pub use laws::Law;
 pub use linear::LinearSpring;
 pub use pair::{Body, effective_modulus_pa, effective_radius_m};

@@ -9,7 +9,7 @@
 //! The contact is noticed in the first step that ends with `xi > 0`, somewhere between nothing and `h v0` deep. Where in
 //! that range is chance, so that one law has many restitutions at one step.
 
-use crate::{After, ContactLaw, Law, Memory};
+use crate::{After, ContactLaw, Law, Memory, boundaries};
 
 use crate::range::require_positive;
 use invalid_input::InvalidInput;
@@ -62,8 +62,8 @@ fn rebound(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64, depth_m: f64) -
     for step in 0..MOST_STEPS {
         // a step may pass a branch or two
         for _ in 0..4 {
-            let boundaries = law.boundaries(&branch);
-            let Some(which) = (0..2).find(|&which| boundaries[which].margin(xi, v) < 0.0) else { break };
+            let met = boundaries(law, &branch).position(|boundary| boundary.margin(xi, v) < 0.0);
+            let Some(which) = met else { break };
             match law.cross(&branch, which, xi, v) {
                 After::Continue(next) => branch = next,
                 After::Release(_) => return ((-v / speed_m_s).max(0.0), step),

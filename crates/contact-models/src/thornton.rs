@@ -2,7 +2,7 @@
 
 use crate::pair::{Body, effective_modulus_pa, effective_radius_m};
 use crate::range::{bounded, require_positive};
-use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
+use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
@@ -109,7 +109,7 @@ impl Thornton {
     fn elastic(&self, xi_max: f64) -> Branch {
         let xi_y = self.yield_compression_m();
         let anchor_m = if xi_max > xi_y { (xi_max - self.recovery(xi_max)).max(0.0) } else { 0.0 };
-        Branch { stage: Stage::Single, anchor_m, internal: xi_max.max(xi_y) }
+        Branch { stage: Stage::Single, anchor_m, internal: [xi_max.max(xi_y)].into() }
     }
 
     /// Rebound speed over approach speed of a rigid striker at a wall.
@@ -128,10 +128,11 @@ impl Thornton {
 }
 
 impl ContactLaw for Thornton {
-    /// On an elastic branch (`Single`) the anchor is the indentation `xi_p` and `internal` the
+    /// On an elastic branch (`Single`) the anchor is the indentation `xi_p` and the internal variable the
     /// largest compression so far, at least `xi_y`. The same two numbers make the memory.
     fn touch(&self, memory: &Memory, _approach_speed_m_s: f64) -> Branch {
-        self.elastic(bounded(memory.internal))
+        let [xi_max] = memory.internal.into();
+        self.elastic(bounded(xi_max))
     }
 
     fn force(&self, branch: &Branch, compression_m: f64, _rate_m_s: f64) -> Force {
@@ -140,9 +141,10 @@ impl ContactLaw for Thornton {
             let per_compression_n_m = self.plastic_slope();
             return Force { force_n: self.loading_force(xi), per_compression_n_m, per_rate_n_s_m: 0.0 };
         }
-        let delta = branch.internal - branch.anchor_m;
+        let [xi_max] = branch.internal.into();
+        let delta = xi_max - branch.anchor_m;
         let share = (xi - branch.anchor_m).max(0.0) / delta;
-        let force = self.loading_force(branch.internal) * share.sqrt();
+        let force = self.loading_force(xi_max) * share.sqrt();
         Force { force_n: force * share, per_compression_n_m: 1.5 * force / delta, per_rate_n_s_m: 0.0 }
     }
 
@@ -155,10 +157,13 @@ impl ContactLaw for Thornton {
         0.4 * self.force(branch, xi, 0.0).force_n * (xi - branch.anchor_m).max(0.0)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        match branch.stage {
-            Stage::Loading => [Boundary::rate_falls_to(0.0), Boundary::NEVER],
-            _ => [Boundary::compression_falls_to(branch.anchor_m), Boundary::compression_rises_to(branch.internal)],
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        let [xi_max] = branch.internal.into();
+        match (branch.stage, which) {
+            (Stage::Loading, 0) => Some(Boundary::rate_falls_to(0.0)),
+            (Stage::Single, 0) => Some(Boundary::compression_falls_to(branch.anchor_m)),
+            (Stage::Single, 1) => Some(Boundary::compression_rises_to(xi_max)),
+            _ => None,
         }
     }
 
@@ -166,11 +171,10 @@ impl ContactLaw for Thornton {
         match (branch.stage, which) {
             (Stage::Loading, _) => After::Continue(self.elastic(bounded(compression_m))),
             (_, 0) => After::Release(Memory { touch_m: branch.anchor_m, internal: branch.internal }),
-            _ => After::Continue(Branch { stage: Stage::Loading, anchor_m: branch.internal, internal: 0.0 }),
+            _ => {
+                let [anchor_m] = branch.internal.into();
+                After::Continue(Branch { stage: Stage::Loading, anchor_m, internal: Internal::NONE })
+            }
         }
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
     }
 }

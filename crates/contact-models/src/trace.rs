@@ -1,7 +1,7 @@
 //! A law driven by a prescribed motion.
 
 use crate::quadrature::between_events;
-use crate::{After, Boundary, Branch, ContactLaw, Memory};
+use crate::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use invalid_input::InvalidInput;
 
 /// The contact at one moment of a prescribed motion.
@@ -44,10 +44,10 @@ impl State {
     }
 
     /// The half planes within which the state lasts.
-    pub fn boundaries(&self, law: &impl ContactLaw) -> [Boundary; 2] {
+    pub fn boundaries(&self, law: &impl ContactLaw) -> Vec<Boundary> {
         match self {
-            State::Apart(memory) => [Boundary::compression_rises_to(memory.touch_m), Boundary::NEVER],
-            State::Touching(branch) => law.boundaries(branch),
+            State::Apart(memory) => vec![Boundary::compression_rises_to(memory.touch_m)],
+            State::Touching(branch) => boundaries(law, branch).collect(),
         }
     }
 
@@ -140,7 +140,7 @@ fn point(law: &impl ContactLaw, state: &State, time_s: f64, (xi, rate): (f64, f6
 
 /// The first time in the interval at which the motion is beyond a boundary, and which boundary.
 pub(crate) fn first_met(
-    boundaries: &[Boundary; 2],
+    boundaries: &[Boundary],
     start: f64,
     end: f64,
     motion: &impl Fn(f64) -> (f64, f64),

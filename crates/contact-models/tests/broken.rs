@@ -1,7 +1,7 @@
 //! Laws that break their contract, each in one way, and what is told of them.
 
 use contact_models::{
-    After, Boundary, Branch, ContactLaw, Force, LinearSpring, Memory, Promise, Stage, check_contract,
+    After, Boundary, Branch, ContactLaw, Force, Internal, LinearSpring, Memory, Promise, Stage, check_contract,
 };
 
 /// A linear spring with one fault.
@@ -11,6 +11,8 @@ enum Broken {
     Pulls,
     Jumps,
     HidesItsRate,
+    DampedOnlyDeep,
+    Endless,
     MakesEnergy,
     NeverSettles,
     BeginsBeyond,
@@ -20,7 +22,7 @@ enum Broken {
 const STIFFNESS: f64 = 1e6;
 
 fn branch(stage: Stage) -> Branch {
-    Branch { stage, anchor_m: 0.0, internal: 0.0 }
+    Branch { stage, anchor_m: 0.0, internal: Internal::NONE }
 }
 
 impl ContactLaw for Broken {
@@ -42,9 +44,17 @@ impl ContactLaw for Broken {
             Broken::Pulls if unloads => times(-1.0),
             Broken::Jumps if unloads => times(0.5),
             Broken::HidesItsRate => times(1.0 + 1e-3 * rate_m_s.clamp(-1.0, 1.0)),
+            Broken::DampedOnlyDeep if xi > 3e-6 => {
+                let (deep, damping) = (xi - 3e-6, 1e-3 * STIFFNESS);
+                let per_compression_n_m = stiffness + 2.0 * damping * deep * rate_m_s.clamp(-1.0, 1.0);
+                let per_rate_n_s_m = damping * deep * deep;
+                let force_n = spring.force_n + per_rate_n_s_m * rate_m_s.clamp(-1.0, 1.0);
+                Force { force_n, per_compression_n_m, per_rate_n_s_m }
+            }
             // on the way back it pushes harder, and keeps to that way
             Broken::MakesEnergy if unloads => {
-                let root = (xi * branch.internal).sqrt();
+                let [deepest] = branch.internal.into();
+                let root = (xi * deepest).sqrt();
                 Force {
                     force_n: STIFFNESS * root,
                     per_compression_n_m: 0.5 * STIFFNESS * root / xi.max(1e-300),
@@ -60,12 +70,14 @@ impl ContactLaw for Broken {
         0.5 * STIFFNESS * compression_m.clamp(0.0, 1.0).powi(2)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        match branch.stage {
-            Stage::Loading => [Boundary::rate_falls_to(0.0), Boundary::NEVER],
-            Stage::Unloading if *self == Broken::MakesEnergy => [Boundary::compression_falls_to(0.0), Boundary::NEVER],
-            Stage::Slack => [Boundary { level: 1.0, ..Boundary::NEVER }, Boundary::NEVER],
-            _ => [Boundary::compression_falls_to(0.0), Boundary::rate_rises_to(0.0)],
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        match (branch.stage, which) {
+            (Stage::Loading, 0) => Some(Boundary::rate_falls_to(0.0)),
+            (Stage::Slack, 0) => Some(Boundary { level: 1.0, ..Boundary::NEVER }),
+            (Stage::Unloading, 0) => Some(Boundary::compression_falls_to(0.0)),
+            (Stage::Unloading, 1) if *self != Broken::MakesEnergy => Some(Boundary::rate_rises_to(0.0)),
+            _ if *self == Broken::Endless => Some(Boundary::NEVER),
+            _ => None,
         }
     }
 
@@ -74,13 +86,11 @@ impl ContactLaw for Broken {
             (_, Stage::Unloading, 0) => After::Release(Memory::default()),
             (Broken::NeverSettles, Stage::Unloading | Stage::Loading, _) => After::Continue(*before),
             (Broken::BeginsBeyond, ..) => After::Continue(branch(Stage::Slack)),
-            (_, Stage::Loading, _) => After::Continue(Branch { internal: compression_m, ..branch(Stage::Unloading) }),
+            (_, Stage::Loading, _) => {
+                After::Continue(Branch { internal: [compression_m].into(), ..branch(Stage::Unloading) })
+            }
             _ => After::Continue(branch(Stage::Loading)),
         }
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
     }
 }
 
@@ -91,6 +101,8 @@ fn each_fault_is_named() {
     assert!(matches!(told(Broken::Pulls), Err(Promise::Continuous { .. })));
     assert!(matches!(told(Broken::Jumps), Err(Promise::Continuous { .. })));
     assert_eq!(told(Broken::HidesItsRate), Err(Promise::Rate));
+    assert_eq!(told(Broken::DampedOnlyDeep), Err(Promise::Rate));
+    assert_eq!(told(Broken::Endless), Err(Promise::Boundaries));
     assert!(matches!(told(Broken::MakesEnergy), Err(Promise::Energy { made_j }) if made_j > 0.0));
     assert_eq!(told(Broken::NeverSettles), Err(Promise::Settles));
     assert_eq!(told(Broken::BeginsBeyond), Err(Promise::Begins));

@@ -49,7 +49,7 @@ proptest! {
     fn any_memory_and_approach(law in laws(), touch in any::<f64>(), internal in any::<f64>(), speed in any::<f64>(),
                                xi in any::<f64>(), v in any::<f64>()) {
         prop_assume!(xi.is_finite() && v.is_finite());
-        let branch = law.touch(&Memory { touch_m: touch, internal }, speed);
+        let branch = law.touch(&Memory { touch_m: touch, internal: [internal].into() }, speed);
         let force = law.force(&branch, xi, v);
         let numbers = [force.force_n, force.per_compression_n_m, force.per_rate_n_s_m, law.stored_energy_j(&branch, xi)];
         prop_assert!(numbers.iter().all(|number| number.is_finite()), "{law:?} {branch:?} {force:?}");

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{ball, pinned, settings};
-use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage, check_contract};
+use contact_models::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage, check_contract};
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Solver};
 
@@ -14,7 +14,7 @@ struct Endless {
 
 impl ContactLaw for Endless {
     fn touch(&self, _: &Memory, _: f64) -> Branch {
-        Branch { stage: Stage::Loading, anchor_m: 0.0, internal: 0.0 }
+        Branch { stage: Stage::Loading, anchor_m: 0.0, internal: Internal::NONE }
     }
 
     fn force(&self, _: &Branch, xi: f64, _: f64) -> Force {
@@ -26,16 +26,12 @@ impl ContactLaw for Endless {
         5e6 * xi.clamp(0.0, 1.0).powi(2)
     }
 
-    fn boundaries(&self, _: &Branch) -> [Boundary; 2] {
-        [Boundary::compression_falls_to(0.0), Boundary::rate_falls_to(0.0)]
+    fn boundary(&self, _: &Branch, which: usize) -> Option<Boundary> {
+        [Boundary::compression_falls_to(0.0), Boundary::rate_falls_to(0.0)].get(which).copied()
     }
 
     fn cross(&self, branch: &Branch, which: usize, _: f64, _: f64) -> After {
         if which == 0 { After::Release(Memory::default()) } else { After::Continue(*branch) }
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        false
     }
 }
 

@@ -64,9 +64,14 @@ fn laws_of_contact() {
         assert_eq!(written["law"], law.name());
         assert_eq!(serde_json::from_value::<Law>(written).unwrap(), law);
     }
-    let branch = Branch { stage: Stage::Unloading, anchor_m: 1e-6, internal: 0.5 };
-    reads_back(branch, json!({ "stage": "unloading", "anchor_m": 1e-6, "internal": 0.5 }));
-    reads_back(Memory::default(), json!({ "touch_m": 0.0, "internal": 0.0 }));
+    let branch = Branch { stage: Stage::Unloading, anchor_m: 1e-6, internal: [0.5].into() };
+    let internal = json!([0.5, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    reads_back(branch, json!({ "stage": "unloading", "anchor_m": 1e-6, "internal": internal }));
+    reads_back(
+        Branch { stage: Stage::Own(3), ..branch },
+        json!({ "stage": { "own": 3 }, "anchor_m": 1e-6, "internal": internal }),
+    );
+    reads_back(Memory::default(), json!({ "touch_m": 0.0, "internal": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0] }));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! force is a smooth function of the state; the phase ends when a margin falls below zero.
 
 use super::Impact;
-use contact_models::{Branch, ContactLaw, Force};
+use contact_models::{Boundary, Branch, ContactLaw, Force};
 use std::cell::Cell;
 
 /// What the bodies are doing.
@@ -123,7 +123,11 @@ impl<'a> Equations<'a> {
         let (xi, rate) = self.compression(y);
         let margins = match &self.phase {
             Phase::Flight => [-xi, 1.0],
-            Phase::Contact(branch) => self.impact.law.boundaries(branch).map(|boundary| boundary.margin(xi, rate)),
+            // no law here has more than two
+            Phase::Contact(branch) => [0, 1].map(|which| {
+                let boundary = self.impact.law.boundary(branch, which).unwrap_or(Boundary::NEVER);
+                boundary.margin(xi, rate)
+            }),
         };
         [margins[0] - self.offset[0], margins[1] - self.offset[1]]
     }

@@ -2,7 +2,7 @@
 
 #![allow(dead_code)] // each test binary uses a part
 
-use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
+use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
 use contact_models::{Law, LinearSpring, Power, Thornton, Viscous};
 use proptest::prelude::*;
@@ -18,9 +18,9 @@ pub fn rebound(law: &impl ContactLaw, mass_kg: f64, speed_m_s: f64, duration_s: 
     let h = duration_s / 20000.0;
     for _ in 0..10_000_000 {
         let full = step(law, &branch, mass_kg, state, h);
-        let boundaries = law.boundaries(&branch);
-        let margin = |which: usize, (xi, rate): (f64, f64)| boundaries[which].margin(xi, rate);
-        let Some(which) = (0..2).find(|&which| margin(which, full) < 0.0) else {
+        let ends: Vec<Boundary> = boundaries(law, &branch).collect();
+        let margin = |which: usize, (xi, rate): (f64, f64)| ends[which].margin(xi, rate);
+        let Some(which) = (0..ends.len()).find(|&which| margin(which, full) < 0.0) else {
             state = full;
             continue;
         };
@@ -144,9 +144,9 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
     for pair in times.windows(2) {
         let (mut from, to) = (pair[0], motion.at(pair[1]));
         for _ in 0..8 {
-            let boundaries = match &contact {
-                None => [Boundary::compression_rises_to(memory.touch_m), Boundary::NEVER],
-                Some(branch) => law.boundaries(branch),
+            let ends = match &contact {
+                None => vec![Boundary::compression_rises_to(memory.touch_m)],
+                Some(branch) => boundaries(law, branch).collect(),
             };
             let landing = |boundary: &Boundary| {
                 let beyond = |t: f64| boundary.margin(motion.at(t).0, motion.at(t).1) < 0.0;
@@ -157,8 +157,8 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
                 }
                 beyond(pair[1]).then_some(high)
             };
-            let landings = boundaries.each_ref().map(landing);
-            let met = (0..2).filter_map(|which| landings[which].map(|t| (t, which))).min_by(|a, b| a.0.total_cmp(&b.0));
+            let landings = ends.iter().map(landing).enumerate();
+            let met = landings.filter_map(|(which, t)| Some((t?, which))).min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((time, which)) = met else { break };
             from = time;
             let land = motion.at(time);
@@ -181,8 +181,8 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
 
 /// The compression at which the branch lets go, zero where it does not say.
 pub fn release_level(law: &Law, branch: &Branch) -> f64 {
-    law.boundaries(branch).iter().fold(0.0, |level, boundary| match boundary {
-        Boundary { per_compression: 1.0, per_rate: 0.0, level: end } => end.max(level),
+    boundaries(law, branch).fold(0.0, |level, boundary| match boundary {
+        Boundary { per_compression: 1.0, per_rate: 0.0, level: end } => level.max(end),
         _ => level,
     })
 }
@@ -202,7 +202,7 @@ pub fn unload(law: &Law, state: &Visit, rate: f64) -> f64 {
 /// Force at this compression on the branch that holds there while the contact recedes.
 fn settle_on(law: &Law, branch: &mut Branch, xi: f64, rate: f64) -> f64 {
     for _ in 0..4 {
-        let met = (0..2).find(|&which| law.boundaries(branch)[which].margin(xi, -rate) < 0.0);
+        let met = boundaries(law, branch).position(|boundary| boundary.margin(xi, -rate) < 0.0);
         match met.map(|which| law.cross(branch, which, xi, -rate)) {
             None => break,
             Some(After::Continue(next)) => *branch = next,

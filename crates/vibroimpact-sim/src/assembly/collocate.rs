@@ -4,6 +4,9 @@
 //! `F = law(xi, xi')` with `xi_c = xi_c,free + sum_c' R_cc' F_c'`, `R` the exact responses. Newton's matrix
 //! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body. The iteration ends when what is
 //! still missing changes the impulse of no contact by more than a hundredth of what a panel may get wrong.
+//!
+//! The rate `D xi` is computed only where an end of the branch asks for it, or the force depends on it. The law shows that
+//! itself: where it gives a force, and no derivative with the rate at any node, its force does not depend on the rate.
 
 use super::solution::Counts;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
@@ -26,8 +29,9 @@ pub(crate) struct Unknown<'a> {
     /// By how much it would have grown at the nodes if no contact had a force (m): without the start, whose rounding the
     /// slopes would magnify on short panels.
     pub free: Nodal,
-    /// Whether the rate is requested, by the law or by an end of its branch.
-    pub needs_rate: bool,
+    /// Whether an end of the branch asks for the rate, and whether the force may depend on it.
+    pub ends_by_rate: bool,
+    pub force_by_rate: bool,
     /// Requested accuracy of the force (N).
     pub accuracy: f64,
     /// A first guess of the force at the nodes (N).
@@ -40,6 +44,8 @@ pub(crate) struct Collocated {
     pub force: Nodal,
     pub compression: Nodal,
     pub rate: Nodal,
+    /// Whether the force may still depend on the rate: not if the law has given a force and no derivative with the rate.
+    pub force_by_rate: bool,
 }
 
 /// What Newton's method works on: forces and their derivatives as the laws give them, changes, and its matrix.
@@ -77,7 +83,12 @@ impl Newton {
     ) -> bool {
         let Newton { values, change, blocks } = self;
         let n = unknowns.len();
-        let start = |unknown: &Unknown| Collocated { force: unknown.guess, compression: [0.0; Q], rate: [0.0; Q] };
+        let start = |unknown: &Unknown| Collocated {
+            force: unknown.guess,
+            compression: [0.0; Q],
+            rate: [0.0; Q],
+            force_by_rate: unknown.force_by_rate,
+        };
         found.clear();
         found.extend(unknowns.iter().map(start));
         values.resize(n, [Force::ZERO; Q]);
@@ -96,7 +107,7 @@ impl Newton {
                         }
                     }
                 }
-                if unknown.needs_rate {
+                if unknown.ends_by_rate || found[c].force_by_rate {
                     found[c].rate = slopes(0.0, &moved, h);
                 }
                 let compression = moved.map(|moved| unknown.start + moved);
@@ -104,6 +115,10 @@ impl Newton {
                 values[c] =
                     std::array::from_fn(|i| unknown.law.force(&unknown.branch, compression[i], found[c].rate[i]));
                 counts.law_evaluations += Q as u64;
+                if found[c].force_by_rate {
+                    let tells = |value: &Force| value.per_rate_n_s_m != 0.0;
+                    found[c].force_by_rate = values[c].iter().any(tells) || values[c].iter().all(|v| v.force_n == 0.0);
+                }
                 change[c] = std::array::from_fn(|i| values[c][i].force_n - found[c].force[i]);
             }
             if !factored {
@@ -362,7 +377,8 @@ mod tests {
             branch: contact_models::ContactLaw::touch(&law, &Default::default(), 1.0),
             start: 0.0,
             free: BASIS.nodes.map(|s| s * (1.0 + c as f64)),
-            needs_rate: false,
+            ends_by_rate: false,
+            force_by_rate: true,
             accuracy: 1e-15,
             guess: [0.0; Q],
         };

@@ -10,7 +10,6 @@ use super::system::Span;
 use crate::panel::dyadic::level_within;
 use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, truncation};
 use crate::panel::vector::{sum_over, vectorized};
-use contact_models::Boundary;
 
 /// The sum of all coefficients that a polynomial misses of `t^(3/2)`, in parts of the estimate of the next two, is less.
 const TAIL: f64 = 10.0;
@@ -86,11 +85,8 @@ impl<'a> March<'a> {
             };
             match state.touch() {
                 Some(touch) => {
-                    let rates = if touch.needs_rate { solved[i].rate } else { [0.0; Q] };
-                    for (which, boundary) in self.law(c).boundaries(&touch.branch).iter().enumerate() {
-                        if *boundary == Boundary::NEVER {
-                            continue;
-                        }
+                    let rates = if touch.ends_by_rate { solved[i].rate } else { [0.0; Q] };
+                    for (which, boundary) in state.ends.iter().enumerate() {
                         let nodal = std::array::from_fn(|n| boundary.margin(overlap[i][n], rates[n]));
                         let start = boundary.margin(state.overlap, state.rate);
                         ask(which, start, nodal, (boundary.per_compression, boundary.per_rate));
@@ -112,9 +108,8 @@ impl<'a> March<'a> {
     /// Value of an event function at the end of a terminal panel, and how fast it changes.
     pub(super) fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
         let state = &self.states[target.contact];
-        match state.touch() {
-            Some(touch) => {
-                let boundary = self.law(target.contact).boundaries(&touch.branch)[target.boundary];
+        match state.ends.get(target.boundary).filter(|_| state.is_closed()) {
+            Some(boundary) => {
                 let slope = boundary.per_compression * rate + boundary.per_rate * acceleration;
                 (boundary.margin(overlap, rate), slope)
             }

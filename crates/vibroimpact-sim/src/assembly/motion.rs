@@ -98,6 +98,7 @@ impl<'a> March<'a> {
         let fastest = fastest.fold(loads.fastest_rad_s(), f64::max);
         let state = |gap: f64| State {
             phase: Phase::Open { memory: Memory::default(), clear_until: 0.0, bounds: None },
+            ends: Vec::new(),
             overlap: 0.0,
             rate: 0.0,
             reference: -gap,

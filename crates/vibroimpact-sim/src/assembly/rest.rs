@@ -26,7 +26,7 @@
 
 use super::motion::March;
 use super::state::State;
-use contact_models::{After, Branch, ContactLaw, Stage};
+use contact_models::{After, Branch, ContactLaw, boundaries};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's method on the equilibrium.
@@ -66,15 +66,14 @@ pub(crate) fn has_faded(march: &March, part: f64) -> bool {
     energy < (part * state.speed_m_s()).powi(2) / state.inverse_mass
 }
 
-/// The compression at which a contact on this branch opens; `None` if another branch, which opens at another one, may
-/// come first.
+/// The compression at which a contact on this branch opens, itself or after the force has vanished on it; `None` if another
+/// branch, which opens at another one, may come first.
 fn opens_at(law: &dyn ContactLaw, branch: &Branch, compression: f64, depth: usize) -> Option<f64> {
-    let boundaries = law.boundaries(branch);
-    let yields = boundaries.iter().any(|boundary| boundary.per_rate == 0.0 && boundary.per_compression < 0.0);
-    if branch.stage == Stage::Loading || yields {
+    let ends = || boundaries(law, branch);
+    if ends().any(|boundary| boundary.per_rate == 0.0 && boundary.per_compression < 0.0) {
         return None;
     }
-    for (which, boundary) in boundaries.iter().enumerate() {
+    for (which, boundary) in ends().enumerate() {
         let after = |compression| law.cross(branch, which, compression, 0.0);
         if boundary.per_rate == 0.0 && boundary.per_compression > 0.0 {
             if let After::Release(memory) = after(boundary.level / boundary.per_compression) {
@@ -83,7 +82,7 @@ fn opens_at(law: &dyn ContactLaw, branch: &Branch, compression: f64, depth: usiz
         } else if boundary.per_rate != 0.0
             && depth > 0
             && let After::Continue(next) = after(compression)
-            && next.stage == Stage::Slack
+            && law.force(&next, compression, 0.0).force_n == 0.0
         {
             return opens_at(law, &next, compression, depth - 1);
         }

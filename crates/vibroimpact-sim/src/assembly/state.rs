@@ -1,15 +1,18 @@
 //! The contacts as the march carries them.
 
+use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
 use super::solution::{Interval, Statistics};
 use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate};
 use crate::panel::peak::Peak;
-use contact_models::{Branch, Memory};
+use contact_models::{Boundary, Branch, Memory};
 
 /// A contact at a moment.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
     pub phase: Phase,
+    /// Boundaries of the branch of a closed contact, which do not change along it.
+    pub ends: Vec<Boundary>,
     /// Overlap of the surfaces (m) and its rate (m/s). While closed it is summed up as it changes: as the difference of
     /// where the bodies are it would carry their rounding, which a stiff contact turns into force.
     pub overlap: f64,
@@ -40,7 +43,10 @@ pub(crate) enum Phase {
 #[derive(Debug, Clone)]
 pub(crate) struct Touch {
     pub branch: Branch,
-    pub needs_rate: bool,
+    /// Whether an end of the branch asks for the rate.
+    pub ends_by_rate: bool,
+    /// Whether the force depends on the rate, as far as the law has shown on this branch.
+    pub force_by_rate: bool,
     /// By how much the event function that led to the branch missed zero there.
     pub residue: f64,
     /// The same of the rate (m/s), where that function asked for it.
@@ -88,10 +94,12 @@ impl State {
         }
     }
 
-    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression there
-    /// and at the end.
-    pub fn book(&mut self, h: f64, nodal: &Nodal, coefficients: Nodal, compression: &Nodal, rate: &Nodal, end: f64) {
+    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression and rate
+    /// there and its compression at the end.
+    pub fn book(&mut self, h: f64, solved: &Collocated, coefficients: Nodal, rate: &Nodal, end: f64) {
         let Phase::Closed(touch) = &mut self.phase else { return };
+        let Collocated { force: nodal, compression, force_by_rate, .. } = solved;
+        touch.force_by_rate = *force_by_rate;
         touch.previous = Some((coefficients, h));
         touch.interval.impulse_n_s += h * coefficients[0];
         touch.peak_force.note(nodal);

@@ -171,6 +171,7 @@ impl Window {
             force: carry(&solved.force),
             compression: carry(&solved.compression),
             rate: carry(&solved.rate),
+            force_by_rate: solved.force_by_rate,
         };
         let solved = from.solved.iter().map(carried).collect();
         self.arrive(length, solved, self.free_at_nodes(length), &self.responses(length))

@@ -9,7 +9,7 @@ use super::state::{Phase, State, Touch};
 use super::terminal::{series_of, value};
 use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use crate::panel::peak::Peak;
-use contact_models::{After, Branch, Memory};
+use contact_models::{After, Branch, Memory, boundaries};
 
 /// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
 const SINGULAR: f64 = 1e-4;
@@ -104,7 +104,8 @@ impl<'a> March<'a> {
         };
         let touch = Touch {
             branch: law.touch(&memory, approach_speed_m_s.max(0.0)),
-            needs_rate: false,
+            ends_by_rate: false,
+            force_by_rate: true,
             residue: 0.0,
             rate_residue: 0.0,
             previous: None,
@@ -136,10 +137,14 @@ impl<'a> March<'a> {
 
     fn enter(&mut self, c: usize, branch: Branch) {
         let law = self.law(c);
-        if let Phase::Closed(touch) = &mut self.states[c].phase {
+        let State { phase, ends, .. } = &mut self.states[c];
+        ends.clear();
+        ends.extend(boundaries(law, &branch));
+        if let Phase::Closed(touch) = phase {
             touch.branch = branch;
-            touch.needs_rate =
-                law.depends_on_rate() || law.boundaries(&branch).iter().any(|boundary| boundary.per_rate != 0.0);
+            touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
+            // until the first panel shows that it does not
+            touch.force_by_rate = true;
         }
         self.forget_horizons();
     }
@@ -151,7 +156,7 @@ impl<'a> March<'a> {
         let Some(touch) = self.states[c].touch() else {
             return self.touch(c, 0.0);
         };
-        let boundary = law.boundaries(&touch.branch)[target.boundary];
+        let Some(&boundary) = self.states[c].ends.get(target.boundary) else { return };
         let residue = boundary.margin(self.states[c].overlap, self.states[c].rate).abs();
         match law.cross(&touch.branch, target.boundary, self.states[c].overlap, self.states[c].rate) {
             After::Continue(branch) => {

@@ -103,7 +103,8 @@ impl<'a> March<'a> {
                 branch: touch.branch,
                 start: state.overlap,
                 free: free(i),
-                needs_rate: touch.needs_rate,
+                ends_by_rate: touch.ends_by_rate,
+                force_by_rate: touch.force_by_rate,
                 accuracy: NEWTON_SHARE * self.impulse_tolerance(c) / h,
                 guess,
             })
@@ -147,7 +148,7 @@ impl<'a> March<'a> {
             let state = &mut self.states[c];
             if i < closed {
                 let rate = slopes(state.overlap, &solved[i].compression, h);
-                state.book(h, &solved[i].force, force[i], &solved[i].compression, &rate, end(i).0);
+                state.book(h, &solved[i], force[i], &rate, end(i).0);
             }
             (state.overlap, state.rate) = end(i);
         }

@@ -46,15 +46,12 @@ impl ContactLaw for Law<'_> {
         self.0.stored_energy_j(branch, compression_m) / (UNITS * UNITS)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        self.0.boundaries(branch).map(|boundary| Boundary { per_rate: boundary.per_rate * UNITS, ..boundary })
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        let boundary = self.0.boundary(branch, which)?;
+        Some(Boundary { per_rate: boundary.per_rate * UNITS, ..boundary })
     }
 
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
         self.0.cross(branch, which, compression_m, rate_m_s * UNITS)
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        self.0.depends_on_rate()
     }
 }

@@ -4,7 +4,7 @@
 pub mod random;
 
 use beam_modes::{Beam, End, PointMode, Segment};
-use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory};
+use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory, boundaries};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
@@ -122,8 +122,8 @@ pub fn second_method(structure: &Structure, striker: &Striker, law: &Law, end_s:
         let margins = |y: &[f64]| {
             let (xi, rate) = seen(y);
             match &branch {
-                Some(branch) => law.boundaries(branch).map(|boundary| boundary.margin(xi, rate)),
-                None => [memory.touch_m - xi, 1.0],
+                Some(branch) => boundaries(law, branch).map(|boundary| boundary.margin(xi, rate)).collect(),
+                None => vec![memory.touch_m - xi],
             }
         };
         let met = |y: &[f64]| margins(y).iter().any(|margin| *margin < 0.0);

@@ -39,16 +39,12 @@ impl ContactLaw for Times {
         self.0 * self.1.stored_energy_j(branch, compression_m)
     }
 
-    fn boundaries(&self, branch: &Branch) -> [Boundary; 2] {
-        self.1.boundaries(branch)
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        self.1.boundary(branch, which)
     }
 
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
         self.1.cross(branch, which, compression_m, rate_m_s)
-    }
-
-    fn depends_on_rate(&self) -> bool {
-        self.1.depends_on_rate()
     }
 }
 

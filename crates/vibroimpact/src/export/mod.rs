@@ -5,7 +5,7 @@ mod files;
 
 use std::error::Error;
 
-use contact_models::Law;
+use contact_models::ContactLaw;
 use vibroimpact_sim::modal::{History, Sample};
 
 #[cfg(feature = "files")]
@@ -54,7 +54,7 @@ impl Table {
 }
 
 /// Motion and force over time until `until_s`: what `history.csv` holds.
-pub fn history(history: &History<Law>, until_s: f64) -> Table {
+pub fn history<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     let times = history.times(until_s, HISTORY_INTERVALS);
     let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
     let column = |name: &str, of: fn(&Sample) -> f64| (name.to_owned(), samples.iter().map(of).collect());
@@ -72,7 +72,7 @@ pub fn history(history: &History<Law>, until_s: f64) -> Table {
 }
 
 /// The energy of each mode over time until `until_s`: what `modal_energies.csv` holds.
-pub fn modal_energies(history: &History<Law>, until_s: f64) -> Table {
+pub fn modal_energies<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     let times: Vec<f64> = (0..=ENERGY_INTERVALS).map(|i| until_s * i as f64 / ENERGY_INTERVALS as f64).collect();
     let rows: Vec<Vec<f64>> = times.iter().map(|time_s| history.modal_energies_j(*time_s)).collect();
     let modes = rows.first().map_or(0, Vec::len);

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use contact_models::Law;
+use contact_models::ContactLaw;
 use vibroimpact_sim::modal::History;
 
 use crate::deflection::Deflection;
@@ -27,7 +27,7 @@ const SHOWN_S: f64 = 10.0;
 /// and again. The deflection is enlarged, by a factor that is told; both bodies by the same.
 ///
 /// The text in the picture is the title, the scales, and nothing of the user's beside it.
-pub fn animation(title: &str, location_m: f64, deflection: &Deflection, history: &History<Law>) -> String {
+pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Deflection, history: &History<L>) -> String {
     let Deflection { location_m: places, time_s, structure_m, striker_m, .. } = deflection;
     let length_m = places.last().copied().unwrap_or(1.0);
     let until_s = time_s.last().copied().unwrap_or(0.0);

@@ -1,11 +1,14 @@
 //! An event: by how much later it comes after a change, and how the law's transition there changes.
 
 use super::panel::Moved;
-use super::walk::{IntervalChange, LAW_STEP, Tangent, Walk, shifted, size_of, sum};
+use super::walk::{
+    IntervalChange, LAW_STEP, NUMBERS, Numbers, Tangent, Walk, internal, numbers, shifted, size_of, sum,
+};
 use crate::assembly::dense::Event;
 use crate::assembly::no_derivative::NoDerivative;
 use crate::assembly::stencil::Stencil;
-use contact_models::{After, Boundary, Branch, ContactLaw, Memory};
+use contact_models::{After, Branch, ContactLaw, Memory};
+use std::array;
 
 /// Two events stay together if their times shift by the same to this part.
 const TOGETHER: f64 = 1e-6;
@@ -48,7 +51,8 @@ impl Walk<'_> {
         };
         let of = |(d, tangent): (usize, &Tangent)| {
             let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
-            let (changes, slope) = self.event_function(d, c, event, overlap, change, speed);
+            let found = self.event_function(d, c, event, overlap, change, speed);
+            let (changes, slope) = found.ok_or(NoDerivative::Fork { contact: c, time_s })?;
             let later = later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?;
             // what cancels where both shift alike
             let parts =
@@ -63,7 +67,8 @@ impl Walk<'_> {
         self.tangents.iter().enumerate().map(of).collect()
     }
 
-    /// Change of an event function at the end of an unchanged panel, and its rate of change with the length.
+    /// Change of an event function at the end of an unchanged panel, and its rate of change with the length. `None` if the
+    /// law has no such boundary nearby.
     pub fn event_function(
         &self,
         d: usize,
@@ -72,28 +77,29 @@ impl Walk<'_> {
         [overlap, rate]: [f64; 2],
         change: [f64; 2],
         speed: [f64; 2],
-    ) -> (f64, f64) {
+    ) -> Option<(f64, f64)> {
         let carried = &self.tangents[d].contacts[c];
         let (Event::Cross(which), Some(branch)) = (event, self.contacts[c].branch) else {
-            return (change[0] - carried.memory[0], speed[0]);
+            return Some((change[0] - carried.memory[0], speed[0]));
         };
         let law = self.posed.laws[c];
-        let boundary = law.boundaries(&branch)[which];
+        let boundary = law.boundary(&branch, which)?;
         let along = |[xi, rate]: [f64; 2]| boundary.per_compression * xi + boundary.per_rate * rate;
-        let margin = |law: &dyn ContactLaw, branch: &Branch| {
-            let boundary: Boundary = law.boundaries(branch)[which];
-            boundary.margin(overlap, rate)
+        let margin = |law: &dyn ContactLaw, branch: &Branch| Some(law.boundary(branch, which)?.margin(overlap, rate));
+        let all = |margins: [Option<f64>; 4]| {
+            let [a, b, c, d] = margins;
+            Some([a?, b?, c?, d?])
         };
         let mut changes = along(change);
         if let Some(laws) = &self.changes[d].laws {
-            changes += self.changes[d].stencil.slope(laws[c].map(|law| margin(law, &branch)));
+            changes += self.changes[d].stencil.slope(all(laws[c].map(|law| margin(law, &branch)))?);
         }
         for (which, by) in carried.branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
             let stencil = Stencil::central(LAW_STEP * size_of(&branch, which, &self.contacts[c]));
             let margins = stencil.offsets.map(|offset| margin(law, &shifted(&branch, which, offset)));
-            changes += by * stencil.slope(margins);
+            changes += by * stencil.slope(all(margins)?);
         }
-        (changes, along(speed))
+        Some((changes, along(speed)))
     }
 
     /// The law's own transition.
@@ -106,49 +112,53 @@ impl Walk<'_> {
     ) -> Result<(), NoDerivative> {
         let law = self.posed.laws[c];
         let followed = self.contacts[c];
-        let sizes = followed.sizes;
-        // the numbers that the law makes, of the four that it is given
-        type Given = [f64; 4];
-        let (given, sizes): (Given, Given) = match (event, followed.branch) {
+        // the numbers that the law makes, of those that it is given: its own, and two of the motion
+        const GIVEN: usize = NUMBERS + 2;
+        type Given = [f64; GIVEN];
+        let join = |own: Numbers, motion: [f64; 2]| -> Given {
+            array::from_fn(|i| if i < NUMBERS { own[i] } else { motion[i - NUMBERS] })
+        };
+        let (given, sizes) = match (event, followed.branch) {
             (Event::Cross(_), Some(branch)) => {
-                let own = [0, 1].map(|which| size_of(&branch, which, &followed));
-                ([branch.anchor_m, branch.internal, overlap, rate], [own[0], own[1], sizes[0], sizes[1]])
+                let own = array::from_fn(|which| size_of(&branch, which, &followed));
+                let numbers = numbers(branch.anchor_m, branch.internal);
+                (join(numbers, [overlap, rate]), join(own, followed.sizes))
             }
             _ => {
-                let Memory { touch_m, internal } = followed.memory;
-                let own = [sizes[0].max(touch_m.abs()), if internal == 0.0 { 1.0 } else { internal.abs() }];
-                ([touch_m, internal, rate.max(0.0), 0.0], [own[0], own[1], rate.abs(), 1.0])
+                let numbers = numbers(followed.memory.touch_m, followed.memory.internal);
+                let mut own = numbers.map(|number| if number == 0.0 { 1.0 } else { number.abs() });
+                own[0] = followed.sizes[0].max(numbers[0].abs());
+                (join(numbers, [rate.max(0.0), 0.0]), join(own, [rate.abs(), 1.0]))
             }
         };
         let made = |law: &dyn ContactLaw, given: &Given| -> After {
             match (event, followed.branch) {
                 (Event::Cross(which), Some(branch)) => {
-                    let branch = Branch { anchor_m: given[0], internal: given[1], ..branch };
-                    law.cross(&branch, which, given[2], given[3])
+                    let branch = Branch { anchor_m: given[0], internal: internal(given), ..branch };
+                    law.cross(&branch, which, given[NUMBERS], given[NUMBERS + 1])
                 }
                 _ => {
-                    let memory = Memory { touch_m: given[0], internal: given[1] };
-                    After::Continue(law.touch(&memory, given[2]))
+                    let memory = Memory { touch_m: given[0], internal: internal(given) };
+                    After::Continue(law.touch(&memory, given[NUMBERS]))
                 }
             }
         };
         let after = made(law, &given);
-        let number = |after: &After, which: usize| match (after, which) {
-            (After::Continue(branch), 0) => branch.anchor_m,
-            (After::Continue(branch), _) => branch.internal,
-            (After::Release(memory), 0) => memory.touch_m,
-            (After::Release(memory), _) => memory.internal,
+        let numbers_of = |after: &After| match after {
+            After::Continue(branch) => numbers(branch.anchor_m, branch.internal),
+            After::Release(memory) => numbers(memory.touch_m, memory.internal),
         };
         let kind = |after: &After| match after {
             After::Continue(branch) => Some(branch.stage),
             After::Release(_) => None,
         };
         // a law that takes another course nearby has no derivative here
-        let difference = |found: [After; 4], stencil: &Stencil<4>, which: usize| {
+        let difference = |found: [After; 4], stencil: &Stencil<4>| -> Result<Numbers, NoDerivative> {
             if found.iter().any(|found| kind(found) != kind(&after)) {
                 return Err(NoDerivative::Fork { contact: c, time_s: at_s });
             }
-            Ok(stencil.slope(found.each_ref().map(|found| number(found, which))))
+            let found = found.each_ref().map(numbers_of);
+            Ok(array::from_fn(|which| stencil.slope(found.map(|numbers| numbers[which]))))
         };
         // how these numbers change with a number given
         let by_given = |i: usize| {
@@ -158,29 +168,28 @@ impl Walk<'_> {
                 shifted[i] += offset;
                 made(law, &shifted)
             });
-            Ok([difference(found, &stencil, 0)?, difference(found, &stencil, 1)?])
+            difference(found, &stencil)
         };
-        let mut known: [Option<[f64; 2]>; 4] = [None; 4];
+        let mut known: [Option<Numbers>; GIVEN] = [None; GIVEN];
         for d in 0..self.changes.len() {
             let tangent = &self.tangents[d];
             let carried = tangent.contacts[c];
             let [by_overlap, by_rate] = self.overlap(d, c, at_s, state, [&tangent.amplitude, &tangent.rate]);
             let changes: Given = match event {
-                Event::Cross(_) => [carried.branch[0], carried.branch[1], by_overlap, by_rate],
-                Event::Touch { .. } => [carried.memory[0], carried.memory[1], by_rate, 0.0],
+                Event::Cross(_) => join(carried.branch, [by_overlap, by_rate]),
+                Event::Touch { .. } => join(carried.memory, [by_rate, 0.0]),
             };
-            let mut made_change = [0.0; 2];
-            for i in (0..4).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
+            let mut made_change = [0.0; NUMBERS];
+            for i in (0..GIVEN).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
                 let slopes = match known[i] {
                     Some(slopes) => slopes,
                     None => *known[i].insert(by_given(i)?),
                 };
-                (0..2).for_each(|which| made_change[which] += slopes[which] * changes[i]);
+                made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope * changes[i]);
             }
             if let Some(laws) = &self.changes[d].laws {
-                for (which, made_change) in made_change.iter_mut().enumerate() {
-                    *made_change += difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil, which)?;
-                }
+                let slopes = difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil)?;
+                made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope);
             }
             let tangent = &mut self.tangents[d];
             let time_s = tangent.time_s + apart[d];

@@ -241,8 +241,9 @@ impl Walk<'_> {
                     Ending::Length => 0.0,
                     Ending::Event(c, event) => {
                         let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate]);
-                        let (changes, slope) =
-                            self.event_function(d, c, event, overlaps[c], change, self.speed(c, time_s, slide));
+                        let speed = self.speed(c, time_s, slide);
+                        let found = self.event_function(d, c, event, overlaps[c], change, speed);
+                        let (changes, slope) = found.ok_or(NoDerivative::Fork { contact: c, time_s })?;
                         later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?
                     }
                     Ending::Break => {

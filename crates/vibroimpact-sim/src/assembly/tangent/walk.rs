@@ -7,7 +7,7 @@ use crate::assembly::load::Loads;
 use crate::assembly::load_change::LoadChange;
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
-use contact_models::{Branch, Memory};
+use contact_models::{Branch, Internal, Memory};
 use std::array;
 
 /// Step, relative to the size of a variable, with which a law's own functions are differenced.
@@ -42,10 +42,24 @@ pub(crate) struct Tangent {
 pub(super) struct Carried {
     /// ... its overlap beyond that of the modes (m),
     pub reference: f64,
-    /// the numbers of its branch: where it began (m), and the law's internal variable,
-    pub branch: [f64; 2],
+    /// the numbers of its branch,
+    pub branch: Numbers,
     /// and of the memory of an open one.
-    pub memory: [f64; 2],
+    pub memory: Numbers,
+}
+
+/// The numbers that fix a branch or a memory: the compression at which it began or touches (m), and the internal variables.
+pub(super) type Numbers = [f64; NUMBERS];
+pub(super) const NUMBERS: usize = 1 + Internal::MOST;
+
+pub(super) fn numbers(at_m: f64, internal: Internal) -> Numbers {
+    let internal: [f64; Internal::MOST] = internal.into();
+    array::from_fn(|i| if i == 0 { at_m } else { internal[i - 1] })
+}
+
+/// The internal variables among the numbers.
+pub(super) fn internal(numbers: &[f64]) -> Internal {
+    array::from_fn::<f64, { Internal::MOST }, _>(|i| numbers[i + 1]).into()
 }
 
 /// A contact along the record itself.
@@ -151,17 +165,15 @@ impl<'a> Walk<'a> {
 
 /// The size that a number of a branch is differenced by.
 pub(super) fn size_of(branch: &Branch, which: usize, followed: &Followed) -> f64 {
-    match which {
-        0 if branch.anchor_m != 0.0 => branch.anchor_m.abs(),
-        0 => followed.sizes[0],
-        _ if branch.internal != 0.0 => branch.internal.abs(),
-        _ => 1.0,
+    match (numbers(branch.anchor_m, branch.internal)[which], which) {
+        (0.0, 0) => followed.sizes[0],
+        (0.0, _) => 1.0,
+        (value, _) => value.abs(),
     }
 }
 
 pub(super) fn shifted(branch: &Branch, which: usize, by: f64) -> Branch {
-    match which {
-        0 => Branch { anchor_m: branch.anchor_m + by, ..*branch },
-        _ => Branch { internal: branch.internal + by, ..*branch },
-    }
+    let mut shifted = numbers(branch.anchor_m, branch.internal);
+    shifted[which] += by;
+    Branch { anchor_m: shifted[0], internal: internal(&shifted), ..*branch }
 }

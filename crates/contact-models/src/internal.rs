@@ -1,0 +1,61 @@
+//! The internal variables of a law.
+
+/// Values of a law's internal variables: numbers that the force depends on beside compression and rate. They change only
+/// where a branch begins. A law has up to [`Internal::MOST`] of them, and alone knows what they mean. Inside it they are an
+/// array, or a type of its own with conversions to and from one:
+///
+/// ```
+/// use contact_models::Internal;
+///
+/// struct Hardened {
+///     indentation_m: f64,
+///     back_force_n: f64,
+/// }
+///
+/// impl From<Hardened> for Internal {
+///     fn from(state: Hardened) -> Internal {
+///         [state.indentation_m, state.back_force_n].into()
+///     }
+/// }
+///
+/// impl From<Internal> for Hardened {
+///     fn from(internal: Internal) -> Hardened {
+///         let [indentation_m, back_force_n] = internal.into();
+///         Hardened { indentation_m, back_force_n }
+///     }
+/// }
+///
+/// let kept = Internal::from(Hardened { indentation_m: 1e-6, back_force_n: 20.0 });
+/// assert_eq!(Hardened::from(kept).back_force_n, 20.0);
+/// ```
+///
+/// Numbers that a law does not use are zero. For derivatives of an impact a variable is shifted by a small part of its size,
+/// and where it is zero by a small part of one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(transparent))]
+pub struct Internal([f64; Internal::MOST]);
+
+impl Internal {
+    /// So many numbers there is room for.
+    pub const MOST: usize = 6;
+    /// Of a law without internal variables.
+    pub const NONE: Internal = Internal([0.0; Internal::MOST]);
+}
+
+impl<const N: usize> From<[f64; N]> for Internal {
+    fn from(values: [f64; N]) -> Internal {
+        const { assert!(N <= Internal::MOST, "more internal variables than there is room for") };
+        let mut internal = Internal::NONE;
+        internal.0[..N].copy_from_slice(&values);
+        internal
+    }
+}
+
+/// The first `N` of them.
+impl<const N: usize> From<Internal> for [f64; N] {
+    fn from(internal: Internal) -> [f64; N] {
+        const { assert!(N <= Internal::MOST, "more internal variables than there is room for") };
+        std::array::from_fn(|i| internal.0[i])
+    }
+}
