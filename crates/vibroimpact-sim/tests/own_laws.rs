@@ -2,8 +2,10 @@
 
 mod common;
 
-use common::{ball, pinned, settings};
-use contact_models::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage, check_contract};
+use common::{ball, pinned, second_method, settings};
+use contact_models::{
+    After, Boundary, Branch, ContactLaw, Force, Hertz, Internal, Memory, Stage, boundaries, check_contract,
+};
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Solver};
 
@@ -44,4 +46,86 @@ fn a_law_that_breaks_its_contract_ends_with_that_reason() {
         assert_eq!(solution.outcome, Outcome::Stopped(StopReason::Law));
         assert!(solution.counts.contact_steps <= 50_000, "{:?}", solution.counts);
     }
+}
+
+/// Hertz's law with boundaries that are never met before its own.
+struct Crowded(Hertz);
+
+impl ContactLaw for Crowded {
+    fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
+        self.0.touch(memory, approach_speed_m_s)
+    }
+
+    fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
+        self.0.force(branch, compression_m, rate_m_s)
+    }
+
+    fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
+        self.0.stored_energy_j(branch, compression_m)
+    }
+
+    fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
+        match which {
+            0 => Some(Boundary::compression_rises_to(1.0)),
+            1..5 => Some(Boundary::compression_falls_to(-(which as f64))),
+            _ => self.0.boundary(branch, which - 5),
+        }
+    }
+
+    fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
+        self.0.cross(branch, which.saturating_sub(5), compression_m, rate_m_s)
+    }
+}
+
+#[test]
+fn a_law_has_any_number_of_boundaries() {
+    let hertz = Hertz::new(1.7945e10).unwrap();
+    let solver = Solver::new(&pinned(10, 0.02, 0.3)).unwrap();
+    let law = Crowded(hertz);
+    assert_eq!(boundaries(&law, &law.touch(&Memory::default(), 1.0)).count(), 6);
+    let crowded = solver.solve(&ball(), &law, None, &settings(1e-9)).unwrap();
+    let plain = solver.solve(&ball(), &hertz, None, &settings(1e-9)).unwrap();
+    assert_eq!(crowded.restitution, plain.restitution);
+    assert_eq!(crowded.sub_impacts, plain.sub_impacts);
+}
+
+/// A spring whose damping grows with the square of the rate, so that its derivative vanishes with the rate.
+struct Squared;
+
+impl ContactLaw for Squared {
+    fn touch(&self, _: &Memory, _: f64) -> Branch {
+        Branch { stage: Stage::Own(7), anchor_m: 0.0, internal: Internal::NONE }
+    }
+
+    fn force(&self, _: &Branch, xi: f64, rate: f64) -> Force {
+        let (xi, rate) = (xi.clamp(0.0, 1.0), rate.clamp(-1e3, 1e3));
+        let (stiffness, factor) = (1e7, 1.0 + 0.1 * rate * rate * rate);
+        let per_rate_n_s_m = stiffness * xi * 0.3 * rate * rate;
+        Force { force_n: stiffness * xi * factor, per_compression_n_m: stiffness * factor, per_rate_n_s_m }
+    }
+
+    fn stored_energy_j(&self, _: &Branch, xi: f64) -> f64 {
+        5e6 * xi.clamp(0.0, 1.0).powi(2)
+    }
+
+    fn boundary(&self, _: &Branch, which: usize) -> Option<Boundary> {
+        (which == 0).then_some(Boundary::compression_falls_to(0.0))
+    }
+
+    fn cross(&self, _: &Branch, _: usize, _: f64, _: f64) -> After {
+        After::Release(Memory::default())
+    }
+}
+
+/// Nobody says that the force depends on the rate, and the march computes the rate all the same.
+#[test]
+fn dependence_on_the_rate_is_seen() {
+    assert!(check_contract(&Squared, 1e-4, 1.0).is_ok());
+    let structure = pinned(4, 0.02, 0.3);
+    let solver = Solver::new(&structure).unwrap();
+    let solution = solver.solve(&ball(), &Squared, None, &settings(1e-11)).unwrap();
+    let second = second_method(&structure, &ball(), &Squared, solution.end_s + 1e-6, 1e-13);
+    let error = (solution.restitution.unwrap() - second.velocity_m_s).abs();
+    assert!(error < 1e-9, "{error:e}");
+    assert_eq!(solution.sub_impacts.len(), second.touches_s.len());
 }

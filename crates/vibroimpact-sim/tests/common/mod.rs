@@ -93,7 +93,13 @@ pub struct Found {
 /// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker
 /// and of every mode, for a structure at rest that the striker touches. Flights are integrated as well; every end of a branch
 /// of the law, every release and every touch is located, and the integration begins anew behind it.
-pub fn second_method(structure: &Structure, striker: &Striker, law: &Law, end_s: f64, tolerance: f64) -> Found {
+pub fn second_method(
+    structure: &Structure,
+    striker: &Striker,
+    law: &dyn ContactLaw,
+    end_s: f64,
+    tolerance: f64,
+) -> Found {
     let n = structure.modes.len();
     // compression and its rate
     let seen = |y: &[f64]| {
