@@ -237,7 +237,7 @@ impl Solver<'_> {
     ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
-        let (run, stretches) = follow(posed, (system, tables, &mut Responses::new()), settings, &mut (), true);
+        let (run, stretches) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), true);
         if run.outcome != Outcome::End {
             return Ok((run.outcome, Err(NoDerivative::Outcome)));
         }
@@ -301,7 +301,7 @@ impl Solver<'_> {
     ) -> (Run, Vec<Vec<Interval>>, AllChanges) {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
-        let (run, stretches) = follow(posed, (system, tables, &mut Responses::new()), settings, &mut watch, true);
+        let (run, stretches) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, true);
         let zeros = vec![0.0; changes.len()];
         let fixed = match run.outcome {
             Outcome::Parted => None,

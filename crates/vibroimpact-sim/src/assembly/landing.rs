@@ -4,13 +4,19 @@ use super::collocate::Unknown;
 use super::judge::Judgement;
 use super::motion::{Horizon, March, Target};
 use super::terminal::{self, Landed, Window};
+use super::transition::SINGULAR;
 use crate::panel::dyadic::level_within;
-use crate::panel::legendre::{BASIS, Nodal, Q, truncation};
+use crate::panel::legendre::{BASIS, Nodal, Q, evaluate, truncation};
 
 /// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
 const LANDING: f64 = 2.5;
 /// A force that the laws fixed on one length serves for others while it need not be carried on by more than this part.
 const CARRIED: f64 = 0.05;
+
+/// The length of a terminal panel that is well enough known, where one of this length exceeds what is allowed so many times.
+fn shorter(length: f64, excess: f64) -> f64 {
+    0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3)
+}
 
 impl<'a> March<'a> {
     /// Goes on to the next break of the loads or the end, `length` away.
@@ -26,6 +32,29 @@ impl<'a> March<'a> {
             _ if self.excess(&window, &landed) > 1.0 => self.refine(self.level.max(level_within(length)) + 1),
             _ => self.commit_landed(&window, &landed),
         }
+    }
+
+    /// Longest terminal panel that accuracy allows before an event of the compression, expected after `left`: as the law says
+    /// along a parabola to it.
+    pub(super) fn foreseen(&mut self, target: Target, left: f64) -> f64 {
+        let state = &self.states[target.contact];
+        let Some((touch, (force, _))) = state.touch().and_then(|touch| Some((touch, touch.previous?))) else {
+            return f64::INFINITY;
+        };
+        let (law, tolerance) = (self.law(target.contact), self.impulse_tolerance(target.contact));
+        let Some(boundary) = law.boundary(&touch.branch, target.boundary) else { return f64::INFINITY };
+        if boundary.per_rate != 0.0 || SINGULAR * evaluate(&force, 1.0) * left <= 0.1 * tolerance {
+            return f64::INFINITY;
+        }
+        let (start, slope) = (state.overlap, state.rate * left);
+        let bend = boundary.level / boundary.per_compression - start - slope;
+        let force = BASIS.nodes.map(|s| {
+            let (compression, moved) = (start + s * (slope + s * bend), slope + 2.0 * s * bend);
+            law.force(&touch.branch, compression, moved / left).force_n
+        });
+        self.counts.law_evaluations += Q as u64;
+        let excess = truncation(&BASIS.coefficients(&force)) * left / tolerance;
+        if excess > 1.0 { shorter(left, excess) } else { f64::INFINITY }
     }
 
     /// Goes to the event, expected after `expected` seconds and at most `longest` away.
@@ -52,7 +81,7 @@ impl<'a> March<'a> {
         }
         let excess = self.excess(&window, &landed);
         if excess > 1.0 {
-            self.landing = 0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3);
+            self.landing = shorter(length, excess);
             self.horizon = Some(Horizon { target, at_s: self.time_s + length });
             return self.refine(self.level + 1);
         }

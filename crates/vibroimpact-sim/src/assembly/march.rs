@@ -101,10 +101,14 @@ impl<'a> March<'a> {
         let lasting = self.lasting();
         // a terminal panel is no better than one of about its length
         let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
-        let reach = self.reach.min(self.landing).min(usual);
+        let mut reach = self.reach.min(self.landing).min(usual);
         let mut level = self.level;
         if let Some(Horizon { target, at_s }) = self.horizon {
             let left = (at_s - self.time_s).max(0.0);
+            if left <= reach && self.landing.is_infinite() {
+                self.landing = self.foreseen(target, left);
+                reach = reach.min(self.landing);
+            }
             if left <= reach {
                 self.horizon = None;
                 return self.land(target, left, reach.min(lasting));

@@ -74,7 +74,7 @@ impl<'a> Solver<'a> {
     /// As [`run`].
     pub fn run(&self, settings: &Settings, observer: &mut dyn Observer) -> Result<Run, InvalidInput> {
         settings.check()?;
-        Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::new()), settings, observer, false).0)
+        Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::default()), settings, observer, false).0)
     }
 
     /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance

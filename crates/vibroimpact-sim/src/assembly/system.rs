@@ -133,6 +133,12 @@ impl System {
         system
     }
 
+    /// Whether some elastic mode moves both of two contacts.
+    pub fn share_elastic_modes(&self, one: usize, other: usize) -> bool {
+        let (one, other) = (&self.links[one], &self.links[other]);
+        !other.elastic.is_empty() && one.elastic.iter().any(|(k, _)| other.weight(*k) != 0.0)
+    }
+
     /// Products of the weights of two contacts, mode by mode; zero where they do not share a body.
     pub fn shared(&self, one: usize, other: usize) -> Vec<f64> {
         let mut products = vec![0.0; self.modes.len()];

@@ -5,16 +5,17 @@
 use super::damping::Damping;
 use super::interpolation::Missed;
 use super::system::{Link, Span, System};
-use crate::panel::dyadic::{J_MAX, J_MIN, Rotation, step_s};
+use crate::panel::dyadic::{Levels, Rotation, step_s};
 use crate::panel::forcing::{Compliance, Way, part};
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, TAYLOR, dot};
 use crate::panel::oscillator::BodyMode;
+use crate::panel::rows::Rows;
 use crate::panel::vector::{LANES, sum_over, vectorized};
 use std::array;
 use std::sync::OnceLock;
 
 /// Response of one contact's overlap to the force of another.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Response {
     /// At the nodes, to nodal forces (m/N).
     pub nodes: Matrix,
@@ -28,15 +29,15 @@ pub(crate) struct Response {
 pub(crate) struct Forced {
     /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
     pub at_nodes: Vec<(Nodal, Nodal)>,
-    /// Amplitude and rate at the end, `[n][k]`, to a unit Legendre force `n` on mode `k`.
-    amplitude: [Vec<f64>; Q],
-    rate: [Vec<f64>; Q],
+    /// Amplitude and rate at the end, a row for each unit Legendre force on the modes.
+    amplitude: Rows<Q>,
+    rate: Rows<Q>,
 }
 
 /// The same on one level, with the responses of pairs of contacts.
 struct Expanded {
     forced: Forced,
-    /// `[c][c']`, where asked for: the response of the elastic modes.
+    /// `[c][c']`, where asked for: the response of the elastic modes, of contacts that share some.
     elastic: Vec<OnceLock<Box<Response>>>,
 }
 
@@ -49,7 +50,7 @@ struct Level {
 }
 
 pub(crate) struct Tables {
-    levels: Vec<OnceLock<Box<Level>>>,
+    levels: Levels<Level>,
     /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where asked for.
     kernels: Vec<OnceLock<[f64; TAYLOR]>>,
     contacts: usize,
@@ -58,9 +59,7 @@ pub(crate) struct Tables {
 impl Tables {
     pub fn new(system: &System) -> Tables {
         let contacts = system.links.len();
-        // one level more than is stepped on, for the half steps of the finest
-        let levels = std::iter::repeat_with(OnceLock::new).take((J_MAX - J_MIN + 2) as usize).collect();
-        Tables { levels, kernels: unset(contacts), contacts }
+        Tables { levels: Levels::default(), kernels: unset(contacts), contacts }
     }
 
     /// Free motion over one panel of level `j`.
@@ -82,7 +81,7 @@ impl Tables {
 
     /// For a system that differs in the weights of the elastic modes: what does not depend on them stays.
     pub fn change_weights(&mut self) {
-        for level in self.levels.iter_mut().filter_map(OnceLock::get_mut) {
+        for level in self.levels.iter_mut() {
             level.damping = OnceLock::new();
             if let Some(expanded) = level.expanded.get_mut() {
                 expanded.elastic = unset(self.contacts);
@@ -91,8 +90,9 @@ impl Tables {
         self.kernels = unset(self.contacts);
     }
 
+    #[inline]
     fn level(&self, j: i32) -> &Level {
-        self.levels[(j - J_MIN) as usize].get_or_init(Default::default)
+        self.levels.get_or_init(j, Level::default)
     }
 
     /// Makes sure that everything about level `j` is there for these contacts and these forces.
@@ -103,7 +103,7 @@ impl Tables {
         let pairs: Vec<(usize, usize)> = contacts
             .iter()
             .flat_map(|&c| forces.iter().map(move |&other| (c, other)))
-            .filter(|(c, other)| system.neighbours[*c].contains(other))
+            .filter(|(c, other)| system.share_elastic_modes(*c, *other))
             .filter(|(c, other)| expanded.as_ref().is_none_or(|level| level.elastic[c * count + other].get().is_none()))
             .collect();
         if expanded.is_some() && pairs.is_empty() {
@@ -133,20 +133,19 @@ impl Tables {
         self.expanded(j).map_or([0.0; Q], |level| level.forced.free_at_nodes(&link.spans, amplitude, rate))
     }
 
-    /// Response of contact `c` to the force of `other` by the elastic modes, if they share a body. Needs
-    /// [`Tables::prepare`].
-    pub fn elastic_response(&self, j: i32, c: usize, other: usize) -> Option<&Response> {
-        self.expanded(j)?.elastic[c * self.contacts + other].get().map(|response| &**response)
+    /// Response of contact `c` to the force of `other` by the elastic modes. Needs [`Tables::prepare`].
+    pub fn elastic_response(&self, j: i32, c: usize, other: usize) -> Response {
+        let found = self.expanded(j).and_then(|level| level.elastic[c * self.contacts + other].get());
+        found.map_or_else(Response::default, |response| **response)
     }
 
     /// How far free motion over a panel moves the overlap of a contact, and its rate then.
     pub fn free_at_end(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> (f64, f64) {
         let (mut moved, mut speed) = (0.0, 0.0);
         let Some(rotation) = self.level(j).rotation.get() else { return (moved, speed) };
-        let Rotation { p11_less_1, p12, p21, p22 } = rotation;
         for Span { modes, psi } in &link.spans {
-            let [less, p12, p21, p22, a, b] =
-                [p11_less_1, p12, p21, p22, amplitude, rate].map(|row| &row[modes.clone()]);
+            let [less, p12, p21, p22] = rotation.of_modes(modes.clone());
+            let [a, b] = [amplitude, rate].map(|row| &row[modes.clone()]);
             let rows = [psi, less, p12, p21, p22, a, b];
             let [by_span, speed_by_span] = vectorized(
                 #[inline(always)]
@@ -202,10 +201,10 @@ fn unset<T>(contacts: usize) -> Vec<OnceLock<T>> {
 
 /// `state[k] -= psi[k] sum_n table[n][k] force[n]`, in one pass.
 #[inline(always)]
-fn accumulate(state: &mut [f64], psi: &[f64], table: &[Vec<f64>; Q], first: usize, force: &Nodal) {
+fn accumulate(state: &mut [f64], psi: &[f64], table: &Rows<Q>, first: usize, force: &Nodal) {
     let n = psi.len();
     let state = &mut state[..n];
-    let [t0, t1, t2, t3, t4, t5, t6, t7] = table.each_ref().map(|row| &row[first..first + n]);
+    let [t0, t1, t2, t3, t4, t5, t6, t7] = table.part(first, n);
     let [f0, f1, f2, f3, f4, f5, f6, f7] = *force;
     for k in 0..n {
         let response =
@@ -220,7 +219,7 @@ impl Forced {
     pub fn new(system: &System, h: f64, half: &Rotation, weights: &[Vec<f64>]) -> (Forced, Vec<[Nodal; Q]>) {
         let n = system.modes.len();
         let mut at_nodes = Vec::with_capacity(n);
-        let [mut amplitude, mut rate] = [(); 2].map(|()| [(); Q].map(|()| vec![0.0; n]));
+        let [mut amplitude, mut rate] = [(); 2].map(|()| Rows::new(n));
         let mut sums = Sums::new(system, h, weights);
         for body in &system.bodies {
             let mut terms = 2;
@@ -230,10 +229,8 @@ impl Forced {
                 let part = part(mode, &way, h, &half.of(k), &mut terms);
                 sums.add(k, &way);
                 at_nodes.push(part.at_nodes);
-                for n in 0..Q {
-                    amplitude[n][k] = part.end.0[n];
-                    rate[n][k] = part.end.1[n];
-                }
+                amplitude.set(k, part.end.0);
+                rate.set(k, part.end.1);
             }
             sums.end_body();
         }
@@ -257,11 +254,12 @@ impl Forced {
     fn end(&self, system: &System, weights: &[f64]) -> (Nodal, Nodal) {
         let elastic = |(weight, mode): (&f64, &BodyMode)| if mode.is_rigid() { 0.0 } else { -weight };
         let weights: Vec<f64> = weights.iter().zip(&system.modes).map(elastic).collect();
-        let sum = |row: &Vec<f64>| {
+        let sum = |row: &[f64]| {
             let [sum] = sum_over([&weights, row], |[weight, response]| [weight * response]);
             sum
         };
-        (array::from_fn(|n| sum(&self.amplitude[n])), array::from_fn(|n| sum(&self.rate[n])))
+        let rows = |table: &Rows<Q>| table.part(0, weights.len()).map(sum);
+        (rows(&self.amplitude), rows(&self.rate))
     }
 
     /// How far free motion moves `sum_k psi_k a_k` at the nodes.
@@ -412,7 +410,7 @@ mod tests {
         let nodes = |system: &System| {
             let tables = Tables::new(system);
             tables.prepare(system, 0, &[0], &[0]);
-            tables.elastic_response(0, 0, 0).map(|response| response.nodes).unwrap()
+            tables.elastic_response(0, 0, 0).nodes
         };
         let (fast, slow) = ([4.0, 5.5], [1e-3, 2e-3]);
         let both = nodes(&between([&fast, &slow]));

@@ -12,7 +12,7 @@ use crate::panel::peak::Peak;
 use contact_models::{After, Branch, Memory, boundaries};
 
 /// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
-const SINGULAR: f64 = 1e-4;
+pub(super) const SINGULAR: f64 = 1e-4;
 
 impl<'a> March<'a> {
     /// Contacts that touch at the start close at once.

@@ -302,7 +302,7 @@ impl Solver {
     fn lower(&self, impact: &Impact) -> Lowered {
         let assembly = posed::assembly(&self.modes, &self.moved, impact.striker, impact.start);
         let system = System::new(&assembly.with_laws(Vec::new()));
-        Lowered { assembly, system, responses: Responses::new() }
+        Lowered { assembly, system, responses: Responses::default() }
     }
 
     fn run_lowered(&self, impact: &Impact, lowered: &mut Lowered, tolerance: f64, keep: Keep) -> Run {

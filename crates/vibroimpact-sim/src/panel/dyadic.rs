@@ -1,7 +1,11 @@
 //! Panels of `h = 2^-j` s, whose tables can be kept.
 
 use super::oscillator::{BodyMode, Propagator, propagate};
+use super::rows::Rows;
 use super::vector::vectorized;
+use std::array;
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Coarsest and finest step: `2^J_MIN` to `2^J_MAX` parts of a second.
 pub(crate) const J_MIN: i32 = -120;
@@ -18,32 +22,77 @@ pub(crate) fn level_within(t: f64) -> i32 {
     (-exponent).clamp(J_MIN, J_MAX)
 }
 
-/// Free motion over one panel, mode by mode.
+/// Levels that are made together: a run needs a few, side by side.
+const GROUP: usize = 32;
+/// Groups of all levels, and of one more, for the half steps of the finest.
+const GROUPS: usize = (J_MAX + 1 - J_MIN) as usize / GROUP + 1;
+
+type Group<T> = [OnceLock<Box<T>>; GROUP];
+
+/// Something for each level, made when it is first asked for.
+pub(crate) struct Levels<T> {
+    groups: [OnceLock<Box<Group<T>>>; GROUPS],
+}
+
+impl<T> Default for Levels<T> {
+    fn default() -> Levels<T> {
+        Levels { groups: array::from_fn(|_| OnceLock::new()) }
+    }
+}
+
+impl<T> Levels<T> {
+    /// What there is on level `j`.
+    pub fn get(&self, j: i32) -> Option<&T> {
+        let (group, place) = Self::place(j);
+        self.groups[group].get()?[place].get().map(|found| &**found)
+    }
+
+    /// What there is on level `j`, made now if it is missing.
+    pub fn get_or_init(&self, j: i32, make: impl FnOnce() -> T) -> &T {
+        let (group, place) = Self::place(j);
+        let group = self.groups[group].get_or_init(|| Box::new(array::from_fn(|_| OnceLock::new())));
+        group[place].get_or_init(|| Box::new(make()))
+    }
+
+    /// What there is on level `j`, to be changed.
+    pub fn get_mut(&mut self, j: i32) -> Option<&mut T> {
+        let (group, place) = Self::place(j);
+        self.groups[group].get_mut()?[place].get_mut().map(|found| &mut **found)
+    }
+
+    /// All that has been made.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        let groups = self.groups.iter_mut().filter_map(OnceLock::get_mut);
+        groups.flat_map(|group| group.iter_mut().filter_map(OnceLock::get_mut)).map(|found| &mut **found)
+    }
+
+    /// Group of a level, and its place there.
+    fn place(j: i32) -> (usize, usize) {
+        let i = (j - J_MIN) as usize;
+        (i / GROUP, i % GROUP)
+    }
+}
+
+/// Free motion over one panel, mode by mode: the rows `p11 - 1`, `p12`, `p21`, `p22` of the propagators.
 pub(crate) struct Rotation {
-    pub p11_less_1: Vec<f64>,
-    pub p12: Vec<f64>,
-    pub p21: Vec<f64>,
-    pub p22: Vec<f64>,
+    rows: Rows<4>,
 }
 
 impl Rotation {
     pub fn new(modes: &[BodyMode], h: f64) -> Rotation {
-        let [mut p11_less_1, mut p12, mut p21, mut p22] = [(); 4].map(|()| Vec::with_capacity(modes.len()));
-        for mode in modes {
+        let mut rows = Rows::new(modes.len());
+        for (k, mode) in modes.iter().enumerate() {
             let p = propagate(mode, h);
-            p11_less_1.push(p.p11_less_1);
-            p12.push(p.p12);
-            p21.push(p.p21);
-            p22.push(p.p22);
+            rows.set(k, [p.p11_less_1, p.p12, p.p21, p.p22]);
         }
-        Rotation { p11_less_1, p12, p21, p22 }
+        Rotation { rows }
     }
 
     /// Moves all modes freely.
     pub fn apply(&self, amplitude: &mut [f64], rate: &mut [f64]) {
         let n = amplitude.len();
-        let (less, p12) = (&self.p11_less_1[..n], &self.p12[..n]);
-        let (p21, p22, rate) = (&self.p21[..n], &self.p22[..n], &mut rate[..n]);
+        let rate = &mut rate[..n];
+        let [less, p12, p21, p22] = self.of_modes(0..n);
         vectorized(
             #[inline(always)]
             || {
@@ -56,9 +105,16 @@ impl Rotation {
         );
     }
 
+    /// The rows of these modes.
+    #[inline(always)]
+    pub fn of_modes(&self, modes: Range<usize>) -> [&[f64]; 4] {
+        self.rows.part(modes.start, modes.len())
+    }
+
     /// Free motion of one mode.
     pub fn of(&self, k: usize) -> Propagator {
-        Propagator { p11_less_1: self.p11_less_1[k], p12: self.p12[k], p21: self.p21[k], p22: self.p22[k] }
+        let [p11_less_1, p12, p21, p22] = self.rows.part(k, 1).map(|row| row[0]);
+        Propagator { p11_less_1, p12, p21, p22 }
     }
 }
 

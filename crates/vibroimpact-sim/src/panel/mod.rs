@@ -6,4 +6,5 @@ pub(crate) mod forcing;
 pub(crate) mod legendre;
 pub(crate) mod oscillator;
 pub(crate) mod peak;
+pub(crate) mod rows;
 pub(crate) mod vector;

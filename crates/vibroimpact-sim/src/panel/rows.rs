@@ -1,0 +1,43 @@
+//! A table of a few rows, one value for each mode, in one piece of memory.
+
+/// `R` rows of the same length.
+#[derive(Default)]
+pub(crate) struct Rows<const R: usize> {
+    values: Vec<f64>,
+    length: usize,
+}
+
+impl<const R: usize> Rows<R> {
+    /// Rows of zeros.
+    pub fn new(length: usize) -> Rows<R> {
+        Rows { values: vec![0.0; R * length], length }
+    }
+
+    /// Sets the `k`-th value of each row.
+    pub fn set(&mut self, k: usize, values: [f64; R]) {
+        for (row, value) in values.into_iter().enumerate() {
+            self.values[row * self.length + k] = value;
+        }
+    }
+
+    /// From the value `first` of a row on, so many.
+    #[inline(always)]
+    fn row(&self, row: usize, first: usize, count: usize) -> &[f64] {
+        &self.values[row * self.length + first..][..count]
+    }
+}
+
+/// The rows one by one: what makes an array by a closure is not inlined where the vector units are chosen.
+macro_rules! parts {
+    ($count:literal: $($row:literal)*) => {
+        impl Rows<$count> {
+            /// From the value `first` of all rows on, so many.
+            #[inline(always)]
+            pub fn part(&self, first: usize, count: usize) -> [&[f64]; $count] {
+                [$(self.row($row, first, count)),*]
+            }
+        }
+    };
+}
+parts!(4: 0 1 2 3);
+parts!(8: 0 1 2 3 4 5 6 7);
