@@ -16,13 +16,15 @@ use crate::progress::Progress;
 
 /// Tables fitted side by side before their rows are written.
 const BATCH: usize = 32;
-/// Parameters are found if they are this near the truth.
-const FOUND: f64 = 0.02;
+/// Parameters are near the truth if they differ by no more than this part.
+const NEAR: f64 = 0.02;
 /// Starting points that are compared where there are many contacts.
 const STARTS: [usize; 3] = [1, 4, 16];
 const POINTS: [&str; 3] = ["tip", "middle", "quarter"];
 const SPEEDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 const NOISE: [f64; 2] = [0.004, 4e-7];
+/// Relative noise of peak forces.
+const PEAK_NOISE: f64 = 0.01;
 const FREE: [&str; 2] = ["contact.stiffness_n_m1_5", "striker.mass_kg"];
 
 /// Options of the study of identification.
@@ -52,8 +54,9 @@ struct Row {
     by_profile: usize,
     /// Whether a test of the misfit noticed anything.
     noticed: bool,
-    /// Whether the truth was found from so many starts; of a rough table only.
-    found: Vec<bool>,
+    /// From so many starts each, of a rough table only: whether the fit is as good as the truth, and whether it is near the truth.
+    fits: Vec<bool>,
+    near: Vec<bool>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -64,14 +67,21 @@ enum Kind {
     /// Fitted with the wrong law, the wrong damping.
     WrongLaw,
     WrongDamping,
-    /// Many contacts.
+    /// Many contacts: the restitution alone, and with it the peak force of the first contact.
     Rough,
+    RoughPeak,
+}
+
+impl Kind {
+    fn is_rough(self) -> bool {
+        matches!(self, Kind::Rough | Kind::RoughPeak)
+    }
 }
 
 /// Runs the study, or what is missing of it, and sums up.
 pub fn run(wanted: &Wanted) -> Result<String, Failure> {
-    let kinds = [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough];
-    let count = |kind| if kind == Kind::Rough { wanted.rough } else { wanted.tables };
+    let kinds = [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak];
+    let count = |kind: Kind| if kind.is_rough() { wanted.rough } else { wanted.tables };
     let all: Vec<(Kind, u64)> = kinds.iter().flat_map(|&kind| (0..count(kind)).map(move |n| (kind, n))).collect();
     fs::create_dir_all(&wanted.out)?;
     let path = wanted.out.join("rows.jsonl");
@@ -123,19 +133,26 @@ fn told(kind: Kind, rows: &[Row]) -> String {
             share(sum(|row| row.by_profile), parameters),
         ),
         Kind::WrongLaw | Kind::WrongDamping => format!("{kind:?}: {} tables; noticed {noticed}\n", rows.len()),
-        Kind::Rough => {
-            let found = |k: usize| share(rows.iter().filter(|row| row.found.get(k) == Some(&true)).count(), rows.len());
-            let each: Vec<String> =
-                STARTS.iter().enumerate().map(|(k, starts)| format!("{} from {starts} starts", found(k))).collect();
-            format!("{kind:?}: {} tables; truth found {}\n", rows.len(), each.join(", "))
+        Kind::Rough | Kind::RoughPeak => {
+            let of = |all: fn(&Row) -> &[bool], k: usize| {
+                share(rows.iter().filter(|row| all(row).get(k) == Some(&true)).count(), rows.len())
+            };
+            let each = |(k, starts)| {
+                let (fits, near) = (of(|row| &row.fits, k), of(|row| &row.near, k));
+                format!("from {starts} starts {fits} fit as well as the truth and {near} are near it, ")
+            };
+            let each: String = STARTS.iter().enumerate().map(each).collect();
+            let held = share(sum(|row| row.by_profile), parameters);
+            format!("{kind:?}: {} tables; {each}intervals from the most starts hold by profile {held}\n", rows.len())
         }
     }
 }
 
 fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
     let mut random = Random(number.wrapping_mul(0x9e37_79b9).wrapping_add(kind as u64));
-    let mut row = Row { kind, number, by_covariance: 0, by_profile: 0, noticed: false, found: Vec::new() };
-    if kind == Kind::Rough {
+    let mut row =
+        Row { kind, number, by_covariance: 0, by_profile: 0, noticed: false, fits: Vec::new(), near: Vec::new() };
+    if kind.is_rough() {
         return rough(row, &mut random);
     }
     let truth = [1.2e9 * random.factor(1.5), 0.05 * random.factor(1.5)];
@@ -150,18 +167,21 @@ fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
     let free = if kind == Kind::WrongLaw { ["contact.stiffness_n_m", FREE[1]] } else { FREE };
     let found = fitted(&guess, &data, &free, 1)?;
     for (parameter, truth) in found.parameters.iter().zip(truth) {
-        let held =
-            |[low, high]: [Option<f64>; 2]| low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high);
-        row.by_profile += usize::from(held(parameter.profile_interval));
+        row.by_profile += usize::from(holds(parameter.profile_interval, truth));
         let ends = parameter.covariance_interval.map_or([None; 2], |ends| ends.map(Some));
-        row.by_covariance += usize::from(held(ends));
+        row.by_covariance += usize::from(holds(ends, truth));
     }
     row.noticed = found.lack_of_fit.iter().any(|test| test.noticed);
     Ok(row)
 }
 
-/// A beam near its tip, where contacts are many, from a guess that is far off.
-fn rough(row: Row, random: &mut Random) -> Result<Row, Failure> {
+/// Whether an interval contains the truth; an end that is not known is open.
+fn holds([low, high]: [Option<f64>; 2], truth: f64) -> bool {
+    low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high)
+}
+
+/// A beam out to its tip, where contacts are many, from a guess that is far off.
+fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
     let truth = [2e9 * random.factor(2.0), 0.06 * random.factor(1.2)];
     let beam = |stiffness: f64, mass: f64| {
         json!({
@@ -172,20 +192,39 @@ fn rough(row: Row, random: &mut Random) -> Result<Row, Failure> {
             "location_m": 0.9, "modes": 20, "residual_compliance": true
         })
     };
-    let mut text = "location_m,restitution,restitution_sd\n".to_owned();
+    let with_peak = row.kind == Kind::RoughPeak;
+    let peak_columns = if with_peak { ",first_peak_force_n,first_peak_force_n_sd" } else { "" };
+    let mut text = format!("location_m,restitution,restitution_sd{peak_columns}\n");
+    // the sum of squares at the truth
+    let mut of_truth = 0.0;
+    let mut noise = |sd: f64| {
+        let normal = random.normal();
+        of_truth += normal * normal;
+        sd * normal
+    };
     for place in [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0] {
         let mut tree = beam(truth[0], truth[1]);
         tree["location_m"] = json!(place);
-        let e = Scene::from_value(&tree)?.impact()?.solve()?.restitution.ok_or("no rebound")?;
-        text += &format!("{place:?},{:?},{:?}\n", e + NOISE[0] * random.normal(), NOISE[0]);
+        let found = Scene::from_value(&tree)?.impact()?.solve()?;
+        let e = found.restitution.ok_or("no rebound")? + noise(NOISE[0]);
+        text += &format!("{place:?},{e:?},{:?}", NOISE[0]);
+        if with_peak {
+            let peak = found.sub_impacts.first().ok_or("no contact")?.peak_force_n;
+            let sd = PEAK_NOISE * peak;
+            text += &format!(",{:?},{sd:?}", peak + noise(sd));
+        }
+        text += "\n";
     }
     let data = parsed(&text)?;
     let guess = beam(truth[0] * 1.8, truth[1] * 1.3);
-    let found = STARTS.iter().map(|&starts| {
+    for starts in STARTS {
         let found = fitted(&guess, &data, &FREE, starts)?;
-        Ok(found.parameters.iter().zip(truth).all(|(parameter, truth)| (parameter.value / truth - 1.0).abs() < FOUND))
-    });
-    Ok(Row { found: found.collect::<Result<Vec<bool>, Failure>>()?, ..row })
+        let beside = || found.parameters.iter().zip(truth);
+        row.fits.push(found.sum_of_squares <= of_truth);
+        row.near.push(beside().all(|(parameter, truth)| (parameter.value / truth - 1.0).abs() < NEAR));
+        row.by_profile = beside().filter(|(parameter, truth)| holds(parameter.profile_interval, *truth)).count();
+    }
+    Ok(row)
 }
 
 fn fitted(scene: &Value, data: &Data, free: &[&str], starts: usize) -> Result<Identification, Failure> {
