@@ -410,3 +410,24 @@ fn modes_about_critical_damping_have_derivatives() {
         }
     }
 }
+
+/// Of the random impacts the one where differences of the law about its anchor once passed the corner of the force there, which
+/// no tolerance told: elastic-plastic, with thirteen contacts.
+#[test]
+fn a_corner_of_the_law_does_not_disturb_derivatives() {
+    const STEP: f64 = 1e-9;
+    let posed = random_impacts(298).nth(297).unwrap();
+    let found = posed.differentiate(1e-9);
+    let end_s = found.solution.end_s;
+    let derivatives = found.derivatives.unwrap();
+    for which in [2, 5] {
+        let intervals = &derivatives[which].sub_impacts;
+        let follow = |step: f64| posed.in_digits(which, step).follow(intervals.len(), 1.01 * end_s).unwrap();
+        let (after, before) = (follow(STEP), follow(-STEP));
+        for (own, (after, before)) in intervals.iter().zip(after.intervals.iter().zip(&before.intervals)) {
+            let reference = ((after[2] - before[2]) / Double::from(2.0 * STEP)).near;
+            let error = (own.impulse_n_s.value - reference).abs();
+            assert!(error <= 1e-6 * reference.abs(), "{} {:?} {reference}", PARAMETERS[which], own.impulse_n_s);
+        }
+    }
+}

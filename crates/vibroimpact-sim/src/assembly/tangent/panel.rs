@@ -11,6 +11,10 @@ use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
 
+/// The step of a branch's anchor in parts of the compression beyond it, and the least in parts of its size.
+const ANCHOR_STEP: f64 = 0.01;
+const LEAST_LAW_STEP: f64 = 1e-9;
+
 /// The closed contacts of a panel, as the record has them.
 pub(super) struct Solved {
     pub contact: usize,
@@ -298,10 +302,14 @@ impl Walk<'_> {
         }
         let law = self.posed.laws[c];
         for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
-            let stencil = Stencil::central(LAW_STEP * size_of(&own.branch, which, &self.contacts[c]));
-            let branches = stencil.offsets.map(|offset| shifted(&own.branch, which, offset));
+            let size = size_of(&own.branch, which, &self.contacts[c]);
             for i in 0..Q {
-                found[i] += by * stencil.slope(branches.each_ref().map(|branch| at(law, branch, i)));
+                // a law may have a corner where it is anchored, which no neighbour passes
+                let apart = if which == 0 { (own.compression[i] - own.branch.anchor_m).abs() } else { size };
+                let step = (ANCHOR_STEP * apart).clamp(LEAST_LAW_STEP * size, LAW_STEP * size);
+                let stencil = Stencil::central(step);
+                let forces = stencil.offsets.map(|offset| at(law, &shifted(&own.branch, which, offset), i));
+                found[i] += by * stencil.slope(forces);
             }
         }
         found
