@@ -172,6 +172,8 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
         ("/bodies/ball/mass_kg", json!(-1), "bodies.ball.mass_kg"),
         ("/bodies/ball/mass_kg", json!("heavy"), "bodies.ball.mass_kg"),
         ("/bodies/ball/mass_kg", json!(1e40), "bodies.ball.mass_kg"),
+        ("/bodies/ball/mass_kg", json!(1e-308), "bodies.ball.mass_kg"),
+        ("/bodies/ball/velocity_m_s", json!(1e31), "bodies.ball.velocity_m_s"),
         ("/bodies/ball/position_m", json!(1e31), "bodies.ball.position_m"),
         ("/bodies/ball/velocity_m_s", json!(-1e31), "bodies.ball.velocity_m_s"),
         ("/bodies/ball/speed_m_s", json!(1), "bodies.ball.speed_m_s"),

@@ -4,10 +4,10 @@ use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
 use vibroimpact_sim::modal::Mode;
 
-use super::body::{Body, Elastic, Elastics};
+use super::body::{Body, Elastic, Elastics, Mass};
 use super::load::require_finite;
 use super::rod::Rod;
-use crate::scene::require_positive;
+use crate::scene::json::number;
 use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
 
 /// A body whose modes have been computed, to be seen from any of its points.
@@ -32,12 +32,7 @@ impl<'a> Seen<'a> {
         let mut seen = Seen { name, body, known, rod: None, places_m, remainder, modes };
         seen.modes = match body {
             Body::Mass(mass) => {
-                require_positive("mass_kg", mass.mass_kg).map_err(|fault| seen.of_body(fault))?;
-                for (field, value) in
-                    [("mass_kg", mass.mass_kg), ("position_m", mass.position_m), ("velocity_m_s", mass.velocity_m_s)]
-                {
-                    require_finite(field, value).map_err(|fault| seen.of_body(fault))?;
-                }
+                check_mass(mass).map_err(|fault| seen.of_body(fault))?;
                 vec![BodyMode { omega_rad_s: 0.0, damping_ratio: 0.0 }]
             }
             Body::Elastic(body) => {
@@ -195,8 +190,25 @@ fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
     let count = count.ok_or_else(|| InvalidInput::missing("modes", "a whole number from 0 to 10000"))?;
     crate::scene::require_count(count)?;
     if !(rod.damping_ratio >= 0.0 && rod.damping_ratio.is_finite()) {
-        let value = crate::scene::json::number(rod.damping_ratio);
+        let value = number(rod.damping_ratio);
         return Err(InvalidInput::new("damping_ratio", value, fields::NOT_NEGATIVE));
     }
     rod.to_rod()?.modes(count)
+}
+
+/// A rigid mass within what the solver computes with.
+fn check_mass(mass: &Mass) -> Result<(), InvalidInput> {
+    const LARGEST: f64 = 1e30;
+    if !(LARGEST.recip()..=LARGEST).contains(&mass.mass_kg) {
+        return Err(InvalidInput::new("mass_kg", number(mass.mass_kg), "a number from 1e-30 to 1e30"));
+    }
+    // its mode has the amplitude x m^(1/2)
+    let most = LARGEST / mass.mass_kg.sqrt().max(1.0);
+    for (field, value) in [("position_m", mass.position_m), ("velocity_m_s", mass.velocity_m_s)] {
+        if value.is_nan() || value.abs() > most {
+            let allowed = format!("a finite number, at most {most:e} in size for this mass");
+            return Err(InvalidInput::new(field, number(value), allowed));
+        }
+    }
+    Ok(())
 }
