@@ -10,6 +10,7 @@ use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Struc
 #[test]
 fn histories_of_a_law_of_ones_own_are_exported() {
     let law = Hardening { stiffness_n_m: 2e7, yield_force_n: 100.0, kinematic_n_m: 8e6, isotropic_n_m: 1e6 };
+    let law = law.validated().unwrap();
     let modes = [(160.0, 1.4), (660.0, -0.8)];
     let mode = |(omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: 0.02, shape };
     let solver = Solver::new(&Structure { modes: modes.map(mode).to_vec() }).unwrap();
