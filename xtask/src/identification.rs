@@ -23,6 +23,9 @@ const STARTS: [usize; 3] = [1, 4, 16];
 const POINTS: [&str; 3] = ["tip", "middle", "quarter"];
 const SPEEDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 const NOISE: [f64; 2] = [0.004, 4e-7];
+/// Places along a beam, of which the first have a single contact.
+const PLACES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0];
+const SINGLE: usize = 6;
 /// Relative noise of peak forces.
 const PEAK_NOISE: f64 = 0.01;
 const FREE: [&str; 2] = ["contact.stiffness_n_m1_5", "striker.mass_kg"];
@@ -67,20 +70,23 @@ enum Kind {
     /// Fitted with the wrong law, the wrong damping.
     WrongLaw,
     WrongDamping,
-    /// Many contacts: the restitution alone, and with it the peak force of the first contact.
+    /// Many contacts at the tip: the restitution alone, with it the peak force of the first contact, and both without the places
+    /// of many contacts.
     Rough,
     RoughPeak,
+    Smooth,
 }
 
 impl Kind {
     fn is_rough(self) -> bool {
-        matches!(self, Kind::Rough | Kind::RoughPeak)
+        matches!(self, Kind::Rough | Kind::RoughPeak | Kind::Smooth)
     }
 }
 
 /// Runs the study, or what is missing of it, and sums up.
 pub fn run(wanted: &Wanted) -> Result<String, Failure> {
-    let kinds = [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak];
+    let kinds =
+        [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak, Kind::Smooth];
     let count = |kind: Kind| if kind.is_rough() { wanted.rough } else { wanted.tables };
     let all: Vec<(Kind, u64)> = kinds.iter().flat_map(|&kind| (0..count(kind)).map(move |n| (kind, n))).collect();
     fs::create_dir_all(&wanted.out)?;
@@ -133,7 +139,7 @@ fn told(kind: Kind, rows: &[Row]) -> String {
             share(sum(|row| row.by_profile), parameters),
         ),
         Kind::WrongLaw | Kind::WrongDamping => format!("{kind:?}: {} tables; noticed {noticed}\n", rows.len()),
-        Kind::Rough | Kind::RoughPeak => {
+        Kind::Rough | Kind::RoughPeak | Kind::Smooth => {
             let of = |all: fn(&Row) -> &[bool], k: usize| {
                 share(rows.iter().filter(|row| all(row).get(k) == Some(&true)).count(), rows.len())
             };
@@ -192,7 +198,7 @@ fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
             "location_m": 0.9, "modes": 20, "residual_compliance": true
         })
     };
-    let with_peak = row.kind == Kind::RoughPeak;
+    let with_peak = row.kind != Kind::Rough;
     let peak_columns = if with_peak { ",first_peak_force_n,first_peak_force_n_sd" } else { "" };
     let mut text = format!("location_m,restitution,restitution_sd{peak_columns}\n");
     // the sum of squares at the truth
@@ -202,7 +208,8 @@ fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
         of_truth += normal * normal;
         sd * normal
     };
-    for place in [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0] {
+    let count = if row.kind == Kind::Smooth { SINGLE } else { PLACES.len() };
+    for place in &PLACES[..count] {
         let mut tree = beam(truth[0], truth[1]);
         tree["location_m"] = json!(place);
         let found = Scene::from_value(&tree)?.impact()?.solve()?;
