@@ -3,7 +3,7 @@
 //! | module | structure | method | thesis |
 //! |---|---|---|---|
 //! | [`modal`] | any that is described by its modes, at rest or moving | posed as the smallest assembly | chapters 3, 4 |
-//! | [`infinite`] | an infinite beam or plate, in which waves carry the energy away | one scalar Volterra equation | chapter 2 |
+//! | [`infinite`] | an infinite beam or plate, or any whose impulse response is a sum of powers of time | one scalar Volterra equation | chapter 2 |
 //! | [`assembly`] | many bodies, contacts and loads, over long times | modes exact, the forces by collocation | beyond |
 //! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, posed as a modal impact | as `modal` | chapter 8 |
 //!
@@ -15,7 +15,8 @@
 //! # Limits
 //!
 //! Structures are linear, and the contact is one point. The striker moves along one line and does not rotate. Gravity
-//! and friction are left out during the impact. The infinite structures take Hertz contact alone. An impact on many
+//! and friction are left out during the impact. Whether a contact on an infinite structure is sustained is known for Hertz
+//! contact alone; with other laws a run that lasts stops. An impact on many
 //! undamped modes amplifies every error; the stated uncertainty shows by how much.
 
 pub mod assembly;

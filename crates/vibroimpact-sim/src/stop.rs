@@ -18,6 +18,9 @@ pub enum StopReason {
     Flight,
     /// Further contacts differ from one another by less than the rounding of what led to them.
     DigitsExhausted,
+    /// A contact on an infinite structure still lasts when it has been followed for 300 of its natural times, and whether it
+    /// ends is not known.
+    ContactLasts,
     /// The law of contact does not keep what laws promise; [`contact_models::check_contract`] says which promise, and where.
     Law,
 }
@@ -29,18 +32,20 @@ invalid_input::names!(StopReason, "stopped_by", {
     LawRange: "law range",
     Flight: "flight",
     DigitsExhausted: "digits exhausted",
+    ContactLasts: "contact lasts",
     Law: "law",
 });
 
 impl StopReason {
     /// All reasons.
-    pub const ALL: [StopReason; 7] = [
+    pub const ALL: [StopReason; 8] = [
         StopReason::Steps,
         StopReason::FinestStep,
         StopReason::SubImpacts,
         StopReason::LawRange,
         StopReason::Flight,
         StopReason::DigitsExhausted,
+        StopReason::ContactLasts,
         StopReason::Law,
     ];
 
@@ -65,6 +70,10 @@ impl StopReason {
             StopReason::DigitsExhausted => {
                 "the contacts that follow depend on digits that numbers do not have: what is listed is certain, what \
                  follows is not known"
+            }
+            StopReason::ContactLasts => {
+                "the contact still lasts at the time up to which it was followed, and whether it ever ends is not known: \
+                 what is listed is certain"
             }
             StopReason::Law => {
                 "the contact law breaks what laws promise: contact_models::check_contract tells which promise, and where"

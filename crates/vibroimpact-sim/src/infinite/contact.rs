@@ -329,6 +329,7 @@ impl<'a> March<'a> {
             start: self.origin + panel.start,
             h: panel.h,
             x: panel.x.clone(),
+            force: None,
             impulse: self.impulse_since_touch,
             moment: self.moment_since_touch,
         });

@@ -33,6 +33,10 @@
 //! measure `f ds`, by age, on a time origin that moves along. *End*: see
 //! [`Outcome::Sustained`].
 //!
+//! *Other laws, other structures*: [`solve_law`] solves the same equation for any [`ContactLaw`](contact_models::ContactLaw)
+//! and for any [`Receptance`] that is a sum of powers of time. It shares panels, history and solution with the solver for
+//! `S`, takes the rate from an integral of its own, and locates where the law changes its branch.
+//!
 //! # Example
 //!
 //! ```
@@ -51,11 +55,13 @@ mod collocate;
 mod contact;
 mod flight;
 mod free;
+mod general;
 mod groups;
 mod history;
 mod panel;
 mod piece;
 mod problem;
+mod receptance;
 mod rule;
 mod semi_analytical;
 mod solution;
@@ -65,8 +71,10 @@ mod turning;
 mod units;
 
 pub use asymptotic::{Attached, attached, displacement_eq_2_47};
+pub use general::solve_law;
 pub use groups::{Groups, Impact, Material};
 pub use problem::{S_RANGE, Settings, Structure};
+pub use receptance::{Receptance, Scale, Term};
 pub use semi_analytical::FirstContact;
 pub use solution::{Extremum, Outcome, Solution, State, SubImpact};
 pub use solve::solve;

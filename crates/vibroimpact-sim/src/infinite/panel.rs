@@ -13,7 +13,7 @@ pub(super) struct Panel {
     pub h: f64,
     /// Compression at the nodes.
     pub x: Vec<f64>,
-    /// `x_+^(3/2)` at the nodes.
+    /// Force at the nodes: `x_+^(3/2)`, or that of another law.
     pub f: Vec<f64>,
     /// Legendre coefficients of `f` in the panel variable.
     pub f_series: Vec<f64>,
@@ -24,7 +24,12 @@ pub(super) struct Panel {
 impl Panel {
     /// From the compression at the nodes.
     pub fn new(tables: &Tables, kind: Kind, start: f64, h: f64, x: Vec<f64>) -> Panel {
-        let f: Vec<f64> = x.iter().map(|&x| hertz(x)).collect();
+        let f = x.iter().map(|&x| hertz(x)).collect();
+        Panel::with_force(tables, kind, start, h, x, f)
+    }
+
+    /// From compression and force at the nodes.
+    pub fn with_force(tables: &Tables, kind: Kind, start: f64, h: f64, x: Vec<f64>, f: Vec<f64>) -> Panel {
         let f_series = tables.coefficients(&f);
         let root = if kind == Kind::Middle { RootSum::new(&f_series) } else { RootSum::default() };
         Panel { kind, start, h, x, f, f_series, root }

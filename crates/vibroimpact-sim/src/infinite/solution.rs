@@ -1,6 +1,7 @@
 //! The result of a run, and its evaluation at any time.
 
 use super::flight::Departure;
+use super::general::flight::Departure as GeneralDeparture;
 use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
 use super::piece::Piece;
@@ -130,7 +131,32 @@ const SAME: f64 = 0.5;
 pub(super) struct Flight {
     pub start: f64,
     pub body_travel: f64,
-    pub departure: Departure,
+    pub course: Course,
+}
+
+/// How a flight goes on.
+#[derive(Debug, Clone)]
+pub(super) enum Course {
+    Hertz(Departure),
+    General(GeneralDeparture),
+}
+
+impl Course {
+    /// Speed of the body towards the structure.
+    fn body(&self) -> f64 {
+        match self {
+            Course::Hertz(departure) => departure.body,
+            Course::General(departure) => departure.body,
+        }
+    }
+
+    /// Compression (below zero) and its rate, `tau` after separation.
+    fn state(&self, tau: f64) -> (f64, f64) {
+        match self {
+            Course::Hertz(departure) => departure.state(tau),
+            Course::General(departure) => departure.state(tau),
+        }
+    }
 }
 
 /// The record of a contact from which its motion is rebuilt.
@@ -138,16 +164,18 @@ pub(super) struct Flight {
 struct Record {
     units: Units,
     pieces: Vec<Piece>,
+    /// Largest force; `None` where the extrema of the compression tell it.
+    peak_force: Option<f64>,
     body_travel: f64,
 }
 
 /// Solution of one impact.
 #[derive(Debug, Clone)]
 pub struct Solution {
-    /// The struck structure.
-    pub structure: Structure,
-    /// The nondimensional number `S`.
-    pub s: f64,
+    /// The struck structure of Hertz contact; `None` where [`solve_law`](super::solve_law) was given its impulse response.
+    pub structure: Option<Structure>,
+    /// The nondimensional number `S` of Hertz contact; other laws have none.
+    pub s: Option<f64>,
     /// How the impact ends.
     pub outcome: Outcome,
     /// Every contact in order.
@@ -174,7 +202,7 @@ pub struct Solution {
 }
 
 impl Solution {
-    pub(super) fn empty(structure: Structure, s: f64, nodes: usize) -> Solution {
+    pub(super) fn empty(structure: Option<Structure>, s: Option<f64>, nodes: usize) -> Solution {
         Solution {
             structure,
             s,
@@ -194,7 +222,33 @@ impl Solution {
 
     pub(super) fn push_contact(&mut self, contact: SubImpact, units: Units, pieces: Vec<Piece>, body_travel: f64) {
         self.sub_impacts.push(contact);
-        self.records.push(Record { units, pieces, body_travel });
+        self.records.push(Record { units, pieces, peak_force: None, body_travel });
+    }
+
+    /// The same of a contact whose forces stand in its pieces, in the units of the impact.
+    pub(super) fn push_general(&mut self, contact: SubImpact, pieces: Vec<Piece>, peak_force: f64, body_travel: f64) {
+        self.sub_impacts.push(contact);
+        self.records.push(Record { units: Units::OF_IMPACT, pieces, peak_force: Some(peak_force), body_travel });
+    }
+
+    /// Largest force of every contact (units of `F`).
+    pub fn peak_forces(&self) -> Vec<f64> {
+        let mut peaks: Vec<f64> = self.records.iter().map(|record| record.peak_force.unwrap_or(0.0)).collect();
+        for extremum in self.s.and(Some(&self.extrema)).into_iter().flatten() {
+            if let Some(peak) = peaks.get_mut(extremum.contact) {
+                *peak = peak.max(self.hertz_force(extremum.compression.max(0.0)));
+            }
+        }
+        peaks
+    }
+
+    /// Hertz force at a compression that is not negative.
+    fn hertz_force(&self, compression: f64) -> f64 {
+        self.s.unwrap_or(0.0).sqrt() * compression.powf(1.5)
+    }
+
+    fn tables(&self) -> &'static Tables {
+        Tables::get(self.structure.unwrap_or(Structure::Beam), self.nodes)
     }
 
     /// Number of separations.
@@ -205,14 +259,14 @@ impl Solution {
     /// Speed away from the structure after the last separation over the speed of impact; `None`
     /// unless the body rebounds.
     pub fn rebound_ratio(&self) -> Option<f64> {
-        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.departure.body)).flatten()
+        (self.outcome == Outcome::Rebound).then(|| self.flights.last().map(|flight| -flight.course.body())).flatten()
     }
 
     /// Speed away from the structure after the first separation over the speed of impact (thesis
     /// Fig. 2.6b, `v_f / v`), below zero if the body still moves towards the structure; `None` if
     /// there is no separation.
     pub fn first_rebound_ratio(&self) -> Option<f64> {
-        self.flights.first().map(|flight| -flight.departure.body)
+        self.flights.first().map(|flight| -flight.course.body())
     }
 
     /// Decimal digits that two resolutions agree on (see [`relative_uncertainty`](Self::relative_uncertainty)), at most 15.
@@ -247,7 +301,7 @@ impl Solution {
         }
         let at = record.pieces.partition_point(|piece| piece.start <= theta).saturating_sub(1);
         let piece = &record.pieces[at];
-        let tables = Tables::get(self.structure, self.nodes);
+        let tables = self.tables();
         let panel = piece.panel(tables);
         let elapsed = ((theta - panel.start) / panel.h).min(1.0);
         let units = record.units;
@@ -259,7 +313,10 @@ impl Solution {
         let moment_total = units.impulse * units.time * (piece.moment + piece.impulse * since + moment);
         let speed_at_start = -contact.striker_velocity_at_start;
         let travel = record.body_travel + speed_at_start * after_touch - moment_total;
-        let force = self.s.sqrt() * compression * compression.sqrt();
+        let force = match (self.s, &piece.force) {
+            (Some(s), None) => s.sqrt() * compression * compression.sqrt(),
+            _ => series(&panel.f_series, variable(panel.kind, elapsed)).max(0.0),
+        };
         Some(State::new([compression, compression_rate, force], travel, speed_at_start - impulse_total))
     }
 
@@ -267,7 +324,7 @@ impl Solution {
     pub(super) fn body_travel_at_end(&self) -> f64 {
         let (Some(record), Some(contact)) = (self.records.last(), self.sub_impacts.last()) else { return 0.0 };
         let Some(piece) = record.pieces.last() else { return record.body_travel };
-        let tables = Tables::get(self.structure, self.nodes);
+        let tables = self.tables();
         let panel = piece.panel(tables);
         let moment = piece.moment + piece.impulse * panel.h + panel.moment(tables);
         let time = record.units.time * (panel.start + panel.h);
@@ -308,8 +365,8 @@ impl Solution {
 
 impl Flight {
     fn state(&self, tau: f64) -> State {
-        let (compression, compression_rate) = self.departure.state(tau);
-        let speed = self.departure.body;
+        let (compression, compression_rate) = self.course.state(tau);
+        let speed = self.course.body();
         State::new([compression, compression_rate, 0.0], self.body_travel + speed * tau, speed)
     }
 }

@@ -3,13 +3,13 @@
 use super::contact::{Ending, March};
 use super::history::History;
 use super::problem::{S_RANGE, Settings, Structure};
-use super::solution::{Extremum, Flight, Outcome, Solution, SubImpact};
+use super::solution::{Course, Extremum, Flight, Outcome, Solution, SubImpact};
 use super::units::Touch;
 use crate::StopReason;
 use invalid_input::InvalidInput;
 
 /// Times beyond this (units of `T`) are not followed: powers of them leave the range of numbers.
-const LATEST: f64 = 1e120;
+pub(super) const LATEST: f64 = 1e120;
 
 /// Solves the impact for one value of `S` (within [`S_RANGE`]).
 ///
@@ -20,19 +20,19 @@ pub fn solve(structure: Structure, s: f64, settings: &Settings) -> Result<Soluti
     settings.check()?;
     let mut solution = run(structure, s, settings);
     if settings.estimate_uncertainty {
-        let finer = Settings {
-            nodes: (settings.nodes + 4).min(32),
-            tolerance: (0.1 * settings.tolerance).max(1e-14),
-            ..*settings
-        };
-        solution.compare(&run(structure, s, &finer), settings.tolerance);
+        solution.compare(&run(structure, s, &finer(settings)), settings.tolerance);
     }
     Ok(solution)
 }
 
+/// The settings of the solution with which one is compared.
+pub(super) fn finer(settings: &Settings) -> Settings {
+    Settings { nodes: (settings.nodes + 4).min(32), tolerance: (0.1 * settings.tolerance).max(1e-14), ..*settings }
+}
+
 /// Solves once, without error estimate.
 pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution {
-    let mut solution = Solution::empty(structure, s, settings.nodes);
+    let mut solution = Solution::empty(Some(structure), Some(s), settings.nodes);
     let mut history = History::default();
     let mut touch = Touch { s, time: 0.0, closing: 1.0, body: 1.0 };
     let mut body_travel = 0.0;
@@ -74,7 +74,7 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         }
         body_travel = solution.body_travel_at_end();
         let next = departure.next_contact();
-        solution.flights.push(Flight { start: end, body_travel, departure });
+        solution.flights.push(Flight { start: end, body_travel, course: Course::Hertz(departure) });
         let Some((time, closing)) = next else {
             solution.known_until = f64::INFINITY;
             return solution;

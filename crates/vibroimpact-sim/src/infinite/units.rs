@@ -32,6 +32,9 @@ pub(super) struct Units {
 }
 
 impl Units {
+    /// Those of the impact itself.
+    pub const OF_IMPACT: Units = Units { time: 1.0, length: 1.0, speed: 1.0, linear: 1.0, memory: 1.0, impulse: 1.0 };
+
     pub fn new(structure: Structure, s: f64, closing: f64) -> Units {
         let drive = (s * closing).sqrt();
         let power = match structure {

@@ -23,8 +23,8 @@ pub use text::{text, turning_points_text};
 /// Eqs. 2.9 and 2.10).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
-    /// The nondimensional number `S`.
-    pub s: f64,
+    /// The nondimensional number `S` of Hertz contact; null for other laws.
+    pub s: Option<f64>,
     /// `rebound`, `sustained` or `stopped`.
     pub outcome: &'static str,
     /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
@@ -106,17 +106,10 @@ impl Summary {
     /// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
     /// ```
     pub fn new(solution: &Solution, groups: Option<&Groups>) -> Summary {
-        let mut peaks = vec![0.0_f64; solution.sub_impacts.len()];
-        for extremum in &solution.extrema {
-            let force = solution.s.sqrt() * extremum.compression.max(0.0).powf(1.5);
-            if let Some(peak) = peaks.get_mut(extremum.contact) {
-                *peak = peak.max(force);
-            }
-        }
         let contacts: Vec<Contact> = solution
             .sub_impacts
             .iter()
-            .zip(peaks)
+            .zip(solution.peak_forces())
             .map(|(contact, peak_force)| Contact {
                 start: contact.start,
                 end: contact.end,

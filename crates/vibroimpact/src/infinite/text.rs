@@ -14,7 +14,9 @@ pub fn text(summary: &Summary) -> String {
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:<22}{value}");
     };
-    line("S", format!("{}", summary.s));
+    if let Some(s) = summary.s {
+        line("S", format!("{s}"));
+    }
     let outcome = match summary.outcome {
         "sustained" => "sustained contact: the striker never leaves for good",
         other => other,

@@ -110,7 +110,11 @@ pub fn of_infinite_impact(
     report.heading("What was modelled, and why");
     report.list(&[
         "An infinite structure, because the scene says so: no wave ever returns from an end or an edge.".to_owned(),
-        format!("Hertz contact. The impact depends on one number, S = {}.", summary.s),
+        match (summary.s, scene) {
+            (Some(s), _) => format!("Hertz contact. The impact depends on one number, S = {s}."),
+            (None, Some(scene)) => format!("Contact by the law {}.", scene.contact.law_name()),
+            (None, None) => "A contact law other than Hertz's.".to_owned(),
+        },
         "The contact force follows from a Volterra equation, which is solved to rounding error, contact by contact."
             .to_owned(),
     ]);
@@ -137,9 +141,9 @@ pub fn of_infinite_impact(
     let rows: Vec<Vec<String>> = rows.into_iter().take(LISTED).enumerate().map(numbered).collect();
     report.table(&["contact", "from", "to", "largest force"], &rows);
     more(&mut report, summary.contacts.len());
-    let command = match scene {
-        Some(_) => "vibroimpact simulate scene.json".to_owned(),
-        None => format!("vibroimpact infinite-beam --s {}", summary.s),
+    let command = match (scene, summary.s) {
+        (None, Some(s)) => format!("vibroimpact infinite-beam --s {s}"),
+        _ => "vibroimpact simulate scene.json".to_owned(),
     };
     ended(&mut report, scene, &command);
     Ok(report)

@@ -1,0 +1,75 @@
+//! Where a panel leaves the branch of the law on which it was solved.
+
+use super::law::Margin;
+use crate::infinite::panel::{elapsed, root};
+use crate::infinite::rule::{Kind, Tables, dot, series, series_slope};
+
+/// A boundary that is met within a panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Event {
+    /// Number of the boundary.
+    pub which: usize,
+    /// Elapsed fraction of the panel; 0 if the panel is beyond the boundary from its start.
+    pub fraction: f64,
+    /// Slope of the margin there in the elapsed fraction.
+    pub slope: f64,
+}
+
+/// The first boundary that the motion on a panel meets. `noise` is the rounding of each margin: a branch may begin on a
+/// boundary, which is met when the margin falls below zero.
+pub(super) fn first(
+    tables: &Tables,
+    kind: Kind,
+    margins: &[Margin],
+    x: &[f64],
+    rate: &[f64],
+    noise: &[f64],
+) -> Option<Event> {
+    let mut found: Option<Event> = None;
+    for (which, (margin, &noise)) in margins.iter().zip(noise).enumerate() {
+        let values: Vec<f64> = x.iter().zip(rate).take(tables.p).map(|(&x, &rate)| margin.at(x, rate)).collect();
+        let polynomial = tables.coefficients(&values);
+        if let Some(s) = crossing(tables, kind, &polynomial, noise) {
+            let fraction = elapsed(kind, s);
+            let rate = if kind == Kind::Middle { 1.0 } else { 2.0 * s };
+            if found.is_none_or(|other| fraction < other.fraction) {
+                found = Some(Event { which, fraction, slope: series_slope(&polynomial, s) / rate });
+            }
+        }
+    }
+    found
+}
+
+/// The panel variable at which a margin falls below zero. The polynomial is sampled more densely than its nodes, and at
+/// its least values in between.
+fn crossing(tables: &Tables, kind: Kind, polynomial: &[f64], noise: f64) -> Option<f64> {
+    // the sum of all coefficients bounds what the polynomial may do besides its mean
+    let wander: f64 = polynomial[1..].iter().map(|c| c.abs()).sum();
+    if polynomial[0] > wander {
+        return None;
+    }
+    let (p, count) = (tables.p, tables.sample.len());
+    let at = |i: usize| if kind == Kind::End { count - 1 - i } else { i };
+    let start = tables.sample[at(0)];
+    let (mut before, mut above) = (start, (series(polynomial, start) > noise).then_some(start));
+    for i in 1..count {
+        let here = tables.sample[at(i)];
+        let slope = |i: usize| dot(&tables.slope[at(i) * p..(at(i) + 1) * p], polynomial);
+        let low = [(slope(i - 1) < 0.0) != (slope(i) < 0.0)]
+            .into_iter()
+            .filter(|turns| *turns)
+            .map(|_| root(before, here, |s| series_slope(polynomial, s)))
+            .find(|s| (before.min(here)..=before.max(here)).contains(s));
+        for s in low.into_iter().chain([here]) {
+            let value = series(polynomial, s);
+            if value < -noise {
+                return Some(above.map_or(start, |above| root(above, s, |s| series(polynomial, s))));
+            }
+            if value > noise {
+                above = Some(s);
+            }
+        }
+        before = here;
+    }
+    None
+}

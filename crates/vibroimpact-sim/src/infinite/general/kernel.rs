@@ -1,0 +1,221 @@
+//! The kernels of the Volterra equation for a sum of powers of time, and their product integration on a panel.
+//!
+//! A kernel `lag^q` with `q > -1` is singular where `lag = 0`. In a variable `y` in which `sqrt(lag)` is smooth and
+//! vanishes at `y = 0`, the integrand is `y^(2 q + 1)` times a smooth function, and the Gauss-Jacobi rule of that
+//! weight integrates it to rounding.
+
+use crate::infinite::problem::Structure;
+use crate::infinite::receptance::{Receptance, Scale};
+use crate::infinite::rule::{Kind, Tables, gauss, legendre};
+use gauss_quad::{FiniteAboveNegOneF64, GaussJacobi};
+use std::f64::consts::FRAC_PI_2;
+use std::num::NonZeroUsize;
+
+/// Nodes of the rules for the weights.
+const POINTS: NonZeroUsize = NonZeroUsize::new(64).unwrap();
+
+/// Weights of nodal forces on one kind of panel: rows `0..p` belong to the nodes, row `p` to the end. Each is for a
+/// panel of length 1.
+#[derive(Debug)]
+struct Weights {
+    /// `int (t_i - s) f ds`.
+    linear: Vec<f64>,
+    /// `int f ds`.
+    impulse: Vec<f64>,
+    /// `int (t_i - s)^p f ds` and, for `p > 0`, `int (t_i - s)^(p-1) f ds`, of each term.
+    memory: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+/// `kappa(t) = sum_k c_k t^(p_k)` in the units of the impact, so that `kappa(1) = 1`.
+#[derive(Debug)]
+pub(in crate::infinite) struct Kernel {
+    /// Coefficients and powers.
+    pub terms: Vec<(f64, f64)>,
+    pub tables: &'static Tables,
+    weights: [Weights; 3],
+}
+
+/// The equations of a panel: compression and rate at the nodes and the end are what is known less these times the
+/// nodal forces.
+pub(super) struct Matrices {
+    pub compression: Vec<f64>,
+    pub rate: Vec<f64>,
+}
+
+impl Kernel {
+    /// With tables of `nodes` nodes a panel.
+    pub fn new(receptance: &Receptance, scale: &Scale, nodes: usize) -> Kernel {
+        // m c T^(p - 1)
+        let mass_kg = scale.force_n * scale.time_s / scale.speed_m_s;
+        let nondimensional = |c: f64, power: f64| (mass_kg * c * scale.time_s.powf(power) / scale.time_s, power);
+        let terms = receptance.terms().iter().map(|term| nondimensional(term.coefficient, term.power)).collect();
+        // of these tables the nodes alone are used here
+        let tables = Tables::get(Structure::Beam, nodes);
+        let mut kernel = Kernel { terms, tables, weights: [Weights::EMPTY; 3] };
+        kernel.weights = [Kind::Start, Kind::Middle, Kind::End].map(|kind| kernel.weights_of(kind));
+        kernel
+    }
+
+    /// `kappa(t)` and its slope.
+    pub fn values(&self, t: f64) -> (f64, f64) {
+        self.terms.iter().fold((0.0, 0.0), |(value, slope), &(c, power)| {
+            if power == 0.0 {
+                return (value + c, slope);
+            }
+            let term = c * if power == 0.5 { t.sqrt() } else { t.powf(power) };
+            (value + term, slope + power * term / t)
+        })
+    }
+
+    /// The part of the rate that answers at once: a force moves the point at this speed.
+    pub fn instant(&self) -> f64 {
+        self.terms.iter().filter(|term| term.1 == 0.0).map(|term| term.0).sum()
+    }
+
+    /// The equations of a panel of length `h`.
+    pub(super) fn matrices(&self, kind: Kind, h: f64) -> Matrices {
+        let weights = &self.weights[kind as usize];
+        let mut compression: Vec<f64> = weights.linear.iter().map(|w| h * h * w).collect();
+        let mut rate: Vec<f64> = weights.impulse.iter().map(|w| h * w).collect();
+        let add = |sums: &mut Vec<f64>, factor: f64, weights: &[f64]| {
+            sums.iter_mut().zip(weights).for_each(|(sum, w)| *sum += factor * w);
+        };
+        for (&(c, power), (memory, slope)) in self.terms.iter().zip(&weights.memory) {
+            add(&mut compression, c * h * h.powf(power), memory);
+            add(&mut rate, c * power * h.powf(power), slope);
+        }
+        let p = self.tables.p;
+        let instant = self.instant();
+        (0..p).for_each(|i| rate[i * p + i] += instant);
+        // at the end of the panel the force is that of its polynomial
+        let end = if kind == Kind::End { -1.0 } else { 1.0 };
+        for (k, value) in legendre(end, p).into_iter().enumerate() {
+            add_row(&mut rate[p * p..], instant * value, &self.tables.to_legendre[k * p..(k + 1) * p]);
+        }
+        Matrices { compression, rate }
+    }
+
+    /// Weights of `int f ds` and `int (end - s) f ds` over a whole panel of length 1.
+    pub(super) fn totals(&self, kind: Kind) -> (&[f64], &[f64]) {
+        let (p, weights) = (self.tables.p, &self.weights[kind as usize]);
+        (&weights.impulse[p * p..], &weights.linear[p * p..])
+    }
+
+    fn weights_of(&self, kind: Kind) -> Weights {
+        let of = |power: f64| product_weights(self.tables, kind, power);
+        let memory = |&(_, power): &(f64, f64)| {
+            let slope = if power > 0.0 { of(power - 1.0) } else { Vec::new() };
+            (of(power), slope)
+        };
+        Weights { linear: of(1.0), impulse: of(0.0), memory: self.terms.iter().map(memory).collect() }
+    }
+}
+
+impl Weights {
+    const EMPTY: Weights = Weights { linear: Vec::new(), impulse: Vec::new(), memory: Vec::new() };
+}
+
+fn add_row(sums: &mut [f64], factor: f64, row: &[f64]) {
+    sums.iter_mut().zip(row).for_each(|(sum, w)| *sum += factor * w);
+}
+
+/// Weights of `int_0^(t_i) (t_i - s)^power f ds` for nodal values of `f` on a panel of length 1.
+fn product_weights(tables: &Tables, kind: Kind, power: f64) -> Vec<f64> {
+    let p = tables.p;
+    let near = jacobi(2.0 * power + 1.0);
+    let plain = gauss(POINTS.get());
+    let end = if kind == Kind::End { 0.0 } else { 1.0 };
+    let mut weights = Vec::with_capacity((p + 1) * p);
+    for target in tables.sigma.iter().copied().chain([end]) {
+        let mut row = vec![0.0; p];
+        let mut add = |s: f64, w: f64| {
+            row.iter_mut().zip(legendre(2.0 * s - 1.0, p)).for_each(|(sum, value)| *sum += w * value);
+        };
+        match kind {
+            // s = target (1 - y^2)
+            Kind::Middle => {
+                near.iter().for_each(|&(y, w)| add(target * (1.0 - y * y), w * 2.0 * target.powf(power + 1.0)));
+            }
+            // s = target cos(a), lag = target^2 sin(a)^2, a = y pi/2
+            Kind::Start => near.iter().for_each(|&(y, w)| {
+                let (sin, cos) = (FRAC_PI_2 * y).sin_cos();
+                let smooth = (sin / y).powf(2.0 * power + 1.0) * 2.0 * cos * FRAC_PI_2;
+                add(target * cos, w * smooth * target.powf(2.0 * power + 2.0));
+            }),
+            // the panel's end: lag = s^2
+            Kind::End if target == 0.0 => near.iter().for_each(|&(y, w)| add(y, 2.0 * w)),
+            // s = target cosh(a), lag = target^2 sinh(a)^2: the interval of a in pieces of length below 1
+            Kind::End => {
+                let range = (1.0 / target).acosh();
+                let pieces = range.ceil().max(1.0);
+                let piece = range / pieces;
+                for &(y, w) in &near {
+                    let (s, rise) = (target * (piece * y).cosh(), target * (piece * y).sinh());
+                    add(s, w * piece * (rise / y).powf(2.0 * power + 1.0) * 2.0 * s);
+                }
+                for (i, &(y, w)) in (1..pieces as usize).flat_map(|i| plain.iter().map(move |pair| (i, pair))) {
+                    let a = piece * (i as f64 + y);
+                    let (s, rise) = (target * a.cosh(), target * a.sinh());
+                    add(s, w * piece * rise.powf(2.0 * power + 1.0) * 2.0 * s);
+                }
+            }
+        }
+        weights.extend((0..p).map(|j| (0..p).map(|k| row[k] * tables.to_legendre[k * p + j]).sum::<f64>()));
+    }
+    weights
+}
+
+/// Rule on `(0, 1)` for the weight `y^beta`, `beta > -1`.
+fn jacobi(beta: f64) -> Vec<(f64, f64)> {
+    if beta >= 0.0 && beta.fract() == 0.0 {
+        // a polynomial needs no rule of its own
+        return gauss(POINTS.get()).into_iter().map(|(y, w)| (y, w * y.powf(beta))).collect();
+    }
+    let (Some(alpha), Some(exponent)) = (FiniteAboveNegOneF64::new(0.0), FiniteAboveNegOneF64::new(beta)) else {
+        return Vec::new();
+    };
+    let rule = GaussJacobi::new(POINTS, alpha, exponent);
+    let scale = 0.5_f64.powf(beta + 1.0);
+    rule.as_node_weight_pairs().iter().map(|&(x, w)| (0.5 * (1.0 + x), scale * w)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::infinite::rule::dot;
+
+    /// Weights against closed forms: the elapsed time and its square on start and middle panels, the remaining time on end
+    /// panels.
+    #[test]
+    fn product_weights_match_closed_forms() {
+        for nodes in [8, 20, 32] {
+            let tables = Tables::get(Structure::Beam, nodes);
+            for power in [-0.9_f64, -0.5, -0.25, 0.0, 0.1, 0.5, 0.8, 1.0] {
+                // of weights whose sum is 1 / (power + 1) at most
+                let rounding = 4e-14 / (power + 1.0);
+                for (kind, exponent) in [(Kind::Middle, 1), (Kind::Middle, 2), (Kind::Start, 1), (Kind::Start, 2)] {
+                    let weights = product_weights(tables, kind, power);
+                    let elapsed = &tables.rule(kind).elapsed;
+                    let f: Vec<f64> = elapsed[..nodes].iter().map(|t| t.powi(exponent)).collect();
+                    for (row, &t) in weights.chunks_exact(nodes).zip(elapsed) {
+                        // int_0^t (t - s)^q s^n ds = n! t^(q + n + 1) / [(q + 1) ... (q + n + 1)]
+                        let product: f64 = (1..=exponent + 1).map(|i| power + f64::from(i)).product();
+                        let exact = f64::from(exponent) * t.powf(f64::from(exponent) + power + 1.0) / product;
+                        assert!((dot(row, &f) - exact).abs() < rounding, "{kind:?} {power} {t}");
+                    }
+                }
+                let weights = product_weights(tables, Kind::End, power);
+                let rule = tables.rule(Kind::End);
+                let ones = vec![1.0; nodes];
+                let e: Vec<f64> = rule.remaining[..nodes].to_vec();
+                for (i, row) in weights.chunks_exact(nodes).enumerate() {
+                    let (length, left) = (rule.elapsed[i], rule.remaining[i]);
+                    let first = length.powf(power + 1.0) / (power + 1.0);
+                    assert!((dot(row, &ones) - first).abs() < rounding, "end {power} {length}");
+                    let second = left * first + length.powf(power + 2.0) / (power + 2.0);
+                    assert!((dot(row, &e) - second).abs() < rounding, "end {power} {length}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! What forces of the past do later: panels as impulses, and the free motion that follows from impulses.
+
+use super::kernel::Kernel;
+use crate::infinite::history::{History, Impulse};
+use crate::infinite::rule::{Kind, Tables, series};
+use std::sync::Arc;
+
+/// The force on a panel that is solved.
+#[derive(Debug, Clone)]
+pub(super) struct Solved {
+    pub kind: Kind,
+    pub h: f64,
+    /// Time from the panel's end to the present.
+    pub behind: f64,
+    pub f_series: Vec<f64>,
+}
+
+impl Solved {
+    /// The panel as impulses with their ages at present, for times not closer to the panel's end than `gap`: in pieces
+    /// of the panel's variable that grow in proportion to their distance from there.
+    pub fn impulses(&self, tables: &Tables, gap: f64) -> Vec<Impulse> {
+        // distance in the panel's variable from its end to the nearest singularity of the kernel
+        let reach = match self.kind {
+            Kind::Start => 0.5 * gap / self.h,
+            Kind::Middle => gap / self.h,
+            Kind::End => (gap / self.h).sqrt(),
+        };
+        let (mut impulses, mut high) = (Vec::new(), 1.0);
+        while high > 0.0 {
+            let low = if high <= reach || high < 1e-13 { 0.0 } else { 0.5 * high };
+            for (y, w) in tables.sigma.iter().zip(&tables.weight) {
+                let u = low + (high - low) * y;
+                let (s, remaining, rate) = match self.kind {
+                    Kind::Start => (1.0 - u, u * (2.0 - u), 2.0 * (1.0 - u)),
+                    Kind::Middle => (1.0 - u, u, 1.0),
+                    Kind::End => (u, u * u, 2.0 * u),
+                };
+                let weight = self.h * rate * (high - low) * w * series(&self.f_series, s);
+                // the polynomial of a vanishing force may fall below zero by its rounding
+                if weight > 0.0 {
+                    impulses.push(Impulse { age: self.behind + self.h * remaining, weight });
+                }
+            }
+            high = low;
+        }
+        impulses
+    }
+}
+
+/// Free motion of the compression after impulses, with its value and rate at the origin of time taken out:
+///
+/// ```text
+/// x(tau) = x_0 + r tau + bend(tau),   bend = sum_j w_j sum_k c_k [age^p + p age^(p-1) tau - (age + tau)^p].
+/// ```
+///
+/// As `0 <= p < 1`, every term of the bend is positive and convex.
+#[derive(Debug, Clone)]
+pub(in crate::infinite) struct FreeMotion {
+    /// Coefficients and powers of the kernel, those that bend.
+    terms: Arc<[(f64, f64)]>,
+    impulses: Vec<Impulse>,
+}
+
+impl FreeMotion {
+    pub fn new(kernel: &Kernel, history: &History) -> FreeMotion {
+        let terms: Arc<[(f64, f64)]> = kernel.terms.iter().copied().filter(|term| term.1 > 0.0).collect();
+        // a structure that keeps still after an impulse bends nothing
+        let impulses = if terms.is_empty() { Vec::new() } else { history.impulses().collect() };
+        FreeMotion { terms, impulses }
+    }
+
+    /// The bend and its rate.
+    pub fn bend(&self, tau: f64) -> (f64, f64) {
+        let mut sums = (0.0, 0.0);
+        for impulse in &self.impulses {
+            let y = tau / impulse.age;
+            for &(c, p) in self.terms.iter() {
+                let size = impulse.weight * c * impulse.age.powf(p);
+                sums.0 += size * excess(p, y);
+                sums.1 += size * p / impulse.age * -((p - 1.0) * y.ln_1p()).exp_m1();
+            }
+        }
+        sums
+    }
+}
+
+/// `1 + p y - (1 + y)^p` for `y >= 0`, without cancellation near zero.
+fn excess(p: f64, y: f64) -> f64 {
+    if y > 0.1 {
+        return 1.0 + p * y - (1.0 + y).powf(p);
+    }
+    // binomial series from the second power on
+    let (mut sum, mut term) = (0.0, p * y);
+    for n in 2..20 {
+        term *= (p - f64::from(n - 1)) / f64::from(n) * y;
+        sum -= term;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::infinite::problem::Structure;
+
+    #[test]
+    fn excess_joins() {
+        for p in [0.1, 0.5, 0.9] {
+            let (a, b) = (excess(p, 0.1), excess(p, 0.1 * (1.0 + 1e-12)));
+            assert!((a / b - 1.0).abs() < 1e-11, "{p}: {a} {b}");
+            assert!((excess(p, 1e-8) / (0.5 * p * (1.0 - p) * 1e-16) - 1.0).abs() < 1e-7);
+        }
+    }
+
+    /// The memory of a force `t^2` on a middle panel, `t` on a start panel and the remaining time on an end panel, close
+    /// to its end and far from it, against beta-like closed forms evaluated by many-node quadrature.
+    #[test]
+    fn impulses_stand_for_a_panel() {
+        let tables = Tables::get(Structure::Beam, 20);
+        for kind in [Kind::Start, Kind::Middle, Kind::End] {
+            let rule = tables.rule(kind);
+            let shape = |t: f64| if kind == Kind::End { 1.0 - t } else { t };
+            let f: Vec<f64> = rule.elapsed[..20].iter().map(|&t| shape(t)).collect();
+            let panel = Solved { kind, h: 1.0, behind: 0.0, f_series: tables.coefficients(&f) };
+            for gap in [1e-6_f64, 1e-3, 0.1, 1.0, 30.0] {
+                let sum = |power: f64| -> f64 {
+                    panel.impulses(tables, gap).iter().map(|i| i.weight * (i.age + gap).powf(power)).sum()
+                };
+                for power in [0.5_f64, -0.5, 0.3, -0.7] {
+                    // int_0^1 (1 + gap - t)^power f(t) dt with f = t, or 1 - t
+                    let moment = |z: f64| z.powf(power + 1.0) / (power + 1.0);
+                    let second = |z: f64| z.powf(power + 2.0) / ((power + 1.0) * (power + 2.0));
+                    let exact = match kind {
+                        Kind::End => moment(1.0 + gap) - second(1.0 + gap) + second(gap),
+                        _ => second(1.0 + gap) - second(gap) - moment(gap),
+                    };
+                    let loss = 1e-15 * (1.0 + gap).powi(2);
+                    let error = (sum(power) / exact - 1.0).abs();
+                    assert!(error < 1e-10 + loss, "{kind:?} {gap} {power}: {error:e}");
+                }
+            }
+        }
+    }
+}
