@@ -5,8 +5,8 @@ use crate::{impact, infinite};
 /// What the page shows.
 pub const INTRODUCTION: &str = "\
 This page shows how much time each solver of the workspace and its peers need for a given error, on a fixed \
-library of problems: error against time and against a deterministic cost, over a sweep of tolerances. Times are \
-the least of repeated runs after a warm-up. A run that fails or takes too long is listed under its figure, and \
+library of problems: error against time and against a deterministic cost, over a sweep of tolerances. A time is \
+the shortest of repeated runs after a warm-up. A run that fails or takes too long is listed under its figure, and \
 tighter settings are then not tried. `work-precision.csv` has every number, in every norm.
 
 The peers are DOP853, Hairer's explicit pair of order 8 (crate `ivp`), with events by repeated steps, and diffsol, \
@@ -14,8 +14,8 @@ with BDF of variable order and ESDIRK of order 4, an analytic Jacobian and its o
 integrate phase by phase, restart at every change of contact, and use absolute tolerances scaled to each \
 component. They are told when the impact ends, which they cannot know. *+ exact flight* means that between \
 contacts the modes are propagated in closed form and a certified search finds the next contact, so that the solver \
-integrates contacts alone. Ours is measured with all tables built anew for every impact, and with the tables kept, \
-as for many impacts on one beam.";
+integrates contacts alone. Our solver is measured with all tables built for every impact, and with the tables \
+cached (*tables kept*), as for many impacts on one beam.";
 
 /// What the first table shows.
 pub const TARGETS: &str = "\
@@ -24,8 +24,8 @@ of the logarithms.";
 
 /// What the second table shows.
 pub const EVERY_ERROR: &str = "\
-The next table is for other errors. It has the time of the fastest peer over the time of the fastest solver of the \
-workspace. *alone* means that no peer reaches the error, *none* that it is below what any solver or the \
+The next table is for other errors. It states the time of the fastest peer divided by that of the fastest solver of \
+the workspace. *alone* means that no peer reaches the error, *none* that it is below what any solver or the \
 reference reaches in double precision. For the infinite beam and the fractional equations the peers are the \
 general methods of `fracdiff`, which are solvers of this workspace too.";
 
@@ -39,11 +39,11 @@ the structure. They cost half as much as the impact itself, and the second impac
 A ratio of fifty to the best explicit solver on the whole system would need steps in contact at the floor that \
 [their operations](performance.md) set, and no cost for flights, terminal steps and control. Where the ratio is \
 lower, this is the limit. The implicit solvers, and those of the thesis and of textbooks, are far slower (figures \
-below). At errors above 1e-4 every solver takes the fewest steps that it can, so the ratio there is that of the \
-least cost of a contact.
+below). At errors above 1e-4 every solver takes as few steps as it can, so there the ratio is that of the least \
+cost of a contact.
 
 Among the Volterra methods the second-order rules are cheap at two or three digits, with as few steps as are \
-measured here. Only a second run tells how many steps that takes (*to a tolerance, with its error* makes both of \
+measured here. Only a second run shows how many steps that takes (*to a tolerance, with its error* makes both of \
 its runs). With eight nodes and a long first panel, collocation reaches six more digits in the same time.";
 
 /// What a problem is, what is measured, and what the reference is.

@@ -103,7 +103,11 @@ pub fn report(rows: &[Row], about: &str, outside: Option<&str>) -> Result<Page, 
         })
         .collect();
     page.table(&headers, &table);
-    page.text(if behind.is_empty() { "Nowhere behind." } else { "Behind:" });
+    page.text(if behind.is_empty() {
+        "No peer is faster anywhere."
+    } else {
+        "Another solver is faster on these problems:"
+    });
     page.text(&behind);
     page.text(notes::WHY);
 

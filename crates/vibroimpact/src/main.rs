@@ -67,7 +67,7 @@ enum Command {
     /// Write a first scene, complete and explained field by field
     #[command(after_help = first::INIT_EXAMPLES)]
     Init(first::InitArguments),
-    /// Resolve one impact: every contact, the rebound, where the energy went
+    /// Resolve one impact: every contact, the rebound, where the energy goes
     #[command(after_help = simulate::EXAMPLES)]
     Simulate(simulate::Arguments),
     /// State which model would be used and why, and what each would cost

@@ -289,7 +289,7 @@ pub fn net_rebound(rebound: &NetRebound, stated: bool) -> String {
         "The parameters are the defaults, which were never fitted to this structure: take the result for an order of\n  \
          magnitude. vibroimpact fit finds parameters from measured or computed restitutions."
     };
-    let other = "The tier emoc of vibroimpact compare is another law, with a stated error and no parameters to fit, and\n  \
+    let other = "The model emoc of vibroimpact compare is another law, with a stated error and no parameters to fit, and\n  \
                  gives another number.";
     let _ = write!(text, "\n  {origin}\n  {other}\n");
     text

@@ -17,9 +17,26 @@ struct Step {
     rustdocflags: &'static str,
 }
 
-/// Every step but the first takes the workspace's features: all but `mpi`, which needs more than Rust.
-const STEPS: [Step; 6] = [
+/// Every step but the first two takes the workspace's features: all but `mpi`, which needs more than Rust. The second takes
+/// the libraries of all crates without sweeps, pictures and the program.
+const STEPS: [Step; 7] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
+    Step {
+        // from nothing, the workspace's further dependencies take longer to check than all of this
+        name: "lints of the libraries",
+        arguments: &[
+            "clippy",
+            "--package",
+            "vibroimpact",
+            "--lib",
+            "--no-default-features",
+            "--locked",
+            "--",
+            "-D",
+            "warnings",
+        ],
+        rustdocflags: "",
+    },
     Step {
         // without the tests, whose further dependencies would come first
         name: "lints",

@@ -178,7 +178,8 @@ impl Statement {
         let reason = "borne out, or refuted, by nine in ten of the choices; between, the choice decides";
         let share = holds as f64 / of as f64;
         let texts = [source, words, reason];
-        Statement::new(Kind::Trend, quantity.into(), texts, Bounds::Choices, share).note(format!("{holds} of {of}."))
+        Statement::new(Kind::Trend, quantity.into(), texts, Bounds::Choices, share)
+            .note(format!("It holds in {holds} of {of} choices."))
     }
 
     fn within(

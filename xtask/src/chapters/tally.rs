@@ -79,7 +79,7 @@ impl Row {
     /// What is to be said beside the table; may be empty.
     fn remark(&self) -> String {
         let missing =
-            if self.missing.is_empty() { String::new() } else { format!("Not in the text: {}.", self.missing) };
+            if self.missing.is_empty() { String::new() } else { format!("The text does not state {}.", self.missing) };
         let parts: Vec<&str> = [missing.as_str(), &self.note].into_iter().filter(|part| !part.is_empty()).collect();
         parts.join(" ")
     }
@@ -234,7 +234,7 @@ mod tests {
         tell(&mut report, &rows());
         let text = report.markdown();
         assert!(text.contains("| a | 1 | 1.5 | 1.6 | ± 0.05 | half a unit of the last digit | ✗ differs |"));
-        assert!(text.contains("- *a*: A slip.") && text.contains("- *b*: Not in the text: the scale."));
+        assert!(text.contains("- *a*: A slip.") && text.contains("- *b*: The text does not state the scale."));
     }
 
     #[test]

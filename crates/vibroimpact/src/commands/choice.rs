@@ -13,7 +13,7 @@ pub const PLAN_EXAMPLES: &str = "Examples:
   vibroimpact plan ball.json                     each model: does it apply, expected error, cost
   vibroimpact plan ball.json --json              the same as one JSON object
 
-Nothing costly is solved. A scene chooses with these fields, each of which may be left out:
+No costly impact is solved. A scene chooses with these fields, each of which may be left out:
 
   \"model\": \"auto\", \"rigid\", \"infinite-beam\", \"modal\" or \"emoc\"
   \"modes\": \"auto\", or the number of modes that the structure is stated to have
@@ -25,7 +25,8 @@ pub const COMPARE_EXAMPLES: &str = "Examples:
   vibroimpact compare ball.json --plot models.svg
                                                  restitutions with their uncertainties; .svg or .png
 
-Models that do not apply are listed with the reason. Differences are from the model that is known best.";
+Models that do not apply are listed with the reason. Differences are from the model with the
+smallest uncertainty.";
 
 /// The scene to plan.
 #[derive(Args)]

@@ -24,7 +24,7 @@ inequalities, which has a closed form in the mode shapes at the point of impact,
   beta0 = x/(1+x) with x = alpha0 Z/N,              beta1 = y/(1+y) with y = alpha1 m phi_1^2.
 
 The branch printed is the term that is active. Contact, speed and frequencies do not enter. Parameters for a beam come
-from `vibroimpact fit`; the defaults were fitted to nothing. The tier emoc of `vibroimpact compare` is another law: its
+from `vibroimpact fit`; the defaults are not fitted to any data. The model emoc of `vibroimpact compare` is another law: its
 two parameters are fixed, its error on beams that it was not fitted to is stated, and it takes the duration of the contact
 into account (docs/choosing-the-model.md).";
 

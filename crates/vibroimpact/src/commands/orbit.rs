@@ -24,7 +24,7 @@ pub const EXAMPLES: &str = "Examples:
 The scene is one of bodies with a harmonic load. After a transient from its start, Newton's method finds the periodic
 motion; its Floquet multipliers tell whether it is stable. Over a field (a path as in a sweep) the branch is followed
 round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. Which motion a start
-leads to is mapped by a sweep over fields of the start. Ctrl-C ends the search and prints what it has come to.
+leads to is mapped by a sweep over fields of the start. Ctrl-C ends the search and prints what it has found.
 
 The exit code is 0 for every result, 2 for a scene or a field that cannot be used, 1 if writing fails.";
 

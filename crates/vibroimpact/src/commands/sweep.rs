@@ -16,7 +16,7 @@ use vibroimpact::text::printable;
 use super::voice::is_quiet;
 
 pub const SWEEP_EXAMPLES: &str = r#"Examples:
-  vibroimpact sweep sweep.json --out results/                  computes, shows how long it takes, goes on if cut off
+  vibroimpact sweep sweep.json --out results/                  computes, shows the time left, resumes if interrupted
   vibroimpact sweep sweep.json --out part-3/ --shard 3/8       the third of eight parts, for a job array
   mpirun -n 64 vibroimpact sweep sweep.json --out results/ --mpi
 
@@ -28,26 +28,26 @@ A sweep file holds a scene (or names one) and the fields that vary:
               { "field": "structure.damping_ratio", "values": [0, 0.02] } ],
     "random": { "seed": 1, "draws": 10, "fields": [ { "field": "striker.speed_m_s", "from": 0.5, "to": 2 } ] } }
 
-In place of "random" fields may be known as distributions; the restitution (of bodies, any "outputs" of "sampling") is then told
-as one, with sampling errors:
+In place of "random" fields may be known as distributions; the restitution (of bodies, any "outputs" of "sampling") is then
+reported as one, with sampling errors:
 
   { "scene_file": "ball.json",
     "uncertain": { "location_m": { "normal": [0.4, 1e-3] }, "striker.speed_m_s": { "uniform": [0.9, 1.1] } },
     "sampling": { "draws": 65536, "sampling_error": 0.002, "indices": true } }
 
-The axes of "vary" form a grid, whose last axis runs fastest; each of its points is met by every random draw. The folder
-gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes do not depend on threads, parts
-or ranks. A scene that cannot be solved is a row with its error.
+The axes of "vary" form a grid, whose last axis runs fastest; each of its points is combined with every random draw. The folder
+gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes are the same for any number of
+threads, parts and ranks. A scene that cannot be solved is a row with its error.
 
 Ctrl-C stops; the same command goes on from there, also after a crash. A folder that holds anything else is refused.
 Exit codes: 0 finished, 130 stopped, 2 for input that cannot be used (nothing is computed, or no point could be solved),
-1 if reading or writing fails. With the output redirected, a line on the standard error says now and then how far it is."#;
+1 if reading or writing fails. With the output redirected, lines on the standard error report the progress."#;
 
 pub const MERGE_EXAMPLES: &str = "Example:
   vibroimpact merge part-*/ --out results/
 
 The folders must be those of all parts of one sweep, each once and finished; the message names those that are missing.
-The results have the very bytes that an undivided sweep gives.";
+The results are the same, byte for byte, as those of an undivided sweep.";
 
 /// Exit code of a sweep that was asked to stop.
 pub const STOPPED: u8 = 130;

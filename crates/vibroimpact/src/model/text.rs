@@ -170,7 +170,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     );
     let _ = writeln!(
         text,
-        "  The tier emoc is a net law with fixed parameters; vibroimpact emoc takes the three-parameter law of thesis\n  \
+        "  The model emoc is a net law with fixed parameters; vibroimpact emoc takes the three-parameter law of thesis\n  \
          chapter 7, which is to be fitted to the structure, and gives another number."
     );
     text

@@ -182,7 +182,7 @@ fn late_contacts(study: &mut Study) -> Result<(), Failure> {
         };
         let statement = Statement::trend(
             format!(
-                "{name} of the contacts from the second on: straightness (R²) of its logarithm less its own, least of five S"
+                "{name} of the contacts from the second on: straightness (R²) of its logarithm minus its own, least of five S"
             ),
             "A.1",
             words,

@@ -150,7 +150,7 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
         ratios.iter().filter(|(speed, _)| chosen(*speed)).map(|(_, ratio)| *ratio).fold(0.0, f64::max)
     };
     study.claim(Statement::trend(
-        "that ratio at 0.25 m/s less the larger of those at 0.5 and 0.1 m/s",
+        "that ratio at 0.25 m/s minus the larger of those at 0.5 and 0.1 m/s",
         "3.4.2, Fig. 3.13",
         "for the 0.25 m/s case the convergence appears relatively a little slower",
         RISES,

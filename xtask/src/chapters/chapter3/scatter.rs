@@ -91,7 +91,7 @@ pub(super) fn lower(study: &mut Study, hertz: &AtBoth, viscous: &AtBoth) {
     let changes: Vec<f64> =
         viscous.iter().flatten().zip(hertz.iter().flatten()).map(|(with, without)| with.e() - without.e()).collect();
     let statement = Statement::trend(
-        "mean of e with viscous dissipation less mean without, all N, both b",
+        "mean of e with viscous dissipation minus mean without, all N, both b",
         "3.3.3",
         "on average there is some indication of lower rebound",
         (-1.0, 0.0),
@@ -229,7 +229,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
         };
         let (first, last) = (of(&rows[..third]), of(&rows[rows.len() - third..]));
         let statement = Statement::trend(
-            format!("mean of e over the first third of N less that over the last, {place}"),
+            format!("mean of e over the first third of N minus that over the last, {place}"),
             "3.1",
             "on average a decreasing trend with increasing numbers of modes",
             (0.0, 1.0),

@@ -1,4 +1,4 @@
-//! How far the tables with 40 modes are from the restitution that more modes settle to.
+//! How far the tables with 40 modes are from the restitution to which more modes converge.
 
 use super::Case;
 use super::tables::{Table, compute};
@@ -25,14 +25,14 @@ struct SettledRow {
 pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<(), Failure> {
     let [coarse, fine] = case.parameters.our_choice.settled_modes;
     let modes = case.parameters.modes;
-    study.section("How far N = 40 is from the settled restitution");
+    study.section("How far N = 40 is from the converged restitution");
     let same_modes = compute(study, case, modes, true)?;
     let coarser = compute(study, case, coarse, true)?;
     let reference = compute(study, case, fine, true)?;
     study.text(&format!(
-        "Reference: {fine} modes with remainder modes for all others. What it has not \
-         settled itself shows in its difference from the same model with {coarse} modes. Differences of the restitution \
-         over all locations and balls:"
+        "Reference: {fine} modes with remainder modes for all others. The difference \
+         from the same model with {coarse} modes shows how far the reference itself has converged. Differences of the \
+         restitution over all locations and balls:"
     ));
 
     let (mut rows, mut panels) = (Vec::new(), Vec::new());
@@ -58,7 +58,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
         study.csv(&format!("settled-{}.csv", tables[k].beam.name), &table)?;
     }
     study.table(&["beam", "model", "median", "90 % below", "largest", "share above 0.03"], &rows);
-    let mut figure = Figure::new("Difference between N = 40, truncated, and the settled restitution").width(960.0);
+    let mut figure = Figure::new("Difference between N = 40, truncated, and the converged restitution").width(960.0);
     for pair in panels.chunks(2) {
         figure = figure.row(pair.to_vec());
     }

@@ -71,19 +71,19 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
             most,
         ),
         Trend::new(
-            "mean e away from the ends: lightest ball less the least of all balls",
+            "mean e away from the ends: lightest ball minus the least of all balls",
             "for very small m, v_f is high; for slightly higher m, v_f is low",
             CLEARLY,
             first - least,
         ),
         Trend::new(
-            "mean contacts away from the ends: most of the lighter six balls less the lightest's",
+            "mean contacts away from the ends: most of the lighter six balls minus the lightest's",
             words,
             MORE,
             more,
         ),
         Trend::new(
-            "mean e away from the ends: heaviest ball less the least of all balls",
+            "mean e away from the ends: heaviest ball minus the least of all balls",
             "as m increases further, v_f increases again",
             VISIBLY,
             last - least,
@@ -116,7 +116,7 @@ fn relative_variation(table: &Table, inner: impl Fn(&Row) -> bool) -> f64 {
 }
 
 /// The quantity that depends most on the list of balls.
-pub(in crate::chapters) const FREE_END: &str = "mean e at the free end less that two locations before";
+pub(in crate::chapters) const FREE_END: &str = "mean e at the free end minus that two locations before";
 
 const SUDDEN: &str = "there is a sudden rise in restitution very close to pinned or fixed ends";
 const VERY_CLOSE: &str = "whether one location from the end, 42 mm, is very close to it; closer to the end there is a rise, and e is 1 at the end itself";
@@ -124,8 +124,8 @@ const VERY_CLOSE: &str = "whether one location from the end, 42 mm, is very clos
 /// Rises still closer to held ends than the tables' locations are; `closer` is a table of one such location for each held end.
 pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) -> Vec<Trend> {
     let names = [
-        "mean e a sixteenth of a spacing from the left, held end less that one location from it",
-        "mean e a sixteenth of a spacing from the right, held end less that one location from it",
+        "mean e a sixteenth of a spacing from the left, held end minus that one location from it",
+        "mean e a sixteenth of a spacing from the right, held end minus that one location from it",
     ];
     let nearest = |place_m: f64| {
         let inside = table.places_m.iter().copied().filter(|b| *b > 0.0 && *b < table.beam.model.beam.length_m());
@@ -147,7 +147,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
     let at = |place_m: f64| table.mean(Row::e, |r| r.location_m == place_m);
     let one_place = |quantity, ours| Trend { otherwise: VERY_CLOSE, ..Trend::new(quantity, SUDDEN, VISIBLY, ours) };
     if let [_, near, further, ..] = table.places_m.as_slice() {
-        let quantity = "mean e one location from the left, held end less that two locations from it";
+        let quantity = "mean e one location from the left, held end minus that two locations from it";
         trends.push(one_place(quantity, at(*near) - at(*further)));
     }
     match (table.places_m.as_slice(), table.beam.model.beam.ends[1]) {
@@ -160,7 +160,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
             ));
         }
         ([.., further, near, _], _) => {
-            let quantity = "mean e one location from the right, held end less that two locations from it";
+            let quantity = "mean e one location from the right, held end minus that two locations from it";
             trends.push(one_place(quantity, at(*near) - at(*further)));
         }
         _ => {}
@@ -178,8 +178,8 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
         on(|b, step| b > step) - on(|b, step| b < step - 2e-9)
     };
     let greater = "greater rebound is seen from locations of the thinner portion";
-    trends.push(Trend::new("mean e on the slim part less that on the thick part", greater, RISES, slim(0.0)));
-    let heavy = "mean e on the slim part less that on the thick part, balls above 0.3 of the heaviest";
+    trends.push(Trend::new("mean e on the slim part minus that on the thick part", greater, RISES, slim(0.0)));
+    let heavy = "mean e on the slim part minus that on the thick part, balls above 0.3 of the heaviest";
     trends.push(Trend::new(heavy, greater, RISES, slim(0.3 * heaviest_kg)));
 
     // locations just before and just beyond the step, but not at it
@@ -208,7 +208,7 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
         middle,
     );
     at_step(
-        "size of that change, middle third less heaviest third",
+        "size of that change, middle third minus heaviest third",
         "shrinks for larger masses",
         RISES,
         middle.abs() - heavy.abs(),

@@ -25,7 +25,7 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Resu
     }
     let figure = panels
         .chunks(2)
-        .fold(Figure::new("Restitution of the law less that of the table").width(960.0), |f, row| f.row(row.to_vec()));
+        .fold(Figure::new("Restitution of the law minus that of the table").width(960.0), |f, row| f.row(row.to_vec()));
     study.figure("where-it-fails", &figure, "Blue: the law rebounds too little; red: too much.")?;
     study.table(
         &["beam", "rms", "balls to 0.05 kg", "balls above 0.2 kg", "basic branch", "share of it", "irregularity"],

@@ -185,7 +185,7 @@ fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<()
         ),
         ("largest tenth of Z", "for large Z, v_f is high again", means[PARTS - 1]),
     ] {
-        let quantity = format!("mean e over the {quantity} less the least of all tenths, four beams");
+        let quantity = format!("mean e over the {quantity} minus the least of all tenths, four beams");
         let reason = "a tenth of the range from 0 to 1";
         let statement = Statement::trend(quantity, "7.1, item 4", words, (0.1, 1.0), reason, end - least);
         study.claim(statement.open((0.0, 1.0)).note(format!("Means by tenths of Z: {told}.")));

@@ -51,7 +51,7 @@ pub(super) fn trends(table: &Table) -> Result<Vec<Trend>, Failure> {
         let rises = changes(*before, *end);
         let mean = |k: usize| rises.iter().map(|rise| rise[k]).sum::<f64>() / rises.len() as f64;
         trends.push(new(
-            "mean e at the free end less that two locations before, of table and law the smaller",
+            "mean e at the free end minus that two locations before, of table and law the smaller",
             "captures correctly the rising trend near the beam's free end",
             RISES,
             mean(0).min(mean(1)),

@@ -199,8 +199,10 @@ fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) {
         let [low, middle, high] = [0, values.len() / 2, values.len() - 1].map(|k| significant(values[k], 2));
         let limits = limits(trend.limits.0, trend.limits.1);
         let quantity = format!("share of choices with {limits} for {}, {beam}", trend.quantity);
-        let statement = Statement::choices(quantity, &source, trend.words, (holds, of.len()))
-            .note(format!("Smallest {low}, median {middle}, largest {high}. The limit is {}.", trend.reason));
+        let statement = Statement::choices(quantity, &source, trend.words, (holds, of.len())).note(format!(
+            "The values range from {low} to {high}, with the median {middle}. The limit is {}.",
+            trend.reason
+        ));
         let refuted = statement.verdict() == Verdict::Differs;
         study.claim(if refuted { statement.missing(trend.otherwise) } else { statement });
     }
@@ -289,7 +291,7 @@ fn free_end(study: &mut Study, judged: &[Judged]) {
         "The rise towards the free end depends on the list of balls: the lightest lose at the very tip, where a beam is \
          far more mobile, and a list without them shows the rise that the thesis speaks of. Mean over all balls:",
     );
-    study.table(&["beam", "smallest ball", "e at the free end less that two locations before"], &rows);
+    study.table(&["beam", "smallest ball", "e at the free end minus that two locations before"], &rows);
 }
 
 #[cfg(test)]

@@ -128,7 +128,7 @@ fn maps(study: &mut Study, slender: &[Table], thick: &[Table]) -> Result<(), Fai
         thick.map(difference, value).title(thick.beam.title.clone())
     };
     let panels: Vec<Panel> = slender.iter().zip(thick).map(panel).collect();
-    let figure = Figure::new("Restitution by Timoshenko's theory less that by Euler-Bernoulli's").width(960.0);
+    let figure = Figure::new("Restitution by Timoshenko's theory minus that by Euler-Bernoulli's").width(960.0);
     let figure = panels.chunks(2).fold(figure, |figure, row| figure.row(row.to_vec()));
     study.figure("maps", &figure, "Both converged. Red: Timoshenko's beam returns more; blue: less.")
 }
