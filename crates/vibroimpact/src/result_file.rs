@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::StopReason;
-use vibroimpact_sim::infinite::{Groups, Solution};
+use vibroimpact_sim::infinite::{Scale, Solution};
 
 use crate::export::{self, Failure};
 use crate::infinite;
@@ -99,7 +99,7 @@ impl Simulation {
         let trust = scene.trust(self)?;
         let result = match self {
             Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
-            Simulation::Infinite { groups, solution } => ResultFile::of_infinite(scene, groups, solution)?,
+            Simulation::Infinite { scale, solution } => ResultFile::of_infinite(scene, scale, solution)?,
             Simulation::Net(answer) => ResultFile::of_answer(scene, answer),
         };
         export::json(&ResultFile { trust, ..result })
@@ -191,11 +191,11 @@ impl ResultFile {
     /// An impact on an infinite beam or plate.
     ///
     /// # Errors
-    /// As [`Scene::infinite_impact`].
-    pub fn of_infinite(scene: &Scene, groups: &Groups, solution: &Solution) -> Result<ResultFile, InvalidInput> {
-        let answer = scene.infinite_answer(groups, solution);
-        let found = infinite::Summary::new(solution, Some(groups));
-        let momentum = scene.infinite_impact()?.mass_kg * groups.speed_m_s;
+    /// As [`Scene::posed_on_infinite`].
+    pub fn of_infinite(scene: &Scene, scale: &Scale, solution: &Solution) -> Result<ResultFile, InvalidInput> {
+        let answer = scene.infinite_answer(solution);
+        let found = infinite::Summary::new(solution, Some(scale));
+        let momentum = scene.posed_on_infinite()?.striker.mass_kg * scale.speed_m_s;
         let mut compression = vec![0.0_f64; solution.sub_impacts.len()];
         for extremum in &solution.extrema {
             if let Some(peak) = compression.get_mut(extremum.contact) {
@@ -204,17 +204,17 @@ impl ResultFile {
         }
         let contacts = solution.sub_impacts.iter().zip(&found.contacts).zip(compression);
         let contacts = contacts.map(|((contact, told), compression)| SubImpact {
-            start_s: groups.time_s * contact.start,
-            end_s: contact.end.map(|end| groups.time_s * end),
+            start_s: scale.time_s * contact.start,
+            end_s: contact.end.map(|end| scale.time_s * end),
             impulse_n_s: contact
                 .striker_velocity_at_end
                 .map(|end| momentum * (end - contact.striker_velocity_at_start)),
-            peak_force_n: groups.force_n * told.peak_force,
-            peak_compression_m: groups.displacement_m * compression,
+            peak_force_n: scale.force_n * told.peak_force,
+            peak_compression_m: scale.displacement_m * compression,
         });
         Ok(ResultFile {
             sub_impacts: Some(contacts.collect()),
-            end_s: solution.sub_impacts.last().and_then(|contact| contact.end).map(|end| groups.time_s * end),
+            end_s: solution.sub_impacts.last().and_then(|contact| contact.end).map(|end| scale.time_s * end),
             infinite: Some(found),
             ..ResultFile::of_answer(scene, &answer)
         })

@@ -1,7 +1,7 @@
 //! A scene solved by the solver for its structure.
 
 use contact_models::Law;
-use vibroimpact_sim::infinite::{self, Groups};
+use vibroimpact_sim::infinite::{self, Scale};
 use vibroimpact_sim::modal::{History, Settings, Structure};
 
 use crate::export::{self, Table};
@@ -19,7 +19,7 @@ pub enum Simulation {
     /// An impact on an infinite beam or plate.
     Infinite {
         /// The units of the solution.
-        groups: Groups,
+        scale: Scale,
         /// The result, which can evaluate the motion.
         solution: infinite::Solution,
     },
@@ -58,8 +58,8 @@ impl Scene {
     pub fn simulate(&self) -> Result<Simulation, InvalidInput> {
         if self.is_infinite() {
             self.require_infinite_model()?;
-            let (groups, solution) = self.solve_infinite()?;
-            return Ok(Simulation::Infinite { groups, solution });
+            let (scale, solution) = self.solve_infinite()?;
+            return Ok(Simulation::Infinite { scale, solution });
         }
         let choice = self.choose()?;
         let impact = match choice.impact {
@@ -90,15 +90,12 @@ impl Scene {
         })
     }
 
-    /// Solves the impact on an infinite beam or plate; the groups hold the units of the solution.
+    /// Solves the impact on an infinite beam or plate; the scale holds the units of the solution.
     ///
     /// # Errors
-    /// As [`Scene::infinite_impact`], or groups that are out of range.
-    pub fn solve_infinite(&self) -> Result<(Groups, infinite::Solution), InvalidInput> {
-        let impact = self.infinite_impact()?;
-        let groups = impact.groups()?;
-        let solution = infinite::solve(impact.structure, groups.s, &infinite::Settings::default())?;
-        Ok((groups, solution))
+    /// As [`Scene::posed_on_infinite`], or numbers that are out of the solver's range.
+    pub fn solve_infinite(&self) -> Result<(Scale, infinite::Solution), InvalidInput> {
+        self.posed_on_infinite()?.solve(&infinite::Settings::default())
     }
 }
 
@@ -117,9 +114,9 @@ impl Simulation {
     pub fn history(&self, until_s: Option<f64>) -> Option<Table> {
         match self {
             Simulation::Modal(found) => Some(export::history(&found.history, found.until_s(until_s))),
-            Simulation::Infinite { groups, solution } => {
-                let until = until_s.map(|until_s| until_s / groups.time_s);
-                Some(infinite_structure::history(solution, Some(groups), until))
+            Simulation::Infinite { scale, solution } => {
+                let until = until_s.map(|until_s| until_s / scale.time_s);
+                Some(infinite_structure::history(solution, Some(scale), until))
             }
             Simulation::Net(_) => None,
         }

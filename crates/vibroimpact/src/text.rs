@@ -154,8 +154,8 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
 }
 
 /// A line that states what strikes what, for an infinite structure.
-pub fn infinite_headline(scene: &Scene, impact: &vibroimpact_sim::infinite::Impact) -> String {
-    let (mass, speed) = (quantity(impact.mass_kg * 1e3, "g"), quantity(impact.speed_m_s, "m/s"));
+pub fn infinite_headline(scene: &Scene, striker: &Striker) -> String {
+    let (mass, speed) = (quantity(striker.mass_kg * 1e3, "g"), quantity(striker.speed_m_s, "m/s"));
     let structure = scene.structure.kind().replace('-', " ");
     format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
 }

@@ -131,6 +131,76 @@ fn a_plate_is_solved_by_simulate_and_always_lets_the_striker_go() {
     assert!(message.contains("structure.kind = \"infinite-plate\"") && message.contains("simulate"), "{message}");
 }
 
+/// Other laws on infinite structures have the same documents as Hertz contact, without `S`; a long beam with ends, by its
+/// modes, agrees.
+#[test]
+fn every_law_is_solved_and_told_alike() {
+    let laws = [
+        json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.8 }),
+        json!({ "law": "hunt-crossley", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.7 }),
+        json!({ "law": "linear-spring", "stiffness_n_m": 1e6 }),
+        json!({ "law": "elastoplastic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "yield_pressure_pa": 2e9 }),
+    ];
+    for (file, kind) in [("infinite-beam.json", "beam"), ("infinite-plate.json", "plate")] {
+        for law in &laws {
+            let mut tree: Value = serde_json::from_str(&fs::read_to_string(gallery(file)).unwrap()).unwrap();
+            tree["contact"] = law.clone();
+            tree["striker"] = json!({ "density_kg_m3": 7800, "radius_m": 0.01, "speed_m_s": 1 });
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("scene.json"), tree.to_string()).unwrap();
+            let printed = stdout(&run(folder.path(), &["simulate", "scene.json", "--json", "--out", "a"]));
+            let result: Value = serde_json::from_str(&printed).unwrap();
+            let found = &result["infinite"];
+            assert!(found["s"].is_null() && found.get("s").is_some(), "{printed}");
+            assert_eq!(result["outcome"], "rebound", "{law} on a {kind}");
+            let restitution = result["restitution"].as_f64().unwrap();
+            assert_eq!(found["rebound_ratio"].as_f64().unwrap(), restitution);
+            assert!(restitution > 0.0 && restitution < 1.0 && found["digits"].as_f64().unwrap() > 9.0);
+            let contact = &result["sub_impacts"][0];
+            let peak = contact["peak_force_n"].as_f64().unwrap();
+            assert!(contact["impulse_n_s"].as_f64().unwrap() > 0.0 && peak > 0.0);
+            // the tables know the same motion
+            let table = fs::read_to_string(folder.path().join("a/history.csv")).unwrap();
+            let rows: Vec<[f64; 7]> =
+                csv::Reader::from_reader(table.as_bytes()).deserialize().map(Result::unwrap).collect();
+            let highest = rows.iter().map(|row| row[6]).fold(0.0, f64::max);
+            assert!((highest / peak - 1.0).abs() < 1e-3, "{law} on a {kind}: {highest} {peak}");
+            assert!((rows.last().unwrap()[4] - restitution).abs() < 1e-9, "{law} on a {kind}");
+            assert!(!fs::read_to_string(folder.path().join("a/impact.svg")).unwrap().contains("no data"));
+            let text = stdout(&run(folder.path(), &["simulate", "scene.json", "--report", "report.html"]));
+            let name = law["law"].as_str().unwrap();
+            assert!(text.contains(&format!("infinite {kind}; {name} contact")) && !text.contains("\n  S  "), "{text}");
+            assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(&format!("law {name}")));
+            if kind == "beam" {
+                let section = tree["structure"].as_object_mut().unwrap();
+                section.remove("kind");
+                section.insert("length_m".to_owned(), json!(3));
+                let mut long = json!({ "structure": { "kind": "beam", "segments": [section.clone()],
+                    "ends": ["pinned", "pinned"], "damping_ratio": 0 }, "location_m": 1.5, "model": "modal", "modes": 300 });
+                long["striker"] = tree["striker"].clone();
+                long["contact"] = law.clone();
+                let scene = Scene::from_json(&long.to_string()).unwrap();
+                let reference = scene.answer().unwrap().restitution.unwrap();
+                assert!((restitution - reference).abs() < 1e-4, "{law}: {restitution} {reference}");
+            }
+        }
+    }
+}
+
+/// A contact that lasts is told as one of which the end is not known.
+#[test]
+fn a_contact_that_lasts_says_so() {
+    let mut tree = scene();
+    tree["contact"] = json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e5, "damping_n_s_m": 1e4 });
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.json"), tree.to_string()).unwrap();
+    let result = solved(&["simulate", folder.path().join("scene.json").to_str().unwrap(), "--json"]);
+    assert_eq!((&result["outcome"], &result["stopped_by"]), (&json!("stopped"), &json!("contact lasts")));
+    assert!(result["restitution"].is_null() && result["sub_impacts"][0]["end_s"].is_null());
+    let text = stdout(&run(folder.path(), &["infinite-beam", "scene.json"]));
+    assert!(text.contains("whether it ever ends is not known"), "{text}");
+}
+
 #[test]
 fn out_writes_tables_and_a_picture() {
     let folder = tempfile::tempdir().unwrap();
@@ -235,7 +305,13 @@ fn scenes_that_do_not_fit_are_refused_by_field() {
         ("/striker/speed_m_s", json!(-1), "striker.speed_m_s = -1 is not allowed"),
         ("/striker/speed_m_s", json!(1e30), "s = "),
         ("/striker/radius_m", json!(-0.01), "striker.radius_m = -0.01"),
-        ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": 1e6 }), "contact.law = \"linear-spring\""),
+        ("/contact", json!({ "law": "linear-spring", "stiffness_n_m": -1 }), "contact.stiffness_n_m = -1"),
+        ("/contact", json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6 }), "contact.damping_n_s_m"),
+        (
+            "/contact",
+            json!({ "law": "hunt-crossley", "stiffness_n_m_n": 1e8, "exponent": 0.5, "damping_s_m": 0.1 }),
+            "contact.exponent = 0.5",
+        ),
         ("/contact", json!({ "law": "hertz", "stiffness_n_m1_5": -1 }), "contact.stiffness_n_m1_5 = -1"),
         ("/location_m", json!(0.5), "location_m = 0.5 must be left out"),
         ("/modes", json!(40), "modes = 40 must be left out"),

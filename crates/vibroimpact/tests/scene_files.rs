@@ -199,7 +199,7 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
         }
         assert!(!validator.is_valid(&spoilt), "{name}{place}");
         let refused = Scene::from_value(&spoilt).and_then(|scene| match scene.is_infinite() {
-            true => scene.infinite_impact().map(drop),
+            true => scene.posed_on_infinite().map(drop),
             false => scene.impact().and_then(|impact| impact.solve()).map(drop),
         });
         assert!(refused.is_err(), "{name}{place}");
@@ -517,7 +517,7 @@ proptest! {
             Err(SceneError::Syntax { line, reason, .. }) => prop_assert!(line >= 1 && !reason.is_empty()),
             Err(SceneError::Invalid(fault)) => prop_assert!(!fault.field.is_empty() || fault.value.is_some()),
             Err(other) => prop_assert!(false, "{other}"),
-            Ok(scene) if scene.is_infinite() => drop(scene.infinite_impact()),
+            Ok(scene) if scene.is_infinite() => drop(scene.posed_on_infinite()),
             Ok(scene) => drop(scene.impact()),
         }
     }

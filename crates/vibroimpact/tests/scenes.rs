@@ -334,9 +334,9 @@ proptest! {
         *tree.pointer_mut(at.get(&all).as_str()).unwrap() = spoil;
         match Scene::from_value(&tree) {
             Err(fault) => prop_assert!(fault.value.is_some() || !fault.field.is_empty()),
-            Ok(scene) if scene.is_infinite() => match scene.infinite_impact() {
+            Ok(scene) if scene.is_infinite() => match scene.posed_on_infinite() {
                 Err(fault) => prop_assert!(!fault.field.is_empty(), "{fault}"),
-                Ok(impact) => prop_assert!(impact.impulse_response > 0.0),
+                Ok(posed) => prop_assert!(posed.receptance.displacement_m(1.0) > 0.0),
             },
             Ok(scene) => match scene.impact() {
                 Err(fault) => prop_assert!(!fault.field.is_empty(), "{fault}"),

@@ -7,7 +7,7 @@ use vibroimpact::export::{self, Failure};
 use vibroimpact::infinite::{Summary, TurningPoints, files, picture, text, turning_points_text};
 use vibroimpact::report;
 use vibroimpact::trust::{Check, trust_text};
-use vibroimpact::vibroimpact_sim::infinite::{Groups, Settings, Solution, Structure, solve};
+use vibroimpact::vibroimpact_sim::infinite::{Scale, Settings, Solution, Structure, solve};
 use vibroimpact::{InvalidInput, Scene};
 
 use super::products::Products;
@@ -24,7 +24,7 @@ pub const EXAMPLES: &str = "Examples:
 S = C^10 k_H^2 m^8 v is the one number that matters; S up to 1.5605 gives a rebound after one contact, larger S one
 or more separations, then sustained contact, and S above 35264 sustained contact at once. S from 1e-12 to 1e8 is
 solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"stopped\", with how many are certain.
-A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and a hertz contact.";
+A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and any contact.";
 
 /// The impact to solve, and where its result goes.
 #[derive(Args)]
@@ -70,9 +70,9 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
                 return Err(InvalidInput::new(["structure", "kind"], kind, allowed).into());
             }
             products.require_room()?;
-            let (groups, solution) = scene.solve_infinite()?;
-            let json = export::json(&Summary::new(&solution, Some(&groups)))?;
-            of_scene(&scene, (&groups, &solution), &[], None, json, &products)
+            let (scale, solution) = scene.solve_infinite()?;
+            let json = export::json(&Summary::new(&solution, Some(&scale)))?;
+            of_scene(&scene, (&scale, &solution), &[], None, json, &products)
         }
         Arguments { s, products, .. } => {
             let s = s.unwrap_or(f64::NAN);
@@ -80,7 +80,7 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
             let solution = solve(Structure::Beam, s, &Settings::default())?;
             let headline = format!("Impact on an infinite beam, S = {s}");
             let json = export::json(&Summary::new(&solution, None))?;
-            result(&headline, &solution, &Posed { scene: None, groups: None, trust: &[], until: None }, json, &products)
+            result(&headline, &solution, &Posed { scene: None, scale: None, trust: &[], until: None }, json, &products)
         }
     }
 }
@@ -89,22 +89,22 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
 /// `json` is the result for programs.
 pub fn of_scene(
     scene: &Scene,
-    (groups, solution): (&Groups, &Solution),
+    (scale, solution): (&Scale, &Solution),
     trust: &[Check],
     until_s: Option<f64>,
     json: String,
     products: &Products,
 ) -> Result<String, Failure> {
-    let headline = vibroimpact::text::infinite_headline(scene, &scene.infinite_impact()?);
-    let until = until_s.map(|until| until / groups.time_s);
-    let posed = Posed { scene: Some(scene), groups: Some(groups), trust, until };
+    let headline = vibroimpact::text::infinite_headline(scene, &scene.posed_on_infinite()?.striker);
+    let until = until_s.map(|until| until / scale.time_s);
+    let posed = Posed { scene: Some(scene), scale: Some(scale), trust, until };
     result(&headline, solution, &posed, json, products)
 }
 
 /// How an impact was posed: in physical units by a scene, or by `S` alone.
 struct Posed<'a> {
     scene: Option<&'a Scene>,
-    groups: Option<&'a Groups>,
+    scale: Option<&'a Scale>,
     /// How far its theory can be trusted.
     trust: &'a [Check],
     /// How far tables and pictures go (units of `T`), if it is stated.
@@ -118,18 +118,18 @@ fn result(
     json: String,
     products: &Products,
 ) -> Result<String, Failure> {
-    let &Posed { scene, groups, trust, until } = posed;
-    let summary = Summary::new(solution, groups);
+    let &Posed { scene, scale, trust, until } = posed;
+    let summary = Summary::new(solution, scale);
     let printed = if products.json {
         json.clone()
     } else {
         format!("{headline}\n\n{}{}{}", text(&summary), trust_text(trust), signature())
     };
-    let figure = || picture(headline, solution, groups, until);
+    let figure = || picture(headline, solution, scale, until);
     let told = products.write(
         figure,
         |figure| report::of_infinite_impact(headline, scene, &summary, figure),
-        || files(json, solution, groups, until, &figure()),
+        || files(json, solution, scale, until, &figure()),
     )?;
     Ok(printed + &told)
 }

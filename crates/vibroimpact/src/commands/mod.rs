@@ -39,7 +39,7 @@ fn of_option(option: &str) -> impl Fn(InvalidInput) -> InvalidInput {
 /// A scene in a line.
 fn headline(scene: &Scene) -> Result<String, Failure> {
     if scene.is_infinite() {
-        return Ok(text::infinite_headline(scene, &scene.infinite_impact()?));
+        return Ok(text::infinite_headline(scene, &scene.posed_on_infinite()?.striker));
     }
     // that of a dropped rod is not the striker's
     let rod = matches!(scene.structure, scene::Structure::DroppedRod(_));

@@ -119,9 +119,9 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
     let trust = scene.trust(&found)?;
     match &found {
         Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, &extent, products),
-        Simulation::Infinite { groups, solution } => {
+        Simulation::Infinite { scale, solution } => {
             extent.require_still()?;
-            infinite_beam::of_scene(&scene, (groups, solution), &trust, until, found.json(&scene)?, products)
+            infinite_beam::of_scene(&scene, (scale, solution), &trust, until, found.json(&scene)?, products)
         }
         Simulation::Net(answer) => extent
             .require_still()

@@ -1,6 +1,6 @@
 //! Tables and picture of an impact on an infinite structure.
 
-use vibroimpact_sim::infinite::{Groups, Solution};
+use vibroimpact_sim::infinite::{Scale, Solution};
 
 use super::history::{SAMPLES, Units, history};
 use super::{Sample, Summary, samples, telling_time};
@@ -12,22 +12,22 @@ use crate::plot::{Axis, Colour, Figure, Panel, Series};
 const WIDE: f64 = 30.0;
 
 /// `result.json`, `history.csv`, `contacts.csv` and `impact.svg`, ready in memory; `result` is the text of the first,
-/// `until` as for [`history`]. With `groups` the tables are in SI units, otherwise in units of `T`, `F`, `v T` and `v`.
+/// `until` as for [`history`]. With `scale` the tables are in SI units, otherwise in units of `T`, `F`, `v T` and `v`.
 ///
 /// # Errors
 /// None that an impact could cause; those of the writers are passed on.
 pub fn files(
     result: String,
     solution: &Solution,
-    groups: Option<&Groups>,
+    scale: Option<&Scale>,
     until: Option<f64>,
     figure: &Figure,
 ) -> Result<Files, Failure> {
-    let summary = Summary::new(solution, groups);
-    let units = Units::new(groups);
+    let summary = Summary::new(solution, scale);
+    let units = Units::new(scale);
     Ok(Files(vec![
         ("result.json", result.into_bytes()),
-        ("history.csv", history(solution, groups, until).csv()?),
+        ("history.csv", history(solution, scale, until).csv()?),
         ("contacts.csv", contacts_csv(&summary, &units)?),
         ("impact.svg", figure.svg()?.into_bytes()),
     ]))
@@ -58,7 +58,7 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
 }
 
 /// Where the bodies were, how fast the striker went, and the force, with every contact's peak marked and numbered, as in
-/// thesis Fig. 2.3; in SI units with `groups`, otherwise in units of the solution. Grey stripes are the times in contact.
+/// thesis Fig. 2.3; in SI units with `scale`, otherwise in units of the solution. Grey stripes are the times in contact.
 /// Time and force are on logarithmic axes where later contacts would not show otherwise.
 ///
 /// ```
@@ -68,9 +68,9 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
 /// assert!(picture("S = 15", &solution, None, None).svg().expect("a picture").contains("time (T)"));
 /// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
 /// ```
-pub fn picture(title: &str, solution: &Solution, groups: Option<&Groups>, until: Option<f64>) -> Figure {
+pub fn picture(title: &str, solution: &Solution, scale: Option<&Scale>, until: Option<f64>) -> Figure {
     let samples = samples(solution, until.unwrap_or_else(|| telling_time(solution)), SAMPLES);
-    let units = Units::new(groups);
+    let units = Units::new(scale);
     let [time_unit, force_unit, displacement_unit, speed_unit] = units.names;
     let until = samples.last().map_or(0.0, |sample| sample.time);
     let first = solution.sub_impacts.first().and_then(|contact| contact.end);

@@ -1,6 +1,6 @@
 //! Motion and force of an impact on an infinite structure over time.
 
-use vibroimpact_sim::infinite::{Groups, Solution};
+use vibroimpact_sim::infinite::{Scale, Solution};
 
 use super::{Sample, samples, telling_time};
 use crate::export::Table;
@@ -21,13 +21,13 @@ pub(super) struct Units {
 }
 
 impl Units {
-    pub fn new(groups: Option<&Groups>) -> Units {
-        match groups {
-            Some(groups) => Units {
-                time: groups.time_s,
-                force: groups.force_n,
-                displacement: groups.displacement_m,
-                speed: groups.speed_m_s,
+    pub fn new(scale: Option<&Scale>) -> Units {
+        match scale {
+            Some(scale) => Units {
+                time: scale.time_s,
+                force: scale.force_n,
+                displacement: scale.displacement_m,
+                speed: scale.speed_m_s,
                 suffixes: ["_s", "_n", "_m", "_m_s"],
                 names: ["s", "N", "m", "m/s"],
             },
@@ -43,12 +43,12 @@ impl Units {
     }
 }
 
-/// Motion and force over time: what `history.csv` holds, in SI units with `groups`, otherwise in units of the solution.
+/// Motion and force over time: what `history.csv` holds, in SI units with `scale`, otherwise in units of the solution.
 /// As elsewhere in this crate, displacements and velocities are positive away from the structure.
 /// They go until `until` (units of `T`) as far as the motion is known, or a while past the last contact.
-pub fn history(solution: &Solution, groups: Option<&Groups>, until: Option<f64>) -> Table {
+pub fn history(solution: &Solution, scale: Option<&Scale>, until: Option<f64>) -> Table {
     let samples = samples(solution, until.unwrap_or_else(|| telling_time(solution)), SAMPLES);
-    let units = Units::new(groups);
+    let units = Units::new(scale);
     let [time, force, displacement, speed] = units.suffixes;
     let column = |name: String, of: &dyn Fn(&Sample) -> f64| (name, samples.iter().map(of).collect());
     // subtracted from zero, so that zero keeps its sign

@@ -11,12 +11,13 @@ use invalid_input::InvalidInput;
 use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{
-    CriticalS, Groups, MOST_TURNING_POINTS, Outcome, Solution, State, TurningPoint, critical_s, turning_points,
+    CriticalS, MOST_TURNING_POINTS, Outcome, Scale, Solution, State, TurningPoint, critical_s, turning_points,
 };
 
 #[cfg(feature = "files")]
 pub use files::{files, picture};
 pub use history::history;
+pub use pose::Posed;
 pub use text::{text, turning_points_text};
 
 /// What `infinite-beam --json` prints: one object. Times are in units of `T`, speeds of `v`, forces of `F` (thesis
@@ -105,7 +106,7 @@ impl Summary {
     /// assert_eq!((summary.outcome, summary.separations), ("sustained", 4));
     /// # Ok::<(), vibroimpact::vibroimpact_sim::InvalidInput>(())
     /// ```
-    pub fn new(solution: &Solution, groups: Option<&Groups>) -> Summary {
+    pub fn new(solution: &Solution, scale: Option<&Scale>) -> Summary {
         let contacts: Vec<Contact> = solution
             .sub_impacts
             .iter()
@@ -128,25 +129,25 @@ impl Summary {
             first_rebound_ratio: solution.first_rebound_ratio(),
             relative_error: solution.relative_uncertainty.filter(|error| error.is_finite()),
             digits: solution.digits(),
-            physical: groups.map(|groups| Physical::new(groups, solution.rebound_ratio(), &contacts)),
+            physical: scale.map(|scale| Physical::new(scale, solution.rebound_ratio(), &contacts)),
             contacts,
         }
     }
 }
 
 impl Physical {
-    fn new(groups: &Groups, rebound_ratio: Option<f64>, contacts: &[Contact]) -> Physical {
+    fn new(scale: &Scale, rebound_ratio: Option<f64>, contacts: &[Contact]) -> Physical {
         let contact = |contact: &Contact| PhysicalContact {
-            start_s: groups.time_s * contact.start,
-            end_s: contact.end.map(|end| groups.time_s * end),
-            peak_force_n: groups.force_n * contact.peak_force,
+            start_s: scale.time_s * contact.start,
+            end_s: contact.end.map(|end| scale.time_s * end),
+            peak_force_n: scale.force_n * contact.peak_force,
         };
         Physical {
-            time_unit_s: groups.time_s,
-            force_unit_n: groups.force_n,
-            displacement_unit_m: groups.displacement_m,
-            speed_m_s: groups.speed_m_s,
-            rebound_velocity_m_s: rebound_ratio.map(|ratio| groups.speed_m_s * ratio),
+            time_unit_s: scale.time_s,
+            force_unit_n: scale.force_n,
+            displacement_unit_m: scale.displacement_m,
+            speed_m_s: scale.speed_m_s,
+            rebound_velocity_m_s: rebound_ratio.map(|ratio| scale.speed_m_s * ratio),
             contacts: contacts.iter().map(contact).collect(),
         }
     }

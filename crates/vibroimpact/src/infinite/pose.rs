@@ -1,18 +1,47 @@
 //! From a scene to the terms of [`vibroimpact_sim::infinite`].
 
+use contact_models::Law;
 use invalid_input::{InvalidInput, Path};
-use vibroimpact_sim::infinite;
+use vibroimpact_sim::infinite::{self, Receptance, Scale, Solution};
 use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
 use crate::scene::{Contact, Scene, Structure};
 
-impl Scene {
-    /// The impact on an infinite structure in the terms of the solver.
+/// An impact on an infinite structure in the terms of the solvers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posed {
+    /// The impulse response of the structure.
+    pub receptance: Receptance,
+    /// What strikes it.
+    pub striker: Striker,
+    /// The law of contact.
+    pub law: Law,
+    /// The same for the solver of Hertz contact, if that is the law.
+    pub hertz: Option<infinite::Impact>,
+}
+
+impl Posed {
+    /// Solves the impact, by the solver made for Hertz contact if that is the law; the scale holds the units of the
+    /// solution.
     ///
     /// # Errors
-    /// A structure that is not infinite, a law other than Hertz's, fields that belong to modes, or a value out of
-    /// range.
+    /// Numbers that are out of the range of the solver.
+    pub fn solve(&self, settings: &infinite::Settings) -> Result<(Scale, Solution), InvalidInput> {
+        if let Some(impact) = self.hertz {
+            let groups = impact.groups()?;
+            return Ok((groups.into(), infinite::solve(impact.structure, groups.s, settings)?));
+        }
+        let scale = self.receptance.scale(&self.striker)?;
+        Ok((scale, infinite::solve_law(&self.receptance, &self.striker, &self.law, settings)?))
+    }
+}
+
+impl Scene {
+    /// The impact on an infinite structure by Hertz contact, which a single number tells, in the terms of its solver.
+    ///
+    /// # Errors
+    /// As [`Scene::posed_on_infinite`], and a law other than Hertz's.
     ///
     /// ```
     /// use vibroimpact::Scene;
@@ -28,6 +57,32 @@ impl Scene {
     /// # Ok::<(), vibroimpact::SceneError>(())
     /// ```
     pub fn infinite_impact(&self) -> Result<infinite::Impact, InvalidInput> {
+        self.posed_on_infinite()?.hertz.ok_or_else(|| {
+            let law = format!("\"{}\"", self.contact.law_name());
+            InvalidInput::new(["contact", "law"], law, "hertz, the law whose impacts depend on one number")
+        })
+    }
+
+    /// The impact on an infinite structure in the terms of the solvers, by any law of contact.
+    ///
+    /// # Errors
+    /// A structure that is not infinite, fields that belong to modes, or a value out of range.
+    ///
+    /// ```
+    /// use vibroimpact::{Scene, vibroimpact_sim::infinite::{Outcome, Settings}};
+    ///
+    /// let scene = Scene::from_json(r#"{
+    ///     "structure": { "kind": "infinite-plate", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3,
+    ///                    "density_kg_m3": 7800, "thickness_m": 0.003 },
+    ///     "striker": { "density_kg_m3": 7800, "radius_m": 0.005, "speed_m_s": 1 },
+    ///     "contact": { "law": "kelvin-voigt", "stiffness_n_m": 1e6, "damping_n_s_m": 10 }
+    /// }"#)?;
+    /// let (scale, solution) = scene.posed_on_infinite()?.solve(&Settings::default())?;
+    /// assert_eq!((solution.outcome, solution.s), (Outcome::Rebound, None));
+    /// assert!(scale.time_s * solution.sub_impacts[0].duration.unwrap() < 1e-3);
+    /// # Ok::<(), vibroimpact::SceneError>(())
+    /// ```
+    pub fn posed_on_infinite(&self) -> Result<Posed, InvalidInput> {
         let left_out = |field: Path, value: Option<String>| match value {
             Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
             None => Ok(()),
@@ -40,13 +95,12 @@ impl Scene {
         left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
         left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("tolerance".into(), self.tolerance.map(number))?;
-        let Contact::Hertz(stiffness) = &self.contact else {
-            let law = format!("\"{}\"", self.contact.law_name());
-            return Err(InvalidInput::new(["contact", "law"], law, "hertz, the law of impacts on infinite structures"));
-        };
-        let Striker { mass_kg, speed_m_s } = self.posed_striker()?;
-        let stiffness_n_m1_5 = stiffness.of(&self.striker)?;
-        match &self.structure {
+        let striker = self.posed_striker()?;
+        let Striker { mass_kg, speed_m_s } = striker;
+        let law = self.contact.law(&self.striker)?;
+        // of Hertz contact the stiffness is a part of the impact; otherwise it does not enter
+        let stiffness_n_m1_5 = if let Law::Hertz(law) = &law { law.stiffness_n_m1_5 } else { 1.0 };
+        let impact = match &self.structure {
             Structure::InfiniteBeam(beam) => {
                 let section = beam.section().map_err(|fault| fault.within("structure"))?;
                 // checked even though the impact itself does without
@@ -71,6 +125,8 @@ impl Scene {
             Some("mass_kg" | "speed_m_s") => fault.within("striker"),
             Some("stiffness_n_m1_5") => fault.within("contact"),
             _ => fault.within("structure"),
-        })
+        })?;
+        let hertz = matches!(self.contact, Contact::Hertz(_)).then_some(impact);
+        Ok(Posed { receptance: impact.receptance(), striker, law, hertz })
     }
 }

@@ -304,8 +304,8 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
 /// A structure that has no ends to begin with.
 pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInput> {
     scene.require_infinite_model()?;
-    let (groups, solution) = scene.solve_infinite()?;
-    Ok(Choice { answer: scene.infinite_answer(&groups, &solution), impact: None })
+    let (_, solution) = scene.solve_infinite()?;
+    Ok(Choice { answer: scene.infinite_answer(&solution), impact: None })
 }
 
 impl Scene {
@@ -319,7 +319,7 @@ impl Scene {
     }
 
     /// The solution for a structure without ends, as an answer.
-    pub(crate) fn infinite_answer(&self, groups: &infinite::Groups, solution: &infinite::Solution) -> Answer {
+    pub(crate) fn infinite_answer(&self, solution: &infinite::Solution) -> Answer {
         let restitution = solution.rebound_ratio();
         // relative to the change of speed
         let uncertainty = restitution
@@ -328,7 +328,9 @@ impl Scene {
             .filter(|u| u.is_finite());
         let settled = uncertainty.is_some_and(|u| u <= super::DEFAULT_TOLERANCE);
         let kind = self.structure.kind().replace('-', " ");
-        let reason = format!("the structure is an {kind}: S = {}", small(groups.s));
+        let told =
+            solution.s.map_or_else(|| format!("{} contact", self.contact.law_name()), |s| format!("S = {}", small(s)));
+        let reason = format!("the structure is an {kind}: {told}");
         // no mode is left out
         let known = Known::new(self, uncertainty, Ok(0.0)).of(restitution);
         Answer {

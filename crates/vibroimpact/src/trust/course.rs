@@ -70,8 +70,8 @@ impl Course {
                     moves: found.summary.choice.as_ref().is_none_or(|choice| choice.model != Model::Rigid),
                 }
             }
-            Simulation::Infinite { groups, solution } => {
-                let table = history(solution, Some(groups), None);
+            Simulation::Infinite { scale, solution } => {
+                let table = history(solution, Some(scale), None);
                 let column =
                     |name: &str| table.columns.iter().find(|(column, _)| column == name).map(|(_, values)| values);
                 let (times, forces) = (column("time_s"), column("force_n"));
@@ -80,7 +80,7 @@ impl Course {
                 let mut pulses = Vec::new();
                 for (i, contact) in solution.sub_impacts.iter().enumerate() {
                     let Some(end) = contact.end else { continue };
-                    let [start_s, end_s] = [contact.start, end].map(|time| groups.time_s * time);
+                    let [start_s, end_s] = [contact.start, end].map(|time| scale.time_s * time);
                     let force: Vec<[f64; 2]> =
                         samples.iter().filter(|[t, _]| (start_s..=end_s).contains(t)).copied().collect();
                     let peak = |of: &dyn Fn(f64) -> f64| force.iter().map(|[_, f]| of(*f)).fold(0.0, f64::max);
@@ -89,13 +89,13 @@ impl Course {
                         duration_s: end_s - start_s,
                         impulse_n_s: integral(&force, |[_, f]| f),
                         peak_force_n: peak(&|f| f),
-                        peak_compression_m: groups.displacement_m * deepest.map(|e| e.compression).fold(0.0, f64::max),
+                        peak_compression_m: scale.displacement_m * deepest.map(|e| e.compression).fold(0.0, f64::max),
                         force,
                     });
                 }
                 pulses.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
                 let last = solution.sub_impacts.last().and_then(|contact| contact.end);
-                let interaction_s = last.map(|end| groups.time_s * end);
+                let interaction_s = last.map(|end| scale.time_s * end);
                 Course { pulses, modes: Vec::new(), interaction_s, moves: true }
             }
             Simulation::Net(_) => {

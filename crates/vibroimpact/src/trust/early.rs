@@ -22,9 +22,10 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 use beam_modes::{Segment, ShearSection};
 use vibroimpact_sim::infinite::Solution;
-use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Mode, Settings, Solver, Structure};
 
 use super::Check;
+use crate::infinite::Posed;
 use crate::scene::{self, InvalidInput, Scene};
 use crate::text::quantity;
 
@@ -82,15 +83,13 @@ fn modes(re_y: impl Fn(f64) -> f64, duration_s: f64) -> Vec<Mode> {
 
 /// Speed away from the beam after the first contact, over that of the impact; `None` if the contact does not end.
 fn first_rebound_ratio(modes: Vec<Mode>, scene: &Scene) -> Result<Option<f64>, InvalidInput> {
-    let impact = scene.infinite_impact()?;
-    let law = contact_models::Law::Hertz(contact_models::Hertz { stiffness_n_m1_5: impact.stiffness_n_m1_5 });
-    let striker = Striker { mass_kg: impact.mass_kg, speed_m_s: impact.speed_m_s };
+    let Posed { striker, law, .. } = scene.posed_on_infinite()?;
     let settings =
         Settings { tolerance: TOLERANCE, estimate_uncertainty: false, max_sub_impacts: 1, ..Settings::default() };
     // numbers beyond what the solver of modes takes are no reason to refuse an answer without them
     let Ok(solver) = Solver::new(&Structure { modes }) else { return Ok(None) };
     let Ok(found) = solver.solve(&striker, &law, None, &settings) else { return Ok(None) };
-    let momentum = impact.mass_kg * impact.speed_m_s;
+    let momentum = striker.mass_kg * striker.speed_m_s;
     let ratio = found.sub_impacts.first().map(|contact| contact.impulse_n_s / momentum - 1.0);
     Ok(ratio.filter(|ratio| ratio.is_finite()))
 }

@@ -142,7 +142,7 @@ impl Scene {
         let course = Course::of(self, simulation)?;
         let waves = section::section(self)?;
         let early = match simulation {
-            Simulation::Infinite { groups, solution } => early::response(self, solution, groups.time_s)?,
+            Simulation::Infinite { scale, solution } => early::response(self, solution, scale.time_s)?,
             _ => None,
         };
         let mut found = checks::waves(&course, waves.as_ref());
