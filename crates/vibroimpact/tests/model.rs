@@ -250,7 +250,7 @@ fn forced_models_say_how_far_they_hold() {
     let rigid = answer(&with(&[("/model", json!("rigid"))]));
     assert!(!rigid.settled && rigid.restitution == Some(1.0) && rigid.restitution_uncertainty > Some(0.5), "{rigid:?}");
     let emoc = answer(&with(&[("/model", json!("emoc"))]));
-    assert_eq!((emoc.sub_impact_count, emoc.restitution_uncertainty), (None, Some(VALIDATED.error_95)));
+    assert_eq!((emoc.sub_impact_count, emoc.uncertainty.modes_left_out), (None, Some(VALIDATED.error_95)));
     let modal = answer(&with(&[("/model", json!("modal")), ("/location_m", json!(0))]));
     assert!((modal.restitution.unwrap() - 1.0).abs() < 1e-4, "{modal:?}");
 }

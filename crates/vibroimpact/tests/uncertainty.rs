@@ -32,6 +32,27 @@ fn near_the_root() -> Scene {
     Scene::read(&path).unwrap()
 }
 
+/// A closed form has no digits beyond those of its arithmetic, on a support as well, where no structure changes anything.
+#[test]
+fn closed_forms_state_their_rounding() {
+    let laws = [
+        json!({ "law": "viscous", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.7 }),
+        json!({ "law": "hysteretic", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "theta_m": 1.6, "beta": 1.4,
+                "k_bar": 0.4, "epsilon_m": 0.0 }),
+        json!({ "law": "felt", "stiffness_n_m_n": 1e12, "exponent": 2.5, "retardation_time_s": 1e-5 }),
+    ];
+    for law in laws {
+        let mut value: Value = serde_json::from_str(&near_the_root().to_json()).unwrap();
+        value["location_m"] = json!(0);
+        value["contact"] = law;
+        let rigid = answer(&Scene::from_value(&value).unwrap());
+        let solver = rigid.uncertainty.solver.unwrap();
+        assert!(rigid.model == Model::Rigid && solver > f64::EPSILON && solver < 1e-10, "{rigid:?}");
+        let error = (rigid.restitution.unwrap() - converged(&Scene::from_value(&value).unwrap(), 0, 1e-12)).abs();
+        assert!(error <= rigid.restitution_uncertainty.unwrap(), "{error:e} {rigid:?}");
+    }
+}
+
 /// Slow modes that hardly move near a support: their static compliance does not answer at once.
 #[test]
 fn slow_modes_are_no_spring() {

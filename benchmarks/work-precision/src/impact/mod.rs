@@ -13,7 +13,7 @@ pub use reference::{Reference, reference};
 pub use system::{Equations, Phase};
 
 use crate::measure::{Effort, Found, Row};
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, End, PointMode, Segment};
 use contact_models::{Body, Hertz, Hysteretic, Law, Viscous};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Striker, Structure};
@@ -72,6 +72,9 @@ const YOUNGS_MODULUS_PA: f64 = 2e11;
 const DENSITY_KG_M3: f64 = 7800.0;
 /// (sqrt 5 - 1) / 2, the thesis's second location on the unit beam.
 const GOLDEN_M: f64 = 0.618_033_988_749_894_9;
+/// The modes that the program keeps beside two remainder modes if it is left to choose, on the beam of chapter 3 under Hertz's
+/// contact at the default tolerance.
+const CONVERGED: usize = 83;
 
 /// A steel ball of this diameter at 1 m/s, and the Hertz stiffness of its contact.
 fn ball(diameter_m: f64) -> Result<(Striker, f64), String> {
@@ -82,15 +85,28 @@ fn ball(diameter_m: f64) -> Result<(Striker, f64), String> {
 }
 
 /// Steel beam of unit length; `thickness` of its halves as fractions of the thesis's side.
-fn beam(ends: [End; 2], thickness: &[f64], modes: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
+fn steel(ends: [End; 2], thickness: &[f64]) -> Beam {
     let length = 1.0 / thickness.len() as f64;
     let segment = |part: &f64| Segment::rectangular(length, YOUNGS_MODULUS_PA, DENSITY_KG_M3, SIDE_M, part * SIDE_M);
-    let beam = Beam { segments: thickness.iter().map(segment).collect(), ends };
+    Beam { segments: thickness.iter().map(segment).collect(), ends }
+}
+
+/// The first modes of a beam, seen from a place.
+fn modes(beam: &Beam, modes: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
     let found = beam.modes(modes).map_err(|e| e.to_string())?;
     let shapes = found.shapes_at(x_m).map_err(|e| e.to_string())?;
     let modes = found.omega_rad_s().iter().zip(shapes);
     let modes = modes.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
     Ok(Structure { modes })
+}
+
+/// The same with two remainder modes for all others, damped alike, as the program integrates a beam by default.
+fn modes_and_remainder(beam: &Beam, kept: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
+    let mut structure = modes(beam, kept, damping_ratio, x_m)?;
+    let remainder = beam.remainder(x_m, kept, 2).map_err(|e| e.to_string())?;
+    let damped = |mode: PointMode| Mode { omega_rad_s: mode.omega_rad_s, damping_ratio, shape: mode.shape };
+    structure.modes.extend(remainder.into_iter().map(damped));
+    Ok(structure)
 }
 
 /// Every impact of the library (thesis sections 3.3 and 4.2; steps and balls of chapter 4 as in `datasets`).
@@ -101,13 +117,14 @@ pub fn library() -> Result<Vec<Impact>, String> {
     // the stiffness of the first loading is that of Hertz
     let hysteretic = |k: f64| Hysteretic::new(k / 4.0, 1.6, 1.4, 0.4, 5e-8).map(Law::from).map_err(text);
 
-    let pinned = [End::Pinned, End::Pinned];
+    let pinned = steel([End::Pinned, End::Pinned], &[1.0]);
     let cantilever = [End::Clamped, End::Free];
-    let chapter3 = beam(pinned, &[1.0], 40, 0.02, GOLDEN_M)?;
+    let chapter3 = modes(&pinned, 40, 0.02, GOLDEN_M)?;
+    let converged = modes_and_remainder(&pinned, CONVERGED, 0.02, GOLDEN_M)?;
     let (ball3, k3) = ball(0.03)?;
-    let slender = beam(cantilever, &[1.0], 40, 0.02, 0.75)?;
+    let slender = modes(&steel(cantilever, &[1.0]), 40, 0.02, 0.75)?;
     let (large, k_large) = ball(0.053)?;
-    let stepped = beam(cantilever, &[1.0, 0.5], 40, 0.02, 0.75)?;
+    let stepped = modes(&steel(cantilever, &[1.0, 0.5]), 40, 0.02, 0.75)?;
     let (middle, k_middle) = ball(0.033)?;
     let impact = |name, about, structure: &Structure, striker, law| Impact {
         name,
@@ -141,7 +158,7 @@ pub fn library() -> Result<Vec<Impact>, String> {
         impact(
             "pinned-undamped",
             "The undamped pinned beam of chapter 3, 25 modes, struck at 0.4 of its length, Hertz's contact (it amplifies errors)",
-            &beam(pinned, &[1.0], 25, 0.0, 0.4)?,
+            &modes(&pinned, 25, 0.0, 0.4)?,
             ball3,
             hertz(k3)?,
         ),
@@ -172,6 +189,27 @@ pub fn library() -> Result<Vec<Impact>, String> {
             &stepped,
             middle,
             hysteretic(k_middle)?,
+        ),
+        impact(
+            "remainder-hertz",
+            "The damped pinned beam of chapter 3, 83 modes and two remainder modes for all others, Hertz's contact",
+            &converged,
+            ball3,
+            hertz(k3)?,
+        ),
+        impact(
+            "remainder-viscous",
+            "The damped pinned beam of chapter 3, 83 modes and two remainder modes for all others, viscous contact",
+            &converged,
+            ball3,
+            viscous(k3)?,
+        ),
+        impact(
+            "remainder-hysteretic",
+            "The damped pinned beam of chapter 3, 83 modes and two remainder modes for all others, hysteretic contact",
+            &converged,
+            ball3,
+            hysteretic(k3)?,
         ),
     ])
 }

@@ -18,7 +18,7 @@
 //! is part of the motion. With the last three changes,
 //!
 //! ```text
-//! u = max( 2 d_1, 2 d_2, 2 d_3, d_s ) + d_c,
+//! u = max( 4 d_1, 4 d_2, 4 d_3, d_s ) + d_c,
 //! ```
 //!
 //! and `e_r` counts only if `d_1` is the largest, or `R < 0.1`: changes that grow, or between numbers of modes that are all
@@ -34,6 +34,8 @@ const CAUTION: f64 = 2.0;
 const OF_ENERGY: f64 = 10.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
+/// The same at the end of a list, where no further number of modes can tell whether two agree by accident.
+const CAUTION_AT_THE_END: f64 = 4.0;
 /// `R` from which on changes at the end of a list tell of their limit.
 const RESOLVED: f64 = 0.1;
 /// Weight of the change before the last.
@@ -79,7 +81,7 @@ pub(super) fn too_short(resolution: f64) -> f64 {
 pub(super) fn at_the_end(changes: &[f64], energy: f64, resolution: f64) -> f64 {
     let Some((latest, before)) = changes.split_first() else { return 1.0 };
     let before = before.iter().take(2).copied().fold(0.0, f64::max);
-    let changed = CAUTION * latest.max(before);
+    let changed = CAUTION_AT_THE_END * latest.max(before);
     if *latest < before && resolution >= RESOLVED { changed } else { changed.max(energy) }
 }
 
@@ -158,10 +160,10 @@ mod tests {
     #[test]
     fn changes_at_the_end_of_a_list_count_where_they_fall() {
         assert_eq!(at_the_end(&[], 0.0, 1.0), 1.0);
-        assert_eq!(at_the_end(&[0.1, 0.2, 0.3, 0.9], 7.0, 1.0), 0.6);
+        assert_eq!(at_the_end(&[0.1, 0.2, 0.3, 0.9], 7.0, 1.0), 1.2);
         assert_eq!(at_the_end(&[0.1, 0.2], 7.0, 0.01), 7.0);
         assert_eq!(at_the_end(&[0.2, 0.1], 7.0, 1.0), 7.0);
-        assert_eq!(at_the_end(&[0.2, 0.1], 0.1, 1.0), 0.4);
+        assert_eq!(at_the_end(&[0.2, 0.1], 0.1, 1.0), 0.8);
         assert_eq!((too_short(4.0), too_short(0.25)), (1.0, 2.0));
         assert!([0.0, -1.0].into_iter().all(|r| too_short(r).is_finite()) && too_short(f64::NAN) == 1.0);
     }

@@ -5,10 +5,11 @@
 //! for two numbers of modes,
 //!
 //! ```text
-//! u = |e - e_M| + caution |e_M - e_(M/1.4)| + d_c,
+//! u = |e - e_M| + 3 |e_M - e_(M/1.4)| + d_c,
 //! ```
 //!
-//! `d_c` what changes where the static compliance is greater by as much as it may be off, `M` as many as a loose tolerance is expected to need, but not so many that this would cost more than the impact.
+//! `d_c` what changes where the static compliance is greater by as much as it may be off, `M` as many as a loose tolerance
+//! is expected to need, but not so many that this would cost more than the impact.
 
 use vibroimpact_sim::modal::{Settings, Solution};
 
@@ -25,6 +26,8 @@ use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
 
 /// The comparison begins with the modes that this tolerance is expected to need.
 const LOOSE: f64 = 3e-3;
+/// Weight of the only change that there is.
+const CAUTION: f64 = 3.0;
 /// The solver's tolerance in it, and how many times as many modes cost as much as the impact, which is solved twice and
 /// far more tightly.
 const SOLVER: f64 = 1e-6;
@@ -114,7 +117,7 @@ fn left_out(
         let Ok((less, _)) = with(fewer) else {
             return Ok(Err("the motion before the impact needs every mode that there is".to_owned()));
         };
-        Change::between(&less, &richer, momentum_n_s).left_out(None)
+        CAUTION * Change::between(&less, &richer, momentum_n_s).size()
     };
     let (_, uncertain_m_n) = match &scene.structure {
         Structure::Plate(_) if !nothing_left => {

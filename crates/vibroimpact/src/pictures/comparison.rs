@@ -34,7 +34,6 @@ pub fn comparison(
     let of = |list: &[f64]| (0..count).map(|i| value(list, i)).collect::<Vec<f64>>();
     let (restitution, cost) = (of(restitution), of(cost_s));
     let error = |i: usize| Some(value(uncertainty, i)).filter(|u| *u > 0.0);
-    let half: Vec<f64> = (0..count).map(|i| error(i).unwrap_or(0.0)).collect();
     let texts = (0..count).map(|i| match restitution[i].is_finite() {
         true => with_uncertainty(restitution[i], error(i)),
         false => String::new(),
@@ -46,9 +45,12 @@ pub fn comparison(
     let y = || Axis::new("").ticks_at(ticks()).limits(0.4, count as f64 + 0.6);
     let height_px = 20.0 + 34.0 * count as f64;
     let margin = 0.03 * (range.1 - range.0);
+    let bars = (0..count).flat_map(|i| bar(restitution[i], error(i).unwrap_or(0.0), line[i], range));
+    let (along, across): (Vec<f64>, Vec<f64>) = bars.unzip();
     let results = Panel::new(Axis::new("restitution").limits(range.0 - margin, range.1 + margin), y())
         .height(height_px)
-        .with(Series::level_error_bars(&restitution, &line, &half, Marker::Dot).colour(Colour::Blue))
+        .with(Series::line(&along, &across).colour(Colour::Blue))
+        .with(Series::points(&restitution, &line, Marker::Dot).colour(Colour::Blue))
         .with(Series::labels(&restitution, &line, texts));
     if cost.iter().all(|cost| cost.is_nan()) {
         return Figure::new(title).row([results]);
@@ -57,6 +59,19 @@ pub fn comparison(
         .height(height_px)
         .with(Series::points(&cost, &line, Marker::Square).colour(Colour::Vermilion));
     Figure::new(title).row([results, costs])
+}
+
+/// A bar about a value as a line with gaps. It ends where the range does, and has a cap at an end that lies within it.
+fn bar(value: f64, half: f64, level: f64, (low, high): (f64, f64)) -> Vec<(f64, f64)> {
+    const CAP: f64 = 0.07;
+    let gap = (f64::NAN, f64::NAN);
+    let ends = [value - half, value + half];
+    let mut points = ends.map(|end| (end.clamp(low, high), level)).to_vec();
+    for end in ends.into_iter().filter(|end| (low..=high).contains(end)) {
+        points.extend([gap, (end, level - CAP), (end, level + CAP)]);
+    }
+    points.push(gap);
+    points
 }
 
 /// The models that answer a scene, the one chosen marked.
@@ -93,4 +108,19 @@ pub fn of_answer(title: &str, answer: &Answer) -> Figure {
         &value(answer.restitution_uncertainty),
         &[],
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bar;
+
+    #[test]
+    fn bars_end_with_the_range() {
+        let within = |points: Vec<(f64, f64)>| points.into_iter().all(|(x, _)| x.is_nan() || (0.0..=1.0).contains(&x));
+        let (cut, whole) = (bar(1.0, 1.0, 4.0, (0.0, 1.0)), bar(0.5, 0.2, 4.0, (0.0, 1.0)));
+        // one cap, and two
+        assert_eq!((cut.len(), whole.len()), (6, 9));
+        assert!(within(cut) && within(whole));
+        assert!(bar(f64::NAN, 0.0, 1.0, (0.0, 1.0)).iter().all(|(x, _)| x.is_nan()));
+    }
 }

@@ -20,8 +20,8 @@ const LEAST_MODAL_ENERGY: f64 = 1e-6;
 
 /// Where the bodies were, how fast they went, the force, where the energy was; below, each contact over its own duration,
 /// and the energy left in each mode. Grey stripes are the times in contact; numbers are those of the contacts in the
-/// summary. All of it until `until_s`. The velocity is that of the body that moves as a whole: the striker's, the
-/// structure's at the contact where the striker is a stop, or both where both move before the impact.
+/// summary. All of it until `until_s`. The velocities are the striker's, unless it is a stop, and the structure's at the
+/// contact.
 ///
 /// ```
 /// use vibroimpact::simulate::Simulation;
@@ -56,11 +56,10 @@ pub fn impact(title: &str, resolved: &Resolved, until_s: f64) -> Figure {
     let displacement = panel("displacement", "m", 130.0)
         .with(Series::line(&time, &column(|s| s.structure_displacement_m)).label(structure).colour(Colour::Vermilion))
         .with(Series::line(&time, &column(|s| s.striker_displacement_m)).label(striker).colour(Colour::Blue));
-    let mut velocity = panel("velocity", "m/s", 100.0).with(Series::horizontal_rule(0.0));
-    if impact.start.is_some() || !moving {
-        let line = Series::line(&time, &column(|s| s.structure_velocity_m_s)).line_width(0.8);
-        velocity = velocity.with(line.label(format!("{structure} at the contact")).colour(Colour::Vermilion));
-    }
+    let line = Series::line(&time, &column(|s| s.structure_velocity_m_s)).line_width(0.8);
+    let mut velocity = panel("velocity", "m/s", 100.0)
+        .with(Series::horizontal_rule(0.0))
+        .with(line.label(format!("{structure} at the contact")).colour(Colour::Vermilion));
     if moving {
         let line = Series::line(&time, &column(|s| s.striker_velocity_m_s));
         velocity = velocity.with(line.label(striker).colour(Colour::Blue));

@@ -179,6 +179,7 @@ fn draw_span(canvas: &Canvas, r: &Rectangle, colour: Colour, ends: Option<((f64,
     canvas.polygon(&corners, colour.rgb(), 0.25)
 }
 
+/// Texts above their points. One that would cover another is raised by a line, and left out if there is no room either.
 fn draw_labels(
     canvas: &Canvas,
     series: &Series,
@@ -187,6 +188,7 @@ fn draw_labels(
     points: &[Option<(f64, f64)>],
 ) -> io::Result<()> {
     const ABOVE_PX: f64 = 5.0;
+    const APART_PX: f64 = 2.0;
     let lettering = Lettering { colour: colour.rgb(), vertical: VPos::Bottom, ..SMALL };
     let mut drawn: Vec<Rectangle> = Vec::new();
     for (point, text) in points.iter().zip(&series.texts) {
@@ -196,17 +198,22 @@ fn draw_labels(
         };
         let half = 0.5 * width_px(text, lettering.size_px);
         // pushed inside where the point is near the edge
-        let middle = x.min(r.right - half).max(r.left + half);
-        let bottom = (y - ABOVE_PX).max(r.top + lettering.size_px);
-        let place = Rectangle { left: middle - half, right: middle + half, top: bottom - lettering.size_px, bottom };
-        let apart = |other: &Rectangle| {
-            place.right + 2.0 < other.left
-                || other.right + 2.0 < place.left
-                || place.bottom < other.top
-                || other.bottom < place.top
+        let middle = x.min(r.right - half - APART_PX).max(r.left + half + APART_PX);
+        let highest = r.top + lettering.size_px + APART_PX;
+        let at = |raised: f64| {
+            let bottom = (y - ABOVE_PX - raised).max(highest);
+            Rectangle { left: middle - half, right: middle + half, top: bottom - lettering.size_px, bottom }
         };
-        if drawn.iter().all(apart) {
-            canvas.text(text, (middle, bottom), lettering)?;
+        let free = |place: &Rectangle| {
+            drawn.iter().all(|other| {
+                place.right + APART_PX < other.left
+                    || other.right + APART_PX < place.left
+                    || place.bottom < other.top
+                    || other.bottom < place.top
+            })
+        };
+        if let Some(place) = [0.0, lettering.size_px + APART_PX].map(at).into_iter().find(free) {
+            canvas.text(text, (middle, place.bottom), lettering)?;
             drawn.push(place);
         }
     }

@@ -24,7 +24,7 @@ const MOST_DOTS: u64 = 4000;
 const BAND: RangeInclusive<f64> = 0.05..=0.95;
 
 /// Under curves that are not drawn as lines.
-const UNRESOLVED: &str = " Points that jump to and fro are not joined: finer steps would show what lies between them.";
+const UNRESOLVED: &str = " Points that jump to and fro are not joined, and have bars for bands: finer steps would show what lies between them.";
 /// A curve that turns round at more than this share of its points is not resolved by them.
 const TURNING: f64 = 0.25;
 /// Fewer points say nothing about that.
@@ -137,7 +137,12 @@ impl<'a> Pictures<'a> {
                     true => Series::points(&x, &middle, marker),
                     false => Series::line(&x, &middle),
                 };
-                if !counted {
+                if jumps {
+                    // what is not joined has a bar of its own
+                    let across: Vec<f64> = x.iter().flat_map(|&x| [x, x, f64::NAN]).collect();
+                    let up: Vec<f64> = spread.iter().flat_map(|[low, _, high]| [*low, *high, f64::NAN]).collect();
+                    panel = panel.with(Series::line(&across, &up).colour(colour));
+                } else if !counted {
                     panel = panel.with(Series::band(&x, &of(0), &of(2)).colour(colour));
                 }
                 panel = panel.with(series.colour(colour).label(self.name(other, &[along])));

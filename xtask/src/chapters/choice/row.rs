@@ -12,6 +12,8 @@ pub(super) const TOLERANCES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// The reference has so many times the modes of the finest answer, as far as there are so many, and at least so many.
 const RICHER: usize = 2;
 const FEWEST_OF_REFERENCE: usize = 128;
+/// It is doubled until it is known so many times better than the finest tolerance, or there are no more modes.
+const KNOWN: f64 = 30.0;
 const REFERENCE_TOLERANCE: f64 = 1e-10;
 /// From one number of modes to the next, of the reference too.
 const RAISE: f64 = std::f64::consts::SQRT_2;
@@ -65,7 +67,7 @@ impl Row {
             answers.push(scene.answer_with(&mut Kept::default())?);
         }
         let most = answers.iter().map(|answer| answer.modes).max().unwrap_or_default();
-        let truth = Truth::new(&drawn, (RICHER * most).clamp(FEWEST_OF_REFERENCE, drawn.most_modes.max(most)))?;
+        let truth = Truth::new(&drawn, RICHER * most, drawn.most_modes.max(most))?;
         let chosen = drawn.scene.modes == Modes::Auto;
         let mut rows = Vec::new();
         for answer in answers {
@@ -136,22 +138,32 @@ struct Truth<'a> {
 }
 
 impl<'a> Truth<'a> {
-    fn new(drawn: &'a scenes::Drawn, modes: usize) -> Result<Truth<'a>, Failure> {
+    /// From at least so many modes, and from no more than there are.
+    fn new(drawn: &'a scenes::Drawn, at_least: usize, at_most: usize) -> Result<Truth<'a>, Failure> {
         let exact = |scene: &Scene, modes| Ok::<_, Failure>(solve(scene, modes, REFERENCE_TOLERANCE)?.restitution);
         let counts = |most: usize| {
             let counts = std::iter::successors(Some(FEWEST as f64), |count| Some(count * RAISE));
             counts.map(|count| count.round() as usize).take_while(move |count| *count < most)
         };
-        let restitution = exact(&drawn.whole, modes)?;
-        let fewer = exact(&drawn.whole, (modes as f64 / RAISE) as usize)?;
-        let off = |e: Option<f64>| e.zip(restitution).map(|(e, reference)| (e - reference).abs());
+        let finest = TOLERANCES.into_iter().fold(f64::INFINITY, f64::min);
+        let difference = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| (a - b).abs());
+        let mut modes = at_least.clamp(FEWEST_OF_REFERENCE, at_most);
+        let (restitution, change) = loop {
+            let restitution = exact(&drawn.whole, modes)?;
+            let change = difference(exact(&drawn.whole, (modes as f64 / RAISE) as usize)?, restitution);
+            if modes >= at_most || change.is_none_or(|change| KNOWN * change <= finest) {
+                break (restitution, change);
+            }
+            modes = (2 * modes).min(at_most);
+        };
+        let off = |e: Option<f64>| difference(e, restitution);
         let listed = drawn.scene.structure != drawn.whole.structure;
         let most = if listed { drawn.scene.mode_shapes(usize::MAX).map_or(0, |modes| modes.len()) } else { modes };
         let mut errors = Vec::new();
         for count in counts(most) {
             errors.push((count, off(exact(&drawn.scene, count)?).unwrap_or(1.0)));
         }
-        Ok(Truth { scene: &drawn.scene, modes, restitution, change: off(fewer), errors })
+        Ok(Truth { scene: &drawn.scene, modes, restitution, change, errors })
     }
 
     /// The fewest modes that reach a tolerance for certain, and the cost of one solve.
