@@ -3,7 +3,8 @@
 //! An event function `m` is positive inside a branch: the distance to a boundary of its law, or of two surfaces that are
 //! apart. On a panel it is known by the polynomial through the start and the nodes, which misses it by at most `rho`
 //! ([`super::enclosure`]), and to rounding. In Bernstein's form a polynomial lies within the range of its coefficients,
-//! so that a panel without event is known as such, and subdivision leads to the first zero.
+//! so that a panel without event is known as such, and subdivision leads to the first zero: to a part of the panel where its
+//! coefficients fall, and so the polynomial does, which meets zero there once.
 //!
 //! A branch may begin on its boundary, where `m(0) = 0` to rounding. Then `(m(s) - m(0))/s`, a polynomial too, is asked
 //! in place of `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. Where
@@ -169,6 +170,10 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
     if length <= FINEST {
         return Some(from + half);
     }
+    if b.windows(2).all(|pair| pair[0] > pair[1]) && b[Q] < level {
+        let place = (from + length * falls_to(b, level)).min(from + length - 0.5 * FINEST);
+        return Some(((place / FINEST).floor() + 0.5) * FINEST);
+    }
     let (mut left, mut right) = ([0.0; POINTS], *b);
     for i in 0..POINTS {
         left[i] = right[0];
@@ -177,6 +182,51 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
         }
     }
     first_at_or_below(&left, level, from, half).or_else(|| first_at_or_below(&right, level, from + half, half))
+}
+
+/// Where on (0, 1) the polynomial with these falling Bernstein coefficients passes `level`, which lies between the ends: it falls
+/// throughout, so that this is the place that subdivision leads to, by Newton's method within a bracket.
+fn falls_to(b: &[f64; POINTS], level: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut place = (b[0] - level) / (b[0] - b[Q]);
+    for _ in 0..60 {
+        let value = bernstein(b, &BINOMIALS, place) - level;
+        *(if value > 0.0 { &mut low } else { &mut high }) = place;
+        let falls: Nodal = std::array::from_fn(|i| b[i + 1] - b[i]);
+        let newton = place - value / (Q as f64 * bernstein(&falls, &BINOMIALS_BELOW, place));
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - place).abs() < NEAR {
+            return next;
+        }
+        place = next;
+    }
+    place
+}
+
+/// Newton's steps below this change no part of a panel of length [`FINEST`].
+const NEAR: f64 = 1e-9;
+
+/// Coefficients of `(s + t)^Q` and of one power less.
+static BINOMIALS: LazyLock<[f64; POINTS]> = LazyLock::new(binomials);
+static BINOMIALS_BELOW: LazyLock<Nodal> = LazyLock::new(binomials);
+
+fn binomials<const N: usize>() -> [f64; N] {
+    let mut row = [1.0; N];
+    for i in 1..N {
+        row[i] = row[i - 1] * (N - i) as f64 / i as f64;
+    }
+    row
+}
+
+/// The polynomial with these Bernstein coefficients at `t`.
+fn bernstein<const N: usize>(b: &[f64; N], binomials: &[f64; N], t: f64) -> f64 {
+    let rest = 1.0 - t;
+    let (mut power, mut sum) = (1.0, 0.0);
+    for i in 0..N {
+        sum = sum * rest + binomials[i] * power * b[i];
+        power *= t;
+    }
+    sum
 }
 
 /// From values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to
@@ -247,6 +297,23 @@ mod tests {
             assert_eq!(verdict(dip(-1e-6), 1e-5), Verdict::Doubtful);
         }
         assert_eq!(verdict(|s| 1.0 + s, 1e-3), Verdict::Clear);
+    }
+
+    /// Where a polynomial falls throughout, the place is that of halving alone.
+    #[test]
+    fn a_falling_function_is_met_where_halving_meets_it() {
+        for i in 1..200 {
+            let zero = f64::from(i) / 200.0;
+            for bend in [0.0, 0.3, -0.3] {
+                let f = |s: f64| (zero - s) * (1.0 + bend * s) * (2.0 - s);
+                let halved = ((zero / FINEST).floor() + 0.5) * FINEST;
+                match verdict(f, 0.0) {
+                    // a zero on the edge of a part may fall to either side of it
+                    Verdict::Meets(place) => assert!((place - halved).abs() <= FINEST, "{place} {halved}"),
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
     }
 
     #[test]
