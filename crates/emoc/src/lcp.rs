@@ -18,6 +18,16 @@ pub enum Lcp {
     PivotLimit,
 }
 
+impl core::fmt::Display for Lcp {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Lcp::Solved(_) => "solved",
+            Lcp::Ray => "a ray, so that a positive semidefinite matrix has no solution",
+            Lcp::PivotLimit => "no end within the limit of pivots",
+        })
+    }
+}
+
 /// Solves the linear complementarity problem `w = M z + q`, `w, z >= 0`, `z . w = 0`, for an `n` by `n` matrix
 /// `M` (row by row) by Lemke's method with lexicographic pivoting (Cottle, Pang and Stone, *The Linear
 /// Complementarity Problem*, 1992, section 4.4 and 4.9). It ends for every positive semidefinite `M`.

@@ -11,6 +11,9 @@ use vibroimpact_sim::StopReason;
 use vibroimpact_sim::infinite::{Outcome, Receptance, Settings, Solution, Structure, Term, solve, solve_law};
 use vibroimpact_sim::modal::{self, Mode, Solver, Striker};
 
+/// A function of two numbers of the motion.
+type Formula<'a> = dyn Fn(f64, f64) -> f64 + 'a;
+
 /// A striker for which, on a structure with one term and coefficient 1, all units are 1.
 const UNIT: Striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
 
@@ -174,7 +177,7 @@ fn agrees_with_a_trapezoidal_march() {
         |k: f64, c: f64| move |x: f64, rate: f64| if x >= 0.0 { (k * x + c * rate).max(0.0) } else { 0.0 };
     let hunt_crossley =
         |k: f64, n: f64, d: f64| move |x: f64, rate: f64| k * x.max(0.0).powf(n) * (1.0 + d * rate).max(0.0);
-    let cases: Vec<(Law, Box<dyn Fn(f64, f64) -> f64>)> = vec![
+    let cases: Vec<(Law, Box<Formula>)> = vec![
         (KelvinVoigt::new(1.0, 0.3).unwrap().into(), Box::new(kelvin_voigt(1.0, 0.3))),
         (KelvinVoigt::new(0.2, 2.0).unwrap().into(), Box::new(kelvin_voigt(0.2, 2.0))),
         (HuntCrossley::new(0.8, 1.5, 0.7).unwrap().into(), Box::new(hunt_crossley(0.8, 1.5, 0.7))),
@@ -208,7 +211,7 @@ fn agrees_with_the_equations_of_a_plate() {
         let spring = k * x.max(0.0).powf(1.5);
         (1.0 - p - spring) / (1.0 + d * spring)
     };
-    let cases: [(Law, &dyn Fn(f64, f64) -> f64); 2] = [
+    let cases: [(Law, &Formula); 2] = [
         (KelvinVoigt::new(k, c).unwrap().into(), &kelvin_voigt),
         (HuntCrossley::new(k, 1.5, d).unwrap().into(), &hunt_crossley),
     ];

@@ -1,5 +1,7 @@
 //! Why a run has no derivative.
 
+use std::fmt;
+
 /// Why a run has no derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -34,4 +36,23 @@ pub enum NoDerivative {
     },
     /// The derivatives are no finite numbers.
     Infinite,
+}
+
+impl fmt::Display for NoDerivative {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NoDerivative::Outcome => f.write_str("the run stopped early, or the impact did not end with a rebound"),
+            NoDerivative::Graze { contact, time_s } => {
+                write!(f, "contact {contact} touches without speed at {time_s} s")
+            }
+            NoDerivative::Together { contact, time_s } => {
+                write!(f, "contact {contact} begins with a jump of its force beside another at {time_s} s")
+            }
+            NoDerivative::Fork { contact, time_s } => {
+                write!(f, "the law of contact {contact} takes either of two courses at {time_s} s")
+            }
+            NoDerivative::Break { time_s } => write!(f, "an event coincides with a break of a load at {time_s} s"),
+            NoDerivative::Infinite => f.write_str("the derivatives are not finite"),
+        }
+    }
 }

@@ -16,6 +16,7 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// Changes for differences, relative to the size of the motion.
 const DIFFERENCE: f64 = 1e-5;
@@ -118,6 +119,19 @@ pub enum OrbitOutcome {
         /// The state then, in the order of [`Orbit::state`].
         state: Vec<f64>,
     },
+}
+
+impl fmt::Display for OrbitOutcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            OrbitOutcome::Found(orbit) => write!(f, "found: a period of {} s", orbit.period_s),
+            OrbitOutcome::NotFound { closure } => {
+                write!(f, "not found: the motion repeats itself to {closure:e} at best")
+            }
+            OrbitOutcome::Stopped(outcome) => write!(f, "a period did not end: {outcome}"),
+            OrbitOutcome::Interrupted { closure, .. } => write!(f, "interrupted at a closure of {closure:e}"),
+        }
+    }
 }
 
 /// Finds a periodic motion near where a transient from the assembly's start leads.

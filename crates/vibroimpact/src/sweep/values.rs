@@ -20,6 +20,8 @@ pub enum Scale {
     Log,
 }
 
+invalid_input::names!(Scale, "scale", { Linear: "linear", Log: "log" });
+
 /// An interval of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {

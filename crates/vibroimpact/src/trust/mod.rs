@@ -71,16 +71,7 @@ pub enum Verdict {
     Outside,
 }
 
-impl Verdict {
-    /// The word in texts and files.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Verdict::Within => "within",
-            Verdict::Doubtful => "doubtful",
-            Verdict::Outside => "outside",
-        }
-    }
-}
+invalid_input::names!(Verdict, "verdict", { Within: "within", Doubtful: "doubtful", Outside: "outside" });
 
 /// One figure that tells whether a theory holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]

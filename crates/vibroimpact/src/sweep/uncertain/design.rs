@@ -23,6 +23,8 @@ pub enum Sequence {
     Random,
 }
 
+invalid_input::names!(Sequence, "sequence", { Sobol: "sobol", Random: "random" });
+
 /// How uncertain fields are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
