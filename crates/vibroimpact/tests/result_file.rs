@@ -188,7 +188,7 @@ fn pictures_show_what_moves_and_name_it() {
         ),
         ("sdnl32", vec!["\nstop\n", "\nstructure at the contact\n"], vec!["\nstriker\n", "(fm/s)"]),
         ("moving-beam", vec!["\nstriker\n", "\nstructure at the contact\n"], vec!["\nstop\n"]),
-        ("pinned-beam-converged", vec!["\nstriker\n"], vec!["\nstop\n", "at the contact"]),
+        ("pinned-beam-converged", vec!["\nstriker\n", "\nstructure at the contact\n"], vec!["\nstop\n"]),
     ] {
         let svg = picture(name);
         for part in shown {
