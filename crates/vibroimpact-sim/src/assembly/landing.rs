@@ -42,7 +42,7 @@ impl<'a> March<'a> {
             return f64::INFINITY;
         };
         let (law, tolerance) = (self.law(target.contact), self.impulse_tolerance(target.contact));
-        let Some(boundary) = law.boundary(&touch.branch, target.boundary) else { return f64::INFINITY };
+        let Some(boundary) = state.ends.get(target.boundary) else { return f64::INFINITY };
         if boundary.per_rate != 0.0 || SINGULAR * evaluate(&force, 1.0) * left <= 0.1 * tolerance {
             return f64::INFINITY;
         }

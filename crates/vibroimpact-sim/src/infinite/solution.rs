@@ -1,5 +1,6 @@
 //! The result of a run, and its evaluation at any time.
 
+use super::contact::Turn;
 use super::flight::Departure;
 use super::general::flight::Departure as GeneralDeparture;
 use super::panel::elapsed as elapsed_at;
@@ -218,6 +219,18 @@ impl Solution {
             records: Vec::new(),
             nodes,
         }
+    }
+
+    /// The turning points of a contact that touches at this time, before the contact itself.
+    pub(super) fn push_turns(&mut self, touch: f64, turns: &[Turn]) {
+        let contact = self.sub_impacts.len();
+        let at = |&Turn { after, compression, minimum }: &Turn| Extremum {
+            contact,
+            time: touch + after,
+            compression,
+            minimum,
+        };
+        self.extrema.extend(turns.iter().map(at));
     }
 
     pub(super) fn push_contact(&mut self, contact: SubImpact, units: Units, pieces: Vec<Piece>, body_travel: f64) {

@@ -3,7 +3,7 @@
 use super::contact::{Ending, March};
 use super::history::History;
 use super::problem::{S_RANGE, Settings, Structure};
-use super::solution::{Course, Extremum, Flight, Outcome, Solution, SubImpact};
+use super::solution::{Course, Flight, Outcome, Solution, SubImpact};
 use super::units::Touch;
 use crate::StopReason;
 use invalid_input::InvalidInput;
@@ -51,12 +51,7 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         let departure = march.departure();
         let body = departure.body;
         let end = touch.time + duration;
-        solution.extrema.extend(march.turns.iter().map(|turn| Extremum {
-            contact: solution.sub_impacts.len(),
-            time: touch.time + turn.after,
-            compression: turn.compression,
-            minimum: turn.minimum,
-        }));
+        solution.push_turns(touch.time, &march.turns);
         let contact = SubImpact {
             start: touch.time,
             end: ended.then_some(end),

@@ -34,7 +34,7 @@ const CAUTION: f64 = 2.0;
 const OF_ENERGY: f64 = 10.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
-/// The same at the end of a list, where no further number of modes can tell whether two agree by accident.
+/// Weight of changes at the end of a list, where no further number of modes can tell whether two agree by accident.
 const CAUTION_AT_THE_END: f64 = 4.0;
 /// `R` from which on changes at the end of a list tell of their limit.
 const RESOLVED: f64 = 0.1;

@@ -7,7 +7,7 @@ use crate::StopReason;
 use crate::infinite::history::History;
 use crate::infinite::problem::Settings;
 use crate::infinite::receptance::{Receptance, Scale};
-use crate::infinite::solution::{Course, Extremum, Flight, Outcome, Solution, SubImpact};
+use crate::infinite::solution::{Course, Flight, Outcome, Solution, SubImpact};
 use crate::infinite::solve::{LATEST, finer};
 use crate::modal::Striker;
 use contact_models::{ContactLaw, Memory};
@@ -70,12 +70,7 @@ fn run(receptance: &Receptance, law: &Scaled<'_>, settings: &Settings) -> Soluti
         solution.panels += contact.pieces.len();
         let duration = contact.now;
         let end = touch.time + duration;
-        solution.extrema.extend(contact.turns.iter().map(|turn| Extremum {
-            contact: solution.sub_impacts.len(),
-            time: touch.time + turn.after,
-            compression: turn.compression,
-            minimum: turn.minimum,
-        }));
+        solution.push_turns(touch.time, &contact.turns);
         let (pieces, peak_force) = (std::mem::take(&mut contact.pieces), contact.peak_force);
         let (departure, past) = contact.departure();
         let ended = matches!(ending, Ending::Released(_));
