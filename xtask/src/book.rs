@@ -1,9 +1,9 @@
-//! The book's own check: every link leads somewhere, every command in a `sh` fence runs and exits as the page says,
-//! every scene in a `json scene` or `toml scene` fence is one, every formula is closed.
+//! Checks of the book: every link has a target, every command in a `sh` fence runs and exits with the code that the page states,
+//! every `json scene` or `toml scene` fence holds a valid scene, and the brackets of every formula match.
 //!
-//! Commands run in a folder of their own that holds a copy of `datasets`, so that a page may write files. A line may
-//! end in `# exits with 2`. (Rust snippets are documentation tests of the package `book-snippets`.) Formulas are fences named
-//! `math` and code between dollar signs, which GitHub and `docs/theme/math.js` typeset.
+//! Commands run in a temporary folder with a copy of `datasets`, so that a page may write files. A line may end in
+//! `# exits with 2`. Rust snippets are documentation tests of the package `book-snippets`. Formulas are fences named `math` and
+//! code between dollar signs, which GitHub and `docs/theme/math.js` typeset.
 
 use crate::chapters::Failure;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, Options, Parser, Tag, TagEnd};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use vibroimpact::Scene;
 
-/// What a page asks to be checked.
+/// Parts of a page that are checked.
 #[derive(Debug, PartialEq)]
 enum Item {
     Command { line: String, exit: i32 },
@@ -58,7 +58,7 @@ pub fn run(root: &Path) -> Result<(), Failure> {
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
 }
 
-/// The items of a page in their order.
+/// Finds the items of a page, in order.
 fn items(page: &str) -> Vec<Item> {
     let mut found = Vec::new();
     let mut fence: Option<(String, String)> = None;
@@ -90,7 +90,7 @@ fn items(page: &str) -> Vec<Item> {
     found
 }
 
-/// One command a line; a backslash at the end continues it.
+/// Splits a fence into commands, one per line; a backslash at the end of a line continues the command.
 fn commands(text: &str) -> Vec<Item> {
     let joined = text.replace("\\\n", " ");
     let lines = joined.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
@@ -102,7 +102,7 @@ fn commands(text: &str) -> Vec<Item> {
     lines.map(command).collect()
 }
 
-/// A link to a file of ours, without its anchor.
+/// Checks a link to a file of the repository, without its anchor.
 fn link(target: &CowStr) -> Option<Item> {
     relative(target.split('#').next().unwrap_or_default())
 }
@@ -116,7 +116,7 @@ fn follow(page: &Path, target: &str) -> Result<(), Failure> {
     if place.exists() { Ok(()) } else { Err(format!("the link {target} leads nowhere").into()) }
 }
 
-/// Braces, environments and stretched brackets close as they open.
+/// Checks that braces, environments and `\left`/`\right` brackets are closed in the order in which they are opened.
 fn formula(text: &str) -> Result<(), Failure> {
     let (mut depth, mut least) = (0, 0);
     let mut characters = text.chars();
@@ -142,7 +142,7 @@ fn scene(read: Result<Scene, vibroimpact::SceneError>) -> Result<(), Failure> {
     Ok(read.map(drop)?)
 }
 
-/// Runs a line of the shell in which `vibroimpact` and `cargo xtask` are those of this workspace.
+/// Runs a line of the shell with `vibroimpact` and `cargo xtask` built from this workspace.
 fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<(), Failure> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path = std::env::join_paths(std::iter::once(programs.to_owned()).chain(std::env::split_paths(&path)))?;
@@ -159,7 +159,7 @@ fn execute(line: &str, exit: i32, programs: &Path, folder: &Path) -> Result<(), 
 /// The folder of the built program.
 fn program(root: &Path) -> Result<PathBuf, Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    // as `cargo test --workspace` has built it
+    // the profile with which `cargo test --workspace` has built it
     let build = "build --workspace --bins --profile test --locked --message-format json-render-diagnostics";
     let build = build.split(' ');
     let output = Command::new(cargo).current_dir(root).args(build).stderr(std::process::Stdio::inherit()).output()?;
@@ -219,7 +219,7 @@ mod tests {
         );
     }
 
-    /// `Name::Variant` for every public enum of the crates whose name ends so.
+    /// `Name::Variant` for every public enum of the crates whose name has this ending.
     fn variants(root: &Path, ending: &str) -> Vec<String> {
         fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
             for entry in fs::read_dir(folder).unwrap() {
@@ -242,7 +242,7 @@ mod tests {
                 let (name, rest) = declared.split_once(" {\n").unwrap();
                 if name.ends_with(ending) {
                     let body = rest.split_once("\n}").unwrap().0;
-                    // a variant stands four spaces in; its fields stand deeper
+                    // a variant is indented by four spaces, its fields by more
                     let variant = body.lines().filter_map(|line| line.strip_prefix("    "));
                     let variant = variant.filter(|line| line.starts_with(|c: char| c.is_ascii_uppercase()));
                     found.extend(variant.map(|line| {

@@ -1,11 +1,12 @@
-//! What a control by derivatives would gain over plain draws of uncertain fields: the standard error of a figure without control
-//! over that with it.
+//! Gain of a control variate from derivatives over plain draws of uncertain fields: the ratio of the standard errors of a
+//! statistic without and with the control.
 //!
-//! The restitution `e` of a draw with the standard normal numbers `z` is compared with a polynomial `m(z)`, of which mean and
-//! quantiles are known exactly, so that only the difference would have to be drawn. The polynomial is the one that fits the
-//! draws best, by projection on Hermite polynomials, which are orthogonal for normal `z`: no derivatives at one point do better.
-//! A figure `f` of the draws in a replicate is then controlled by the same figure `g` of the polynomial, `f - b g` with the best
-//! `b`, which divides its standard deviation over the replicates by `1/sqrt(1 - r^2)`, `r` the correlation of `f` and `g`.
+//! The restitution `e` of a draw with the standard normal numbers `z` is compared with a polynomial `m(z)`. Mean and quantiles of
+//! the polynomial are known exactly, so only the difference would have to be estimated by draws. The polynomial is the best fit
+//! to the draws, found by projection on Hermite polynomials, which are orthogonal for normal `z`. A polynomial from derivatives
+//! at one point cannot fit better. A statistic `f` of the draws in a replicate is then controlled by the same statistic `g` of
+//! the polynomial: `f - b g` with the best `b`. This divides the standard deviation over the replicates by `1/sqrt(1 - r^2)`,
+//! where `r` is the correlation of `f` and `g`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ use vibroimpact::sweep::Sweep;
 use crate::chapters::Failure;
 use crate::progress::Progress;
 
-/// Radius of the ball (m), and its uncertainty of speed; the smallest touches once, the others several times.
+/// Radius (m) of the ball and uncertainty of its speed. The smallest ball has one contact, the others have several.
 const BALLS: [(f64, f64); 3] = [(0.004, 0.01), (0.0124, 0.05), (0.015, 0.01)];
 const SEQUENCES: [&str; 2] = ["sobol", "random"];
 const LOCATION_M: [f64; 2] = [0.618_033_988_749_894_9, 0.001];
@@ -31,7 +32,7 @@ const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
 /// Options of the study of controls.
 #[derive(clap::Args)]
 pub struct Wanted {
-    /// Number of draws of each impact, a power of two of at least 2,048
+    /// Number of draws of each impact; a power of two and at least 2,048
     #[arg(long, value_name = "COUNT", default_value_t = DRAWS)]
     draws: usize,
     /// The folder to write to
@@ -61,14 +62,14 @@ pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     Ok(table)
 }
 
-/// The restitution of a draw, its number of contacts, and the terms of the model.
+/// Restitution and number of contacts of a draw, and the terms of the model.
 struct Draw {
     restitution: f64,
     contacts: usize,
     terms: [f64; 5],
 }
 
-/// The impact of chapter 3 with 40 modes and this ball, draw by draw: replicates take turns.
+/// Draws of the impact of chapter 3 with 40 modes and this ball. Successive draws belong to successive replicates.
 fn draws(radius_m: f64, blur: f64, sequence: &str, count: usize, progress: &Progress) -> Result<Vec<Draw>, Failure> {
     let side = 0.011323;
     let sweep = json!({
@@ -105,7 +106,7 @@ fn row(radius_m: f64, sequence: &str, draws: &[Draw]) -> String {
     let restitutions: Vec<f64> = draws.iter().map(|draw| draw.restitution).collect();
     let centre = mean(&restitutions);
     let model = |terms: usize| -> Vec<f64> {
-        // without the mean, whose product with the scatter of a term would hide a small slope
+        // the mean is subtracted, since its product with the scatter of a term would hide a small slope
         let product = |k: usize, draw: &Draw| draw.terms[k] * (draw.restitution - centre);
         let project = |k: usize| draws.iter().map(|draw| product(k, draw)).sum::<f64>() / draws.len() as f64;
         let weights: Vec<f64> = (0..terms).map(project).collect();
@@ -131,7 +132,7 @@ fn row(radius_m: f64, sequence: &str, draws: &[Draw]) -> String {
     )
 }
 
-/// A figure of the draws of each replicate.
+/// A statistic of the draws of each replicate.
 fn by_replicate(values: &[f64], figure: impl Fn(&[f64]) -> f64) -> Vec<f64> {
     let of = |first: usize| values.iter().skip(first).step_by(REPLICATES).copied().collect::<Vec<f64>>();
     (0..REPLICATES).map(|first| figure(&of(first))).collect()
@@ -152,8 +153,8 @@ fn variance(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - centre).powi(2)).sum::<f64>() / (values.len() - 1) as f64
 }
 
-/// `1/sqrt(1 - r^2)`, `r` the correlation of a figure and its control; of the two degrees of freedom that `b` and the mean take
-/// account is taken.
+/// `1/sqrt(1 - r^2)`, where `r` is the correlation of a statistic and its control. It is corrected for the two degrees of
+/// freedom of `b` and of the mean.
 fn gain(figure: &[f64], control: &[f64]) -> f64 {
     let (f, g) = (mean(figure), mean(control));
     let joint = figure.iter().zip(control).map(|(a, b)| (a - f) * (b - g)).sum::<f64>();
@@ -168,7 +169,7 @@ fn gain(figure: &[f64], control: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A figure that is its control and noise of a tenth of it gains about ten, and one without relation nothing.
+    /// The gain is about ten for a statistic that equals its control plus noise of a tenth, and one for an unrelated statistic.
     #[test]
     fn the_gain_is_that_of_the_correlation() {
         let wave = |k: usize, turn: f64| (k as f64 * turn).sin();

@@ -1,4 +1,4 @@
-//! Runs the example programs: each must end well and print something.
+//! Runs the example programs. Each must succeed and print something.
 
 use crate::chapters::Failure;
 use std::ffi::OsString;
@@ -10,7 +10,7 @@ fn cargo() -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")))
 }
 
-/// Runs the examples of the workspace's crates, with what the tests have built already.
+/// Runs the examples of the workspace's crates with the profile of the tests, so that nothing is built twice.
 pub fn of_crates(root: &Path) -> Result<(), Failure> {
     let output = cargo()
         .current_dir(root)
@@ -53,7 +53,7 @@ pub fn alone(root: &Path) -> Result<(), Failure> {
         for task in ["run", "test"] {
             let mut command = cargo();
             command.args([task, "--quiet", "--manifest-path"]).arg(manifest);
-            // one folder for all, so that what they share is built once
+            // one target folder for all examples, so that common dependencies are built once
             if std::env::var_os("CARGO_TARGET_DIR").is_none() {
                 command.env("CARGO_TARGET_DIR", root.join("target/examples"));
             }

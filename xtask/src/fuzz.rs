@@ -1,4 +1,4 @@
-//! The fuzz targets, each for some seconds.
+//! Runs each fuzz target for some seconds.
 
 use std::fs;
 use std::path::Path;
@@ -6,10 +6,10 @@ use std::process::Command;
 
 use crate::chapters::Failure;
 
-/// One input may take this long (s); the targets keep what they solve small.
+/// Time limit of one input (s). The targets limit the size of the problems that they solve.
 const HANG_S: u32 = 20;
 
-/// Runs every target of `fuzz/`. What a run finds worth keeping goes to `out/fuzz`; the corpus stays as it is.
+/// Runs every target of `fuzz/`. New inputs that reach new code are written to `out/fuzz`; the corpus is not changed.
 pub fn run(root: &Path, seconds: u32) -> Result<(), Failure> {
     let folder = root.join("fuzz");
     let fuzzer = || {
@@ -32,7 +32,7 @@ pub fn run(root: &Path, seconds: u32) -> Result<(), Failure> {
         eprintln!("== fuzz {target}");
         let found = root.join("out/fuzz").join(&target);
         fs::create_dir_all(&found)?;
-        // no sanitizer: the workspace has no unsafe code; panics and hangs are what is looked for
+        // no sanitizer is needed without unsafe code: the targets look for panics and hangs
         let mut run = fuzzer();
         run.args(["run", "--sanitizer", "none", &target]).arg(found).arg(format!("corpus/{target}"));
         run.args(["--".to_owned(), format!("-max_total_time={seconds}"), format!("-timeout={HANG_S}")]);

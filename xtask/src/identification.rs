@@ -1,5 +1,5 @@
-//! How often the intervals of `identify` contain the truth, whether a wrong model is noticed, and how many starting points
-//! find the truth where impacts have many contacts: random tables of synthetic measurements.
+//! Test of `identify` with random tables of synthetic measurements: how often its intervals contain the true parameters, how
+//! often a wrong model is noticed, and how many starting points are needed for impacts with many contacts.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
@@ -16,14 +16,14 @@ use crate::progress::Progress;
 
 /// Tables fitted side by side before their rows are written.
 const BATCH: usize = 32;
-/// Parameters are near the truth if they differ by no more than this part.
+/// Largest relative error of parameters that count as near the true ones.
 const NEAR: f64 = 0.02;
-/// Starting points that are compared where there are many contacts.
+/// Numbers of starting points that are compared for impacts with many contacts.
 const STARTS: [usize; 3] = [1, 4, 16];
 const POINTS: [&str; 3] = ["tip", "middle", "quarter"];
 const SPEEDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 const NOISE: [f64; 2] = [0.004, 4e-7];
-/// Places along a beam, of which the first have a single contact.
+/// Locations along a beam. Impacts at the first ones have a single contact.
 const PLACES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0];
 const SINGLE: usize = 6;
 /// Relative noise of peak forces.
@@ -52,26 +52,27 @@ pub struct Wanted {
 struct Row {
     kind: Kind,
     number: u64,
-    /// Parameters in the intervals by covariance and by profile.
+    /// Numbers of parameters that lie in the intervals by covariance and by profile.
     by_covariance: usize,
     by_profile: usize,
-    /// Whether a test of the misfit noticed anything.
+    /// Whether a test of the misfit rejected the model.
     noticed: bool,
-    /// From so many starts each, of a rough table only: whether the fit is as good as the truth, and whether it is near the truth.
+    /// For each number of starts, of a table with many contacts only: whether the fit is as good as the true parameters, and
+    /// whether it is near them.
     fits: Vec<bool>,
     near: Vec<bool>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Kind {
-    /// Noise stated, estimated.
+    /// With stated noise, or with noise that is estimated.
     Stated,
     Estimated,
-    /// Fitted with the wrong law, the wrong damping.
+    /// Fitted with the wrong law, or with the wrong damping.
     WrongLaw,
     WrongDamping,
-    /// Many contacts at the tip: the restitution alone, with it the peak force of the first contact, and both without the places
-    /// of many contacts.
+    /// Many contacts at the tip: the restitution alone, the restitution and the peak force of the first contact, and both without
+    /// the locations that have many contacts.
     Rough,
     RoughPeak,
     Smooth,
@@ -83,7 +84,7 @@ impl Kind {
     }
 }
 
-/// Runs the study, or what is missing of it, and sums up.
+/// Runs the study, or the part that is missing, and summarises it.
 pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     let kinds =
         [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak, Kind::Smooth];
@@ -121,7 +122,7 @@ pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     Ok(told)
 }
 
-/// The share of the rows of a kind for which something holds, and its standard error (%).
+/// The share of the rows of a kind for which a condition holds, and its standard error (%).
 fn told(kind: Kind, rows: &[Row]) -> String {
     let rows: Vec<&Row> = rows.iter().filter(|row| row.kind == kind).collect();
     let share = |held: usize, of: usize| {
@@ -181,12 +182,12 @@ fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
     Ok(row)
 }
 
-/// Whether an interval contains the truth; an end that is not known is open.
+/// Whether an interval contains the true value. An unknown end is open.
 fn holds([low, high]: [Option<f64>; 2], truth: f64) -> bool {
     low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high)
 }
 
-/// A beam out to its tip, where contacts are many, from a guess that is far off.
+/// A cantilever with locations up to its tip, where impacts have many contacts, and a poor initial guess.
 fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
     let truth = [2e9 * random.factor(2.0), 0.06 * random.factor(1.2)];
     let beam = |stiffness: f64, mass: f64| {
@@ -201,7 +202,7 @@ fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
     let with_peak = row.kind != Kind::Rough;
     let peak_columns = if with_peak { ",first_peak_force_n,first_peak_force_n_sd" } else { "" };
     let mut text = format!("location_m,restitution,restitution_sd{peak_columns}\n");
-    // the sum of squares at the truth
+    // the sum of squares for the true parameters
     let mut of_truth = 0.0;
     let mut noise = |sd: f64| {
         let normal = random.normal();
@@ -293,13 +294,13 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// By Box and Muller.
+    /// A standard normal number by the method of Box and Muller.
     fn normal(&mut self) -> f64 {
         let (a, b) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
     }
 
-    /// From `1/most` to `most`, even in its logarithm.
+    /// Log-uniform from `1/most` to `most`.
     fn factor(&mut self, most: f64) -> f64 {
         most.powf(2.0 * self.uniform() - 1.0)
     }

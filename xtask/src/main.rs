@@ -32,13 +32,13 @@ struct Cli {
 enum Task {
     /// Check the book: links, commands, scenes, and the chapters' numbers against a run of them
     Book {
-        /// Write the chapters' tables and figures from a run, and check nothing
+        /// Write the chapters' tables and figures from a run instead of checking them
         #[arg(long)]
         write: bool,
     },
     /// Run the example programs of the crates
     Examples {
-        /// Run those outside the workspace, which use one crate alone
+        /// Run the examples outside the workspace, each of which uses one crate alone
         #[arg(long)]
         alone: bool,
     },
@@ -53,18 +53,18 @@ enum Task {
     /// Run every problem of the record once, for callgrind
     #[command(hide = true, name = bench::RUN_TASK)]
     BenchRun,
-    /// Compute a chapter anew: CSV tables, SVG figures, and a report of the thesis's numbers beside ours
+    /// Reproduce a chapter of the thesis: CSV tables, SVG figures, and a report that compares its numbers with ours
     ReproduceChapter {
-        /// The chapter: 2 to 8; `ensemble` for chapter 4 with our choices varied; `theories` for chapters 3, 4 and 7
-        /// by Timoshenko's theory; or `all` for the whole thesis and one report
+        /// The chapter: 2 to 8; `ensemble` for chapter 4 with varied unstated parameters; `theories` for chapters 3, 4 and 7
+        /// by Timoshenko's theory; `all` for the whole thesis in one report
         chapter: Chapters,
         /// Fewer points through the same code
         #[arg(long)]
         quick: bool,
-        /// The folder to write to; out/chapter-N, or out/all, when left out
+        /// The folder to write to [default: out/chapter-N or out/all]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Chapter 8: measured points to fit as well (CSV: length_m, angle_deg, restitution)
+        /// For chapter 8, measured points that are fitted too (CSV: length_m, angle_deg, restitution)
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
     },
@@ -91,7 +91,7 @@ enum Task {
         /// Resume where the run that wrote the summary ended
         #[arg(long)]
         resume: bool,
-        /// The file for the summary, written after every 4,096
+        /// The file for the summary, written after every 4,096 impacts impacts
         #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
         out: PathBuf,
     },
@@ -109,7 +109,7 @@ enum Task {
     },
     /// Run the benchmark of impact for the codes in Rust, and write docs/impactbench.md from the results of all codes
     Impactbench {
-        /// What benchmarks/impactbench takes: nothing, `problems`, `report`, --quick, --only PROBLEM
+        /// Arguments of benchmarks/impactbench: none, `problems`, `report`, --quick, --only PROBLEM
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
@@ -126,7 +126,7 @@ enum Task {
     },
     /// Test identification: random tables of synthetic measurements with noise
     StudyIdentify(identification::Wanted),
-    /// Measure what a control by derivatives would gain over plain draws of uncertain fields
+    /// Measure the gain of a control variate from derivatives over plain draws of uncertain fields
     StudyControl(control::Wanted),
 }
 
@@ -135,7 +135,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("error: {failure}");
-            // 2 for input that cannot be used, as in the program itself
+            // 2 for invalid input, as in `vibroimpact` itself
             if failure.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
         }
     }
@@ -176,7 +176,7 @@ fn run(task: Task) -> Result<(), Failure> {
     }
 }
 
-/// Runs a package that this one does not depend on, since its peers take minutes to compile.
+/// Runs another package. It is not a dependency of this one, because the programs it is compared with take minutes to compile.
 fn package(name: &str, arguments: impl FnOnce(&mut Command)) -> Result<(), Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -201,7 +201,7 @@ fn impactbench(arguments: &[OsString]) -> Result<(), Failure> {
     })
 }
 
-/// What `reproduce-chapter` computes.
+/// Arguments of `reproduce-chapter`.
 #[derive(Clone, Copy)]
 enum Chapters {
     All,
@@ -225,7 +225,7 @@ fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) ->
 
 fn say(text: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{text}") {
-        // a reader that closes the pipe early is no failure
+        // a reader that closes the pipe early is not an error
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
         _ => Ok(()),
     }

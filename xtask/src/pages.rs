@@ -1,6 +1,6 @@
-//! The pages of the chapters (`docs/chapters`): their tables are made from `statements.csv` beside them, which is that of
-//! a run of all chapters, and their figures are those of the run. Any of them, and the page of the theories of bending, may
-//! show further tables of the run.
+//! The pages of the chapters (`docs/chapters`). Their tables are made from `statements.csv` in the same folder, which a run of all
+//! chapters has written, and their figures come from the same run. These pages and the page on theories of bending may show
+//! further tables of the run.
 
 use crate::chapters::statement::Verdict;
 use crate::chapters::tally::{Row, Tally, tell};
@@ -9,19 +9,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use vibroimpact::report::{Report, write_whole};
 
-/// Between these two lines of a page stands its table.
+/// The table of a page is written between these two lines.
 const BEGIN: &str = "<!-- from statements.csv; `cargo xtask book --write` writes it -->";
 const END: &str = "<!-- end -->";
-/// Between such a line, which goes on with the table's file in the run, and [`END`] stands a table of the run.
+/// A further table is written between a line that begins like this and [`END`]. The line continues with the table's file.
 const TABLE: &str = "<!-- table ";
-/// A page's figures are linked in this folder by the part's folder, a hyphen and the run's name of the figure.
+/// Folder of the figures. A figure's name consists of the folder of its part, a hyphen and its name in the run.
 const FIGURE: &str = "figures/";
-/// Two runs agree to this share of a number, or to this in total: differences between solvers near rounding are among
-/// the numbers, and machines round differently.
+/// Two runs agree if a number differs by at most this share or by at most this amount: some numbers are differences between
+/// solvers near rounding, and machines round differently.
 const SHARE: f64 = 1e-4;
 const TOTAL: f64 = 1e-7;
 
-/// The chapters that have a page.
+/// Numbers of the chapters that have a page.
 fn chapters() -> impl Iterator<Item = u32> {
     Part::ALL.into_iter().filter(|part| *part == Part::Chapter(part.chapter())).map(Part::chapter)
 }
@@ -34,7 +34,7 @@ fn chapter_page(root: &Path, chapter: u32) -> PathBuf {
     folder(root).join(format!("chapter-{chapter}.md"))
 }
 
-/// Every page that may show figures and tables of the run.
+/// All pages that may show figures and tables of the run.
 fn pages(root: &Path) -> impl Iterator<Item = PathBuf> {
     chapters().map(move |chapter| chapter_page(root, chapter)).chain([root.join("docs/theories-of-bending.md")])
 }
@@ -43,7 +43,7 @@ fn statements(path: &Path) -> Result<Vec<Row>, Failure> {
     Ok(csv::Reader::from_path(path)?.deserialize().collect::<Result<_, _>>()?)
 }
 
-/// Runs all chapters and writes table and figures of every page.
+/// Runs all chapters and writes the tables and figures of every page.
 pub fn write(root: &Path) -> Result<(), Failure> {
     let run = tempfile::tempdir()?;
     run_all(run.path(), false, None)?;
@@ -70,7 +70,7 @@ pub fn write(root: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The page of all chapters, which has the headline and what differs.
+/// The page on all chapters, with the headline and the list of differences.
 fn summary_page(root: &Path) -> PathBuf {
     root.join("docs/reproduction.md")
 }
@@ -108,7 +108,7 @@ fn tables_are_current(root: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What of a run is not as recorded.
+/// Differences between a run and the recorded statements.
 fn differences(recorded: &[Row], found: &[Row]) -> Vec<String> {
     if recorded.len() != found.len() {
         return vec![format!("statements.csv has {} rows, a run gives {}", recorded.len(), found.len())];
@@ -116,7 +116,7 @@ fn differences(recorded: &[Row], found: &[Row]) -> Vec<String> {
     let close = |a: f64, b: f64| a == b || (a - b).abs() <= TOTAL + SHARE * a.abs();
     let same = |a: &Row, b: &Row| {
         let numbers = [(a.ours, b.ours), (a.uncertainty, b.uncertainty)];
-        // what follows from the numbers, and remarks with numbers in them, may differ with them
+        // verdicts and remarks that contain numbers may change with the numbers
         let Row { ours, uncertainty, difference, ref note, .. } = *a;
         let alike = Row { ours, uncertainty, difference, note: note.clone(), ..b.clone() };
         alike == *a && numbers.into_iter().all(|(a, b)| close(a, b))
@@ -129,19 +129,19 @@ fn of(all: &[Row], chapter: u32) -> Vec<Row> {
     all.iter().filter(|statement| statement.chapter == chapter).cloned().collect()
 }
 
-/// The page with its table made anew.
+/// The page with a new table of statements.
 fn with_table(page: &str, statements: &[Row]) -> Result<String, Failure> {
     with(page, &table(statements))
 }
 
-/// The page with what stands between the two lines made anew.
+/// The page with new text between the two lines.
 fn with(page: &str, made: &str) -> Result<String, Failure> {
     let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
     let (before, after) = parts.ok_or_else(|| format!("the page has no lines `{BEGIN}` and `{END}`"))?;
     Ok(format!("{before}{BEGIN}\n\n{made}\n{END}{after}"))
 }
 
-/// The page with the tables that it takes from the folder of a run made anew.
+/// The page with new tables from the folder of a run.
 fn with_tables_of(page: &str, run: &Path) -> Result<String, Failure> {
     let mut parts = page.split(TABLE);
     let mut made = parts.next().unwrap_or_default().to_owned();
@@ -153,7 +153,7 @@ fn with_tables_of(page: &str, run: &Path) -> Result<String, Failure> {
     Ok(made)
 }
 
-/// A table of cells as they are read.
+/// A Markdown table of formatted cells.
 fn table_of_file(path: &Path) -> Result<String, Failure> {
     let mut reader = csv::Reader::from_path(path)?;
     let headers: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
@@ -183,7 +183,7 @@ fn differing(all: &[Row]) -> String {
     page.markdown().trim_start_matches(['#', ' ', '\n']).to_owned()
 }
 
-/// Names, in the run, of the figures that a page shows.
+/// Names of the figures that a page shows, as in the run.
 fn figures<'a>(page: &'a str, part: &str) -> Vec<&'a str> {
     let beginning = format!("{FIGURE}{part}-");
     page.split(&beginning).skip(1).filter_map(|rest| rest.split(')').next()).collect()
@@ -234,7 +234,7 @@ mod tests {
         let recorded = [statement(1.5605)];
         assert!(differences(&recorded, &[statement(1.5605 + 1e-5)]).is_empty());
         assert_eq!(differences(&recorded, &[statement(1.561)]).len(), 1);
-        // a verdict that turned is a difference, however little the number moved
+        // a changed verdict is a difference, however little the number changed
         assert_eq!(differences(&[statement(1.564_99)], &[statement(1.565_01)]).len(), 1);
         assert_eq!(differences(&recorded, &[]).len(), 1);
     }

@@ -1,4 +1,4 @@
-//! Progress of a long task on the standard error: a bar on a terminal, a line from time to time elsewhere.
+//! Progress of a long task on the standard error: a bar on a terminal, otherwise a line from time to time.
 
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Time before the first line where there is no terminal.
+/// Time before the first line if there is no terminal.
 const FIRST_LINE: Duration = Duration::from_secs(5);
-/// Time between two lines there.
+/// Time between two lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(15);
 
-/// The progress of a task whose parts follow each other. The total of a part is known when it begins, and stays.
+/// Progress of a task with consecutive parts. The total of a part is known when it begins, and does not change.
 pub struct Progress {
     /// What is counted.
     unit: &'static str,
@@ -21,12 +21,12 @@ pub struct Progress {
     total: u64,
     begun: Instant,
     next_line: Mutex<Instant>,
-    /// On a terminal only.
+    /// The bar, which exists only on a terminal.
     bar: Option<ProgressBar>,
 }
 
 impl Progress {
-    /// That of a task that counts these.
+    /// Progress of a task that counts `unit`.
     pub fn of(unit: &'static str) -> Progress {
         let now = Instant::now();
         let bar = stderr().is_terminal().then(|| {
@@ -39,7 +39,7 @@ impl Progress {
         Progress { unit, part: String::new(), done: AtomicU64::new(0), total: 0, begun: now, next_line, bar }
     }
 
-    /// Begins a part of so many, some of which may be there already.
+    /// Begins a part with this total, some of which may already be done.
     pub fn begin(&mut self, part: impl Into<String>, total: u64, done: u64) {
         (self.part, self.total, self.done) = (part.into(), total, AtomicU64::new(done));
         if let Some(bar) = &self.bar {
@@ -50,12 +50,12 @@ impl Progress {
         }
     }
 
-    /// So many more are done.
+    /// Reports that this many more are done.
     pub fn add(&self, count: u64) {
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         match &self.bar {
             Some(bar) => bar.inc(count),
-            // another thread that writes the line makes this one unnecessary
+            // not needed if another thread is writing the line
             None => {
                 if let Ok(mut next) = self.next_line.try_lock()
                     && Instant::now() >= *next
@@ -73,7 +73,7 @@ impl Progress {
         format!("{}{colon}{done} of {} {}, {elapsed_s} s so far", self.part, self.total, self.unit)
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -94,7 +94,7 @@ mod tests {
         }
         assert_eq!(progress.line(40), "Figure 3.5: 40 of 40 impacts, 0 s so far");
         assert_eq!(progress.done.load(Ordering::Relaxed), progress.total);
-        // what an earlier run has done counts
+        // the work of an earlier run counts
         progress.begin("", 100, 60);
         progress.add(5);
         assert_eq!(progress.line(progress.done.load(Ordering::Relaxed)), "65 of 100 impacts, 0 s so far");

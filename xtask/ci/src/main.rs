@@ -1,4 +1,4 @@
-//! Everything that must hold before a change goes in, in the order in which it fails soonest.
+//! Runs every check that a change must pass before it is merged, the quickest checks first.
 
 use std::error::Error;
 use std::path::Path;
@@ -17,12 +17,12 @@ struct Step {
     rustdocflags: &'static str,
 }
 
-/// Every step but the first two takes the workspace's features: all but `mpi`, which needs more than Rust. The second takes
-/// the libraries of all crates without sweeps, pictures and the program.
+/// Every step except the first two builds all features of the workspace except `mpi`, which needs an MPI library. The second
+/// step builds only the libraries, without sweeps, pictures and the program.
 const STEPS: [Step; 7] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"], rustdocflags: "" },
     Step {
-        // from nothing, the workspace's further dependencies take longer to check than all of this
+        // in an empty target folder, checking the other dependencies of the workspace takes longer than this whole step
         name: "lints of the libraries",
         arguments: &[
             "clippy",
@@ -96,7 +96,7 @@ fn run() -> Result<(), Failure> {
     STEPS.iter().try_for_each(|step| timed(step.name, || carry_out(step, root, mpi)))
 }
 
-/// What the `mpi` feature is built and tested with; clang stands for its library.
+/// Programs that the `mpi` feature needs to be built and tested. `clang` is looked for because libclang is installed with it.
 const MPI_PROGRAMS: [&str; 3] = ["mpicc", "mpirun", "clang"];
 
 fn is_installed(program: &str) -> bool {

@@ -1,5 +1,5 @@
-//! The workflows hold what matters to us: pinned actions, no more permission than needed, versions that agree with the
-//! manifests, and a release that publishes only after every check. Linters look at the rest (`.github/check.sh`).
+//! Tests of the workflows: actions are pinned, permissions are minimal, versions agree with the manifests, and a release is
+//! published only after every check has passed. Linters check the rest (`.github/check.sh`).
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn workflow(name: &str) -> String {
     texts().into_iter().find(|(own, _)| own == name).unwrap().1
 }
 
-/// What stands at a path of keys.
+/// The value at a path of keys.
 fn at<'a>(tree: &'a Yaml<'a>, path: &[&str]) -> Option<&'a Yaml<'a>> {
     path.iter().try_fold(tree, |tree, key| tree.as_mapping_get(key))
 }

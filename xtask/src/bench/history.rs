@@ -1,4 +1,4 @@
-//! Every value that was ever recorded, and a picture of its history.
+//! Every value that was ever recorded, and a figure of the history.
 
 use super::record::Record;
 use crate::chapters::Failure;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use vibroimpact::plot::{Axis, Figure, Marker, Panel, Series};
 
-/// One value; a recording adds those that changed.
+/// One recorded value. A recording adds only the values that changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Number of the recording, from 1.
@@ -28,7 +28,7 @@ pub struct Row {
     pub value: f64,
 }
 
-/// When and of what a recording is.
+/// The date and the commit of a recording.
 pub struct Stamp {
     /// Day of the commit.
     pub date: String,
@@ -36,7 +36,7 @@ pub struct Stamp {
     pub commit: String,
 }
 
-/// Reads a history; there is none where there is no file.
+/// Reads a history, which is empty if there is no file.
 pub fn read(path: &Path) -> Result<Vec<Row>, Failure> {
     if !path.exists() {
         return Ok(Vec::new());
@@ -51,7 +51,7 @@ pub fn write(path: &Path, history: &[Row]) -> Result<(), Failure> {
     Ok(writer.flush()?)
 }
 
-/// Adds what changed since the last recording; how many values that were.
+/// Adds the values that changed since the last recording, and returns their number.
 pub fn append(history: &mut Vec<Row>, record: &Record, stamp: &Stamp) -> usize {
     let recording = history.last().map_or(1, |row| row.recording + 1);
     let mut last: BTreeMap<(String, String), f64> = BTreeMap::new();
@@ -92,7 +92,7 @@ pub fn recordings(history: &[Row]) -> Vec<&Row> {
     first
 }
 
-/// Three histories beside each other, each relative to the first recording: counts, instructions, errors.
+/// Plots three histories side by side, each relative to the first recording: counts, instructions and errors.
 pub fn figure(history: &[Row], record: &Record) -> Figure {
     let panel = |title: &str, is_shown: &dyn Fn(&str) -> bool| {
         let numbers = Axis::new("recording").integers();
@@ -123,14 +123,14 @@ pub fn group(problem: &str) -> &str {
     problem.split('/').next().unwrap_or(problem)
 }
 
-/// The geometric mean over a group of what each value is relative to its first, by recording.
+/// For each recording, the geometric mean over a group of the ratio of each value to its first value.
 fn course(history: &[Row], record: &Record, of: &str, is_shown: &dyn Fn(&str) -> bool) -> (Vec<f64>, Vec<f64>) {
     let mut first_and_now: BTreeMap<(&str, &str), (f64, f64)> = BTreeMap::new();
     let (mut x, mut y) = (Vec::new(), Vec::new());
     let rows: Vec<&Row> = history.iter().filter(|row| group(&row.problem) == of && is_shown(&row.measure)).collect();
     for recording in recordings(history).into_iter().map(|row| row.recording) {
         for row in rows.iter().filter(|row| row.recording == recording) {
-            // no logarithm of nothing: counts from one, errors from rounding
+            // zero has no logarithm: counts are at least one here, and errors at least the rounding error
             let least = match record.problems.get(&row.problem) {
                 Some(entry) if row.measure == "error" => entry.rounding,
                 _ => 1.0,

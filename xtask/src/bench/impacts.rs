@@ -10,8 +10,8 @@ use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite::{self, critical_s, turning_point};
 use vibroimpact_sim::modal::{Counts, Settings, Solution, Solver, Striker};
 
-/// Every modal problem is solved at these speeds (m/s), and its error is the largest, so that one lucky result says
-/// nothing.
+/// Every modal problem is solved at these speeds (m/s). Its error is the largest of the five, so that a single result that is
+/// accurate by chance does not hide the others.
 const SPEEDS: [f64; 5] = [0.8, 0.9, 1.0, 1.1, 1.25];
 /// The tolerance of the reference.
 fn tighter_than(tolerance: f64) -> f64 {
@@ -62,7 +62,7 @@ fn modal(name: String, impact: Impact, tolerance: f64) -> Problem {
         move || Ok(at_all_speeds(&tighter, tighter_than(tolerance))?.values),
         move || at_all_speeds(&impact, tolerance),
     )
-    // what rounding comes to after dozens of sub-impacts
+    // the effect of rounding after dozens of sub-impacts
     .rounding(1e-11)
 }
 
@@ -87,7 +87,7 @@ pub fn on_modes(root: &Path) -> Result<Vec<Problem>, Failure> {
     pinned.residual_compliance = Some(true);
     problems.push(modal("pinned N=40 hertz, remainder modes".into(), pinned.impact()?, 1e-9));
 
-    // undamped: amplifies whatever error there is, rounding included
+    // an undamped impact amplifies every error, including rounding
     let mut undamped = scene("pinned-beam-undamped")?;
     undamped.modes = Modes::Count(25);
     problems.push(modal("undamped N=25 hertz".into(), undamped.impact()?, 1e-9).rounding(1e-7));
@@ -151,7 +151,7 @@ fn dropped_rod() -> Problem {
 pub fn on_infinite_structures() -> Vec<Problem> {
     use infinite::Structure::{Beam, Plate};
     let mut problems = Vec::new();
-    // just below and just above the critical 1.56051775487; the latter parts some hundred times
+    // 1.5605 and 1.562 lie just below and just above the critical 1.56051775487; the latter gives about a hundred separations
     let cases = [(Beam, 1.0), (Beam, 1.5605), (Beam, 1.562), (Beam, 15.0), (Beam, 1000.0), (Plate, 1.0)];
     for (structure, s) in cases {
         let solve = move |settings: infinite::Settings| -> Result<Found, Failure> {

@@ -27,7 +27,7 @@ pub fn count(folder: &Path, count: usize) -> Result<Vec<u64>, Failure> {
     let status = Command::new("valgrind")
         .args(["--tool=callgrind", "--quiet"])
         .arg(format!("--callgrind-out-file={}", folder.join("callgrind").display()))
-        // counts only what happens within the function, and writes a file each time that it returns
+        // callgrind counts only what happens within the function, and writes a file each time the function returns
         .args([format!("--toggle-collect={measured}"), format!("--dump-after={measured}")])
         .arg(std::env::current_exe()?)
         .arg(RUN_TASK)
@@ -39,7 +39,7 @@ pub fn count(folder: &Path, count: usize) -> Result<Vec<u64>, Failure> {
     (1..=count).map(|number| total(&folder.join(format!("callgrind.{number}")))).collect()
 }
 
-/// The instructions of one file.
+/// Reads the number of instructions from one file.
 fn total(path: &Path) -> Result<u64, Failure> {
     let missing = |error| format!("callgrind did not write {}: {error}", path.display());
     let file = fs::File::open(path).map_err(missing)?;

@@ -1,5 +1,5 @@
-//! Problems of the crates that stand alone: modes, laws of contact, net restitution, fits, fractional equations; and
-//! the reading of a scene.
+//! Problems of the crates without dependencies in the workspace: modes, contact laws, net restitution, fits and fractional
+//! equations. Reading a scene is measured here too.
 
 use super::problem::{Found, Problem};
 use crate::chapters::Failure;
@@ -63,12 +63,12 @@ pub fn laws() -> Result<Vec<Problem>, Failure> {
     })])
 }
 
-/// The closed form, and the quadratic programs that it replaces.
+/// The closed form of the net restitution, and the quadratic programs that it replaces.
 pub fn net_restitution() -> Vec<Problem> {
     use emoc::{Coefficients, Contact, Friction, Mode, SingleImpact, Solver};
     let coefficients = Coefficients { ebar: 0.9, beta0: 0.3, beta1: 0.1 };
 
-    // what is left of the two active conditions, x + y = ebar and, on the second branch, x - beta0 y = beta1 ebar
+    // the residuals of the active conditions: x + y = ebar and, on the second branch, x - beta0 y = beta1 ebar
     let mut problems = vec![Problem::exact("emoc/closed form, 1,000 ratios", vec![0.0], move || {
         let mut worst = 0f64;
         for i in 0..1000 {
@@ -150,7 +150,7 @@ pub fn fits() -> Vec<Problem> {
         };
         run(parameters, 40, &residuals, Method::Both)
     };
-    // the parameters follow from residuals that end at 1e-10 of the first
+    // the search ends when the residuals have fallen to 1e-10 of the first ones, which limits the parameters
     vec![
         Problem::exact("fitting/decay, Levenberg-Marquardt", vec![2.0, 0.7, 0.3], decay).rounding(1e-9),
         Problem::exact("fitting/impact law with kinks, both methods", vec![0.7, 3.0, 0.2], kinked).rounding(1e-6),
@@ -187,7 +187,7 @@ pub fn fractional() -> Vec<Problem> {
     problems
 }
 
-/// From the text of a scene to the modes at the point of impact.
+/// Reads the text of a scene and computes the modes at the point of impact.
 pub fn scenes(root: &Path) -> Result<Vec<Problem>, Failure> {
     let text = std::fs::read_to_string(root.join("datasets/scenes/pinned-beam-converged.json"))?;
     let (side, b): (f64, f64) = (0.011323, 0.618_033_988_749_894_9);

@@ -1,5 +1,5 @@
-//! The record of cost and error of the solvers: made by `cargo xtask bench-record`, kept by
-//! `cargo xtask bench-check`.
+//! The record of cost and error of the solvers. `cargo xtask bench-record` writes it, and `cargo xtask bench-check` compares
+//! new measurements with it.
 
 mod history;
 mod impacts;
@@ -45,7 +45,7 @@ impl Files {
     }
 }
 
-/// The fixed list.
+/// The fixed list of problems.
 fn problems(root: &Path) -> Result<Vec<Problem>, Failure> {
     let mut problems = impacts::on_modes(root)?;
     problems.extend(impacts::on_infinite_structures());
@@ -62,13 +62,13 @@ fn problems(root: &Path) -> Result<Vec<Problem>, Failure> {
     }
 }
 
-/// Runs every problem once, for callgrind to watch.
+/// Runs every problem once under callgrind.
 pub fn run_all(root: &Path) -> Result<(), Failure> {
     problems(root)?.iter().try_for_each(|problem| measured_problem(problem).map(|_| ()))
 }
 
-/// Measures, and writes record, history, page and figure. With `references`, computes the true results anew as well;
-/// without, only those that are missing.
+/// Measures all problems, and writes the record, its history, the page and the figure. With `references` all reference results
+/// are computed anew; without it only the missing ones.
 pub fn record(root: &Path, references: bool) -> Result<(), Failure> {
     let files = Files::of(&root.join("docs"));
     let problems = problems(root)?;
@@ -84,7 +84,7 @@ pub fn record(root: &Path, references: bool) -> Result<(), Failure> {
     }
     fs::create_dir_all(root.join("docs/benchmarks"))?;
     if files.record.exists() {
-        // an unreadable record is no reason not to write a new one
+        // an unreadable record must not prevent writing a new one
         match read(&files.record) {
             Ok(recorded) => tell(&compare(&recorded, &measured)),
             Err(error) => eprintln!("{error}"),
@@ -101,7 +101,7 @@ pub fn record(root: &Path, references: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Measures, and fails if the record is not held.
+/// Measures all problems, and fails if cost or error is worse than recorded.
 pub fn check(root: &Path) -> Result<(), Failure> {
     check_against(root, &root.join("docs"))
 }
@@ -153,7 +153,7 @@ fn measure(root: &Path, problems: &[Problem], truth: &References) -> Result<Reco
     Ok(Record { conditions, problems: entries })
 }
 
-/// Something for every problem that has it, by name; or all problems that failed.
+/// Results of the problems that have one, by name; or a list of all problems that failed.
 /// Does something for each problem; `doing` names it while it goes on.
 fn for_each<T>(
     doing: &str,
@@ -199,7 +199,7 @@ fn conditions() -> Result<Conditions, Failure> {
     })
 }
 
-/// Day and commit, as far as git knows them.
+/// Date and commit, if git knows them.
 fn stamp(root: &Path) -> Stamp {
     let git = |arguments: &[&str]| {
         let output = Command::new("git").current_dir(root).args(arguments).output().ok().filter(|o| o.status.success());

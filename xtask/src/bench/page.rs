@@ -4,7 +4,7 @@ use super::history::{Row, group, groups, recordings};
 use super::record::{COST_COUNTS, COST_MARGIN, ERROR_FACTOR, Entry, INSTRUCTION_MARGIN, Record};
 use std::fmt::Write;
 
-/// `docs/benchmarks.md`.
+/// Writes the page `docs/benchmarks.md`.
 pub fn page(record: &Record, history: &[Row]) -> String {
     let mut text = format!(
         "# Costs over time

@@ -1,17 +1,17 @@
-//! A problem of the record: what is run, what it must find, and what it costs.
+//! A problem of the record: the work that is run, the result that is expected, and the cost.
 
 use crate::chapters::Failure;
 use std::hint::black_box;
 
-/// What a run found, and the costs that the solver itself counts.
+/// Results of a run, and the costs that the solver itself counts.
 pub struct Found {
     /// Results, each of which is compared with its reference.
     pub values: Vec<f64>,
-    /// Name and number: steps, iterations, evaluations. Empty where a solver counts nothing.
+    /// Names and counts of steps, iterations or evaluations. Empty if the solver counts nothing.
     pub costs: Vec<(&'static str, u64)>,
 }
 
-/// Work that ends in numbers.
+/// The work of a problem, which returns numbers.
 type Run<T> = Box<dyn Fn() -> Result<T, Failure>>;
 
 /// Where the true results come from.
@@ -26,11 +26,11 @@ pub enum Reference {
 pub struct Problem {
     /// `solver/problem/settings`.
     pub name: String,
-    /// Errors up to this are rounding, and as good as none.
+    /// Errors up to this size are due to rounding and count as zero.
     pub rounding: f64,
     /// The work that is measured.
     pub run: Run<Found>,
-    /// What it should find.
+    /// The expected results.
     pub reference: Reference,
 }
 
@@ -44,7 +44,7 @@ impl Problem {
         Problem { name: name.into(), rounding: ROUNDING, run: Box::new(run), reference: Reference::Exact(values) }
     }
 
-    /// A problem whose results a tighter run of the same kind finds.
+    /// A problem whose reference results come from a run of the same solver with a tighter tolerance.
     pub fn against_tighter(
         name: impl Into<String>,
         tighter: impl Fn() -> Result<Vec<f64>, Failure> + 'static,
@@ -60,7 +60,7 @@ impl Problem {
     }
 }
 
-/// What rounding leaves in a well-conditioned result.
+/// Rounding error of a well-conditioned result.
 const ROUNDING: f64 = 1e-13;
 
 /// The largest error of the values: relative where the reference is above one in size, absolute below.
@@ -75,7 +75,7 @@ pub fn error(values: &[f64], reference: &[f64]) -> Result<f64, Failure> {
     }
 }
 
-/// Runs the problem. Of its own in the program, so that callgrind can count the instructions in it by name.
+/// Runs the problem. This function is never inlined, so that callgrind can count its instructions by name.
 #[inline(never)]
 pub fn measured_problem(problem: &Problem) -> Result<Found, Failure> {
     black_box((problem.run)())

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Costs may grow by this share, and by [`COST_COUNTS`] at least: the last digits of `sin` and `exp` differ between
-/// machines, and from time to time one of them decides about a step.
+/// Costs may always grow by this share or by [`COST_COUNTS`], whichever is larger: the last digits of `sin` and `exp` differ
+/// between machines, and occasionally such a digit decides whether a step is accepted.
 pub const COST_MARGIN: f64 = 0.05;
 /// See [`COST_MARGIN`].
 pub const COST_COUNTS: u64 = 2;
@@ -13,7 +13,7 @@ pub const INSTRUCTION_MARGIN: f64 = 0.02;
 /// Errors may grow by this factor.
 pub const ERROR_FACTOR: f64 = 3.0;
 
-/// On what instructions depend.
+/// Versions and settings on which the number of instructions depends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Conditions {
@@ -23,7 +23,7 @@ pub struct Conditions {
     pub target: String,
     /// `release` or `debug`.
     pub profile: String,
-    /// `valgrind --version`; absent where it is not installed, and no instructions are counted.
+    /// `valgrind --version`; absent if it is not installed, and then no instructions are counted.
     pub valgrind: Option<String>,
 }
 
@@ -31,18 +31,18 @@ pub struct Conditions {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// Largest error of the results: relative where they are above one in size, absolute below.
+    /// Largest error of the results: relative for results above one in size, absolute below.
     pub error: f64,
-    /// Errors up to this are rounding.
+    /// Errors up to this size are due to rounding.
     pub rounding: f64,
-    /// What the solver counts.
+    /// Costs that the solver counts.
     pub costs: BTreeMap<String, u64>,
     /// Instructions, where they were counted.
     pub instructions: Option<u64>,
 }
 
 impl Entry {
-    /// The error, or rounding if that is more.
+    /// The larger of the error and the rounding error.
     pub fn error_above_rounding(&self) -> f64 {
         self.error.max(self.rounding)
     }
@@ -52,16 +52,16 @@ impl Entry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Record {
-    /// Where instructions were counted.
+    /// The machine and compiler with which instructions were counted.
     pub conditions: Conditions,
-    /// By name.
+    /// The problems by name.
     pub problems: BTreeMap<String, Entry>,
 }
 
-/// What a comparison found, each in one line that begins with the problem's name.
+/// Findings of a comparison, each a line that begins with the name of the problem.
 #[derive(Debug, Default)]
 pub struct Comparison {
-    /// Beyond the margins, or not comparable.
+    /// Worse by more than the margins, or not comparable.
     pub worse: Vec<String>,
     /// Better by more than the margins.
     pub better: Vec<String>,
@@ -69,7 +69,7 @@ pub struct Comparison {
     pub instructions_left_out: Option<String>,
 }
 
-/// Compares what was measured with the record.
+/// Compares measurements with the record.
 pub fn compare(recorded: &Record, measured: &Record) -> Comparison {
     let mut found =
         Comparison { instructions_left_out: instructions_left_out(recorded, measured), ..Default::default() };

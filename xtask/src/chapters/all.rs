@@ -1,4 +1,4 @@
-//! Every chapter in one run, ending in one report that can be checked number by number.
+//! Runs all chapters and writes one report that can be checked number by number.
 
 use super::statement::{Kind, Verdict};
 use super::tally::{Row, Tally, csv, tell};
@@ -43,10 +43,10 @@ pub fn run_all(out: &Path, quick: bool, data: Option<&Path>) -> Result<String, F
     ))
 }
 
-/// Farther deviations stand at the edge of the figure.
+/// Larger deviations are drawn at the edge of the figure.
 const EDGE: f64 = 12.0;
 
-/// Every number of the text: how far ours lies from it, in units of its tolerance.
+/// Plots the deviation of our value from every number of the text, in units of its tolerance.
 fn deviations(finished: &[(String, Finished)]) -> Figure {
     let statements = finished.iter().flat_map(|(_, found)| &found.statements);
     let all: Vec<(Kind, f64, Verdict)> =
@@ -163,7 +163,7 @@ mod tests {
             assert!(text.contains(part), "{part} is not in {text}");
         }
         assert!(!text.contains("## Where we differ"));
-        // a wrong number turns row, section and headline
+        // a wrong number changes its row, the sections and the headline
         let text = report(&found(folder.path(), 1.566), false).unwrap().markdown();
         assert!(text.contains("## Where we differ") && text.contains("Printed numbers (1): 1 differs."));
     }

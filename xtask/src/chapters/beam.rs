@@ -1,4 +1,4 @@
-//! The beams of the chapters in modes.
+//! Beams of the chapters and their modes.
 
 use super::Failure;
 use super::material::Material;
@@ -6,11 +6,11 @@ use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
 use vibroimpact_sim::modal::{Mode, Structure};
 
-/// Remainder modes for the truncated modes of an Euler-Bernoulli beam, as the program takes them; as many as there may be
-/// for a Timoshenko beam.
+/// Number of remainder modes that represent the truncated modes. For an Euler-Bernoulli beam it is the program's default, for a
+/// Timoshenko beam the largest allowed number.
 const REMAINDER_MODES: usize = 2;
 
-/// How an end of a beam is held, as the parameter files write it.
+/// Support of one end of a beam, as it is written in the parameter files.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum End {
@@ -29,7 +29,7 @@ impl From<End> for beam_modes::End {
     }
 }
 
-/// A steel beam of square or, where slimmer, rectangular section with its modes.
+/// A steel beam with its modes. The section is square, or rectangular where the beam is thinner.
 #[derive(Debug)]
 pub(super) struct Beam {
     /// Short name for tables.
@@ -41,15 +41,14 @@ pub(super) struct Beam {
     modes: Modes,
 }
 
-/// A stretch of length `length_m` whose width is the side of the square section and whose
-/// thickness is a fraction of it.
+/// A segment of length `length_m` whose width is the side of the square section and whose thickness is a fraction of that side.
 pub(super) fn segment(material: &Material, length_m: f64, side_m: f64, thickness_fraction: f64) -> beam_modes::Segment {
     let thickness_m = thickness_fraction * side_m;
     beam_modes::Segment::rectangular(length_m, material.youngs_modulus_pa, material.density_kg_m3, side_m, thickness_m)
 }
 
 impl Beam {
-    /// A beam with its first `count` modes by Euler-Bernoulli's theory, which is the thesis's.
+    /// A beam with its first `count` modes by Euler-Bernoulli's theory, which the thesis uses.
     pub fn new(
         name: &str,
         title: &str,
@@ -62,7 +61,7 @@ impl Beam {
         Ok(Beam { name: name.into(), title: title.into(), model, modes })
     }
 
-    /// The same beam by Timoshenko's theory, with as many modes.
+    /// The same beam with the same number of modes by Timoshenko's theory.
     pub fn timoshenko(&self, material: &Material, shear_coefficient: f64) -> Result<Beam, Failure> {
         let shear_modulus_pa = 0.5 * material.youngs_modulus_pa / (1.0 + material.poissons_ratio);
         let section = |segment: &beam_modes::Segment| ShearSection {
@@ -81,8 +80,7 @@ impl Beam {
         self.modes.omega_rad_s()
     }
 
-    /// The first `count` modes as a ball at `location_m` meets them; with `residual`, remainder modes answer for all
-    /// others.
+    /// The first `count` modes with their shapes at `location_m`. With `residual`, remainder modes represent all others.
     pub fn structure(
         &self,
         location_m: f64,

@@ -1,4 +1,4 @@
-//! Figures that several sections share.
+//! Figures used by several sections.
 
 use super::impact::Row;
 use contact_models::Law;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact_sim::modal::{History, Sample};
 
-/// Results of one kind, drawn alike.
+/// Results that are drawn in the same style.
 pub(super) struct Curve {
     pub label: String,
     pub marker: Marker,
@@ -38,7 +38,7 @@ impl Curve {
 /// A column of panels: its heading and its curves.
 pub(super) type Column = (String, Vec<Curve>);
 
-/// Restitution above, number of sub-impacts below, with the same limits in every column.
+/// Plots restitution above and number of sub-impacts below, with the same limits in every column.
 pub(super) fn restitution_and_sub_impacts(title: &str, x: &Axis, of: fn(&Row) -> f64, columns: &[Column]) -> Figure {
     let count = |row: &Row| row.sub_impacts as f64;
     let top = panels(columns, &x.clone().unlabelled(), of, &Axis::new("restitution e"), Row::e);

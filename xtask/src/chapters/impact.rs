@@ -1,4 +1,4 @@
-//! One impact of the chapters: which beam, where, which ball, how many modes.
+//! One impact of the chapters: beam, location, ball and number of modes.
 
 use super::Failure;
 use super::beam::Beam;
@@ -61,29 +61,29 @@ impl Setup<'_> {
         Settings { tolerance: TOLERANCE, ..Settings::default() }
     }
 
-    /// A solver for this setup's structure, to be used for several balls, speeds and laws.
+    /// A solver for the structure of this setup, which can be reused for several balls, speeds and laws.
     pub fn solver(&self) -> Result<Solver, Failure> {
         Ok(Solver::new(&self.structure()?)?)
     }
 
-    /// The impact on a solver made for the same beam, location and modes.
+    /// Solves the impact with a solver made for the same beam, location and modes.
     pub fn solve_with(&self, solver: &Solver) -> Result<Row, Failure> {
         let solution = solver.solve(&self.striker(), &self.law, None, &Setup::settings())?;
         Ok(Row::new(self, &solution))
     }
 
-    /// The same without an estimate of the uncertainty, for tables of which only counts and means are told.
+    /// The same without an estimate of the uncertainty, for tables of which only counts and means are reported.
     pub fn solve_once_with(&self, solver: &Solver) -> Result<Row, Failure> {
         let settings = Settings { estimate_uncertainty: false, ..Setup::settings() };
         Ok(Row::new(self, &solver.solve(&self.striker(), &self.law, None, &settings)?))
     }
 
-    /// The impact.
+    /// Solves the impact.
     pub fn solve(&self) -> Result<Row, Failure> {
         self.solve_with(&self.solver()?)
     }
 
-    /// The impact with its motion in time.
+    /// Solves the impact and returns its motion in time.
     pub fn record(&self) -> Result<(Solution, History<Law>), Failure> {
         Ok(self.solver()?.record(&self.striker(), &self.law, None, &Setup::settings())?)
     }
@@ -128,7 +128,7 @@ impl Row {
         }
     }
 
-    /// The restitution as a number; NaN, which no figure shows and no statement accepts, if there is none.
+    /// The restitution as a number. NaN if there is none; figures omit NaN, and statements reject it.
     pub fn e(&self) -> f64 {
         self.restitution.unwrap_or(f64::NAN)
     }

@@ -1,5 +1,5 @@
-//! The chapters of the thesis, computed anew: tables as CSV, figures as SVG, and a report that
-//! sets every number of the text beside ours.
+//! Reproduction of the chapters of the thesis: tables as CSV, figures as SVG, and a report that compares every number of the
+//! text with ours.
 
 mod all;
 mod beam;
@@ -31,15 +31,15 @@ pub use all::run_all;
 pub use study::Finished;
 use study::Study;
 
-/// Whatever can go wrong on the way: bad parameters, a full disk.
+/// Any error of a run, such as bad parameters or a full disk.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
-/// Input that cannot be used: what, its value, and what is allowed.
+/// Invalid input. The message names the argument, its value and the allowed values.
 #[derive(Debug)]
 pub struct BadInput(String);
 
 impl BadInput {
-    /// A chapter that there is not.
+    /// The error for a chapter that does not exist.
     pub fn chapter(found: &str) -> BadInput {
         BadInput(format!("chapter = {found} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"))
     }
@@ -53,12 +53,12 @@ impl fmt::Display for BadInput {
 
 impl Error for BadInput {}
 
-/// What can be reproduced on its own.
+/// Parts of the thesis that can be reproduced separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// A chapter by its number.
     Chapter(u32),
-    /// What is our choice in chapter 4, varied.
+    /// Chapter 4 with the parameters varied that the thesis does not state.
     Ensemble,
     /// Chapters 3, 4 and 7 by both theories of bending.
     Theories,
@@ -78,7 +78,7 @@ impl Part {
         Part::Theories,
     ];
 
-    /// The chapter on whose page its statements and figures stand; 0 is the page of the theories of bending.
+    /// The chapter whose page shows its statements and figures; 0 is the page on theories of bending.
     pub const fn chapter(self) -> u32 {
         match self {
             Part::Chapter(number) => number,
@@ -118,8 +118,8 @@ impl FromStr for Part {
     }
 }
 
-/// Runs a part and writes its folder. `quick` takes fewer points through the same code; `data` are measured points
-/// for chapter 8.
+/// Runs a part and writes its folder. `quick` computes fewer points with the same code. `data` are measured points for
+/// chapter 8.
 pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<Finished, Failure> {
     if data.is_some() && part != Part::Chapter(8) {
         let fault = format!("--data is not allowed with {}: only chapter 8 takes measured points", part.folder());
@@ -141,7 +141,7 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
     study.finish(&part.title(), introduction)
 }
 
-/// Puts the automatic choice of the model to the test, and writes the folder of that study.
+/// Tests the automatic choice of the model, and writes the folder of that study.
 pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
     let mut study = Study::new(0, &wanted.out, wanted.quick)?;
     study.claims("Targets, and what was found");
@@ -149,7 +149,7 @@ pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
     Ok(study.finish("The automatic choice of the model", introduction)?.summary)
 }
 
-/// Fits the scatter of the law to the tables of chapter 4, and writes the folder of that study.
+/// Fits the distribution of the restitution about the law to the tables of chapter 4, and writes the folder of that study.
 pub fn study_scatter(out: &Path, quick: bool) -> Result<String, Failure> {
     let mut study = Study::new(0, out, quick)?;
     study.claims("Targets, and what was found");

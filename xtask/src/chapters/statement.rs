@@ -1,10 +1,10 @@
-//! A statement of the thesis beside our number: what kind of statement it is, how far the two may lie apart and why,
-//! and what follows.
+//! Comparison of a statement of the thesis with our number: the kind of the statement, the tolerance with its reason, and the
+//! verdict.
 
 use serde::{Deserialize, Serialize};
 use vibroimpact::report::{Comparison, Expected, significant};
 
-/// What is stated, and thereby what it is worth that our number agrees.
+/// Kind of a statement, which determines how significant an agreement is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Kind {
     /// A number as printed, held to half a unit of its last digit.
@@ -13,19 +13,19 @@ pub enum Kind {
     /// A number in words, such as "about 0.95".
     #[serde(rename = "loose number")]
     LooseNumber,
-    /// What the text says of a figure or of a table without a number.
+    /// A statement on a figure or table without a number.
     #[serde(rename = "trend")]
     Trend,
-    /// What follows from the equations alone, so that only an error of ours could contradict it.
+    /// A consequence of the equations alone, which only an error of ours could contradict.
     #[serde(rename = "identity")]
     Identity,
-    /// A check of our own method or of our own choice, beside what the text says of its own.
+    /// A check of our own method or of our own choice, where the text describes a check of the thesis's.
     #[serde(rename = "self-check")]
     SelfCheck,
 }
 
 impl Kind {
-    /// All kinds, in the order in which they are told.
+    /// All kinds, in the order in which they are reported.
     pub const ALL: [Kind; 5] = [Kind::PrintedNumber, Kind::LooseNumber, Kind::Trend, Kind::Identity, Kind::SelfCheck];
 
     /// As a heading of a table.
@@ -39,35 +39,35 @@ impl Kind {
         }
     }
 
-    /// Whether the thesis could be wrong in it, so that agreement means something.
+    /// Whether the statement could be wrong, so that an agreement is significant.
     pub const fn can_fail(self) -> bool {
         matches!(self, Kind::PrintedNumber | Kind::LooseNumber | Kind::Trend)
     }
 }
 
-/// What follows from the two numbers.
+/// Result of comparing the two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Verdict {
     /// Our number lies within the tolerance, its own uncertainty included.
     #[serde(rename = "agrees")]
     Agrees,
-    /// It lies outside, or there is none.
+    /// Our number lies outside the tolerance, or there is none.
     #[serde(rename = "differs")]
     Differs,
-    /// It neither bears the statement out nor refutes it: the limit lies within its uncertainty, or it stands between
-    /// what the words mean for certain and what they cannot mean.
+    /// Our number neither confirms nor refutes the statement: the limit lies within its uncertainty, or it lies between the values
+    /// that the words certainly mean and those that they cannot mean.
     #[serde(rename = "indecisive")]
     Indecisive,
-    /// It depends on what the text does not say.
+    /// The verdict depends on something that the text does not state.
     #[serde(rename = "cannot be decided from the text")]
     Undecidable,
 }
 
 impl Verdict {
-    /// All verdicts, in the order in which they are told.
+    /// All verdicts, in the order in which they are reported.
     pub const ALL: [Verdict; 4] = [Verdict::Agrees, Verdict::Differs, Verdict::Indecisive, Verdict::Undecidable];
 
-    /// With a sign that is seen at a glance.
+    /// The verdict with a symbol.
     pub const fn marked(self) -> &'static str {
         match self {
             Verdict::Agrees => "✓ agrees",
@@ -78,56 +78,56 @@ impl Verdict {
     }
 }
 
-/// The statement as numbers.
+/// The statement expressed in numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Bounds {
-    /// A number, and how far ours may lie from it.
+    /// A number and its tolerance.
     Near { value: f64, tolerance: f64 },
     /// Anything between two limits, both included; an infinite one is no limit.
     Within { low: f64, high: f64 },
-    /// As `Within`; but a number outside those limits and within `open` refutes nothing.
+    /// As `Within`, but a number outside those limits and within `open` does not refute the statement.
     Graded { low: f64, high: f64, open: (f64, f64) },
     /// The share of equally plausible choices in which the statement holds.
     Choices,
 }
 
-/// Any amount above nothing, and any below.
+/// Limits of any increase and of any decrease.
 pub const RISES: (f64, f64) = (f64::MIN_POSITIVE, f64::INFINITY);
 /// See [`RISES`].
 pub const FALLS: (f64, f64) = (f64::NEG_INFINITY, -f64::MIN_POSITIVE);
 
-/// From this share of the choices on a statement that depends on a choice counts as borne out, and as refuted where so
-/// many contradict it.
+/// Share of the choices from which on a statement that depends on a choice counts as confirmed. It counts as refuted if the same
+/// share contradicts it.
 const MOST: f64 = 0.9;
 const FEW: f64 = 0.1;
 
-/// A statement of the thesis, our number, and what follows.
+/// A statement of the thesis, our number, and the data for the verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement {
     /// What kind of statement it is.
     pub kind: Kind,
-    /// What is compared, with its unit.
+    /// The compared quantity with its unit.
     pub quantity: String,
-    /// Where the statement stands.
+    /// Section, table or figure of the statement.
     pub source: String,
     /// The statement as printed.
     pub stated: String,
     bounds: Bounds,
-    /// Why the tolerance is what it is.
+    /// Reason for the tolerance.
     pub reason: String,
     /// Our number.
     pub ours: f64,
-    /// How far our number may be off, in its unit.
+    /// Uncertainty of our number, in its unit.
     pub uncertainty: f64,
-    /// What the text does not say and the verdict would need; empty where there is nothing.
+    /// Information that the verdict would need and the text does not contain; empty if nothing is missing.
     pub missing: String,
     /// An explanation; may be empty.
     pub note: String,
 }
 
 impl Statement {
-    /// A printed decimal number, such as `0.11027` or `1.7945e10`, held to half a unit of its last digit. A text that
-    /// is no number never agrees.
+    /// A printed decimal number, such as `0.11027` or `1.7945e10`, with a tolerance of half a unit of its last digit. A text that
+    /// is not a number never agrees.
     pub fn printed(quantity: impl Into<String>, source: &str, printed: &str, ours: f64) -> Statement {
         let read = Comparison::printed("", source, printed, ours);
         let bounds = match read.expected {
@@ -151,7 +151,7 @@ impl Statement {
         Statement::new(Kind::LooseNumber, quantity.into(), [source, words, reason], bounds, ours)
     }
 
-    /// A statement without a number, borne out by a number of ours between two limits.
+    /// A statement without a number, which is confirmed by a number of ours between two limits.
     pub fn trend(
         quantity: impl Into<String>,
         source: &str,
@@ -163,17 +163,17 @@ impl Statement {
         Statement::within(Kind::Trend, quantity, [source, words, reason], limits, ours)
     }
 
-    /// What cannot fail unless we err: `texts` are place, words and reason of the tolerance.
+    /// A statement that only an error of ours could contradict. `texts` are location, wording and reason of the tolerance.
     pub fn identity(quantity: impl Into<String>, texts: [&str; 3], limits: (f64, f64), ours: f64) -> Statement {
         Statement::within(Kind::Identity, quantity, texts, limits, ours)
     }
 
-    /// A check of our own: `texts` are place, words and reason of the tolerance.
+    /// A check of our own. `texts` are location, wording and reason of the tolerance.
     pub fn self_check(quantity: impl Into<String>, texts: [&str; 3], limits: (f64, f64), ours: f64) -> Statement {
         Statement::within(Kind::SelfCheck, quantity, texts, limits, ours)
     }
 
-    /// A trend that depends on what the text does not print: in how many of so many plausible choices it holds.
+    /// A trend that depends on parameters that the text does not state. It holds in `holds` of `of` plausible choices.
     pub fn choices(quantity: impl Into<String>, source: &str, words: &str, (holds, of): (usize, usize)) -> Statement {
         let reason = "borne out, or refuted, by nine in ten of the choices; between, the choice decides";
         let share = holds as f64 / of as f64;
@@ -208,14 +208,14 @@ impl Statement {
         self
     }
 
-    /// Says how far our number may be off.
+    /// States the uncertainty of our number.
     #[must_use]
     pub fn uncertain(mut self, uncertainty: f64) -> Statement {
         self.uncertainty = uncertainty;
         self
     }
 
-    /// Says within which wider limits a number that does not bear the statement out does not refute it either.
+    /// States wider limits, within which a number does not refute the statement even if it does not confirm it.
     #[must_use]
     pub fn open(mut self, open: (f64, f64)) -> Statement {
         if let Bounds::Within { low, high } = self.bounds {
@@ -224,7 +224,7 @@ impl Statement {
         self
     }
 
-    /// Holds a printed number to less than half a unit of its last digit.
+    /// Tightens the tolerance of a printed number to less than half a unit of its last digit.
     #[must_use]
     pub fn held_to(mut self, tolerance: f64, reason: &str) -> Statement {
         if let Bounds::Near { value, tolerance: half } = self.bounds {
@@ -234,14 +234,14 @@ impl Statement {
         self
     }
 
-    /// Says what of the text is missing for a verdict.
+    /// States which information is missing for a verdict.
     #[must_use]
     pub fn missing(mut self, what: &str) -> Statement {
         self.missing = what.to_owned();
         self
     }
 
-    /// Ours minus the stated number; for limits, how far ours lies outside (0 inside).
+    /// Our number minus the stated one; for limits, the distance of our number from them (0 inside).
     pub fn difference(&self) -> f64 {
         match self.bounds {
             Bounds::Near { value, .. } => self.ours - value,
@@ -250,7 +250,7 @@ impl Statement {
         }
     }
 
-    /// The difference in units of the tolerance, of a statement that has a number.
+    /// The difference in units of the tolerance, for a statement with a number.
     pub fn deviation(&self) -> Option<f64> {
         match self.bounds {
             Bounds::Near { value, tolerance } => Some((self.ours - value) / tolerance),
@@ -258,7 +258,7 @@ impl Statement {
         }
     }
 
-    /// What follows from the numbers. A number that is not finite differs.
+    /// The verdict. A number that is not finite differs.
     pub fn verdict(&self) -> Verdict {
         let between =
             |low, high| Statement::judge((self.ours - self.uncertainty, self.ours + self.uncertainty), low, high);
@@ -270,7 +270,7 @@ impl Statement {
         }
         match self.bounds {
             Bounds::Near { value, tolerance } => {
-                // the last bits of the comparison's own subtraction are not at stake
+                // rounding of this subtraction must not decide the verdict
                 let allowed = tolerance + 4.0 * f64::EPSILON * value.abs();
                 between(value - allowed, value + allowed)
             }
@@ -285,7 +285,7 @@ impl Statement {
         }
     }
 
-    /// What an interval around our number says of two limits.
+    /// Compares the interval of our number and its uncertainty with two limits.
     fn judge((from, to): (f64, f64), low: f64, high: f64) -> Verdict {
         if from >= low && to <= high {
             Verdict::Agrees

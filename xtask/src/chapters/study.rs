@@ -1,4 +1,4 @@
-//! What every chapter needs: a folder, progress, sweeps in parallel, one writer.
+//! Tools of all chapters: output folder, progress, parallel sweeps and one writer of files.
 
 use super::Failure;
 use super::figures::Course;
@@ -15,17 +15,17 @@ use vibroimpact::report::{Comparison, Report, write_whole};
 /// The list of files, written last.
 const MANIFEST: &str = "manifest.json";
 
-/// A chapter while it runs.
+/// A chapter that is being computed.
 pub(super) struct Study {
     out: PathBuf,
     /// Whether to take fewer points.
     pub quick: bool,
     chapter: u32,
     body: Report,
-    /// The figures that stand in the report of all chapters as well.
+    /// The figures that also appear in the report of all chapters.
     shown: Report,
     statements: Vec<Statement>,
-    /// Targets of a study of our own, with the heading above them.
+    /// Targets of a study that is not part of the thesis, with their heading.
     targets: Option<(&'static str, Vec<Comparison>)>,
     files: Vec<String>,
     timings: Vec<Timing>,
@@ -34,7 +34,7 @@ pub(super) struct Study {
     progress: Progress,
 }
 
-/// What a chapter that has run leaves for those who sum up.
+/// Results of a finished chapter, for the summary.
 #[derive(Debug)]
 pub struct Finished {
     /// Title of its report.
@@ -46,7 +46,7 @@ pub struct Finished {
     pub shown: Report,
     /// Number of impacts solved.
     pub impacts: usize,
-    /// Impacts, time, agreement and the report's place, in a few lines.
+    /// Impacts, time, agreement and the path of the report, in a few lines.
     pub summary: String,
 }
 
@@ -69,7 +69,7 @@ struct Timing {
     seconds: f64,
 }
 
-/// What a finished folder holds.
+/// Contents of a finished folder.
 #[derive(Serialize)]
 struct Manifest<'a> {
     title: &'a str,
@@ -79,8 +79,8 @@ struct Manifest<'a> {
 }
 
 impl Study {
-    /// A study of statements of a chapter that will write into `out`.
-    /// A manifest of an earlier run is removed, so that a folder with one is complete.
+    /// Begins the study of a chapter's statements, which will write into `out`. The manifest of an earlier run is removed, so that
+    /// a folder with a manifest is always complete.
     pub fn new(chapter: u32, out: &Path, quick: bool) -> Result<Study, Failure> {
         match std::fs::remove_file(out.join(MANIFEST)) {
             Err(failure) if failure.kind() != std::io::ErrorKind::NotFound => return Err(failure.into()),
@@ -102,7 +102,7 @@ impl Study {
         })
     }
 
-    /// Heads a list of targets of our own, which comes in the place of the thesis's statements.
+    /// Sets the heading of a list of our own targets, which replaces the statements of the thesis.
     pub fn claims(&mut self, heading: &'static str) {
         self.targets = Some((heading, Vec::new()));
     }
@@ -136,7 +136,7 @@ impl Study {
         cases.par_iter().map(each).collect()
     }
 
-    /// Of a list of points, all of them, or in a quick run the first, the last and few between.
+    /// All points of a list, or in a quick run the first, the last and a few in between.
     pub fn thin<T: Clone>(&self, all: &[T], quick_count: usize) -> Vec<T> {
         if !self.quick || all.len() <= quick_count {
             return all.to_vec();
@@ -160,7 +160,7 @@ impl Study {
         Ok(self.body.figure(name, figure, caption)?)
     }
 
-    /// Adds a figure that stands in the report of all chapters as well.
+    /// Adds a figure that also appears in the report of all chapters.
     pub fn main_figure(&mut self, name: &str, figure: &Figure, caption: &str) -> Result<(), Failure> {
         self.shown.figure(&format!("chapter-{}-{name}", self.chapter), figure, caption)?;
         self.figure(name, figure, caption)
@@ -176,7 +176,7 @@ impl Study {
         self.body.table(headers, rows);
     }
 
-    /// Adds a table to the report and writes it as it is read, for pages of the book.
+    /// Adds a table to the report and also writes the formatted table as a file, for pages of the book.
     pub fn tabled(&mut self, name: &str, headers: &[&str], rows: &[Vec<String>]) -> Result<(), Failure> {
         self.table(headers, rows);
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -188,12 +188,12 @@ impl Study {
         self.file(&format!("{name}.csv"), &bytes)
     }
 
-    /// Adds a statement of the thesis to the list at the head of the report.
+    /// Adds a statement of the thesis to the list at the start of the report.
     pub fn claim(&mut self, statement: Statement) {
         self.statements.push(statement);
     }
 
-    /// Adds a target of our own to the list at the head of the report.
+    /// Adds a target of our own to the list at the start of the report.
     pub fn state(&mut self, target: Comparison) {
         self.targets.get_or_insert(("Targets", Vec::new())).1.push(target);
     }
@@ -203,12 +203,12 @@ impl Study {
         self.csv(name, &course.rows())
     }
 
-    /// Writes a figure outside the report, as one that differs from run to run has to be.
+    /// Writes a figure outside the report, because it differs from run to run.
     pub fn aside(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
         self.file(name, figure.svg()?.as_bytes())
     }
 
-    /// Adds a line to the closing summary, for what differs from run to run.
+    /// Adds a line to the final summary, for values that differ from run to run.
     pub fn remark(&mut self, line: String) {
         self.remarks.push(line);
     }

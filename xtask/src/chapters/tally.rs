@@ -1,4 +1,4 @@
-//! Statements as rows of `statements.csv`, as tables of reports and pages, and counted.
+//! Statements as rows of `statements.csv` and as tables of reports and pages, and counts of their verdicts.
 
 use super::statement::{Kind, Statement, Verdict};
 use serde::{Deserialize, Serialize};
@@ -7,29 +7,29 @@ use vibroimpact::report::{Report, significant};
 /// One statement in `statements.csv`; numbers in the unit that the quantity names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Chapter of the thesis, or the one that its section belongs to here.
+    /// Chapter of the thesis to which the statement belongs here.
     pub chapter: u32,
     /// What kind of statement it is.
     pub kind: Kind,
-    /// What is compared.
+    /// The compared quantity.
     pub quantity: String,
-    /// Where the statement stands.
+    /// Section, table or figure of the statement.
     pub source: String,
     /// The statement as printed.
     pub stated: String,
     /// Our number.
     pub ours: f64,
-    /// How far it may be off.
+    /// Uncertainty of our number.
     pub uncertainty: f64,
-    /// Ours less the stated number, or how far ours lies outside the limits.
+    /// Our number minus the stated one, or the distance of our number from the limits.
     pub difference: f64,
-    /// How far ours may lie from the statement.
+    /// The tolerance.
     pub tolerance: String,
-    /// Why so far.
+    /// Reason for the tolerance.
     pub reason: String,
-    /// What follows.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What of the text is missing for a verdict.
+    /// Information that is missing for a verdict.
     pub missing: String,
     /// An explanation.
     pub note: String,
@@ -55,7 +55,7 @@ impl Row {
         }
     }
 
-    /// Our number with as many digits as the statement may need.
+    /// Our number with the digits that a comparison with the statement needs.
     pub fn ours(&self) -> String {
         significant(self.ours, if self.kind == Kind::PrintedNumber { 7 } else { 5 })
     }
@@ -76,7 +76,7 @@ impl Row {
         ]
     }
 
-    /// What is to be said beside the table; may be empty.
+    /// Remarks below the table; may be empty.
     fn remark(&self) -> String {
         let missing =
             if self.missing.is_empty() { String::new() } else { format!("The text does not state {}.", self.missing) };
@@ -99,17 +99,17 @@ impl Tally {
         tally
     }
 
-    /// So many of a kind.
+    /// Number of statements of a kind.
     pub fn all(&self, kind: Kind) -> usize {
         self.0[kind as usize].iter().sum()
     }
 
-    /// So many of a kind with a verdict.
+    /// Number of statements of a kind with a verdict.
     pub fn with(&self, kind: Kind, verdict: Verdict) -> usize {
         self.0[kind as usize][verdict as usize]
     }
 
-    /// The headline: what could fail, kind by kind; and apart from it what could not.
+    /// The headline: counts of each kind of statement that could fail, followed by the kinds that could not.
     pub fn headline(&self) -> String {
         let told = |kind: Kind| {
             let verdicts = Verdict::ALL.into_iter().filter(|verdict| self.with(kind, *verdict) > 0);
@@ -145,7 +145,7 @@ impl Tally {
     }
 }
 
-/// Adds the statements to a report: the headline, a table for each kind, and what is to be said beside it.
+/// Adds the statements to a report: the headline, a table for each kind, and the remarks.
 pub fn tell(report: &mut Report, rows: &[Row]) {
     report.text(&Tally::of(rows).headline());
     for kind in Kind::ALL {
@@ -156,7 +156,7 @@ pub fn tell(report: &mut Report, rows: &[Row]) {
         report.text(&format!("**{}**", kind.title()));
         let cells: Vec<Vec<String>> = chosen.iter().map(|row| row.cells()).collect();
         report.table(&["quantity", "where", "thesis", "ours", "tolerance", "why this tolerance", "verdict"], &cells);
-        // what holds for several rows is said once
+        // a remark that applies to several rows is written once
         let mut remarks: Vec<(String, Vec<&str>)> = Vec::new();
         for row in chosen {
             let remark = row.remark();
@@ -182,10 +182,10 @@ fn told(quantities: &[&str]) -> String {
     }
 }
 
-/// The table of all statements for programs.
+/// Writes the table of all statements as CSV.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn csv(rows: &[Row]) -> Result<Vec<u8>, super::Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {

@@ -24,7 +24,7 @@ fn on_threads(count: usize, part: Part, out: &Path) -> Finished {
     pool.install(|| run(part, out, true, None)).unwrap()
 }
 
-/// A statement that no number of ours could contradict would say nothing.
+/// Every statement can be contradicted by some number.
 fn every_statement_that_counts_can_be_turned(statements: &[Statement]) {
     assert!(!statements.is_empty());
     for statement in statements {
@@ -62,7 +62,7 @@ fn check_chapter(part: Part, figures: &[&str], tables: &[&str]) {
     assert_eq!(html.matches("<svg").count(), fs::read_dir(folder.path().join("figures")).unwrap().count());
     assert!(html.contains("✓ agrees"));
 
-    // a second run, on three threads, over what the first left: the same bytes
+    // a second run on three threads over the files of the first one gives the same bytes
     on_threads(3, part, folder.path());
     assert_eq!(first, contents(folder.path()));
 }
@@ -147,7 +147,7 @@ fn the_theories_are_complete_and_find_what_others_found() {
     let figures = ["phase-speeds", "modes-0-4", "modes-golden", "predictable", "by-mass", "maps"];
     let tables = ["phase-speeds-told.csv", "limits.csv", "coefficients.csv", "predictable-by-contacts.csv"];
     check_chapter(Part::Theories, &figures, &[&tables[..], &["tables.csv", "law.csv", "law-compared.csv"]].concat());
-    // the limits and the errors of the phase speeds are computed alike in the quick form
+    // a quick run computes the limits and the errors of the phase speeds in the same way
     let folder = tempfile::tempdir().unwrap();
     let statements = run(Part::Theories, folder.path(), true, None).unwrap().statements;
     assert!(statements.len() >= 8 && statements.iter().all(|one| one.verdict() == Verdict::Agrees), "{statements:?}");
@@ -229,8 +229,8 @@ fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
     let out = folder.path().to_path_buf();
     study_auto(&RandomScenes { quick: true, first: 0, scenes: None, resume: false, out }).unwrap();
     let report = fs::read_to_string(folder.path().join("report.md")).unwrap();
-    // a plate under a force that jumps at touch: its restitution converges so slowly with the modes that the last change tells
-    // too little, and at 1e-6 the answer is 1.6 tolerances off
+    // a plate under a force that jumps when the contact begins: the restitution converges so slowly with the modes that the last
+    // change underestimates the error, which is 1.6 times the tolerance of 1e-6
     let known = "| 1 | plate | kelvin-voigt ";
     for heading in ["Said to be settled, and beyond the tolerance: ", "Beyond the stated uncertainty: "] {
         let (_, after) = report.split_once(heading).unwrap();

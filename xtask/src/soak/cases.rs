@@ -21,19 +21,19 @@ pub enum Case {
     Modal(Box<Modal>),
     /// A tilted rod dropped on a surface.
     Rod(Box<Modal>),
-    /// An impact that was refused before it was posed, and why.
+    /// An impact that was rejected during construction, and the reason.
     Refused(String),
-    /// A scene, as its file would say it.
+    /// A scene in the form of its file.
     Scene(Value),
-    /// A beam or plate without ends.
+    /// An infinite beam or plate.
     Infinite(infinite::Structure, f64),
     /// A net restitution without integration in time.
     Net(Problem),
-    /// A single striker's, at the ends of all ranges: shapes, for a mass of 1 kg.
+    /// The net restitution of a single striker of 1 kg, with values at the limits of all ranges.
     Single(Vec<f64>, Coefficients<f64>),
 }
 
-/// An impact in the terms of the modal solver.
+/// An impact for the modal solver.
 #[derive(Debug, Clone)]
 pub struct Modal {
     pub structure: Structure,
@@ -43,9 +43,9 @@ pub struct Modal {
     pub settings: Settings,
 }
 
-/// Case number `index` of the row that `seed` begins. The case depends on nothing else.
+/// Case number `index` of the sequence with this seed. The case depends on nothing else.
 pub fn case(seed: u64, index: u64) -> Case {
-    // the index is spread over all bits, so that neighbours have nothing in common
+    // the index is spread over all bits, so that neighbouring cases are unrelated
     let mut random = Rng::with_seed(seed ^ index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     match random.u32(0..100) {
         0..64 => Case::Modal(Box::new(modal(&mut random))),
@@ -57,7 +57,7 @@ pub fn case(seed: u64, index: u64) -> Case {
     }
 }
 
-/// Uniform in the logarithm, from `10^from` to `10^to`; each end itself once in fifty times.
+/// Log-uniform from `10^from` to `10^to`; each end is drawn with probability 1/50.
 fn decades(random: &mut Rng, from: f64, to: f64) -> f64 {
     10f64.powf(match random.u32(0..50) {
         0 => from,
@@ -66,7 +66,7 @@ fn decades(random: &mut Rng, from: f64, to: f64) -> f64 {
     })
 }
 
-/// Whether something happens that does so once in `n` times.
+/// True with probability `1/n`.
 fn once_in(random: &mut Rng, n: u32) -> bool {
     random.u32(0..n) == 0
 }
@@ -82,10 +82,10 @@ fn modal(random: &mut Rng) -> Modal {
     let mut speed_m_s = if extreme { decades(random, -30.0, 30.0) } else { decades(random, -6.0, 3.0) };
     let start = once_in(random, 4).then(|| start(random, &structure, speed_m_s));
     if start.is_some() && once_in(random, 4) {
-        // the structure comes to the striker, or runs after it
+        // the structure moves towards the striker, or follows it
         speed_m_s *= if once_in(random, 2) { 0.0 } else { -random.f64() };
     }
-    // impacts without end are part of it, but need not take all the time
+    // impacts that never end are included, but should not take most of the time
     let max_steps = if once_in(random, 50) { 20_000 } else { 2_000 };
     let settings =
         Settings { tolerance: decades(random, -11.0, -4.0), max_steps, max_sub_impacts: 500, ..Settings::default() };
@@ -121,7 +121,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
                     shape: signed(random) * decades(random, -30.0, 20.0),
                 };
             }
-            // powers of k: equal, evenly spread, or a beam's frequencies; from time to time two that nearly agree
+            // powers of k: equal frequencies, equally spaced ones, or those of a beam; sometimes two frequencies are nearly equal
             let split = if once_in(random, 10) { 1.0 + decades(random, -16.0, -3.0) } else { 1.0 };
             Mode {
                 omega_rad_s: first * split * (k as f64).powi(power),
@@ -131,7 +131,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
         })
         .collect();
     if once_in(random, 20) {
-        // stiff and light: the compression oscillates within a contact, and a hysteresis runs through many small loops
+        // a stiff contact and a light structure: the compression oscillates within a contact, and a hysteresis has many small loops
         modes.push(Mode {
             omega_rad_s: decades(random, 4.0, 7.0),
             damping_ratio: 0.0,
@@ -142,7 +142,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
         modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: decades(random, -2.0, 1.0) });
     }
     if once_in(random, 5) {
-        // frequencies and compliances that no trend can be told from leave nothing to add
+        // no remainder modes can be added if frequencies and compliances have no recognisable trend
         let seen = |mode: &Mode| PointMode { omega_rad_s: mode.omega_rad_s, shape: mode.shape };
         let kept: Vec<PointMode> = modes.iter().map(seen).collect();
         let remainder =
@@ -159,7 +159,7 @@ fn structure(random: &mut Rng, extreme: bool) -> Structure {
 
 fn start(random: &mut Rng, structure: &Structure, speed_m_s: f64) -> Start {
     let n = structure.modes.len();
-    // rates that move the contact at speeds like the striker's
+    // modal velocities that move the contact point at speeds similar to that of the striker
     let size = speed_m_s * decades(random, -3.0, 1.0) / (n.max(1) as f64).sqrt();
     let (mut amplitude, mut rate) = (Vec::with_capacity(n), Vec::with_capacity(n));
     for mode in &structure.modes {
@@ -227,7 +227,7 @@ fn rod(random: &mut Rng) -> Case {
             start: Some(drop.start),
             settings,
         })),
-        // refused is not what a sound rod should be: said where cases are judged
+        // a valid rod must not be rejected, which is reported when the case is checked
         Err(fault) => Case::Refused(fault.to_string()),
     }
 }
@@ -250,7 +250,7 @@ fn scene(random: &mut Rng) -> Value {
         2 => 1e-6,
         _ => random.f64(),
     };
-    // on a step, once in a while
+    // sometimes the location is a step
     let location = if once_in(random, 5) { segments[0]["length_m"].as_f64().unwrap_or(0.0) } else { share * length };
     let contact = match random.u32(0..4) {
         0 => json!({ "law": "hysteretic", "stiffness_n_m1_5": decades(random, 5.0, 12.0), "theta_m": 1.6, "beta": 1.4,
@@ -285,7 +285,7 @@ fn infinite(random: &mut Rng) -> Case {
     if once_in(random, 4) {
         return Case::Infinite(infinite::Structure::Plate, decades(random, -12.0, 8.0));
     }
-    // every fourth beam is close to where its contact history changes, from above or below
+    // every fourth beam is close to a value where the contact history changes, on either side
     let s = if once_in(random, 4) {
         CHANGES[random.usize(0..CHANGES.len())] * (1.0 + signed(random) * decades(random, -12.0, -0.3))
     } else {
@@ -334,7 +334,7 @@ fn net(random: &mut Rng) -> Problem {
     }
 }
 
-/// 0 to 1, each end once in ten times.
+/// Uniform from 0 to 1; each end is drawn with probability 1/10.
 fn fraction(random: &mut Rng) -> f64 {
     match random.u32(0..10) {
         0 => 0.0,

@@ -1,4 +1,4 @@
-//! Solves one case and checks what must hold for any impact whatever.
+//! Solves one case and checks conditions that hold for every impact.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
@@ -14,12 +14,12 @@ use super::cases::{Case, Modal};
 
 /// Seconds after which an impact counts as hung, on a machine that is busy with others.
 const HANG_S: f64 = 60.0;
-/// Solutions that one impact may take: itself, and up to three for its uncertainty.
+/// Largest number of solutions of one impact: the impact itself, and up to three for its uncertainty.
 const MOST_SOLUTIONS: u64 = 4;
-/// Rounding that the sum of the energies carries, relative to their sum.
+/// Rounding error of the sum of the energies, relative to the sum.
 const ROUNDING: f64 = 1e-11;
 
-/// What one case came to.
+/// Result of one case.
 #[derive(Debug, Clone)]
 pub struct Verdict {
     pub kind: &'static str,
@@ -27,20 +27,20 @@ pub struct Verdict {
     pub contacts: usize,
     /// Steps or panels tried, as a deterministic cost.
     pub steps: u64,
-    /// Energy gained over energy there was; below zero: lost.
+    /// Gain of energy relative to the initial energy; negative for a loss.
     pub energy_gain: f64,
-    /// The same over what the tolerance allows.
+    /// Gain of energy relative to the gain that the tolerance allows.
     pub gain_over_allowed: f64,
-    /// Where nothing can take energy up: how far the sum is from what it was, over what the tolerance allows.
+    /// For impacts without dissipation: change of the energy relative to the change that the tolerance allows.
     pub residual_over_allowed: f64,
-    /// Where it was looked for: the error of the restitution over what was stated.
+    /// If it was computed: error of the restitution relative to the stated uncertainty.
     pub error_over_stated: f64,
     pub seconds: f64,
-    /// What does not hold.
+    /// The conditions that are violated.
     pub fault: Option<String>,
 }
 
-/// Solves and judges a case.
+/// Solves and checks a case.
 pub fn judge(case: &Case) -> Verdict {
     let start = Instant::now();
     let kind = match case {
@@ -99,7 +99,7 @@ fn finite(name: &str, values: impl IntoIterator<Item = f64>) -> Result<(), Strin
 fn scene(tree: &serde_json::Value, verdict: &mut Verdict) -> Result<(), String> {
     verdict.outcome = "refused";
     let scene = Scene::from_json(&tree.to_string()).map_err(|fault| format!("a sound scene was refused: {fault}"))?;
-    // values may be out of range in combination (contrasts of segments, a striker on an immovable point)
+    // values can be invalid in combination (contrasts of segments, a striker on an immovable point)
     let Ok(impact) = scene.impact() else { return Ok(()) };
     let settings = Settings { max_steps: 2_000, max_sub_impacts: 500, ..impact.settings };
     let modal = Modal { structure: impact.structure, striker: impact.striker, law: impact.law, start: None, settings };
@@ -121,7 +121,7 @@ fn modal_impact(case: &Modal, verdict: &mut Verdict) -> Result<(), String> {
     sound_numbers(&solution)?;
     contacts_in_order(&solution)?;
     energy(case, &solution, verdict)?;
-    // one in sixteen, chosen by its numbers, so that the row of cases stays what it is
+    // one in sixteen, selected by its values, so that the sequence of cases does not change
     if solution.outcome == Outcome::Rebound && settings.tolerance.to_bits() % 16 == 0 {
         let tighter = Settings { tolerance: (1e-3 * settings.tolerance).max(1e-13), max_steps: 20_000, ..*settings };
         let reference = solver.solve(striker, law, start.as_ref(), &tighter).map_err(refused)?;
@@ -167,7 +167,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
         let each = structure.modes.iter().zip(amplitude).zip(rate);
         each.map(|((mode, a), b)| 0.5 * (mode.omega_rad_s * a).powi(2) + 0.5 * b * b).sum()
     };
-    // a surface that cannot move has no energy to give
+    // a surface that cannot move cannot release energy
     let kinetic = |speed: f64| if speed == 0.0 { 0.0 } else { 0.5 * striker.mass_kg * speed * speed };
     let before = kinetic(striker.speed_m_s) + modes(&start.amplitude, &start.rate);
     let after = kinetic(solution.striker_velocity_m_s) + modes(&solution.amplitude, &solution.rate);
@@ -182,7 +182,7 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
     let speed = striker.speed_m_s.abs() + surface;
     let mut contacts = 1.0 + solution.sub_impacts.len() as f64;
     if matches!(solution.outcome, Outcome::Stopped(_)) {
-        // a contact that was given up after thousands of steps has a tenth of the tolerance for each of them
+        // a contact that was abandoned after thousands of steps may have an error of a tenth of the tolerance per step
         contacts += 0.1 * solution.counts.contact_steps as f64;
     }
     let wrong = settings.tolerance * speed / mobility(true) * contacts;
@@ -197,12 +197,12 @@ fn energy(case: &Modal, solution: &Solution, verdict: &mut Verdict) -> Result<()
         check(before - after <= allowed, || format!("energy lost without a cause, from {before:e} J to {after:e} J"))?;
     }
     for (i, contact) in solution.sub_impacts.iter().enumerate() {
-        // a force is never negative, but an impulse below the tolerance has no sign
+        // a force is never negative, but the sign of an impulse below the tolerance is not determined
         let impulse = contact.impulse_n_s;
         check(impulse >= -wrong, || format!("contact {i} pulls with {impulse:e} N s"))?;
     }
     if let (Some(e), true) = (solution.restitution, start == &at_rest) {
-        // of the relative motion, whose energy may be a small part of the whole
+        // energy of the relative motion, which may be a small part of the total energy
         let excess = 1.0 + settings.tolerance * contacts + ROUNDING;
         check(e.abs() <= excess, || format!("restitution {e}"))?;
     }
@@ -227,7 +227,7 @@ fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict
         )?;
         let ordered = contact.start >= now && contact.closing_speed > 0.0 && contact.duration.is_none_or(|d| d > 0.0);
         check(ordered, || format!("{contact:?} after {now}"))?;
-        // a force that presses only slows the body down
+        // a compressive force can only slow the body down
         let slower = contact.striker_velocity_at_end.map_or(speed, |velocity| -velocity);
         check(slower <= speed && slower >= -1.0, || format!("body speed from {speed} to {slower}"))?;
         (now, speed) = (contact.end.unwrap_or(now), slower);
@@ -239,7 +239,7 @@ fn infinite_impact(structure: infinite::Structure, s: f64, verdict: &mut Verdict
     })
 }
 
-/// The closed form, and the quadratic program in its two unknowns against it.
+/// Compares the closed form with the quadratic program in two unknowns.
 fn single(phi: &[f64], coefficients: emoc::Coefficients<f64>, verdict: &mut Verdict) -> Result<(), String> {
     verdict.outcome = "refused";
     let impact = SingleImpact { mass_kg: 1.0, phi, coefficients };
@@ -282,7 +282,7 @@ fn net(problem: &emoc::Problem, verdict: &mut Verdict) -> Result<(), String> {
     verdict.contacts = problem.contacts.len();
     finite("impulse", solution.impulse_n_s.iter().copied())?;
     finite("modal rate", solution.modal_rate.iter().copied())?;
-    // wedged bodies are pressed with impulses that cancel each other, and rounding grows with those
+    // impulses on wedged bodies may be large and cancel each other, and the rounding error grows with them
     let weight = problem.inverse_inertia_per_kg.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
     let pressing = weight * solution.impulse_n_s.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
     let vibration: f64 = problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();

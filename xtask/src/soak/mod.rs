@@ -16,33 +16,33 @@ use crate::progress::Progress;
 use cases::case;
 use checks::{Verdict, judge};
 
-/// Impacts that are solved side by side before anything is counted; counting is in order, whatever the threads.
+/// Number of impacts that are solved in parallel before they are counted. They are counted in order, for any number of threads.
 const BATCH: u64 = 4096;
-/// Failures listed in full; the others are counted.
+/// Number of failures that are listed in full; further failures are only counted.
 const LISTED: usize = 100;
 
 /// The result of a soak.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Summary {
-    /// The seed of the row of cases.
+    /// The seed of the sequence of cases.
     pub seed: u64,
     /// Impacts solved.
     pub impacts: u64,
-    /// How often each kind of case ended how; those that stopped, by their reason.
+    /// Number of cases of each kind with each outcome; incomplete cases are counted by reason.
     pub outcomes: BTreeMap<String, u64>,
-    /// Contacts over all impacts, and the most in one.
+    /// Number of contacts of all impacts, and the largest number in one impact.
     pub contacts: u64,
     pub most_contacts: Extreme,
-    /// How many impacts took so many steps, and most.
+    /// Histogram of the number of steps, and the largest number.
     pub steps: BTreeMap<u64, u64>,
     pub most_steps: Extreme,
-    /// Largest energy gained over what the tolerance allows (1 is the limit).
+    /// Largest gain of energy relative to the gain that the tolerance allows (1 is the limit).
     pub largest_gain_over_allowed: Extreme,
-    /// Largest change of energy where none can be lost, likewise, over so many impacts.
+    /// The same for the change of energy of impacts without dissipation, and the number of these impacts.
     pub largest_residual_over_allowed: Extreme,
     pub conservative: u64,
-    /// Impacts solved again at a thousandth of the tolerance, those of them within the uncertainties stated, and the
-    /// largest difference over what was stated.
+    /// Number of impacts that were solved again at a thousandth of the tolerance, number of those within the stated uncertainty,
+    /// and the largest ratio of difference and stated uncertainty.
     pub repeated: u64,
     pub covered: u64,
     pub largest_error_over_stated: Extreme,
@@ -50,13 +50,13 @@ pub struct Summary {
     pub slowest_s: Extreme,
     pub elapsed_s: f64,
     pub threads: usize,
-    /// Impacts for which something did not hold.
+    /// Number of impacts that violate a condition.
     pub failed: u64,
-    /// The first of them, by index.
+    /// The first of these impacts, by index.
     pub failures: Vec<Fault>,
 }
 
-/// A largest value, and the impact that has it.
+/// A maximum and the impact at which it occurs.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Extreme {
     pub value: f64,
@@ -73,7 +73,7 @@ impl Extreme {
     }
 }
 
-/// An impact for which something does not hold.
+/// An impact that violates a condition.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Fault {
     pub index: u64,
@@ -82,7 +82,7 @@ pub struct Fault {
 }
 
 impl Summary {
-    /// Of no impact yet.
+    /// A summary without impacts.
     pub fn new(seed: u64) -> Summary {
         Summary {
             seed,
@@ -106,10 +106,10 @@ impl Summary {
         }
     }
 
-    /// What an earlier run of the same seed wrote, to go on from; a new one without such a file.
+    /// Reads the summary of an earlier run with the same seed, in order to resume it. Without such a file the summary is new.
     ///
     /// # Errors
-    /// If the file is no summary, or one of another seed.
+    /// If the file is not a summary, or has another seed.
     pub fn resume(path: &Path, seed: u64) -> Result<Summary, Failure> {
         if !path.exists() {
             return Ok(Summary::new(seed));
@@ -121,10 +121,10 @@ impl Summary {
         Ok(summary)
     }
 
-    /// Goes on until there are `impacts` of them, or time is up. After every batch `save` may put down what there is.
+    /// Solves impacts until there are `impacts` of them or the time is over. `save` is called after every batch.
     ///
     /// # Errors
-    /// Those of `save`.
+    /// Errors of `save`.
     pub fn run(
         mut self,
         impacts: u64,
@@ -169,7 +169,7 @@ impl Summary {
     }
 }
 
-/// Solves one case again and tells everything about it.
+/// Solves one case again and returns all details.
 pub fn one(seed: u64, index: u64) -> String {
     let case = case(seed, index);
     format!("{case:#?}\n{:#?}", judge(&case))

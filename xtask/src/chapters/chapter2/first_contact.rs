@@ -11,14 +11,14 @@ use vibroimpact_sim::infinite::FirstContact;
 
 /// The thesis's number of functions.
 const THESIS: usize = 6;
-/// A line's width in a printed figure, as a share of its height.
+/// Line width in a printed figure, as a share of the height of the figure.
 const VISIBLE: f64 = 0.02;
 const WHY_VISIBLE: &str = "a line's width, a fiftieth of a figure's height";
 
 /// Just below the first turning point, above which there is no separation.
 const LARGEST: f64 = 3.4e4;
 
-/// `v_f / v` for one `S`; the semi-analytical one is missing where the branch with a pushing force ends.
+/// `v_f / v` for one `S`. The semi-analytical value is missing beyond the end of the branch with a compressive force.
 #[derive(Serialize)]
 struct Row {
     s: f64,

@@ -1,4 +1,4 @@
-//! One number for all units: Tables 2.1 and A.1, Fig. A.1.
+//! The number `S` does not depend on units: Tables 2.1 and A.1, Fig. A.1.
 
 use super::{Parameters, Units, solved};
 use crate::chapters::Failure;
@@ -12,7 +12,7 @@ use vibroimpact_sim::infinite::{Groups, Impact, Material, Structure};
 /// Samples of a curve.
 const SAMPLES: usize = 400;
 
-/// A sample of Fig. A.1 in the units of its set, and without units.
+/// A sample of Fig. A.1, in the units of its parameter set and dimensionless.
 #[derive(Serialize)]
 struct Row {
     set: usize,

@@ -1,4 +1,4 @@
-//! Every contact for every `S`: Fig. 2.8 with its turning points, and the regimes of Fig. 2.4.
+//! All contacts as functions of `S`: Fig. 2.8 with its turning points, and the regimes of Fig. 2.4.
 
 use super::{Parameters, in_ratio, solved};
 use crate::chapters::Failure;
@@ -10,7 +10,7 @@ use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::{CriticalS, Outcome, SubImpact, TurningPoint, critical_s, turning_points};
 
-/// How close to a turning point its curves are drawn, as a share of the distance from the critical `S`.
+/// Distance from a turning point up to which its curves are drawn, as a share of its distance from the critical `S`.
 const CLOSE: f64 = 1e-6;
 /// Longest time that Fig. 2.8 shows (units of `T`).
 const LATEST: f64 = 1e6;
@@ -44,7 +44,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     study.section("Map of separations and turning points (Figs. 2.4 and 2.8)");
     let choice = &parameters.our_choice;
     let critical = critical_s();
-    // a fifth of the values below the critical S, where little happens
+    // only a fifth of the values lie below the critical S, where the curves vary little
     let below = choice.map_values / 5;
     let mut values = in_ratio(choice.map_from, 0.999 * critical.s, below);
     let above = in_ratio(choice.map_closest, choice.map_to - critical.s, choice.map_values - below);
@@ -87,7 +87,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     );
     study.claim(statement.note("The shortest first contact ends a little below the first turning point."));
 
-    // the curves close at their turning points
+    // the curves of start and end of a contact meet at its turning point
     let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
     points.extend(study.sweep(&ends, 1, point)?);
     points.sort_by(|a, b| a.s.total_cmp(&b.s));
@@ -140,7 +140,7 @@ fn turning_table(
     Ok(())
 }
 
-/// Fig. 2.4: what happens, against `S`.
+/// Fig. 2.4: the regimes along the axis of `S`.
 fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &[TurningPoint]) -> Result<(), Failure> {
     let wrong = points.iter().filter(|point| {
         let beyond = turnings.iter().filter(|t| t.s > point.s).count();
@@ -186,7 +186,7 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
     )
 }
 
-/// The place of the inset of Fig. 2.8: late contacts at S = 1.72.
+/// The region of the inset of Fig. 2.8: late contacts at S = 1.72.
 fn inset(study: &mut Study) -> Result<(), Failure> {
     let solution = solved(1.72, 0.0)?;
     let ends: Vec<f64> = solution.sub_impacts.iter().take(TRACKED).filter_map(|contact| contact.end).collect();
@@ -210,16 +210,16 @@ fn inset(study: &mut Study) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Contacts whose number stands in the figure where curves are dense: as many as turning points are printed.
+/// Number of contacts that are labelled where the curves are dense. It equals the number of printed turning points.
 const NUMBERED: usize = 12;
 
-/// Separations that the thesis has followed.
+/// Number of separations that the thesis computed.
 const TRACKED: usize = 18;
 
 /// Fig. 2.8.
 fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Result<(), Failure> {
     let s: Vec<f64> = points.iter().map(|point| point.s).collect();
-    // the separations that the thesis has followed, and the contact after them
+    // the separations that the thesis computed, and the contact after them
     let most = points.iter().map(|point| point.contacts.len()).max().unwrap_or(0).min(TRACKED + 1);
     let distance: Vec<f64> = s.iter().map(|s| s - critical.s).collect();
     let second: Vec<f64> = points.iter().map(|p| p.contacts.get(1).map_or(f64::NAN, |contact| contact.start)).collect();
@@ -229,7 +229,7 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     let mut lower = Panel::new(x, Axis::new("time / start of the second contact").log().limits(0.9, 20.0))
         .title("(b) the later contacts, magnified")
         .height(360.0);
-    // values of S are in order
+    // values of S are sorted
     let near = s.partition_point(|s| *s < 1.58)..s.partition_point(|s| *s < 2.25);
     let time = Axis::new("time").unit("10⁵ T");
     let mut linear = Panel::new(Axis::new("S").limits(1.6, 2.2), time.clone().limits(0.0, 5.0))
@@ -238,13 +238,13 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
     let mut inset =
         Panel::new(Axis::new("S").limits(1.71, 1.73), time.limits(2.3, 3.3)).title("(d) its inset").height(260.0);
     for k in 0..most {
-        // start and end of a contact in one colour
+        // the start and the end of a contact have the same colour
         let colour = if k == 0 { Colour::Purple } else { Colour::of_series(k - 1) };
         let value = |of: fn(&SubImpact) -> Option<f64>| -> Vec<f64> {
             points.iter().map(|point| point.contacts.get(k).and_then(of).unwrap_or(f64::NAN)).collect()
         };
         let (mut starts, ends) = (value(|contact| Some(contact.start)), value(|contact| contact.end));
-        // where both curves are one line, the solid one stands for it
+        // only the solid line is drawn where both curves coincide
         for (start, end) in starts.iter_mut().zip(&ends) {
             if end - *start < 0.01 * *start {
                 *start = f64::NAN;
@@ -256,19 +256,19 @@ fn contact_map(study: &mut Study, points: &[Point], critical: CriticalS) -> Resu
         upper = upper.with(start(&s, &starts)).with(end(&s, &ends));
         let relative = |times: &[f64]| times.iter().zip(&second).map(|(t, second)| t / second).collect::<Vec<f64>>();
         let (relative_starts, relative_ends) = (relative(&starts), relative(&ends));
-        // the number of the contact where its end is last seen: at the turning point
+        // the number of a contact is written where its curve ends, at the turning point
         if let Some(last) = (0..s.len()).filter(|&i| ends[i].is_finite()).max_by(|&a, &b| s[a].total_cmp(&s[b])) {
             let number = |x: f64, y: f64| Series::labels(&[x], &[y], [(k + 1).to_string()]).colour(colour);
-            // the numbers above these would hide each other
+            // further numbers would overlap
             if k < NUMBERED {
                 upper = upper.with(number(s[last], ends[last]));
             }
             lower = lower.with(number(distance[last], relative_ends[last]));
         }
         lower = lower.with(start(&distance, &relative_starts)).with(end(&distance, &relative_ends));
-        // the printed figure has both axes linear there
+        // both axes of the printed figure are linear there
         let (x, ends) = (&s[near.clone()], near.clone().map(|i| 1e-5 * ends[i]).collect::<Vec<f64>>());
-        // where the curve passes a height
+        // the point at which the curve crosses a height
         let number = |height: f64| {
             let passes = (1..x.len()).find(|&i| ends[i - 1] >= height && ends[i] < height);
             let place =

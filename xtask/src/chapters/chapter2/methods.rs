@@ -1,4 +1,4 @@
-//! What accuracy costs: every method of `fracdiff`, and the specialised solver, on the chapter's own problem.
+//! Cost against accuracy of every method of `fracdiff` and of the specialised solver, for the problem of the chapter.
 
 use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
@@ -9,11 +9,11 @@ use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact_sim::infinite::{Settings, Solution, Structure, solve};
 
-/// One contact and a rebound; four separations and sustained contact. `S` and the final time.
+/// `S` and the final time of two impacts: one contact with a rebound, and four separations before sustained contact.
 const PROBLEMS: [(f64, f64); 2] = [(1.0, 5.0), (15.0, 120.0)];
 /// Times at which solutions are compared.
 const TIMES: usize = 400;
-/// A run is timed so many times, and the shortest counts.
+/// Number of timings of each run, of which the shortest is reported.
 const REPEATS: usize = 2;
 const SPECIALISED: &str = "specialised";
 
@@ -37,7 +37,7 @@ struct TimingRow {
     time_s: f64,
 }
 
-/// A method, and the number that says how finely it works.
+/// A method and its resolution parameter.
 fn methods(quick: bool) -> Vec<(f64, Method)> {
     let steps: &[usize] = if quick { &[250, 1000] } else { &[125, 250, 500, 1000, 2000, 4000, 8000] };
     let digits: &[i32] = if quick { &[5, 9] } else { &[3, 5, 7, 9, 11, 13] };
@@ -128,7 +128,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
                 let (x, y): (Vec<f64>, Vec<f64>) = chosen
                     .filter_map(|(timing, row)| {
                         let cost = if by_time { Some(timing.time_s) } else { row.evaluations.map(|n| n as f64) };
-                        // an error of exactly zero is drawn at the foot
+                        // an error of exactly zero is drawn at the lower edge
                         cost.map(|cost| (cost, row.error.max(1e-15)))
                     })
                     .unzip();

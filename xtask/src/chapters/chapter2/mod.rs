@@ -1,4 +1,4 @@
-//! Chapter 2: a ball strikes an infinite beam, one number `S` and all its contacts.
+//! Chapter 2: a ball strikes an infinite beam. One number `S` determines all contacts.
 
 mod first_contact;
 mod invariance;
@@ -23,7 +23,7 @@ thesis. Turning points and the critical S are given with an uncertainty: the sca
 `timings.csv`, `timings-methods.csv` and `timings-methods.svg` hold what was measured with a clock and therefore \
 differs from run to run.";
 
-/// The parameter file; see its own remarks.
+/// The parameter file, which explains its entries.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
@@ -41,7 +41,7 @@ struct Parameters {
     our_choice: Choice,
 }
 
-/// An impact whose motion is drawn.
+/// An impact whose motion is plotted.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Motion {

@@ -1,4 +1,4 @@
-//! The course of three impacts: Fig. 2.3.
+//! Motion and force of three impacts: Fig. 2.3.
 
 use super::{Course, Motion, Parameters, solved};
 use crate::chapters::Failure;
@@ -25,7 +25,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             .height(150.0)
             .with(Series::line(&course.time, &course.beam).colour(Colour::Vermilion).label("y, beam"))
             .with(Series::line(&course.time, &course.body).colour(Colour::Blue).label("z, body"));
-        // without contact there is no logarithm: the line goes down past the axis
+        // a force of zero has no logarithm, so the line leaves the figure at its lower edge
         let drawn: Vec<f64> = course.force.iter().map(|f| if several { f.max(1e-9) } else { *f }).collect();
         let force =
             Panel::new(time, force).height(150.0).with(Series::line(&course.time, &drawn).colour(Colour::Black));
@@ -72,7 +72,7 @@ fn growth_of_swings(s: f64) -> Result<f64, Failure> {
     let last = solution.sub_impacts.len().saturating_sub(1);
     let turns = solution.extrema.iter().filter(|turn| turn.contact == last);
     let turns: Vec<f64> = turns.map(|turn| turn.compression).collect();
-    // the force falls beneath its oscillations
+    // the mean of the force decreases while it oscillates
     let swings: Vec<f64> = turns.windows(3).map(|three| (three[1] - 0.5 * (three[0] + three[2])).abs()).collect();
     Ok(swings.windows(2).map(|pair| pair[1] / pair[0]).reduce(f64::max).ok_or("too few oscillations")?)
 }

@@ -1,5 +1,5 @@
-//! What the chapter says of its relatives and of late contacts: Zener's plate, a linear stiffness, the second contact's
-//! time, the growth of later contacts.
+//! Statements of the chapter on related problems and on late contacts: Zener's plate, a linear contact stiffness, the time of
+//! the second contact, and the trends of later contacts.
 
 use super::{in_ratio, solved};
 use crate::chapters::Failure;
@@ -38,7 +38,7 @@ fn on_a_dashpot(s: f64, steps: usize) -> f64 {
     }
 }
 
-/// Section 2.1: a plate answers as a dashpot does.
+/// Section 2.1: an infinite plate acts as a dashpot.
 fn plate(study: &mut Study) -> Result<(), Failure> {
     study.section("Zener's plate, a dashpot");
     let settings = Settings { estimate_uncertainty: false, ..Settings::default() };
@@ -59,8 +59,8 @@ fn plate(study: &mut Study) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Contacts, and whether the last one goes on, of a mass that meets an infinite beam through a linear spring of this
-/// stiffness in the units of `T` and `F`.
+/// Number of contacts, and whether the last one is sustained, for a mass that strikes an infinite beam through a linear spring
+/// of this stiffness (in units of `T` and `F`).
 fn linear(stiffness: f64) -> Result<(usize, bool), Failure> {
     const SAMPLES: usize = 20_000;
     let force = move |x: f64| stiffness * x.max(0.0);
@@ -68,7 +68,7 @@ fn linear(stiffness: f64) -> Result<(usize, bool), Failure> {
     let solution = equation.solve(&Method::Collocation(Collocation::default()), UNTIL)?;
     let (mut contacts, mut pressed) = (0, false);
     for i in 1..=SAMPLES {
-        // closer at first, where contacts are short
+        // more samples at the start, where contacts are short
         let time = solution.end_time() * (i as f64 / SAMPLES as f64).powi(3);
         let now = solution.at(time)?.first().is_some_and(|x| *x > 0.0);
         contacts += usize::from(now && !pressed);
@@ -77,7 +77,7 @@ fn linear(stiffness: f64) -> Result<(usize, bool), Failure> {
     Ok((contacts, pressed))
 }
 
-/// How long a linear contact is followed (units of `T`).
+/// Final time of an impact with a linear spring (units of `T`).
 const UNTIL: f64 = 40.0;
 
 #[derive(Serialize)]
@@ -131,7 +131,7 @@ fn linear_stiffness(study: &mut Study) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Share of the scatter of `y` that a straight line over the row's numbers takes up.
+/// Share of the variance of `y` that a straight line over the indices explains (R²).
 fn straightness(y: &[f64]) -> f64 {
     let n = y.len() as f64;
     let (centre, mean) = (0.5 * (n - 1.0), y.iter().sum::<f64>() / n);
@@ -143,7 +143,7 @@ fn straightness(y: &[f64]) -> f64 {
     xy * xy / (xx * yy)
 }
 
-/// Largest force and duration of every contact that ends.
+/// Largest force and duration of every contact that ends in separation.
 fn contacts(s: f64) -> Result<[Vec<f64>; 2], Failure> {
     let solution: Solution = solved(s, 0.0)?;
     let durations: Vec<f64> = solution.sub_impacts.iter().filter_map(|contact| contact.duration).collect();
@@ -154,10 +154,10 @@ fn contacts(s: f64) -> Result<[Vec<f64>; 2], Failure> {
     Ok([(0..durations.len()).map(largest).collect(), durations])
 }
 
-/// Appendix A.1: how force and duration go from contact to contact.
+/// Appendix A.1: trends of force and duration from contact to contact.
 fn late_contacts(study: &mut Study) -> Result<(), Failure> {
     study.section("Later contacts (A.1)");
-    // seven contacts and more, of which the appendix speaks
+    // impacts with seven contacts and more, which the appendix describes
     const PLACES: [f64; 5] = [1.65, 1.75, 2.0, 2.5, 3.0];
     let found = study.sweep(&PLACES, 1, |s| contacts(*s))?;
     let [forces, durations] = &found[2];
@@ -167,7 +167,7 @@ fn late_contacts(study: &mut Study) -> Result<(), Failure> {
     };
     study.text("At S = 2:");
     study.table(&["contact", "largest force (F)", "duration (T)"], &(0..durations.len()).map(line).collect::<Vec<_>>());
-    // the first contact is of another kind
+    // the first contact differs from the later ones, since the beam is at rest before it
     let logs = |values: &[f64]| values.iter().skip(1).map(|value| value.ln()).collect::<Vec<f64>>();
     let from_second = |values: &[f64]| values.iter().skip(1).copied().collect::<Vec<f64>>();
     for (which, name, words) in [
@@ -200,7 +200,7 @@ fn late_contacts(study: &mut Study) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A contact of which the thesis has followed the curve as well.
+/// A later contact whose curve the thesis also computed.
 const LATE: usize = 10;
 
 /// Section 2.3: the time to the second contact grows without bound towards the critical `S`.

@@ -16,11 +16,11 @@ use vibroimpact_sim::infinite::{Structure, attached, displacement_eq_2_47};
 struct ErrorRow {
     s: f64,
     time: f64,
-    /// Of the body's displacement by Eq. 2.47.
+    /// Error of the body's displacement by Eq. 2.47.
     error_eq_2_47: f64,
-    /// Of the body's displacement by the exact motion of a body attached to the beam.
+    /// Error of the body's displacement if the body is attached to the beam, whose motion is known exactly.
     error_attached: f64,
-    /// Of the compression that follows from Eq. 2.47.
+    /// Error of the compression that follows from Eq. 2.47.
     error_compression: f64,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let course = Course::new(*s, &samples(solution, *shown, if study.quick { 200 } else { 800 }));
         study.csv(&format!("fig-2-07-s-{s:e}.csv"), &course.rows())?;
         columns.push(panels(*s, *separations, *shown, &course));
-        // S = 15 stands in Fig. 2.3 already
+        // Fig. 2.3 already states S = 15
         if !parameters.motion.iter().any(|motion| motion.s == *s) {
             let quantity = format!("separations at S = {}", significant(*s, 3));
             let ours = solution.separations() as f64;
@@ -136,7 +136,7 @@ fn panels(s: f64, separations: usize, until: f64, course: &Course) -> Vec<Panel>
         course.time.iter().map(|&t| if t > 0.3 { -s.cbrt() * displacement_eq_2_47(t) } else { f64::NAN }).collect();
     let squeezed: Vec<f64> =
         course.time.iter().map(|&t| if t > 1.5 { compression_eq_2_47(s, t) } else { f64::NAN }).collect();
-    // once contact lasts, the compression is a small part of what it was at first
+    // in sustained contact the compression is small compared with that of the first contact
     let low = course.compression.last().copied().unwrap_or(1.0);
     let force = course.force.last().copied().unwrap_or(1.0);
     let dashed = |values: &[f64]| Series::line(&course.time, values).colour(Colour::Black).dashed().label("asymptotic");

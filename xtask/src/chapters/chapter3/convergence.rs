@@ -56,7 +56,7 @@ fn none() -> AtBoth {
     [Vec::new(), Vec::new()]
 }
 
-/// The numbers of modes of the studies, all or few.
+/// The numbers of modes of the studies: all of them, or a few in a quick run.
 fn mode_counts(study: &Study, case: &Case) -> Vec<usize> {
     let all: Vec<usize> = (1..=case.parameters.our_choice.most_modes).collect();
     study.thin(&all, 13)
@@ -161,7 +161,7 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.csv("fig-3-13.csv", &rows_of(&columns))
 }
 
-/// Fig. 3.14: a larger and a smaller ball; `usual` is the damped scatter of the chapter's.
+/// Fig. 3.14: a larger and a smaller ball. `usual` is the scatter of the damped impacts of the chapter's ball.
 fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
     study.section("Other balls (Fig. 3.14)");
     let mut columns = Vec::new();
@@ -217,14 +217,14 @@ fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
     heavy(study, case, &large[0].rows)
 }
 
-/// A ball so heavy that the beam is a spring under it, beside the undamped results of the one of 4 cm.
+/// A ball so heavy that the beam acts as a spring, compared with the undamped results of the 4 cm ball.
 fn heavy(study: &mut Study, case: &Case, of_4_cm: &[Row]) -> Result<(), Failure> {
     const OFF: f64 = 0.01;
     let ball = Ball::new(&case.parameters.material, case.parameters.our_choice.heavy_diameter_m)?;
     let rows = curve(study, case, Setup { ball, law: ball.hertz(), ..case.setup(case.golden_m(), 0) })?;
     study.csv("heavy-ball.csv", &rows)?;
     let many = rows.iter().filter(|row| row.modes >= MANY).count();
-    // each of these restitutions comes of hundreds of sub-impacts and has few certain digits: they are counted, not measured
+    // each of these restitutions follows from hundreds of sub-impacts and has few reliable digits, so only outliers are counted
     let statement = Statement::trend(
         format!(
             "modes from 25 on, of {many}, at which e of the undamped 20 cm ball is off its mean by more than {OFF}"
@@ -246,7 +246,7 @@ fn heavy(study: &mut Study, case: &Case, of_4_cm: &[Row]) -> Result<(), Failure>
     Ok(())
 }
 
-/// Fig. 3.15: the location varied a little.
+/// Fig. 3.15: small variations of the location.
 fn scan(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.section("Location between 0.60 and 0.62 m (Fig. 3.15)");
     let scan = &case.parameters.scan;

@@ -1,4 +1,4 @@
-//! The contact laws that dissipate: Figs. 3.2, 3.5, 3.6, 3.8 and 3.9.
+//! Dissipative contact laws: Figs. 3.2, 3.5, 3.6, 3.8 and 3.9.
 
 use super::Case;
 use crate::chapters::Failure;
@@ -69,7 +69,7 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
         (f64::NEG_INFINITY, 1e-200),
         deepest,
     ));
-    // where the compression is not lost in rounding
+    // only where the compression exceeds rounding
     let pressed = rows.iter().filter(|r| r.compression_m > 1e-6);
     let theta = pressed.map(|r| r.force_n / (p.stiffness_n_m1_5.unwrap_or(1.0) * r.compression_m.powf(1.5)) - 1.0);
     let beyond = theta.map(|theta| (theta - p.theta_m).abs() - p.beta).fold(f64::NEG_INFINITY, f64::max);

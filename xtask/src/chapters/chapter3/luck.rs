@@ -1,4 +1,4 @@
-//! What the agreement of three extremes of undamped impacts is worth: the same extremes for other contact stiffnesses.
+//! How significant is the agreement of three extremes of undamped impacts? The same extremes for other contact stiffnesses.
 
 use super::Case;
 use super::scatter::{fingerprint, gives_the_three_numbers};

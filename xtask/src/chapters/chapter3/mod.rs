@@ -1,5 +1,4 @@
-//! Chapter 3: one beam, one ball, and what decides whether the restitution converges as modes are
-//! added.
+//! Chapter 3: one beam, one ball, and the conditions under which the restitution converges as modes are added.
 
 mod convergence;
 mod dissipation;
@@ -24,7 +23,7 @@ numbers of the thesis. The restitution of undamped impacts with many modes ampli
 10⁵ and more; the column `restitution_uncertainty` of the tables tells how many digits of each result can be \
 trusted. *Scatter* below is the standard deviation of the restitution over the numbers of modes.";
 
-/// The parameter file; see its own remarks.
+/// The parameter file, which explains its entries.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Parameters {
@@ -142,7 +141,7 @@ impl Case {
         Ok(Hysteretic::new(stiffness, h.theta_m, h.beta, h.k_bar, h.epsilon_m)?.into())
     }
 
-    /// The location that is no simple fraction of the length.
+    /// The location that is not a simple fraction of the length.
     pub(super) fn golden_m(&self) -> f64 {
         self.parameters.locations_m[1]
     }

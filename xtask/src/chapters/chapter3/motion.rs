@@ -1,4 +1,4 @@
-//! The course of single impacts: Figs. 3.3, 3.12 and A.2.
+//! Motion and force of single impacts: Figs. 3.3, 3.12 and A.2.
 
 use super::Case;
 use crate::chapters::Failure;
@@ -65,7 +65,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "more than a couple",
         solution.sub_impacts.len() as f64,
     ));
-    // how far gravity bends the longest flight, beside the height of the picture of displacements
+    // deflection of the longest flight by gravity, relative to the height of the figure of displacements
     let flights = solution.sub_impacts.windows(2).map(|pair| pair[1].start_s - pair[0].end_s);
     let longest_s = flights.fold(0.0, f64::max);
     let bend_mm = 1e3 * GRAVITY / 8.0 * longest_s.powi(2);
@@ -87,7 +87,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         solution.striker_velocity_m_s,
         GRAVITY * solution.end_s
     )));
-    // the beam upright, the ball level: gravity's share of the way
+    // the beam is vertical and the ball moves horizontally: displacement due to gravity
     let travel_mm = 1e3 * 0.5 * GRAVITY * solution.end_s.powi(2);
     study.claim(Statement::loose(
         "fall of the ball by its weight in the net time (mm)",

@@ -1,4 +1,4 @@
-//! The numbers of section 3.3.1 and of the closing remarks: beam, ball, frequencies.
+//! Numbers of section 3.3.1 and of the closing remarks: beam, ball and frequencies.
 
 use super::Case;
 use crate::chapters::Failure;
@@ -34,7 +34,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let slower = (1..=case.parameters.our_choice.most_modes.max(100))
         .take_while(|&n| n <= case.beam.omega_rad_s().len() && 1.0 / frequency(n) >= contact_s)
         .count();
-    // what the period of the first mode over the contact gives if k_H, in N/m^1.5, is read as N/m
+    // the ratio of the first mode's period to the contact duration if k_H, in N/m^1.5, is read as N/m
     let linear_s = PI * (case.ball.mass_kg / case.ball.stiffness_n_m1_5).sqrt();
     let slip = (1.0 / (frequency(1) * linear_s)).sqrt();
     let note = format!(

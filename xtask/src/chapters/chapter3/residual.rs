@@ -1,5 +1,4 @@
-//! What the thesis could not see: the same studies with remainder modes for the truncated modes, to
-//! N = 400.
+//! Beyond the thesis: the same studies with remainder modes that represent the truncated modes, up to N = 400.
 
 use super::Case;
 use crate::chapters::Failure;

@@ -1,35 +1,35 @@
-//! What the text of chapter 3 says of the scatter of the restitution over the numbers of modes, and how that is measured.
+//! Statements of chapter 3 on the scatter of the restitution over the numbers of modes, and measures of that scatter.
 
 use crate::chapters::figures::Curve;
 use crate::chapters::impact::Row;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 
-/// From so many modes on the text speaks of convergence (3.3.5 and 3.5).
+/// Number of modes from which on the text discusses convergence (3.3.5 and 3.5).
 pub(in crate::chapters) const MANY: usize = 25;
-/// A scatter of at most this share of another is a significant reduction.
+/// A ratio of two scatters of at most this value is a significant reduction.
 const REDUCED: f64 = 0.5;
-/// A scatter of at least this share is none.
+/// A ratio of at least this value is no reduction.
 const NOT_REDUCED: f64 = 0.7;
 const PLACES: [&str; 2] = ["b = 0.4", "b = 0.618"];
 
 /// A curve at each of the two locations.
 pub(super) type AtBoth = [Vec<Row>; 2];
 
-/// Restitutions of the rows with at least so many modes.
+/// Restitutions of the rows with at least this many modes.
 fn from(rows: &[Row], least: usize) -> impl Iterator<Item = f64> + '_ {
     rows.iter().filter(move |r| r.modes >= least).map(Row::e)
 }
 
-/// Standard deviation of the restitution from so many modes on.
+/// Standard deviation of the restitution from this many modes on.
 pub(super) fn scatter(rows: &[Row], least: usize) -> f64 {
     deviation(&from(rows, least).collect::<Vec<_>>())
 }
 
-/// How many restitutions from [`MANY`] modes on are so far off their mean.
+/// Number of restitutions from [`MANY`] modes on that deviate from their mean by more than this.
 pub(super) fn off_the_mean(rows: &[Row], off: f64) -> usize {
     let centre = mean(from(rows, MANY));
-    // a missing one is off as well
+    // a missing restitution counts as deviating
     from(rows, MANY).filter(|e| (e - centre).abs() > off || e.is_nan()).count()
 }
 
@@ -49,7 +49,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
-/// Ratio of two scatters, and its standard error for as many independent values.
+/// Ratio of two scatters, and its standard error for this many independent values.
 fn ratio(with: &[Row], without: &[Row]) -> (f64, f64) {
     let count = from(with, MANY).count().min(from(without, MANY).count()) as f64;
     let ratio = scatter(with, MANY) / scatter(without, MANY);
@@ -70,7 +70,7 @@ fn reduced(quantity: String, source: &str, words: &str, (ratio, error): (f64, f6
     statement.open((0.0, NOT_REDUCED)).uncertain(error)
 }
 
-/// Dissipation in the contact leaves the scatter.
+/// States that dissipation in the contact does not reduce the scatter.
 pub(super) fn remains(study: &mut Study, name: &str, source: &str, hertz: &AtBoth, with: &AtBoth) {
     for (k, place) in PLACES.into_iter().enumerate() {
         let (ratio, error) = ratio(&with[k], &hertz[k]);
@@ -86,7 +86,7 @@ pub(super) fn remains(study: &mut Study, name: &str, source: &str, hertz: &AtBot
     }
 }
 
-/// Viscous dissipation lowers the mean.
+/// States that viscous dissipation lowers the mean.
 pub(super) fn lower(study: &mut Study, hertz: &AtBoth, viscous: &AtBoth) {
     let changes: Vec<f64> =
         viscous.iter().flatten().zip(hertz.iter().flatten()).map(|(with, without)| with.e() - without.e()).collect();
@@ -101,7 +101,7 @@ pub(super) fn lower(study: &mut Study, hertz: &AtBoth, viscous: &AtBoth) {
     study.claim(statement.uncertain(deviation(&changes) / (changes.len() as f64).sqrt()));
 }
 
-/// Modal damping reduces the scatter, and the number of modes that are needed.
+/// States that modal damping reduces the scatter and the number of modes that are needed.
 pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
     for (k, place) in PLACES.into_iter().enumerate() {
         let quantity = format!("scatter of e for N ≥ 25, damped over undamped, {place}");
@@ -250,7 +250,7 @@ pub(super) fn fingerprint(rows: &[Row]) -> (f64, f64) {
     extremes(rows.iter().filter(|r| (30..=40).contains(&r.modes)).map(Row::e))
 }
 
-/// Whether these extremes give the three numbers of section 3.5.
+/// Whether these extremes agree with the three numbers of section 3.5.
 pub(super) fn gives_the_three_numbers((low, high): (f64, f64)) -> bool {
     let near = |(value, tolerance): (f64, f64), ours: f64| (ours - value).abs() <= tolerance;
     near(SMALLEST, low) && near(LARGEST, high) && near(FACTOR, high / low)

@@ -1,4 +1,4 @@
-//! The course of single impacts: Figs. 4.5, 4.10 and 4.11.
+//! Motion and force of single impacts: Figs. 4.5, 4.10 and 4.11.
 
 use super::{Case, Histories};
 use crate::chapters::Failure;
@@ -16,7 +16,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
 
 type Recorded = (Solution, History<Law>);
 
-/// Samples a little beyond the last separation.
+/// Samples an impact until shortly after the last separation.
 fn course((solution, history): &Recorded) -> Course {
     Course::new(history, (0.0, 1.08 * solution.end_s), 1500)
 }

@@ -94,7 +94,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "a tenth of the range from 0 to 1",
         largest,
     ));
-    // where the rebound is weak, and where it is not; with all balls
+    // weak rebounds and all others, for all balls
     let mean = |weak: bool| {
         let chosen = all.iter().filter(|(modal, _)| (modal.e() <= WEAK) == weak);
         let gaps: Vec<f64> = chosen.map(|(modal, elements)| (modal.e() - elements.e()).abs()).collect();

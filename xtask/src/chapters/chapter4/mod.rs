@@ -22,7 +22,7 @@ their step, how thin the slim part is, or the list of balls: here the step is ha
 thickness, and the balls are 9 to 53 mm in steps of 4 mm, which contains every mass that the chapter names. These are \
 our choices (`datasets/chapter4.json`), so the figures of the stepped beams can be compared in kind only.";
 
-/// The parameter file; see its own remarks.
+/// The parameter file, which explains its entries.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Parameters {
@@ -63,7 +63,7 @@ pub(super) struct BeamChoice {
     pub(super) segments: Vec<SegmentChoice>,
 }
 
-/// What else is plausible.
+/// Other plausible choices.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct EnsembleChoice {
@@ -169,7 +169,7 @@ impl Case {
         Ball::new(&self.parameters.material, diameter_m)
     }
 
-    /// Balls from light to heavy, fewer.
+    /// A few of the balls, from light to heavy.
     pub(super) fn every_third_ball(&self) -> Vec<Ball> {
         self.balls.iter().copied().skip(1).step_by(3).collect()
     }

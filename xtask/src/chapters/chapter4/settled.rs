@@ -1,4 +1,4 @@
-//! How far the tables with 40 modes are from the restitution to which more modes converge.
+//! Differences between the tables with 40 modes and the converged restitution.
 
 use super::Case;
 use super::tables::{Table, compute};
@@ -46,7 +46,7 @@ pub(super) fn run(study: &mut Study, case: &Case, tables: &[Table]) -> Result<()
         for (model, table) in models {
             rows.push(summary(name, &model, &distances(table, &reference[k])));
         }
-        // the map shows no difference smaller than the reference can tell
+        // differences below the uncertainty of the reference are not shown in the map
         let map = distances(&tables[k], &reference[k]).into_iter().map(|d| d.max(1e-5)).collect::<Vec<_>>();
         let by_place: Vec<&[f64]> = map.chunks(tables[k].balls.len()).collect();
         let by_ball = (0..tables[k].balls.len()).map(|j| by_place.iter().map(|place| place[j]).collect()).collect();

@@ -45,7 +45,7 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.csv("fig-4-03.csv", &found.concat())?;
     let mut lines = Vec::new();
     for (rows, location) in found.iter().zip(&p.locations_m) {
-        // the text speaks of a change from 1 m/s, up or down
+        // the text describes a change of the speed from 1 m/s, up or down
         let own = rows.iter().find(|r| (r.speed_m_s / case.parameters.speed_m_s - 1.0).abs() < 1e-9);
         let own = own.map_or(f64::NAN, Row::e);
         let change = rows.iter().map(|row| (row.e() - own).abs()).fold(0.0, f64::max);

@@ -8,7 +8,7 @@ use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 use vibroimpact_sim::modal::Solver;
 
-/// The table of one beam: rows of locations, in each one result a ball.
+/// The table of one beam: one row per location, with one result per ball.
 pub(in crate::chapters) struct Table<'a> {
     pub beam: &'a Beam,
     pub places_m: Vec<f64>,
@@ -17,12 +17,12 @@ pub(in crate::chapters) struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// A number of every result as rows of balls over columns of locations, as a map shows it.
+    /// One quantity of every result, with balls as rows and locations as columns, as it is shown in a map.
     pub fn by_ball(&self, value: impl Fn(&Row) -> f64) -> Vec<Vec<f64>> {
         (0..self.balls.len()).map(|j| self.rows.iter().map(|place| value(&place[j])).collect()).collect()
     }
 
-    /// All results, location by location.
+    /// All results, ordered by location.
     pub fn all(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().flatten()
     }
@@ -36,13 +36,13 @@ impl Table<'_> {
         Panel::new(x, y).height(200.0).map(HeatMap::new(&self.places_m, &numbers, values, value))
     }
 
-    /// Mean of a number over the results chosen; NaN if there are none.
+    /// Mean of a quantity over the selected results; NaN if there are none.
     pub fn mean(&self, value: impl Fn(&Row) -> f64, chosen: impl Fn(&Row) -> bool) -> f64 {
         let chosen: Vec<f64> = self.all().filter(|r| chosen(r)).map(value).collect();
         chosen.iter().sum::<f64>() / chosen.len() as f64
     }
 
-    /// The same table with some of the balls.
+    /// The table restricted to some of the balls.
     pub fn with_balls(&self, chosen: impl Fn(&Ball) -> bool) -> Table<'_> {
         let kept: Vec<usize> = (0..self.balls.len()).filter(|&j| chosen(&self.balls[j])).collect();
         let of = |place: &Vec<Row>| kept.iter().map(|&j| place[j].clone()).collect();
@@ -55,7 +55,7 @@ impl Table<'_> {
     }
 }
 
-/// The tables of all beams for one model: so many modes, with or without remainder modes.
+/// The tables of all beams for one model: a number of modes, with or without remainder modes.
 pub(in crate::chapters) fn compute<'a>(
     study: &mut Study,
     case: &'a Case,
@@ -65,7 +65,7 @@ pub(in crate::chapters) fn compute<'a>(
     of_beams(study, case, &case.beams, (modes, residual), |setup, solver| setup.solve_with(solver))
 }
 
-/// The same for other beams, each impact solved as told. Each location's structure is built once and serves all balls.
+/// The same for other beams, with a given way of solving each impact. The structure at each location is built once for all balls.
 pub(in crate::chapters) fn of_beams<'a>(
     study: &mut Study,
     case: &Case,

@@ -1,4 +1,4 @@
-//! What sections 4.2 and 7.2 say of a table of restitutions, as numbers of one table.
+//! Statements of sections 4.2 and 7.2 on a table of restitutions, expressed as numbers of one table.
 
 use super::tables::Table;
 use crate::chapters::impact::Row;
@@ -9,19 +9,19 @@ use vibroimpact::report::significant;
 
 /// A trend of one table.
 pub(in crate::chapters) struct Trend {
-    /// What is measured.
+    /// The measured quantity.
     pub quantity: &'static str,
-    /// Where the thesis speaks of it, besides the figure of the beam.
+    /// Section of the thesis that states the trend, besides the figure of the beam.
     pub source: &'static str,
-    /// Its words.
+    /// Wording of the thesis.
     pub words: &'static str,
-    /// Between these the trend holds.
+    /// Limits within which the trend holds.
     pub limits: (f64, f64),
-    /// Why these.
+    /// Reason for the limits.
     pub reason: &'static str,
-    /// What else the words may mean, so that a number outside the limits refutes nothing; may be empty.
+    /// Another possible meaning of the wording. If there is one, a number outside the limits does not refute the trend.
     pub otherwise: &'static str,
-    /// The table's number.
+    /// Value of the quantity for the table.
     pub ours: f64,
 }
 
@@ -47,7 +47,7 @@ const MORE: Limits = ((0.5, f64::INFINITY), "one more in every other impact");
 const TWICE: Limits = ((2.0, f64::INFINITY), "twice, as half or less counts as a significant reduction in chapter 3");
 const ONE: Limits = ((1.0, 1.0), "as stated");
 
-/// All trends that the thesis names for a beam of this kind; always the same ones, in the same order.
+/// All trends that the thesis states for a beam of this kind, always in the same order.
 pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
     let (Some(lightest), Some(heaviest)) = (table.balls.first(), table.balls.last()) else { return Vec::new() };
     let length = table.beam.model.beam.length_m();
@@ -102,7 +102,7 @@ pub(in crate::chapters) fn of(table: &Table) -> Vec<Trend> {
     trends
 }
 
-/// How much more the restitution changes from location to location, as a share of itself, where it is small.
+/// Relative change of a small restitution from location to location, compared with that of a large restitution.
 fn relative_variation(table: &Table, inner: impl Fn(&Row) -> bool) -> f64 {
     let mut pairs: Vec<(f64, f64)> = Vec::new();
     for places in table.rows.windows(2) {
@@ -121,7 +121,7 @@ pub(in crate::chapters) const FREE_END: &str = "mean e at the free end minus tha
 const SUDDEN: &str = "there is a sudden rise in restitution very close to pinned or fixed ends";
 const VERY_CLOSE: &str = "whether one location from the end, 42 mm, is very close to it; closer to the end there is a rise, and e is 1 at the end itself";
 
-/// Rises still closer to held ends than the tables' locations are; `closer` is a table of one such location for each held end.
+/// Rises between a held end and the location of the tables next to it. `closer` is a table of one such location per held end.
 pub(in crate::chapters) fn closer_to_held_ends(table: &Table, closer: &Table) -> Vec<Trend> {
     let names = [
         "mean e a sixteenth of a spacing from the left, held end minus that one location from it",
@@ -167,7 +167,7 @@ fn ends(table: &Table, trends: &mut Vec<Trend>) {
     }
 }
 
-/// The slim part, and what happens at the step.
+/// Trends on the thin part and at the step.
 fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
     let length = table.beam.model.beam.length_m();
     let inner = |r: &Row| r.location_m > 0.1 * length && r.location_m < 0.9 * length;
@@ -182,7 +182,7 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
     let heavy = "mean e on the slim part minus that on the thick part, balls above 0.3 of the heaviest";
     trends.push(Trend::new(heavy, greater, RISES, slim(0.3 * heaviest_kg)));
 
-    // locations just before and just beyond the step, but not at it
+    // the locations next to the step on both sides, without the step itself
     let before = table.places_m.iter().copied().filter(|b| *b < step_m - 1e-9).fold(0.0, f64::max);
     let beyond = table.places_m.iter().copied().filter(|b| *b > step_m + 1e-9).fold(length, f64::min);
     let third = |k: usize| {
@@ -215,7 +215,7 @@ fn step(table: &Table, step_m: f64, heaviest_kg: f64, trends: &mut Vec<Trend>) {
     );
 }
 
-/// Tells the numbers for our choice of steps, slim parts and balls.
+/// Reports the numbers for our choice of steps, thin parts and balls.
 pub(super) fn tell(study: &mut Study, tables: &[Table]) {
     study.section("The trends of section 4.2 for our choice");
     study.text(

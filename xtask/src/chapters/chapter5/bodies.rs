@@ -18,8 +18,8 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     dropped_ball(study)
 }
 
-/// A uniform rod of 1 kg and 1 m that stands at this angle (rad) to the surface of a ball of 0.5 kg and meets it with
-/// its end at 1 m/s, falling along the normal, in the plane.
+/// A uniform rod of 1 kg and 1 m whose end strikes a ball of 0.5 kg in the plane. The rod is inclined at this angle (rad) to
+/// the surface of the ball and moves along the normal at 1 m/s.
 fn oblique(angle: f64, contact: Contact) -> Result<Problem, Failure> {
     let (mass_kg, half_m, ball_kg) = (1.0, 0.5_f64, 0.5);
     let inertia = mass_kg * (2.0 * half_m).powi(2) / 12.0;
@@ -30,7 +30,7 @@ fn oblique(angle: f64, contact: Contact) -> Result<Problem, Failure> {
         matrix[6 * k] = mass;
     }
     let (along, across) = (half_m * angle.sin(), half_m * angle.cos());
-    // a smooth ball: friction would turn it too, which its radius decides; its rotation is left out
+    // the ball is smooth: without friction it does not rotate, so its rotation is left out
     let jacobian = [1.0, 0.0, -across, -1.0, 0.0, 0.0, 1.0, along, 0.0, -1.0];
     Ok(Problem::from_bodies(vec![contact], &matrix, &jacobian, &[-1.0, 0.0, 0.0, 0.0, 0.0], Vec::new())?)
 }
@@ -116,7 +116,7 @@ fn rod_on_a_table(study: &mut Study) -> Result<(), Failure> {
         let contacts = vec![contact(Friction::None, 1.0), contact(Friction::None, 1.0)];
         let problem = Problem::from_bodies(contacts, &masses, &jacobian, &[-1.0, 0.0, 0.0], Vec::new())?;
         let w = &problem.inverse_inertia_per_kg;
-        // Newton's rule as an equality: the left contact reverses its speed of approach, the right one keeps its zero
+        // Newton's rule as an equality: the left contact reverses its speed of approach, the speed of the right one remains zero
         let determinant = w[0] * w[3] - w[1] * w[2];
         let impulse_by_equality_n_s = -2.0 * w[2] / determinant;
         let lcp = emoc::lcp::newton_impact(&problem)?.ok_or("no solution of the complementarity problem")?;

@@ -1,4 +1,4 @@
-//! Every law on every table.
+//! Comparison of every impact law with every table.
 
 use crate::chapters::Failure;
 use crate::chapters::chapter7::{Dataset, LAW_MODES};
@@ -10,7 +10,7 @@ use serde::Serialize;
 use vibroimpact::net::{Observations, law};
 use vibroimpact::report::significant;
 
-/// A law, and how many numbers of it are fitted to a beam.
+/// A law and the number of its parameters that are fitted to a beam.
 pub(super) struct Law {
     pub name: &'static str,
     formula: &'static str,
@@ -18,12 +18,12 @@ pub(super) struct Law {
     predict: fn(&[&Row], &Observations) -> Result<Vec<f64>, Failure>,
 }
 
-/// One value for every impact, from its own numbers alone.
+/// A law without fitted parameters, which is computed for each impact from its data alone.
 fn each(observations: &Observations, of: impl Fn(&Impact) -> Result<f64, Failure>) -> Result<Vec<f64>, Failure> {
     observations.impacts.iter().map(of).collect()
 }
 
-/// Perfectly elastic contact: the tables have no dissipation there.
+/// Perfectly elastic contact, since the tables have no dissipation in the contact.
 const ELASTIC: f64 = 1.0;
 
 pub(super) const LAWS: [Law; 9] = [
@@ -93,7 +93,7 @@ const TODOROV: &str = "Todorov: least energy";
 const IMPULSE: &str = "one impulse on all modes";
 const REGRESSION: &str = "linear regression";
 
-/// A striker of unit mass on one mode that stands for all: every law of one impulse depends on `Z` alone.
+/// A striker of unit mass on a single mode that replaces all modes: every law of one impulse depends on `Z` alone.
 fn problem(z: f64, ebar: f64) -> Problem {
     let coefficients = Coefficients { ebar, beta0: 0.0, beta1: 0.0 };
     Problem {
@@ -253,7 +253,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
             );
         }
     }
-    // the closed forms against the solvers for any contact problem
+    // the closed forms compared with the general solvers of contact problems
     let mut solver = Solver::new();
     let mut worst = 0.0_f64;
     for z in [0.0, 1e-3, 0.1, 1.0, 7.0, 100.0] {

@@ -1,5 +1,4 @@
-//! Chapter 5: the impact laws that the thesis starts from, on the tables of chapter 4, and the small bodies with which it
-//! explains itself.
+//! Chapter 5: earlier impact laws, compared with the tables of chapter 4, and the examples of the chapter with rigid bodies.
 
 mod bodies;
 mod laws;

@@ -1,4 +1,4 @@
-//! Laws against tables.
+//! Figures that compare laws with tables.
 
 use super::laws::{Found, LAWS};
 use crate::chapters::Failure;
@@ -19,8 +19,8 @@ struct PointRow {
     restitution_of_the_law: f64,
 }
 
-/// Every fifth value: the rest would hide each other. Twelve balls follow each other at every location, so that every ball
-/// comes in turn.
+/// Draws every fifth value, since more points would overlap. Each location has twelve balls, and five and twelve have no
+/// common factor, so every ball is drawn.
 fn thinned(values: &[f64]) -> Vec<f64> {
     values.iter().copied().step_by(5).collect()
 }

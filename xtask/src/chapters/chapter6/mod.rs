@@ -1,6 +1,6 @@
-//! Chapter 6: the forms of the law agree, its solution is unique, its energy never grows.
+//! Chapter 6: the forms of the law agree, its solution is unique, and the energy never grows.
 
-/// The oracle of `emoc`'s own tests: a quadratic program solved by trying every set of active rows.
+/// The reference solver of the tests of `emoc`: a quadratic program solved by trying every set of active rows.
 #[path = "../../../../crates/emoc/tests/common/enumeration.rs"]
 mod enumeration;
 mod resolved;
@@ -36,7 +36,7 @@ impl Random {
         self.range(0.0, n) < 1.0
     }
 
-    /// Uniform, or at an end of the interval one time in ten each.
+    /// Uniform on an interval, with each end drawn with probability 0.1.
     fn with_ends(&mut self, low: f64, high: f64) -> f64 {
         match self.range(0.0, 10.0) {
             r if r < 1.0 => low,
@@ -63,7 +63,7 @@ impl Case {
         Case { kind: "random", mass_kg: 10f64.powf(random.range(-3.0, 2.0)), phi, coefficients }
     }
 
-    /// Vanishing shapes, vanishing and huge masses, coefficients at their ends, the kink to the last digit.
+    /// Degenerate cases: vanishing shapes, vanishing and huge masses, coefficients at their limits, and the kink to the last digit.
     fn degenerate() -> Vec<Case> {
         let mut cases = Vec::new();
         for (ebar, beta0, beta1) in
@@ -129,7 +129,7 @@ impl Case {
     }
 }
 
-/// One case in all forms.
+/// Solves one case in all forms.
 #[derive(Serialize)]
 struct AgreementRow {
     kind: &'static str,
@@ -198,7 +198,7 @@ fn least_growth(case: &Case, closed: &Rebound, seed: u64) -> Result<f64, Failure
         let v = case.least_velocity(&rates) + extra;
         let steps: Vec<f64> = rates.iter().zip(&solution).map(|(a, b)| a - b).collect();
         let distance = case.energy(v - closed.restitution, &steps);
-        // closer points are lost in rounding
+        // rounding dominates at closer points
         if distance > 1e-6 * least.max(1e-6) {
             growth = growth.min((case.energy(v, &rates) - least) / distance);
         }
@@ -225,7 +225,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     Ok(INTRODUCTION)
 }
 
-/// Groups of cases by what limits a numerical solution.
+/// Groups of cases with different accuracy of the numerical solutions.
 const GROUPS: [&str; 3] = ["random, β₁ < 1", "random, β₁ = 1", "degenerate"];
 
 fn group(row: &AgreementRow) -> &'static str {
@@ -244,7 +244,7 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
     ];
     let mut lines = Vec::new();
     for (name, difference, marker) in forms {
-        // what agrees to the last bit stands at the foot, where few points are enough
+        // differences of exactly zero are drawn at the lower edge, where few points suffice
         let all = rows.iter().filter_map(|row| Some((row.z, difference(row)?.max(1.5e-17))));
         let (z, shown): (Vec<f64>, Vec<f64>) =
             all.enumerate().filter(|(i, (_, d))| *d > 1e-14 || i.is_multiple_of(8)).map(|(_, point)| point).unzip();
@@ -319,7 +319,7 @@ fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(),
     )
 }
 
-/// What the closed form looks like.
+/// Plots the closed form.
 fn shape(study: &mut Study) -> Result<(), Failure> {
     study.section("The closed form");
     let z: Vec<f64> = (0..=240).map(|i| 10f64.powf(-2.0 + f64::from(i) / 40.0)).collect();

@@ -1,4 +1,4 @@
-//! The inequalities of the law held against impacts resolved in time.
+//! Comparison of the inequalities of the law with impacts resolved in time.
 
 use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
@@ -12,7 +12,7 @@ use serde::Serialize;
 use vibroimpact::net::{Observations, law};
 use vibroimpact::report::significant;
 
-/// One impact of chapter 4 at its end.
+/// State of one impact of chapter 4 at its end.
 #[derive(Debug, Serialize)]
 struct Row {
     beam: String,
@@ -63,7 +63,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let mut cases = Vec::new();
     for beam in &case.beams {
         let places = case.places(beam);
-        // the first location is held, where no mode moves
+        // no mode moves at the first location, which is a support
         let inside: Vec<f64> = places.iter().copied().skip(1).step_by(if study.quick { 8 } else { 2 }).collect();
         cases.extend(inside.iter().flat_map(|&b| balls.iter().map(move |ball| (beam, *ball, b))));
     }
@@ -89,7 +89,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     outward(study, &case, &rows)
 }
 
-/// In how many impacts the two inequalities that are modelling choices hold, with the parameters fitted to the beam.
+/// Counts the impacts in which the two inequalities that are modelling choices hold, with the parameters fitted to the beam.
 fn outward(study: &mut Study, case: &Case, rows: &[Row]) -> Result<(), Failure> {
     let mut lines = Vec::new();
     for beam in &case.beams {

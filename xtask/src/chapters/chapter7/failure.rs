@@ -1,4 +1,4 @@
-//! Where the thesis's form fails, and why.
+//! Impacts for which the law of the thesis is inaccurate, and the reasons.
 
 use super::Dataset;
 use super::fits::BeamFit;
@@ -13,7 +13,7 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Resu
     study.section("Where the law fails, and why");
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for (data, found) in data.iter().zip(fits) {
-        // the map shows what is resolved; a result without restitution stays grey
+        // results without restitution are grey in the map
         let difference = |mass_kg: f64, location_m: f64| {
             let place = data.rows.iter().position(|r| r.mass_kg == mass_kg && r.location_m == location_m);
             place.map_or(f64::NAN, |i| found.fit.residuals[i])
@@ -79,7 +79,7 @@ fn summary(data: &Dataset, found: &BeamFit) -> Vec<String> {
     ]
 }
 
-/// Rms of a value less the mean of its four neighbours, as the error of one value.
+/// Rms difference of a value and the mean of its four neighbours, scaled to the error of a single value.
 pub(in crate::chapters) fn irregularity(data: &Dataset) -> f64 {
     let rows = &data.table.rows;
     let e = |i: usize, j: usize| rows[i][j].e();

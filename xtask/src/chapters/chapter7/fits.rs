@@ -12,7 +12,7 @@ use vibroimpact::net::{self, Observations};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
-/// One beam's fit with the data that it was made to.
+/// The fit of one beam with its data.
 pub(in crate::chapters) struct BeamFit {
     pub observations: Observations,
     pub fit: Fit,
@@ -87,7 +87,7 @@ fn with_intervals(fit: &Fit) -> Result<[String; 3], Failure> {
     }))
 }
 
-/// Fits every beam to both tables; gives those to the thesis's tables, which took so long to resolve (s).
+/// Fits the law to both tables of every beam. Returns the fits to the tables with 40 modes, which took `resolved_s` to compute.
 pub(super) fn run(
     study: &mut Study,
     truncated: &[Dataset],
@@ -161,7 +161,7 @@ fn quicker(study: &mut Study, rows: &[FitRow], fits_s: f64, resolved_s: f64) {
     ));
 }
 
-/// Section 7.1: restitution against Z, and the function that is to follow it.
+/// Section 7.1: restitution against Z, and the function that approximates it.
 fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<(), Failure> {
     const PARTS: usize = 10;
     let mut pairs: Vec<(f64, f64)> = data

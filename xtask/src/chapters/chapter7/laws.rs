@@ -1,4 +1,4 @@
-//! Laws beside each other: what each reaches on every beam, and how it predicts a beam that it has not seen.
+//! Comparison of laws: the error of each on every beam, and its error on a beam that was left out of the fit.
 
 use super::pictures::{Curve, by_ball};
 use super::{Dataset, LAW_MODES, SETTLED_MODES};
@@ -12,7 +12,7 @@ use vibroimpact::net;
 use vibroimpact::plot::Colour;
 use vibroimpact::report::significant;
 
-/// What a law may know of one impact, and what came of it.
+/// Inputs of the laws for one impact, and the resolved restitution.
 pub(in crate::chapters) struct Datum {
     pub impact: Impact,
     /// `(omega_k tau)^2` and `m phi_k^2` of the modes, slowest first.
@@ -26,7 +26,7 @@ impl Datum {
         let observations = data.observations(LAW_MODES)?;
         let datum = |(row, impact): (&&crate::chapters::impact::Row, &Impact)| {
             let ball = data.table.balls.iter().find(|ball| ball.mass_kg == row.mass_kg).ok_or("a ball of no table")?;
-            // Hertz: 2.9432 times greatest compression over speed
+            // duration by Hertz: 2.9432 times the largest compression divided by the speed
             let compression_m = (1.25 * ball.mass_kg * row.speed_m_s.powi(2) / ball.stiffness_n_m1_5).powf(0.4);
             let duration_s = 2.9432 * compression_m / row.speed_m_s;
             let modes = data.beam.structure(row.location_m, SETTLED_MODES, 0.0, false)?.modes;
@@ -51,7 +51,7 @@ impl Datum {
     }
 }
 
-/// A law: its parameters and what it makes of an impact.
+/// A law: its parameters and its prediction for an impact.
 pub(in crate::chapters) struct Law {
     name: &'static str,
     formula: &'static str,
@@ -103,13 +103,13 @@ pub(in crate::chapters) const LAWS: [Law; 4] = [
     },
 ];
 
-/// What a law reaches.
+/// Errors of a law.
 struct Evidence {
-    /// Fitted to each beam alone.
+    /// Error of a fit to each beam alone.
     alone: Vec<Fit>,
-    /// Fitted to all beams at once.
+    /// Error of one fit to all beams.
     together: Fit,
-    /// Each beam predicted by the fit to the others, and all of these.
+    /// Errors of the predictions of each beam by the fit to the other beams, and of all these predictions together.
     predicted: Vec<Residuals>,
     predicted_all: Residuals,
 }
@@ -159,7 +159,7 @@ struct EvidenceRow {
     max_error_predicted: f64,
 }
 
-/// One impact in the law with attached modes.
+/// Data of one impact for the law with attached modes.
 #[derive(Serialize)]
 struct AttachedRow {
     beam: String,
@@ -242,7 +242,7 @@ fn show(study: &mut Study, table: &str, sets: &[Dataset], found: &[Evidence]) {
     }
 }
 
-/// The table, the thesis's form fitted to each beam, and the last law with one set of parameters for all.
+/// Plots the table, the law of the thesis fitted to each beam, and the last law with one set of parameters for all beams.
 fn pictures(study: &mut Study, sets: &[Dataset], beams: &[Vec<Datum>], found: &[Evidence]) -> Result<(), Failure> {
     let [thesis, .., attached] = found else { return Ok(()) };
     let (law, p) = (&LAWS[LAWS.len() - 1], &attached.together.parameters);

@@ -28,7 +28,7 @@ pub(super) const LAW_MODES: usize = 50;
 /// Modes of the converged tables.
 const SETTLED_MODES: usize = 100;
 
-/// The table of one beam with what the laws need to know of each impact.
+/// The table of one beam with the inputs of the laws for each impact.
 pub(super) struct Dataset<'a> {
     pub beam: &'a Beam,
     table: &'a Table<'a>,
@@ -41,7 +41,7 @@ impl<'a> Dataset<'a> {
         Dataset { beam: table.beam, table, rows: table.all().filter(|row| row.restitution.is_some()).collect() }
     }
 
-    /// The impacts as the law takes them, with so many modes.
+    /// Inputs of the law for each impact, with this many modes.
     pub fn observations(&self, modes: usize) -> Result<Observations, Failure> {
         let mut observations = Observations::default();
         for row in &self.rows {

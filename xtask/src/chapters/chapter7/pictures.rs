@@ -1,4 +1,4 @@
-//! Figs. 7.3 to 7.6: the table and the law, ball by ball along the beam.
+//! Figs. 7.3 to 7.6: table and law along the beam, one panel per ball.
 
 use super::Dataset;
 use super::fits::BeamFit;
@@ -53,7 +53,7 @@ pub(super) fn run(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Resu
     Ok(())
 }
 
-/// Values of a law for the rows of a data set, and how they are drawn; without marker as a line.
+/// Values of a law for the rows of a data set with their style: markers, or a line if there is no marker.
 pub(super) struct Curve<'a> {
     pub values: &'a [f64],
     pub colour: Colour,
@@ -61,10 +61,10 @@ pub(super) struct Curve<'a> {
     pub label: &'a str,
 }
 
-/// One panel a ball: restitution along the beam, the table in red and the curves over it.
+/// Draws one panel per ball: restitution along the beam, with the table in red and the curves over it.
 pub(super) fn by_ball(title: &str, data: &Dataset, curves: &[Curve]) -> Figure {
     let balls = &data.table.balls;
-    // full rows, so that panels stand under each other
+    // incomplete rows are filled so that the panels are aligned
     let per_row = [3, 4, 2].into_iter().find(|n| balls.len().is_multiple_of(*n)).unwrap_or(3);
     let panel = |(j, ball): (usize, &crate::chapters::impact::Ball)| {
         let of_ball: Vec<usize> = (0..data.rows.len()).filter(|&i| data.rows[i].mass_kg == ball.mass_kg).collect();

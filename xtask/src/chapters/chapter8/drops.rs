@@ -1,4 +1,4 @@
-//! The drops resolved in time.
+//! Drops of rods, resolved in time.
 
 use super::Parameters;
 use crate::chapters::Failure;
@@ -19,7 +19,7 @@ pub(super) struct DropRow {
     pub restitution: Option<f64>,
     pub restitution_uncertainty: Option<f64>,
     pub micro_collisions: usize,
-    /// What the restitution would be after the first micro-collision alone.
+    /// Restitution after the first micro-collision alone.
     pub restitution_of_the_first: f64,
     pub last_separation_s: f64,
     pub outcome: &'static str,
@@ -46,7 +46,7 @@ pub(super) fn solve(parameters: &Parameters, length_m: f64, angle_deg: f64) -> R
     })
 }
 
-/// All rods at all angles, rod by rod.
+/// Solves the drops of all rods at all angles, ordered by rod.
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<Vec<DropRow>, Failure> {
     study.section("Drops resolved in time");
     let steps = parameters.our_choice.angles.max(2) - 1;

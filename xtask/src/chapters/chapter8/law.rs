@@ -15,7 +15,7 @@ use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 
-/// A restitution to be met by the law.
+/// A restitution to which the law is fitted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub length_m: f64,
@@ -23,7 +23,7 @@ pub(super) struct Point {
     pub restitution: f64,
 }
 
-/// The rod as the law takes it: all bending modes below the first axial one, and so many axial modes.
+/// Input of the law for a rod: all bending modes below the first axial one, and a number of axial modes.
 pub(super) fn impact(
     parameters: &Parameters,
     length_m: f64,
@@ -33,7 +33,7 @@ pub(super) fn impact(
     let rod = parameters.rod(length_m, angle_deg);
     let (sin, cos) = rod.inclination_rad.sin_cos();
     let root = rod.mass_kg().sqrt();
-    // upright, the rounding of cos(90°) would count as a mode shape
+    // for an upright rod the rounding of cos(90°) would count as a mode shape
     let cos = if angle_deg == 90.0 { 0.0 } else { cos };
     let bending = vec![2.0 * cos / root; rod.bending_modes_below_first_axial()?];
     let axial = vec![SQRT_2 * sin / root; axial_modes];
@@ -54,10 +54,10 @@ pub(super) fn observations(
     })
 }
 
-/// As many axial modes as the law is tried with.
+/// Largest number of axial modes in the law.
 const MORE_AXIAL: usize = 4;
 
-/// A parameter beyond this has run off to its limit, infinity.
+/// A parameter above this value counts as infinite.
 const RUN_OFF: f64 = 1e9;
 
 /// Root of the mean square of the residuals of some points.
@@ -205,7 +205,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     study.csv("fig-8-02.csv", &rows)
 }
 
-/// The numbers of modes of 8.2.2. The text does not print the diameter, which two of them therefore fix.
+/// The numbers of modes of section 8.2.2. Two of them determine the diameter, which the text does not print.
 fn bending_modes(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
     let lengths = || parameters.lengths_m.iter().zip(&parameters.bending_modes_of_the_law);
     let count = |length_m: f64, diameter_m: f64| {
@@ -219,7 +219,7 @@ fn bending_modes(study: &mut Study, parameters: &Parameters) -> Result<(), Failu
         }
         fitting.push((diameter_m, given));
     }
-    // the diameters that give a number, smallest and largest
+    // smallest and largest diameter with this number of modes
     let span = |chosen: &dyn Fn(&[bool]) -> bool| {
         let of = fitting.iter().filter(|(_, given)| chosen(given)).map(|(diameter, _)| 1e3 * diameter);
         of.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high): (f64, f64), d| (low.min(d), high.max(d)))
@@ -266,7 +266,7 @@ fn panel(title: String, points: &[Point], length_m: f64, label: &str) -> Panel {
     Panel::new(x, y).title(title).with(Series::points(&angle, &e, Marker::Plus).colour(Colour::Vermilion).label(label))
 }
 
-/// One panel a rod, as Fig. 8.2; `source` says in the legend what the points are.
+/// Draws one panel per rod, as Fig. 8.2. `source` describes the points in the legend.
 pub(super) fn by_rod(
     name: &str,
     source: &str,

@@ -1,4 +1,4 @@
-//! Points that a person has measured, or read off a published figure.
+//! Measured points that the user supplies, for example read off a published figure.
 
 use super::Parameters;
 use super::law::{Point, by_rod, observations};

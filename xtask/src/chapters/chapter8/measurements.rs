@@ -1,5 +1,5 @@
-//! What the measured rods did, as far as it is told in words: the abstract of Stoianovici and Hurmuzlu (1996,
-//! doi:10.1115/1.2788865), which the thesis's text does not have, against the drops resolved here.
+//! Comparison of the resolved drops with the abstract of Stoianovici and Hurmuzlu (1996, doi:10.1115/1.2788865), which
+//! describes their measurements in words. The thesis does not contain these words.
 
 use super::Parameters;
 use super::drops::{DropRow, solve};
@@ -12,7 +12,7 @@ const SOURCE: &str = "[19], abstract";
 /// A tenth of the range from 0 to 1.
 const CLEAR: f64 = 0.1;
 
-/// Largest less smallest restitution over the inclinations.
+/// Difference of the largest and the smallest restitution over the inclinations.
 fn range(rows: &[&DropRow]) -> f64 {
     let e = rows.iter().map(|row| row.restitution.unwrap_or(f64::NAN));
     let (low, high) = e.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), e| (low.min(e), high.max(e)));

@@ -21,7 +21,7 @@ contact, and no contact of the other end, which matters for rods that fall almos
 these drops. `cargo xtask reproduce-chapter 8 --data points.csv` (columns length_m, angle_deg, restitution) fits and \
 plots points that a person has read off the published figure.";
 
-/// The parameter file; see its own remarks.
+/// The parameter file, which explains its entries.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parameters {
@@ -73,7 +73,7 @@ impl Parameters {
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study, data: Option<&Path>) -> Result<&'static str, Failure> {
     let parameters = Parameters::load()?;
-    // a fault in a person's file is told before anything is computed
+    // the user's file is checked before anything is computed
     let points = data.map(measured::read).transpose().map_err(|fault| BadInput(fault.to_string()))?;
     let drops = drops::run(study, &parameters)?;
     upright::run(study, &parameters)?;

@@ -1,4 +1,4 @@
-//! Two rods that collide end to end: the restitution is the ratio of their lengths.
+//! Two rods that collide along their axes: the restitution is the ratio of their lengths.
 
 use super::Parameters;
 use crate::chapters::Failure;
@@ -16,7 +16,7 @@ const HARD: f64 = 1e3;
 /// Lengths (m); the first one moves.
 const PAIRS: [[f64; 2]; 4] = [[0.1, 0.6], [0.1, 0.2], [0.2, 0.3], [0.4, 0.4]];
 
-/// Restitution of the rods' centres of mass. Seen from the contact, both rods are one structure that closes the gap.
+/// Restitution of the rods' centres of mass. For the contact, both rods together are one structure.
 fn restitution(parameters: &Parameters, lengths_m: [f64; 2]) -> Result<f64, Failure> {
     let (modulus, density) = (parameters.youngs_modulus_pa, parameters.density_kg_m3);
     let area_m2 = 0.25 * PI * parameters.our_choice.diameter_m.powi(2);

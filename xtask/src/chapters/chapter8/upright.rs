@@ -19,8 +19,8 @@ struct UprightRow {
     contact_over_wave_time: f64,
 }
 
-/// Stiffness of the contact as a multiple of the rod's own, `E A / L`: from a rigid rod on a soft spring to a rod on a
-/// hard one.
+/// Contact stiffness as a multiple of the axial stiffness `E A / L` of the rod: from a rod that is nearly rigid compared with
+/// a soft spring to a rod on a hard spring.
 const STIFFNESS_RATIOS: [f64; 5] = [1e-3, 1e-1, 1e1, 1e2, 1e3];
 const AXIAL_MODES: usize = 200;
 
@@ -42,7 +42,7 @@ fn solve(parameters: &Parameters, length_m: f64, ratio: f64) -> Result<UprightRo
 
 pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Failure> {
     study.section("Upright rods against the exact wave solution");
-    // in these units all rods are alike
+    // in these units all rods have the same solution
     let length = parameters.lengths_m[0];
     let rows = study.sweep(&STIFFNESS_RATIOS, 1, |&ratio| solve(parameters, length, ratio))?;
     study.csv("upright.csv", &rows)?;

@@ -1,4 +1,4 @@
-//! The evidence for the automatic choice of the model: random scenes against a far tighter reference.
+//! Test of the automatic choice of the model: random scenes compared with a much more accurate reference.
 
 mod net;
 mod report;
@@ -12,11 +12,11 @@ use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
-/// Scenes, in full and in the quick form.
+/// Number of scenes of a full and of a quick run.
 const SCENES: [u64; 2] = [1000, 16];
-/// Scenes solved side by side before their rows are put down.
+/// Number of scenes that are solved in parallel before their rows are written.
 const BATCH: usize = 32;
-/// The rows that there are so far, a line each.
+/// The rows so far, one per line.
 const ROWS: &str = "rows.jsonl";
 
 const INTRODUCTION: &str = "The automatic choice of the model, put to the test on random scenes: beams by both theories \
@@ -33,13 +33,13 @@ pub struct RandomScenes {
     /// Fewer scenes through the same code
     #[arg(long)]
     pub quick: bool,
-    /// The first scene of the row; another begins another sample
+    /// Number of the first scene; another number selects another sample
     #[arg(long, value_name = "NUMBER", default_value_t = 0)]
     pub first: u64,
-    /// How many scenes; 1,000 when left out, or 16 in the quick form
+    /// Number of scenes [default: 1000, or 16 with --quick]
     #[arg(long, value_name = "COUNT")]
     pub scenes: Option<u64>,
-    /// Go on from what an earlier run of the same scenes has put down
+    /// Resume from the rows that an earlier run of the same scenes has written
     #[arg(long)]
     pub resume: bool,
     /// The folder to write to
@@ -58,7 +58,7 @@ pub fn run(study: &mut Study, wanted: &RandomScenes) -> Result<&'static str, Fai
     Ok(INTRODUCTION)
 }
 
-/// The rows of these scenes; every batch is put down, so that a run that was broken off can go on.
+/// Computes the rows of these scenes. Every batch is written, so that an interrupted run can be resumed.
 fn rows(study: &mut Study, path: &Path, numbers: &[u64], resume: bool) -> Result<Vec<Row>, Failure> {
     let mut rows: Vec<Row> = Vec::new();
     if resume && path.exists() {

@@ -1,4 +1,4 @@
-//! The net law of two parameters: fitted to impacts on random beams, and tried on beams left out of the fit.
+//! The net law with two parameters: fitted to impacts on random beams, and tested on beams left out of the fit.
 
 use super::scenes::{Random, ball, beam, hertz};
 use crate::chapters::Failure;
@@ -11,15 +11,15 @@ use vibroimpact::Scene;
 use vibroimpact::model::{VALIDATED, largest_share};
 use vibroimpact::report::{Comparison, significant};
 
-/// Beams, and impacts on each; in the quick form fewer of both.
+/// Number of beams, and of impacts on each; a quick run has fewer of both.
 const BEAMS: (u64, u64) = (40, 8);
 const IMPACTS: (usize, usize) = (25, 10);
 /// Modes that the law sums over.
 const MODES: usize = 120;
-/// Accuracy of the restitutions that it is fitted to.
+/// Tolerance of the restitutions to which the law is fitted.
 const TOLERANCE: f64 = 3e-3;
 
-/// One impact: what the law takes, and what was found.
+/// Inputs of the law for one impact, and its restitution.
 #[derive(Serialize)]
 struct Datum {
     beam: u64,
@@ -41,7 +41,7 @@ impl Datum {
     }
 }
 
-/// The impacts on one random beam that is held; those that do not settle are left out.
+/// The impacts on one random supported beam, without those that do not converge.
 fn on_beam(number: u64, impacts: usize) -> Result<Vec<Datum>, Failure> {
     const HELD: [[&str; 2]; 6] = [
         ["clamped", "free"],
@@ -67,7 +67,7 @@ fn on_beam(number: u64, impacts: usize) -> Result<Vec<Datum>, Failure> {
             continue;
         };
         let Law::Hertz(law) = impact.law else { continue };
-        // Hertz: 2.9432 times greatest compression over speed
+        // duration by Hertz: 2.9432 times the largest compression divided by the speed
         let compression_m = (1.25 * mass_kg * speed_m_s.powi(2) / law.stiffness_n_m1_5).powf(0.4);
         let duration_s = 2.9432 * compression_m / speed_m_s;
         let modes = scene.mode_shapes(MODES)?;

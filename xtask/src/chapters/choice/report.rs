@@ -1,4 +1,4 @@
-//! What the study of the choice came to, in words, tables and a picture.
+//! Report of the study of the automatic choice: text, tables and a figure.
 
 use super::row::{Row, TOLERANCES};
 use crate::chapters::Failure;
@@ -7,14 +7,14 @@ use vibroimpact::model::Model;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Comparison, significant};
 
-/// Rows listed one by one.
+/// Largest number of rows that are listed individually.
 const LISTED: usize = 40;
 
 fn geometric(values: &[f64]) -> f64 {
     (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
 }
 
-/// Of some rows: how many keep their word, and what they cost.
+/// Coverage and cost of some rows.
 struct Tally {
     rows: usize,
     counted: usize,
@@ -25,7 +25,7 @@ struct Tally {
     /// Of those with a stated uncertainty.
     covered: usize,
     worst: f64,
-    /// Mode-steps over those of the cheapest model, where modes are integrated at all.
+    /// Mode-steps relative to those of the cheapest model, for rows with integrated modes.
     costs: Vec<f64>,
 }
 
@@ -118,7 +118,7 @@ pub(super) fn write(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
     picture(study, rows)
 }
 
-/// By what the ends of the planned ranges would have to be multiplied to leave 2 % of the rows out on either side.
+/// Factors for the limits of the planned ranges that would leave 2 % of the rows out on either side.
 fn quantiles(planned: &[(&Row, [u64; 2])]) -> String {
     let of = |group: fn(&Row) -> bool| {
         let rows = planned.iter().filter(|(row, _)| group(row));
@@ -186,7 +186,7 @@ const MODELS: [(Model, Colour, Marker); 4] = [
 
 fn picture(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
     let counted: Vec<&Row> = rows.iter().filter(|row| row.counts() && row.chosen).collect();
-    // an error below the reference's own is shown as that
+    // errors below the error of the reference are drawn at that value
     let error = |row: &Row| row.error().unwrap_or(1.0).max(row.reference_change.unwrap_or(0.0)).max(1e-12);
     let panel = |x: &str, of: fn(&Row) -> f64, low: f64| {
         let panel = Panel::new(Axis::new(x).log().limits(low, 1.0), Axis::new("actual error").log().limits(1e-12, 1.0));
@@ -202,7 +202,7 @@ fn picture(study: &mut Study, rows: &[Row]) -> Result<(), Failure> {
         }
         panel
     };
-    // the scenes of one tolerance side by side, not on one line
+    // scenes with the same tolerance are spread out horizontally
     let spread = |row: &Row| row.tolerance * 10f64.powf(0.6 * ((row.scene % 97) as f64 / 97.0 - 0.5));
     let tolerance = panel("tolerance (spread for sight)", spread, 3e-7);
     let uncertainty = panel("reported uncertainty", |row| row.uncertainty.unwrap_or(1.0).max(1e-9), 1e-9);

@@ -1,4 +1,4 @@
-//! One scene at one tolerance: what was answered, at what cost, and what is true.
+//! One scene at one tolerance: the answer, its cost, and the true result.
 
 use super::scenes;
 use crate::chapters::Failure;
@@ -9,21 +9,23 @@ use vibroimpact::{Impact, Scene};
 
 /// Tolerances at which every scene is answered.
 pub(super) const TOLERANCES: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-/// The reference has so many times the modes of the finest answer, as far as there are so many, and at least so many.
+/// The reference has this multiple of the modes of the finest answer (or all modes, if there are fewer), and at least this
+/// many modes.
 const RICHER: usize = 2;
 const FEWEST_OF_REFERENCE: usize = 128;
-/// It is doubled until it is known so many times better than the finest tolerance, or there are no more modes.
+/// The number of modes of the reference is doubled until its error is this many times smaller than the finest tolerance, or
+/// until there are no more modes.
 const KNOWN: f64 = 30.0;
 const REFERENCE_TOLERANCE: f64 = 1e-10;
-/// From one number of modes to the next, of the reference too.
+/// Factor between successive numbers of modes, also of the reference.
 const RAISE: f64 = std::f64::consts::SQRT_2;
-/// The fewest modes that are tried for the cheapest model, and its tolerance as shares of the requested tolerance: the first
-/// that is enough.
+/// The smallest number of modes that is tried for the cheapest model, and its tolerances as shares of the requested tolerance.
+/// The first sufficient one is used.
 const FEWEST: usize = 4;
 const SHARES: [f64; 3] = [0.1, 3e-3, 1e-4];
-/// Smaller errors are rounding.
+/// Smaller errors are due to rounding.
 const ROUNDING: f64 = 1e-11;
-/// A reference counts where it is known this many times better than the tolerance.
+/// A reference counts if its error is this many times smaller than the tolerance.
 const TIGHTER: f64 = 3.0;
 
 #[derive(Clone, Serialize, Deserialize)]
@@ -34,7 +36,7 @@ pub(super) struct Row {
     pub damping_ratio: f64,
     pub tolerance: f64,
     pub model: Model,
-    /// Whether the program chose the modes, so that it may say that a result has settled.
+    /// Whether the program chose the modes, so that it can report convergence.
     pub chosen: bool,
     pub modes: usize,
     pub sub_impacts: Option<usize>,
@@ -44,21 +46,20 @@ pub(super) struct Row {
     pub settled: bool,
     pub reference_modes: usize,
     pub reference: Option<f64>,
-    /// By what the reference differs from one with fewer modes.
+    /// Difference of the reference from one with fewer modes.
     pub reference_change: Option<f64>,
     pub solves: u64,
     pub mode_steps: u64,
-    /// What `plan` says of them beforehand, at least and at most, where it expects modes to be integrated.
+    /// Range of mode-steps that `plan` predicts, if it expects modes to be integrated.
     pub planned_least: Option<u64>,
     pub planned_most: Option<u64>,
-    /// The fewest modes from which on no further ones bring the error above the tolerance, and what one solve with
-    /// them costs.
+    /// The smallest number of modes from which on the error stays below the tolerance, and the cost of one solution with them.
     pub cheapest_modes: Option<usize>,
     pub cheapest_mode_steps: Option<u64>,
 }
 
 impl Row {
-    /// The rows of a scene, one a tolerance.
+    /// The rows of a scene, one per tolerance.
     pub fn of_scene(number: u64) -> Result<Vec<Row>, Failure> {
         let drawn = scenes::scene(number)?;
         let mut answers = Vec::new();
@@ -120,25 +121,25 @@ impl Row {
         self.error().is_some_and(|error| error <= self.tolerance)
     }
 
-    /// Actual error over the uncertainty reported; what the reference does not know is no error.
+    /// Ratio of the actual error to the reported uncertainty. A difference within the uncertainty of the reference is not an error.
     pub fn overrun(&self) -> Option<f64> {
         let error = self.error()? - self.reference_change?;
         Some(if error > ROUNDING { error / self.uncertainty? } else { 0.0 })
     }
 }
 
-/// What is true of a scene, as far as it is known.
+/// The true result of a scene, with its uncertainty.
 struct Truth<'a> {
     scene: &'a Scene,
     modes: usize,
     restitution: Option<f64>,
     change: Option<f64>,
-    /// Numbers of modes, rising, and how far each is off.
+    /// Increasing numbers of modes, and the error of each.
     errors: Vec<(usize, f64)>,
 }
 
 impl<'a> Truth<'a> {
-    /// From at least so many modes, and from no more than there are.
+    /// Computes the reference with at least this many modes, or with all modes if there are fewer.
     fn new(drawn: &'a scenes::Drawn, at_least: usize, at_most: usize) -> Result<Truth<'a>, Failure> {
         let exact = |scene: &Scene, modes| Ok::<_, Failure>(solve(scene, modes, REFERENCE_TOLERANCE)?.restitution);
         let counts = |most: usize| {
@@ -166,7 +167,7 @@ impl<'a> Truth<'a> {
         Ok(Truth { scene: &drawn.scene, modes, restitution, change, errors })
     }
 
-    /// The fewest modes that reach a tolerance for certain, and the cost of one solve.
+    /// The smallest number of modes that is sure to meet a tolerance, and the cost of one solution.
     fn cheapest(&self, tolerance: f64) -> Result<Option<(usize, u64)>, Failure> {
         let enough = self.errors.iter().rev().take_while(|(_, error)| *error <= tolerance).last();
         let Some(((modes, _), reference)) = enough.zip(self.restitution) else { return Ok(None) };
@@ -180,7 +181,7 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// The impact with so many modes and remainder modes for all others, once.
+/// Solves the impact once with this many modes and remainder modes for all others.
 fn solve(scene: &Scene, modes: usize, tolerance: f64) -> Result<Solution, Failure> {
     let impact = Scene { modes: Modes::Count(modes), residual_compliance: Some(true), ..scene.clone() }.impact()?;
     let settings = Settings { tolerance, estimate_uncertainty: false, ..impact.settings };

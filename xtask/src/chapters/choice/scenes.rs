@@ -1,4 +1,5 @@
-//! Random scenes: every structure with modes, every law, locations near supports and tips, masses and speeds over decades.
+//! Random scenes: every structure with modes, every law, locations near supports and tips, and masses and speeds over several
+//! orders of magnitude.
 
 use crate::chapters::Failure;
 use serde_json::{Value, json};
@@ -10,15 +11,15 @@ use vibroimpact::model::Modes;
 const MODULUS: f64 = 2e11;
 const DENSITY: f64 = 7800.0;
 const POISSON: f64 = 0.3;
-/// Share of undamped scenes, and of beams with a step.
+/// Shares of undamped scenes and of beams with a step.
 const UNDAMPED: f64 = 0.15;
 const STEPPED: f64 = 0.3;
-/// Share of scenes under a ball light enough that another model may do.
+/// Share of scenes with a ball so light that a simpler model may be sufficient.
 const LIGHT: f64 = 0.1;
-/// Modes stated for a structure that moves before the impact.
+/// Number of modes that a scene states if its structure moves before the impact.
 const STATED: [f64; 2] = [20.0, 60.0];
 
-/// Modes of a reference at most; fewer of a plate whose modes take large matrices.
+/// Largest number of modes of a reference; smaller for a plate whose modes need large matrices.
 const MOST_MODES: usize = 1500;
 const RITZ: usize = 300;
 
@@ -39,7 +40,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Between two numbers, evenly in their logarithm.
+    /// Log-uniform between two numbers.
     pub fn log(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.share())
     }
@@ -49,7 +50,7 @@ impl Random {
     }
 }
 
-/// A structure: its JSON, how far it reaches, its mass.
+/// A structure: its JSON, its length and its mass.
 type Struck = (Value, f64, f64);
 
 /// A beam of one or two segments.
@@ -71,7 +72,7 @@ pub(super) fn beam(random: &mut Random, ends: [&str; 2], damping_ratio: f64) -> 
     (beam, length, mass)
 }
 
-/// The same with shear and rotary inertia.
+/// The same beam with shear and rotary inertia.
 fn with_shear((mut beam, length, mass): Struck) -> Struck {
     beam["theory"] = json!("timoshenko");
     for segment in beam["segments"].as_array_mut().into_iter().flatten() {
@@ -89,7 +90,7 @@ fn string(random: &mut Random, damping_ratio: f64) -> Struck {
     (string, length, length * mass_per_length)
 }
 
-/// A plate by its length; the location is on its diagonal.
+/// A plate with a given length; the location is on its diagonal.
 fn plate(random: &mut Random, damping_ratio: f64) -> Struck {
     let (length, width) = (random.log(0.1, 1.0), 0.5 + 0.5 * random.share());
     let thickness = length * random.log(0.005, 0.05);
@@ -110,14 +111,14 @@ pub(super) fn hertz() -> Value {
     json!({ "law": "hertz", "youngs_modulus_pa": MODULUS, "poissons_ratio": POISSON })
 }
 
-/// Any law, for a striker of that mass and speed: every third time Hertz's, otherwise each as often as the others. What hits
-/// a string is soft.
+/// A random contact law for a striker of that mass and speed: Hertz's law with probability 1/3, otherwise each law with the
+/// same probability. Strikers on a string are soft.
 fn contact(random: &mut Random, kind: &str, mass: f64, speed: f64) -> Value {
-    // as long a contact at a wall as a ball of that mass would have, or up to ten times that
+    // duration of contact on a wall: that of a steel ball of this mass, or up to ten times that
     let softer = if kind == "string" { 10.0 } else { 1.0 };
     let duration = softer * 2e-3 * mass.cbrt() * speed.powf(-0.2) * random.log(0.1, 1.0);
     let stiffness = mass * (PI / duration).powi(2);
-    // the compression of a spring as stiff, and the stiffness of a power of it with the same force there
+    // the compression of a spring of this stiffness, and the stiffness of a power law with the same force at that compression
     let compression = speed * duration / PI;
     let power = |exponent: f64| stiffness * compression.powf(1.0 - exponent);
     let restitution = 0.3 + 0.65 * random.share();
@@ -147,14 +148,14 @@ fn contact(random: &mut Random, kind: &str, mass: f64, speed: f64) -> Value {
 
 /// A random scene, without a tolerance.
 pub(super) struct Drawn {
-    /// What is struck, in a word.
+    /// Short name of the structure.
     pub kind: &'static str,
     pub damping_ratio: f64,
-    /// What the program is asked.
+    /// The scene that the program solves.
     pub scene: Scene,
-    /// The same impact on a structure of which every mode can be computed.
+    /// The same impact on a structure whose modes can all be computed.
     pub whole: Scene,
-    /// How many modes a reference may have.
+    /// Largest number of modes of a reference.
     pub most_modes: usize,
 }
 
@@ -183,7 +184,7 @@ pub(super) fn scene(seed: u64) -> Result<Drawn, Failure> {
     ]);
     let damping_ratio = if random.share() < UNDAMPED { 0.0 } else { random.log(1e-3, 0.1) };
     let ends = [0, 1].map(|_| random.of(&["clamped", "pinned", "free", "guided"]));
-    // of a structure that moves the striker alone tells the restitution; before a stop it has to turn as a whole
+    // on a moving structure the restitution is that of the striker alone; with a stop the whole structure has to move
     let held = ["pinned", if kind == "stop" { "free" } else { random.of(&["clamped", "pinned", "guided"]) }];
     let (structure, length, structure_mass) = match kind {
         "string" => string(random, damping_ratio),
@@ -230,7 +231,7 @@ pub(super) fn scene(seed: u64) -> Result<Drawn, Failure> {
     Ok(Drawn { kind, damping_ratio, scene, whole, most_modes })
 }
 
-/// The scene with its structure told by so many modes and its static compliance.
+/// The scene with its structure given as this many modes and the static compliance.
 fn listed(mut value: Value, whole: &Scene, count: usize) -> Result<Scene, Failure> {
     let all = Scene { modes: Modes::Count(count), residual_compliance: Some(true), ..whole.clone() }.structure()?;
     let modes = &all.modes[..count];

@@ -1,4 +1,4 @@
-//! What section 7.2 says that the law captures, for one table and the law fitted to it.
+//! Statements of section 7.2 on the accuracy of the law, for one table and the law fitted to it.
 
 use crate::chapters::Failure;
 use crate::chapters::chapter4::tables::Table;
@@ -6,14 +6,14 @@ use crate::chapters::chapter4::trends::{Limits, RISES, Trend};
 use crate::chapters::chapter7::{Dataset, LAW_MODES};
 use beam_modes::End;
 
-/// Modes of the tables, with which the law is tried as well.
+/// Number of modes of the tables, which is also tried in the law.
 const TABLE_MODES: usize = 40;
 const GOOD: Limits = ((0.0, 0.1), "chapter 9: within ±0.1 in a range from 0 to 1 there is no comparable effort");
 const LINE: Limits = ((0.0, 0.02), "a line's width, a fiftieth of a figure's height");
 const TENTH: Limits = ((0.0, 0.1), "a tenth");
 const MOST: Limits = ((0.75, 1.0), "three of four; half would be chance");
 
-/// The trends of one table; always the same ones for a beam.
+/// The trends of one table, always the same ones for a beam.
 pub(super) fn trends(table: &Table) -> Result<Vec<Trend>, Failure> {
     let data = Dataset::new(table);
     let fewer = data.observations(TABLE_MODES)?.fit()?.report.rms;

@@ -1,5 +1,5 @@
-//! What is our choice, varied: steps, slim parts, ball lists and locations, and in how many of the choices a trend of the
-//! thesis holds.
+//! Variation of the parameters that the thesis does not state: steps, thin parts, lists of balls and locations. Counts for how
+//! many of the choices each trend of the thesis holds.
 
 mod law;
 mod single;
@@ -23,7 +23,7 @@ on the same tables, the law fitted to each. A trend that \
 holds in nine of ten choices counts as borne out, one that fails in nine of ten as refuted; between, the text does not \
 let anyone decide.";
 
-/// How a trend of one beam fares over the choices.
+/// Result of a trend of one beam over all choices.
 #[derive(Serialize)]
 struct TrendRow {
     beam: String,
@@ -38,7 +38,7 @@ struct TrendRow {
 /// A stepped beam, or a uniform one.
 struct Variant {
     beam: Beam,
-    /// Where the step is (m), and the slim part's share of the thickness.
+    /// Location of the step (m), and relative thickness of the thin part.
     step: Option<(f64, f64)>,
 }
 
@@ -96,7 +96,7 @@ fn variants(study: &Study, case: &Case, choice: &EnsembleChoice) -> Result<Vec<V
     Ok(variants)
 }
 
-/// Every ball of any list, once, from the smallest on.
+/// Every ball of any list, without repetition, in increasing size.
 fn balls(study: &Study, case: &Case, lists: &[Vec<u32>]) -> Result<Vec<Ball>, Failure> {
     let mut diameters_mm: Vec<u32> = lists.iter().flatten().copied().collect();
     diameters_mm.sort_unstable();
@@ -105,7 +105,7 @@ fn balls(study: &Study, case: &Case, lists: &[Vec<u32>]) -> Result<Vec<Ball>, Fa
     kept.iter().map(|&mm| Ball::new(&case.parameters.material, 1e-3 * f64::from(mm))).collect()
 }
 
-/// A location at each held end, a sixteenth of the tables' distance between locations from it.
+/// A location near each held end, at a sixteenth of the distance between two locations of the tables.
 fn closer_places(case: &Case, beam: &Beam) -> Vec<f64> {
     let places = case.places(beam);
     let near = places.get(1).map_or(f64::NAN, |first| first / 16.0);
@@ -138,13 +138,13 @@ fn tables<'a>(
     Ok(variants.iter().zip(lists).map(table).collect())
 }
 
-/// The trends of one choice.
+/// Trends of one choice.
 struct Judged<'a> {
     variant: &'a Variant,
     smallest_ball_mm: u32,
-    /// Of the table.
+    /// Trends of the table.
     trends: Vec<Trend>,
-    /// Of the law fitted to it.
+    /// Trends of the law fitted to the table.
     law: Vec<Trend>,
 }
 
@@ -182,7 +182,7 @@ fn judge<'a>(
     })
 }
 
-/// One statement for every trend, of which each choice has all; with one choice nothing in it is ours.
+/// One statement for every trend. Every choice has all trends. A beam with one choice has no unstated parameters.
 fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) {
     for k in 0..choices.first().map_or(0, |first| first.len()) {
         let of: Vec<&Trend> = choices.iter().filter_map(|trends| trends.get(k)).collect();
@@ -208,7 +208,7 @@ fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) {
     }
 }
 
-/// How many of the trends hold, over steps and slim parts.
+/// Plots the share of the trends that hold against step and thickness of the thin part.
 fn map(study: &mut Study, choice: &EnsembleChoice, judged: &[&Judged], beam: &Beam) -> Result<(), Failure> {
     if judged.iter().any(|one| one.variant.step.is_none()) {
         return Ok(());
@@ -237,7 +237,7 @@ fn map(study: &mut Study, choice: &EnsembleChoice, judged: &[&Judged], beam: &Be
     )
 }
 
-/// Share of the trends that hold, by list of balls, and the pairs of step and slim part that fit best.
+/// Share of the trends that hold for each list of balls, and the best pairs of step and thickness.
 fn fitting_choices(study: &mut Study, judged: &[Judged]) {
     let share = |chosen: &dyn Fn(&Judged) -> bool| {
         let all = judged.iter().filter(|one| chosen(one)).flat_map(|one| one.trends.iter().map(Trend::holds));
@@ -275,7 +275,7 @@ fn fitting_choices(study: &mut Study, judged: &[Judged]) {
     study.table(&["rank", "step (m)", "thickness of the slim part / side", "trends that hold"], &shown);
 }
 
-/// The row of chapter 4 that turns with the list of balls.
+/// The statement of chapter 4 whose verdict depends on the list of balls.
 fn free_end(study: &mut Study, judged: &[Judged]) {
     let rise =
         |one: &Judged| one.trends.iter().find(|trend| trend.quantity == trends::FREE_END).map(|trend| trend.ours);
@@ -318,9 +318,9 @@ mod tests {
             [10, 9, 8, 2, 1, 0].map(|n| verdicts(n, 10, "")),
             [Agrees, Agrees, Undecidable, Undecidable, Differs, Differs]
         );
-        // words that may mean something else are not refuted, and are borne out all the same
+        // a statement with another possible meaning cannot be refuted, but it can be confirmed
         assert_eq!([9, 1].map(|n| verdicts(n, 10, "what else")), [Agrees, Undecidable]);
-        // where nothing is ours the number itself decides
+        // without unstated parameters the number itself decides
         assert_eq!([1, 0].map(|n| verdicts(n, 1, "")), [Agrees, Differs]);
     }
 }

@@ -1,4 +1,4 @@
-//! The figures of chapter 4 that show single impacts, for every step and slim part: Figs. 4.3, 4.4, 4.5, 4.10 and 4.11.
+//! The figures of chapter 4 that show single impacts, for every step and thin part: Figs. 4.3, 4.4, 4.5, 4.10 and 4.11.
 
 use super::{Variant, claim};
 use crate::chapters::Failure;
@@ -63,7 +63,7 @@ fn speeds(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Fa
             })
             .collect::<Result<Vec<f64>, Failure>>()?;
         let (step_m, slim_thickness_fraction) = variant.step.unwrap_or((f64::NAN, 1.0));
-        // a change that is no number is none that is small
+        // a change of NaN does not count as small
         let largest_change = e.iter().map(|other| (other - e[0]).abs()).fold(0.0, |a, b| if a >= b { a } else { b });
         Ok(SpeedRow { step_m, slim_thickness_fraction, location_m, largest_change })
     })?;
@@ -95,13 +95,13 @@ fn convergence(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(
     Ok(())
 }
 
-/// Smallest and largest of a number over the results with at least so many modes.
+/// Smallest and largest value of a quantity over the results with at least this many modes.
 fn range(rows: &[Row], least: usize, value: fn(&Row) -> f64) -> (f64, f64) {
     let chosen = rows.iter().filter(|row| row.modes >= least).map(value);
     chosen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// What the text reads off Fig. 4.4, the locations in order and the free end last.
+/// Statements of the text on Fig. 4.4. The locations are in order, and the free end is the last one.
 fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
     let changes = places.iter().map(|rows| range(rows, 40, Row::e)).map(|(low, high)| high - low);
     let mut shares: Vec<(f64, f64)> =
@@ -140,7 +140,7 @@ fn of_convergence(places: &[Vec<Row>]) -> Vec<Trend> {
     ]
 }
 
-/// Fig. 4.5, whose locations and ball are printed.
+/// Fig. 4.5, whose locations and ball the thesis states.
 fn detailed(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
     study.section("Four locations, over steps and slim parts (Fig. 4.5)");
     let p = &case.parameters.our_choice.detailed;
@@ -156,7 +156,7 @@ fn detailed(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), 
     Ok(())
 }
 
-/// Times at which a displacement is read.
+/// Number of times at which a displacement is sampled.
 const SAMPLES: u32 = 60;
 
 /// Figs. 4.10 and 4.11, over every other location of the beam.
@@ -195,7 +195,7 @@ fn along_the_beam(study: &mut Study, case: &Case, variants: &[Variant]) -> Resul
     Ok(())
 }
 
-/// Spearman's: the correlation of the ranks, equal values sharing theirs.
+/// Spearman's rank correlation; equal values share their mean rank.
 fn rank_correlation(x: &[f64], y: &[f64]) -> f64 {
     let ranks = |values: &[f64]| -> Vec<f64> {
         let below = |v: f64| values.iter().filter(|w| **w < v).count() as f64;

@@ -1,5 +1,5 @@
-//! The scatter of the law: how the restitutions of chapter 4's tables lie about it, whether a beam that was left out is
-//! predicted with its scatter, and how that compares with simpler and with richer models.
+//! Scatter of the law: the distribution of the restitutions of chapter 4's tables about the law, its prediction for a beam that
+//! was left out of the fit, and a comparison with simpler and with more detailed models.
 
 mod models;
 mod scores;
@@ -25,7 +25,7 @@ out.";
 
 /// Modes of the converged tables, with remainder modes for all others.
 const MODES: usize = 160;
-/// A `Z` below this is that of a held end.
+/// A `Z` below this value is that of a support.
 const HELD: f64 = 1e-6;
 
 /// Runs the study and returns the text that introduces its report.
@@ -67,7 +67,7 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     Ok(INTRODUCTION)
 }
 
-/// The tables of these beams with so many modes, with or without remainder modes.
+/// The tables of these beams with this many modes, with or without remainder modes.
 fn computed<'a>(
     study: &mut Study,
     case: &Case,
@@ -120,7 +120,7 @@ fn scores(study: &mut Study, found: &Found) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The share of the restitutions of a beam left out that lie within the intervals, for the first model.
+/// For the first model, the share of the restitutions of a beam left out that lie within the intervals.
 fn coverage(study: &mut Study, found: &Found, tables: &[(&str, Vec<Table>)]) -> Result<(), Failure> {
     let mut lines = Vec::new();
     for ((name, models), (_, tables)) in found.iter().zip(tables) {
@@ -152,7 +152,7 @@ fn parameters(study: &mut Study, found: &Found) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Restitution over `Z` of each beam, with the intervals that the other beams predict.
+/// Plots the restitution of each beam against `Z`, with the intervals predicted from the other beams.
 fn bands(study: &mut Study, tables: &[Table], evidence: &Evidence) -> Result<(), Failure> {
     let mut panels = Vec::new();
     for ((table, beam), left_out) in tables.iter().zip(data(tables)?).zip(&evidence.left_out) {
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
     use emoc::ScatteredLaw;
 
-    /// The main figures of docs/scatter-of-the-law.md, and the parameters that `emoc` brings along.
+    /// Checks the main numbers of docs/scatter-of-the-law.md and the default parameters of `emoc`.
     #[test]
     fn beams_left_out_are_predicted_as_the_page_says() {
         let folder = tempfile::tempdir().unwrap();

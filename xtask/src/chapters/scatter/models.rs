@@ -1,15 +1,15 @@
-//! Models of the distribution of a restitution, beside each other, and their fits.
+//! Models of the distribution of a restitution, and their fits.
 //!
-//! Each has a median `m` and a scale `s` for an impact. Parameters `p` are those of the largest likelihood,
+//! Each model predicts a median `m` and a scale `s` for an impact. Its parameters `p` maximise the likelihood,
 //!
 //! ```text
 //! min sum_i -ln f(e_i; m_i(p), s_i(p)),                                                     (1)
 //! ```
 //!
-//! which the search for least squares finds with residuals `r_i^2 = C - ln f(e_i)`: the constant `C` is larger than any
-//! logarithm of a density that occurs. A scale found so is that of the misfit on the beams of the fit, and is too small for another
-//! beam, on which the median errs by more. So the parameters `q` of the scale are found a second time, from each beam `b` as the
-//! others predict it: with `p_b` the parameters (1) of the median without beam `b`,
+//! and are found by least squares with the residuals `r_i^2 = C - ln f(e_i)`, where the constant `C` is larger than the logarithm
+//! of any density that occurs. The scale found in this way describes the misfit on the beams of the fit. It is too small for
+//! another beam, for which the error of the median is larger. The parameters `q` of the scale are therefore fitted again to the
+//! predictions of each beam `b` from the other beams: with `p_b` the parameters (1) of the median without beam `b`,
 //!
 //! ```text
 //! min sum_b sum_{i in b} -ln f(e_i; m_i(p_b), s_i(q)).                                      (2)
@@ -24,11 +24,11 @@ const MOST_LOG_DENSITY: f64 = 12.0;
 /// Nodes of the integral over the share of draws below, for the score by equation (2) of `scores.rs`.
 const NODES: u32 = 200;
 
-/// What a model predicts for one impact.
+/// Prediction of a model for one impact.
 pub(super) enum Predicted {
-    /// Logistic in the logarithm of the odds.
+    /// Logistic distribution of the logarithm of the odds.
     Odds(Scatter),
-    /// Logistic in the restitution itself: median and scale.
+    /// Logistic distribution of the restitution itself: median and scale.
     Plain(f64, f64),
 }
 
@@ -43,7 +43,7 @@ impl Predicted {
         }
     }
 
-    /// The restitution below which a share of the draws lies, within 0 and 1.
+    /// Quantile: the restitution, from 0 to 1, below which this share of the draws lies.
     pub fn quantile(&self, share: f64) -> f64 {
         match self {
             // the share is one from 0 to 1
@@ -71,16 +71,16 @@ impl Predicted {
     }
 }
 
-/// A parameter with the value from which it is sought.
+/// A parameter and its starting value.
 type Sought = (&'static str, f64);
 
 /// A model.
 pub(super) struct Model {
     pub name: &'static str,
     pub parameters: &'static [Sought],
-    /// How many of the parameters, the first, are those of the median.
+    /// Number of parameters of the median, which come first.
     of_median: usize,
-    /// Whether the scale is that of beams left out (2), or of the misfit (1).
+    /// Whether the scale is fitted to beams left out (2) or to the misfit (1).
     of_beams_left_out: bool,
     predict: fn(&[f64], &Datum) -> Predicted,
 }
@@ -125,7 +125,7 @@ pub(super) const MODELS: [Model; 6] = [
         of_beams_left_out: true,
         predict: |p, d| {
             let (z, s1) = (d.impact.z, d.impact.s1);
-            // one contact, and what comes back later
+            // the rebound after one contact, and the part that returns later
             let first = 1.0 / (1.0 + p[0] * z + p[1] * z * z);
             let later = p[2] * z + p[3] * s1;
             odds(first + (1.0 - first) * later / (1.0 + later), &p[4..], d)
@@ -159,7 +159,7 @@ impl Model {
         (self.predict)(parameters, datum)
     }
 
-    /// The parameters found from these beams.
+    /// Fits the parameters to these beams.
     pub fn fit(&self, beams: &[&[Datum]]) -> Result<Vec<f64>, FitError> {
         let starts: Vec<f64> = self.parameters.iter().map(|(_, start)| *start).collect();
         let all = self.most_likely(beams, &starts, 3)?;
@@ -194,7 +194,7 @@ impl Model {
     }
 }
 
-/// The parameters at which the sum of logarithms of densities is largest.
+/// The parameters that maximise the sum of the logarithms of the densities.
 fn largest(
     parameters: &[Sought],
     begin: &[f64],

@@ -1,36 +1,37 @@
-//! How well predictions for a beam that was left out hold.
+//! Scores of the predictions for a beam that was left out.
 //!
 //! ```text
 //! log score = -ln f(e),                                                                     (1)
 //! CRPS = 2 int_0^1 (e - q(p)) (p - [e < q(p)]) dp                                           (2)
 //! ```
 //!
-//! Both are proper: they are least, on average, for the true distribution (Gneiting and Raftery 2007). The first is in units of
-//! information, the second in those of the restitution; of a prediction without scatter it is the absolute error.
+//! Both scores are proper: their means are smallest for the true distribution (Gneiting and Raftery 2007). The first one is a
+//! measure of information. The second one has the unit of the restitution; for a prediction without scatter it is the absolute
+//! error.
 
 use super::models::Model;
 use crate::chapters::Failure;
 use crate::chapters::chapter7::laws::Datum;
 
-/// Levels of the intervals whose coverage is told.
+/// Levels of the intervals whose coverage is reported.
 pub(super) const LEVELS: [f64; 3] = [0.5, 0.8, 0.95];
 
-/// What is found for one beam by the fit to the others.
+/// Scores for one beam, predicted by the fit to the others.
 pub(super) struct LeftOut {
     pub parameters: Vec<f64>,
     pub count: usize,
     /// Means.
     pub log_score: f64,
     pub crps: f64,
-    /// Root of the mean square of median less restitution.
+    /// Root mean square difference of median and restitution.
     pub rms: f64,
     /// Share of the restitutions within each of [`LEVELS`].
     pub coverage: [f64; LEVELS.len()],
-    /// Mean width of the widest.
+    /// Mean width of the widest interval.
     pub width: f64,
 }
 
-/// A model fitted to all beams, and to all but each.
+/// A model fitted to all beams, and with each beam left out in turn.
 pub(super) struct Evidence {
     pub model: &'static Model,
     pub together: Vec<f64>,
@@ -48,7 +49,7 @@ impl Evidence {
         Ok(Evidence { model, together: model.fit(&without(beams.len()))?, left_out })
     }
 
-    /// The mean over all impacts of a figure of each beam.
+    /// The mean of a score over all impacts of all beams.
     pub fn mean(&self, figure: impl Fn(&LeftOut) -> f64) -> f64 {
         let count: usize = self.left_out.iter().map(|beam| beam.count).sum();
         self.left_out.iter().map(|beam| beam.count as f64 * figure(beam)).sum::<f64>() / count as f64

@@ -1,4 +1,4 @@
-//! Chapter 3: restitution against the number of modes by both theories, and the shear coefficients in use.
+//! Chapter 3: restitution against the number of modes by both theories, and with different shear coefficients.
 
 use super::{APART, Coefficient, coefficients, kaneko};
 use crate::chapters::Failure;
@@ -12,14 +12,14 @@ use crate::chapters::study::Study;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 
-/// Numbers of modes that tell how well the limit is known, and the limit itself.
+/// Numbers of modes from which the limit and its uncertainty follow.
 const SETTLED: [usize; 2] = [200, 400];
-/// Limits known better than this are said to be.
+/// Uncertainty below which a limit counts as converged.
 const KNOWN: f64 = 1e-5;
 /// Plain truncation of the thesis.
 const TRUNCATED: usize = 40;
 
-/// The impact of every ball, damped, on one beam with so many modes.
+/// The damped impact of every ball on one beam with this many modes.
 fn impacts(
     case: &Case,
     beam: &Beam,
@@ -96,7 +96,7 @@ fn restitutions(rows: &[Row]) -> Vec<f64> {
     rows.iter().map(Row::e).collect()
 }
 
-/// What both theories converge to, and how truncation, theory and shear coefficient compare.
+/// Limits of both theories, and the effects of truncation, theory and shear coefficient.
 fn limits(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Result<(), Failure> {
     study.section("Truncation, theory and shear coefficient (chapter 3)");
     let material = &case.parameters.material;
@@ -159,7 +159,7 @@ fn limits(study: &mut Study, case: &Case, balls: &[Ball], thick: &Beam) -> Resul
     Ok(())
 }
 
-/// The limits for the shear coefficients in use, beside those found by an independent method.
+/// Limits for the usual shear coefficients, compared with those of an independent method.
 fn coefficients_in_use(study: &mut Study, case: &Case, balls: &[Ball]) -> Result<(), Failure> {
     study.section("The shear coefficients in use (chapter 3)");
     let material = &case.parameters.material;

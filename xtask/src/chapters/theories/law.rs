@@ -49,7 +49,7 @@ pub(super) fn run(study: &mut Study, tables: &Tables) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the law sees of the change from one theory to the other, and what the tables do.
+/// Change of the law and of the tables from one theory to the other.
 fn compared(
     slender: &Dataset,
     of_slender: &BeamFit,

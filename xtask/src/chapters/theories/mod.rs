@@ -1,22 +1,21 @@
-//! What the thesis could not see: its impacts by Timoshenko's theory beside Euler-Bernoulli's, both with as many modes as
-//! they need.
+//! Beyond the thesis: its impacts by Timoshenko's and by Euler-Bernoulli's theory, both with enough modes for convergence.
 //!
 //! A wave `e^(i(kx - omega t))` of a beam of thickness `h` runs at `c = omega/k`. With `X = (c/c_s)^2`, `c_s^2 = G/rho`,
-//! `g = (kh)^2/12` and Poisson's ratio `nu`, Euler-Bernoulli's and Timoshenko's theory (shear coefficient `kappa`) say
+//! `g = (kh)^2/12` and Poisson's ratio `nu`, Euler-Bernoulli's and Timoshenko's theory (shear coefficient `kappa`) give
 //!
 //! ```text
 //! X = 2 (1 + nu) g,                                                                                               (1)
 //! (g/kappa) X^2 - (1 + g (1 + 2 (1 + nu)/kappa)) X + 2 (1 + nu) g = 0,  the smaller root,                         (2)
 //! ```
 //!
-//! and elasticity in two dimensions (plane stress, faces at `y = +-h/2` free) says, on the lowest antisymmetric branch of
+//! and elasticity in two dimensions (plane stress, free faces at `y = +-h/2`) gives, on the lowest antisymmetric branch of
 //! Rayleigh (1889) and Lamb (1917), with `a^2 = 1 - X (1 - nu)/2`, `b^2 = 1 - X`, `H = kh/2`,
 //!
 //! ```text
 //! (2 - X)^2 tanh(a H) = 4 a b tanh(b H).                                                                          (3)
 //! ```
 //!
-//! The shear coefficients in use for a rectangle:
+//! Usual shear coefficients of a rectangle:
 //!
 //! ```text
 //! kappa = 5/6                              E. Reissner, J. Appl. Mech. 12 (1945) A69
@@ -40,16 +39,16 @@ is the thesis's. Where nothing else is said, remainder modes answer for all mode
 converged, and the shear coefficient is 5(1+ν)/(6+5ν). *Truncation* below is what plain truncation at N = 40 changes, as in the thesis; *theory* is the difference \
 of the two theories; *coefficient* is what ± 2 % of the shear coefficient change in Timoshenko's.";
 
-/// Change of the shear coefficient that stands for how far the values in use lie apart.
+/// Relative change of the shear coefficient that represents the differences between the usual values.
 const APART: f64 = 0.02;
 
-/// A shear coefficient in use for the thesis's square section.
+/// A usual shear coefficient for the square section of the thesis.
 struct Coefficient {
     name: &'static str,
     value: f64,
 }
 
-/// Those of Eq. (4).
+/// The shear coefficients of Eq. (4).
 fn coefficients(material: &Material) -> [Coefficient; 4] {
     let nu = material.poissons_ratio;
     [
@@ -60,7 +59,7 @@ fn coefficients(material: &Material) -> [Coefficient; 4] {
     ]
 }
 
-/// The coefficient that the program takes where none is stated.
+/// The default coefficient of the program.
 pub(super) fn kaneko(material: &Material) -> f64 {
     let nu = material.poissons_ratio;
     5.0 * (1.0 + nu) / (6.0 + 5.0 * nu)

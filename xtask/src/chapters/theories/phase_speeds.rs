@@ -1,4 +1,4 @@
-//! Phase speeds of bending waves by both theories, beside elasticity in two dimensions.
+//! Phase speeds of bending waves by both theories, compared with elasticity in two dimensions.
 
 use super::{Coefficient, coefficients};
 use crate::chapters::Failure;
@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
 
-/// Modes of chapter 3's beam that are looked at.
+/// Number of modes of chapter 3's beam that are considered.
 const MODES: usize = 200;
 /// Modes of the table.
 const TOLD: [usize; 6] = [6, 15, 40, 80, 120, 200];
@@ -42,7 +42,7 @@ fn elasticity(kh: f64, nu: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Phase speeds of one mode of a pinned beam, m/s, and by how much the theories' differ from elasticity's.
+/// Phase speeds (m/s) of one mode of a pinned beam, and the relative errors of both theories compared with elasticity.
 #[derive(Serialize)]
 struct Speeds {
     mode: usize,
@@ -168,7 +168,7 @@ mod tests {
 
     const STEEL: Material = Material { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, density_kg_m3: 7800.0 };
 
-    /// Of all coefficients Kaneko's alone makes Timoshenko's theory agree with elasticity to the next order in `g`.
+    /// Kaneko's is the only coefficient for which Timoshenko's theory agrees with elasticity to the next order in `g`.
     #[test]
     fn kanekos_coefficient_agrees_with_elasticity_to_the_next_order() {
         let nu = 0.3;
@@ -180,7 +180,7 @@ mod tests {
         assert!((slender / (0.01 / 12.0 * (1.0 + 2.6 / kaneko(&STEEL))) - 1.0).abs() < 0.01, "{slender}");
     }
 
-    /// Short waves run along either face as Rayleigh's do: `(2 - X)^2 = 4 a b`, here as the cubic of Rayleigh (1885).
+    /// Short waves become Rayleigh waves along either face: `(2 - X)^2 = 4 a b`, here as the cubic of Rayleigh (1885).
     #[test]
     fn short_waves_are_rayleighs() {
         for nu in [0.0, 0.2, 0.3, 0.45] {

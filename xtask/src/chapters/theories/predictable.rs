@@ -1,4 +1,4 @@
-//! Where on chapter 3's beam, and for which balls, a restitution can be predicted at all.
+//! Locations on chapter 3's beam and balls for which the restitution can be predicted.
 
 use super::{APART, kaneko};
 use crate::chapters::Failure;
@@ -17,7 +17,7 @@ const PLACES: u32 = 40;
 /// Diameters of the balls, mm.
 const DIAMETERS_MM: std::ops::RangeInclusive<u32> = 6..=60;
 const EVERY_MM: usize = 3;
-/// A restitution that changes by less than this can be predicted.
+/// A restitution that changes by less than this counts as predictable.
 const PREDICTED: f64 = 0.02;
 
 /// One location and ball.
@@ -112,7 +112,7 @@ fn picture(study: &mut Study, places: &[f64], diameters: &[u32], cells: &[Vec<Ce
     )
 }
 
-/// The same by the number of contacts.
+/// Share of predictable restitutions by number of contacts.
 fn by_contacts(study: &mut Study, all: &[&Cell]) -> Result<(), Failure> {
     let median = |of: fn(&Cell) -> f64, chosen: &[&&Cell]| {
         let mut values: Vec<f64> = chosen.iter().map(|cell| of(cell)).collect();

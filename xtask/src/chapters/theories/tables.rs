@@ -91,10 +91,10 @@ fn summary(beam: &str, kind: &str, changes: &[f64]) -> Vec<String> {
     names.into_iter().chain(numbers.map(|v| significant(v, 2))).chain([share]).collect()
 }
 
-/// What truncation, theory and coefficient change, location by location.
+/// Changes of the restitution by truncation, theory and coefficient at each location.
 type Kinds = [(&'static str, Vec<f64>); 3];
 
-/// Root mean square over the locations, ball by ball.
+/// Root mean square over the locations, for each ball.
 fn by_mass(study: &mut Study, tables: &[Table], curves: &[Kinds]) -> Result<(), Failure> {
     let looks = [(Marker::Plus, Colour::Grey), (Marker::Cross, Colour::Vermilion), (Marker::Circle, Colour::Blue)];
     let panel = |(k, (table, kinds)): (usize, (&Table, &Kinds))| {
@@ -119,7 +119,7 @@ fn by_mass(study: &mut Study, tables: &[Table], curves: &[Kinds]) -> Result<(), 
     )
 }
 
-/// Timoshenko's table less Euler-Bernoulli's.
+/// Difference of the tables by Timoshenko's and by Euler-Bernoulli's theory.
 fn maps(study: &mut Study, slender: &[Table], thick: &[Table]) -> Result<(), Failure> {
     let panel = |(slender, thick): (&Table, &Table)| {
         let (a, b) = (slender.by_ball(Row::e), thick.by_ball(Row::e));
