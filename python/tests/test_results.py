@@ -41,7 +41,7 @@ def test_an_impact_draws_itself(scene, pyplot):
         np.testing.assert_array_equal(force.lines[0].get_ydata(), with_history.history["force_n"])
         np.testing.assert_array_equal(motion.lines[0].get_ydata(), 1e3 * with_history.history["striker_displacement_m"])
         assert "restitution 0.1" in motion.get_title()
-    with pytest.raises(ValueError, match="the model emoc has no course in time"):
+    with pytest.raises(ValueError, match="the model emoc has no motion in time"):
         vibroimpact.simulate(scene | {"model": "emoc", "modes": "auto"}).plot()
 
 

@@ -58,7 +58,7 @@ class Impact(Result):
         """Draws motion and contact force over time. If no history was requested, the impact is solved once more."""
         history = _solved_again(self)["history"]
         if history is None:
-            raise ValueError(f"nothing to plot: the model {self['choice']['model']} has no course in time")
+            raise ValueError(f"nothing to plot: the model {self['choice']['model']} has no motion in time")
         figure, (motion, force) = _subplots(2, 1, sharex=True)
         time_ms = 1e3 * history["time_s"]
         motion.plot(time_ms, 1e3 * history["striker_displacement_m"], label="striker")

@@ -20,10 +20,9 @@ pub(crate) struct Chain {
 const SAME_PLACE: f64 = 1e-12;
 /// More spans than this are not cut.
 const MOST_SPANS: f64 = 5000.0;
-const BESIDE_BENDING: &str = "a value that bending can stand against: the beam would have to be cut into more than 5000 \
-                              pieces";
-const EULER_BERNOULLI: &str =
-    "0 on a Timoshenko beam: axial force and foundation belong to Euler-Bernoulli's theory here";
+const BESIDE_BENDING: &str =
+    "a smaller value: with this one the beam would have to be divided into more than 5000 segments";
+const EULER_BERNOULLI: &str = "0 on a Timoshenko beam: axial force and foundation need Euler-Bernoulli's theory";
 
 impl Chain {
     pub fn of(system: &BeamSystem) -> Result<Self, InvalidInput> {
@@ -48,7 +47,7 @@ impl Chain {
             if value.is_finite() && (value * unit).abs() <= 1e18 {
                 Ok(value * unit)
             } else {
-                let allowed = "a finite number, at most 1e18 against the beam's own bending";
+                let allowed = "a finite number, at most 1e18 times the bending stiffness of the beam";
                 Err(InvalidInput::new(field, value, allowed))
             }
         };

@@ -93,7 +93,7 @@ pub(crate) fn nondimensional_beam(
     let bare = nondimensional(&raw, ["length_m", "flexural_rigidity_n_m2", "mass_per_length_kg_m"])?;
     let Some(shear) = shear else { return Ok(bare) };
     if shear.len() != raw.len() {
-        return Err(InvalidInput::new("shear", format!("{} sections", shear.len()), "one section a segment"));
+        return Err(InvalidInput::new("shear", format!("{} sections", shear.len()), "one section for each segment"));
     }
     let Units { length_m, rigidity, mass_per_length_kg_m } = bare.1;
     let mut sections = Vec::with_capacity(shear.len());

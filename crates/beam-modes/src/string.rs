@@ -57,7 +57,7 @@ impl TautString {
         if sizes.iter().all(|size| (1e-150..1e150).contains(size)) {
             Ok(())
         } else {
-            let allowed = "sizes for which double precision holds the modes";
+            let allowed = "dimensions for which double precision can represent the modes";
             Err(InvalidInput::new("tension_n", self.tension_n, allowed))
         }
     }

@@ -51,7 +51,7 @@ pub enum Promise {
     },
     /// A force that depends on the rate says so by its derivative, from the beginning of the branch on.
     #[error(
-        "the force depends on the rate, where the derivative that the law states, here or before on the branch, says that it does not"
+        "the force depends on the rate, although the derivative that the law states here or earlier on the branch is zero"
     )]
     Rate,
     /// The boundaries of a branch come to an end.
@@ -69,10 +69,10 @@ pub enum Promise {
     #[error("a branch begins beyond its own boundary")]
     Begins,
     /// Branches end: few follow each other between two instants.
-    #[error("branches follow each other without time going on")]
+    #[error("branches follow each other while time does not advance")]
     Settles,
     /// Energy is stored or dissipated, never made.
-    #[error("a complete contact gives back {made_j:e} J more than it took")]
+    #[error("a complete contact returns {made_j:e} J more than it received")]
     Energy {
         /// The energy made (J).
         made_j: f64,

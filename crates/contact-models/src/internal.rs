@@ -45,7 +45,7 @@ impl Internal {
 
 impl<const N: usize> From<[f64; N]> for Internal {
     fn from(values: [f64; N]) -> Internal {
-        const { assert!(N <= Internal::MOST, "more internal variables than there is room for") };
+        const { assert!(N <= Internal::MOST, "more internal variables than the maximum") };
         let mut internal = Internal::NONE;
         internal.0[..N].copy_from_slice(&values);
         internal
@@ -55,7 +55,7 @@ impl<const N: usize> From<[f64; N]> for Internal {
 /// The first `N` of them.
 impl<const N: usize> From<Internal> for [f64; N] {
     fn from(internal: Internal) -> [f64; N] {
-        const { assert!(N <= Internal::MOST, "more internal variables than there is room for") };
+        const { assert!(N <= Internal::MOST, "more internal variables than the maximum") };
         std::array::from_fn(|i| internal.0[i])
     }
 }

@@ -53,8 +53,7 @@ impl LankaraniNikravesh {
         require_restitution("restitution", restitution)?;
         // D v0 = 3 (1 - e^2) / 4, solved for e
         let squared = 1.0 - damped::damping_ratio(restitution) / 0.75;
-        let allowed =
-            "a coefficient of restitution from 0.663 to 1, as the damping of Lankarani and Nikravesh ends there";
+        let allowed = "a coefficient of restitution from 0.663 to 1, the range of the law of Lankarani and Nikravesh";
         InvalidInput::unless(squared >= 1e-6, "restitution", restitution, allowed)?;
         LankaraniNikravesh::new(stiffness_n_m1_5, squared.sqrt())
     }

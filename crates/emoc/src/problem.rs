@@ -246,7 +246,7 @@ impl fmt::Display for Outcome {
         match self {
             Outcome::NoImpact => f.pad("no impact"),
             Outcome::Solved => f.pad("solved"),
-            Outcome::Relaxed { share } => write!(f, "relaxed to {share} of what was demanded"),
+            Outcome::Relaxed { share } => write!(f, "relaxed to {share} of the demanded restitution"),
         }
     }
 }

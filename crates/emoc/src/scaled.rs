@@ -105,7 +105,7 @@ impl<'a> Scaled<'a> {
         let solution = self.state(&point);
         let closes = |&i: &usize| solution.opening_m_s[i] < -10.0 * CLOSING_ROUNDING - WEDGED_ROUNDING * pressing;
         if self.normals.iter().any(closes) {
-            return Err(Failure::Stopped("the bodies are wedged: no impulse of sensible size keeps them apart"));
+            return Err(Failure::Stopped("the bodies are wedged: no impulse of reasonable size separates them"));
         }
         Ok(point)
     }

@@ -50,7 +50,7 @@ impl Information {
     /// ```
     pub fn of(rows: &[f64], n: usize) -> Result<Information, InvalidInput> {
         if n == 0 || !rows.len().is_multiple_of(n) {
-            let allowed = "rows of as many numbers as there are coordinates, of which there is at least one";
+            let allowed = "rows with a number for each coordinate, and at least one coordinate";
             return Err(InvalidInput::new(["rows", "len()"], rows.len(), allowed));
         }
         if let Some(entry) = rows.iter().find(|entry| entry.is_nan() || entry.abs() >= 1e150) {

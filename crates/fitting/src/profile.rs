@@ -68,7 +68,7 @@ pub fn profile(
     settings.validate()?;
     let n = problem.parameters.len();
     if j >= n || parameters.len() != n {
-        return Err(InvalidInput::new("j", j, "the number of one of the parameters, each of which has its value"));
+        return Err(InvalidInput::new("j", j, "the number of a parameter, with a value for every parameter"));
     }
     if !(rise > 0.0 && rise < HUGE && step > 0.0 && step < HUGE && least >= 0.0) {
         return Err(InvalidInput::new("rise, step", format!("{rise}, {step}"), "positive numbers"));

@@ -50,7 +50,7 @@ pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, Inva
     Ok(labels)
 }
 
-/// Fits to all groups but one and predicts that one, for every group. `labels` holds one label a residual: from
+/// Fits to all groups but one and predicts that one, for every group. `labels` holds one label for each residual: from
 /// [`k_folds`], or from the data (a beam, a rod) to leave out what belongs together.
 ///
 /// ```
@@ -71,7 +71,7 @@ pub fn cross_validate(problem: &Problem, settings: &Settings, labels: &[usize]) 
     problem.validate()?;
     settings.validate()?;
     if labels.len() != problem.count {
-        return Err(InvalidInput::new(["labels", "len()"], labels.len(), "one label a residual").into());
+        return Err(InvalidInput::new(["labels", "len()"], labels.len(), "one label for each residual").into());
     }
     let mut groups = labels.to_vec();
     groups.sort_unstable();

@@ -44,7 +44,7 @@ impl Equation {
         for (k, &(coefficient, lower)) in self.lower.iter().enumerate() {
             InvalidInput::require_finite(("lower", k, "0"), coefficient)?;
             let lower_ok = lower >= 0.0 && lower <= self.order - 0.01;
-            let allowed = "a number from 0 to the equation's order less 0.01";
+            let allowed = "a number from 0 to the equation's order minus 0.01";
             InvalidInput::unless(lower_ok, ("lower", k, "1"), lower, allowed)?;
         }
         Ok(())

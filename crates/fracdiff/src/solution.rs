@@ -41,7 +41,7 @@ impl fmt::Display for Stop {
             Stop::Event { index } => write!(f, "terminal event {index}"),
             Stop::NonFinite { t } => write!(f, "a function is not finite at t = {t}"),
             Stop::NoConvergence { t } => write!(f, "Newton's method does not converge at t = {t}"),
-            Stop::PanelLimit { t } => write!(f, "the largest number of panels was used up at t = {t}"),
+            Stop::PanelLimit { t } => write!(f, "the limit of panels was reached at t = {t}"),
         }
     }
 }

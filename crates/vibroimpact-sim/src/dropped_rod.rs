@@ -58,20 +58,20 @@ pub struct DroppedRod {
     pub poissons_ratio: f64,
     /// Angle between the rod and the surface (rad), 0 (lying) to pi/2 (upright).
     pub inclination_rad: f64,
-    /// Bending modes kept. Those left out are represented by remainder modes ([`beam_modes::remainder_modes`]).
+    /// Number of bending modes. Truncated modes are represented by remainder modes ([`beam_modes::remainder_modes`]).
     pub bending_modes: usize,
-    /// Axial modes kept; likewise.
+    /// Number of axial modes. Truncated modes are represented in the same way.
     pub axial_modes: usize,
     /// Damping ratio of the elastic modes.
     pub damping_ratio: f64,
 }
 
-/// A drop, posed as an impact on a modal structure.
+/// A drop as an impact on a modal structure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drop {
     /// The rod, seen from its contact point: two rigid-body motions, bending modes, axial modes, remainder modes.
     pub structure: Structure,
-    /// How many of the modes are remainder modes.
+    /// Number of remainder modes among the modes.
     pub remainder_modes: usize,
     /// The immovable surface.
     pub surface: Striker,
@@ -87,12 +87,12 @@ impl DroppedRod {
         self.density_kg_m3 * self.area_m2() * self.length_m
     }
 
-    /// Mass with which the contact point resists as a rigid body (kg), thesis Eq. 8.9.
+    /// Effective mass of the rigid rod at the contact point (kg), thesis Eq. 8.9.
     pub fn rigid_body_mass_kg(&self) -> f64 {
         self.mass_kg() / (1.0 + 3.0 * self.inclination_rad.cos().powi(2))
     }
 
-    /// How many bending modes lie below the first axial one (thesis 8.2.2).
+    /// Number of bending modes below the first axial one (thesis 8.2.2).
     ///
     /// # Errors
     /// As [`DroppedRod::drop`].
@@ -110,7 +110,7 @@ impl DroppedRod {
         }
     }
 
-    /// Poses the drop with this speed at first touch (m/s).
+    /// The drop with this speed at first touch (m/s).
     ///
     /// # Errors
     /// Names the field, its value and what would be allowed.

@@ -2,12 +2,12 @@
 //!
 //! | module | structure | method | thesis |
 //! |---|---|---|---|
-//! | [`modal`] | any that is described by its modes, at rest or moving | posed as the smallest assembly | chapters 3, 4 |
+//! | [`modal`] | any that is described by its modes, at rest or moving | treated as the smallest assembly | chapters 3, 4 |
 //! | [`infinite`] | an infinite beam or plate, or any whose impulse response is a sum of powers of time | one scalar Volterra equation | chapter 2 |
-//! | [`assembly`] | many bodies, contacts and loads, over long times | modes exact, the forces by collocation | beyond |
-//! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, posed as a modal impact | as `modal` | chapter 8 |
+//! | [`assembly`] | many bodies, contacts and loads, over long times | modes exact, the forces by collocation | not in the thesis |
+//! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, treated as a modal impact | as `modal` | chapter 8 |
 //!
-//! Each states its mathematics, with a table of symbols, at its head. Throughout, `z` is the displacement of the
+//! The documentation of each module begins with its mathematics and a table of symbols. Throughout, `z` is the displacement of the
 //! striker and `w` that of the structure at the contact (m), `xi` the compression (m), `F` the contact force (N), `m`
 //! the striker's mass (kg), and the restitution the relative speed of separation over that of approach, both of
 //! rigid-body motions.
@@ -15,9 +15,9 @@
 //! # Limits
 //!
 //! Structures are linear, and the contact is one point. The striker moves along one line and does not rotate. Gravity
-//! and friction are left out during the impact. Whether a contact on an infinite structure is sustained is known for Hertz
-//! contact alone; with other laws a run that lasts stops. An impact on many
-//! undamped modes amplifies every error; the stated uncertainty shows by how much.
+//! and friction are neglected during the impact. Sustained contact on an infinite structure is detected for Hertz contact only;
+//! with other laws a run stops if the contact lasts. An impact on many undamped modes amplifies every error; the stated
+//! uncertainty shows by how much.
 
 pub mod assembly;
 pub mod dropped_rod;

@@ -1,27 +1,26 @@
-//! Why a computation stopped before the impact had ended.
+//! Reasons why a computation stopped before the end of the impact.
 
-/// What ended a computation before the impact did. What was found until then is valid; how the impact ends is not known.
+/// The reason why a computation stopped before the end of the impact. All results up to that time are valid; the outcome of the
+/// impact is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StopReason {
-    /// The steps in contact allowed (`max_steps`; of an infinite structure the panels, `max_panels`) were used up.
+    /// The limit of steps in contact was reached (`max_steps`; for an infinite structure the limit of panels, `max_panels`).
     Steps,
-    /// A contact asked for steps finer than the finest, `2^-200` s, or the times of a run for more digits than a number
-    /// has.
+    /// A contact needs steps shorter than the shortest, `2^-200` s, or the times of a run need more digits than a number has.
     FinestStep,
-    /// As many contacts as allowed (`max_sub_impacts`) were found.
+    /// The limit of contacts (`max_sub_impacts`) was reached.
     SubImpacts,
-    /// A compression or its rate went beyond [`contact_models::LARGEST`], up to which laws are defined.
+    /// A compression or its rate exceeded [`contact_models::LARGEST`], the limit up to which laws are defined.
     LawRange,
-    /// The search for the next contact used up the steps allowed (`max_steps`): the surfaces come near each other over
-    /// and over without meeting.
+    /// The search for the next contact reached the limit of steps (`max_steps`): the surfaces approach each other again and again
+    /// without touching.
     Flight,
-    /// Further contacts differ from one another by less than the rounding of what led to them.
+    /// Further contacts depend on digits below rounding.
     DigitsExhausted,
-    /// A contact on an infinite structure still lasts when it has been followed for 300 of its natural times, and whether it
-    /// ends is not known.
+    /// A contact on an infinite structure still lasts after 300 of its natural times, and it is not known whether it ends.
     ContactLasts,
-    /// The law of contact does not keep what laws promise; [`contact_models::check_contract`] says which promise, and where.
+    /// The contact law violates its contract; [`contact_models::check_contract`] reports which part, and where.
     Law,
 }
 
@@ -49,34 +48,34 @@ impl StopReason {
         StopReason::Law,
     ];
 
-    /// One sentence on what was reached, and what to do about it.
+    /// One sentence with the reason and advice.
     pub fn advice(self) -> &'static str {
         match self {
             StopReason::Steps => {
-                "the steps allowed in contact were used up: add damping, loosen the tolerance, or allow more steps"
+                "the limit of steps in contact was reached: add damping, loosen the tolerance, or allow more steps"
             }
             StopReason::FinestStep => {
-                "a contact asked for steps finer than numbers resolve: loosen the tolerance, or bring masses and \
+                "a contact needs steps that are too short for floating-point numbers: loosen the tolerance, or bring masses and \
                  stiffnesses closer together"
             }
-            StopReason::SubImpacts => "as many contacts as allowed were found: allow more, or add damping",
+            StopReason::SubImpacts => "the limit of contacts was reached: allow more, or add damping",
             StopReason::LawRange => {
-                "a compression or its rate went beyond 1e30, up to which contact laws are defined: check the units"
+                "a compression or its rate exceeded 1e30, the limit up to which contact laws are defined: check the units"
             }
             StopReason::Flight => {
-                "the surfaces come near each other again and again without meeting: change the gap, add damping, or \
+                "the surfaces approach each other again and again without touching: change the gap, add damping, or \
                  allow more steps"
             }
             StopReason::DigitsExhausted => {
-                "the contacts that follow depend on digits that numbers do not have: what is listed is certain, what \
-                 follows is not known"
+                "the next contacts depend on more digits than floating-point numbers have: the listed contacts are \
+                certain, later ones are not known"
             }
             StopReason::ContactLasts => {
-                "the contact still lasts at the time up to which it was followed, and whether it ever ends is not known: \
-                 what is listed is certain"
+                "the contact still lasts at the end of the computation, and it is not known whether it ever ends: the \
+                listed contacts are certain"
             }
             StopReason::Law => {
-                "the contact law breaks what laws promise: contact_models::check_contract tells which promise, and where"
+                "the contact law violates its contract: contact_models::check_contract reports which part, and where"
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The deflection of a beam or a string along its whole length during an impact, as an animation shows it.
+//! The deflection of a beam or a string along its whole length during an impact, for animations.
 //!
 //! With the mass-normalised shapes `phi_k(x)` and the amplitudes `q_k(t)` of the retained modes,
 //!
@@ -30,11 +30,11 @@ pub struct Deflection {
 }
 
 impl Resolved {
-    /// The deflection at so many equal intervals of the length, until `until_s` at so many equal intervals of time. `scene` is
-    /// the one that was solved, [`crate::simulate::Simulation::scene`]. `None` for a structure that is neither a beam nor a string.
+    /// The deflection at equal intervals of the length and, until `until_s`, at equal intervals of time. `scene` is the one that was
+    /// solved, [`crate::simulate::Simulation::scene`]. `None` for a structure that is neither a beam nor a string.
     ///
     /// # Errors
-    /// None that the scene of this result could cause.
+    /// Errors of the scene, which the scene of this result cannot have.
     ///
     /// ```
     /// use vibroimpact::Scene;
@@ -68,7 +68,7 @@ impl Resolved {
         let samples: Vec<_> = time_s.iter().map(|time_s| self.history.at(*time_s)).collect();
         let at = |time_s: &f64| -> Vec<f64> {
             let amplitudes = self.history.amplitudes(*time_s);
-            // no shape is listed for a remainder mode, which ends the sum
+            // the sum ends before the remainder modes, for which no shape is listed
             shapes.iter().map(|shape| shape.iter().zip(&amplitudes).map(|(phi, q)| phi * q).sum()).collect()
         };
         Ok(Some(Deflection {
@@ -81,7 +81,7 @@ impl Resolved {
     }
 }
 
-/// Frequencies whose relative difference is smaller belong to one mode.
+/// Frequencies whose relative difference is smaller belong to the same mode.
 const SAME: f64 = 1e-9;
 
 /// Locations along a structure (m), and the shapes at each.
@@ -97,8 +97,8 @@ struct Line {
     shapes_at: Box<dyn Fn(f64) -> Result<Vec<f64>, beam_modes::InvalidInput>>,
 }
 
-/// Locations along a beam or string, and for each the shapes there of the modes with the frequencies `kept`, which ascend.
-/// Modes that the location of impact does not excite may have been left out between them.
+/// Locations along a beam or string, and for each the shapes of the modes with the ascending frequencies `kept`. Modes that the
+/// location of impact does not excite may be missing between them.
 fn shapes_along(scene: &Scene, kept: &[f64], pieces: usize) -> Result<Option<Shapes>, InvalidInput> {
     let highest = kept.last().copied().unwrap_or(0.0) * (1.0 - SAME);
     let mut count = kept.len();

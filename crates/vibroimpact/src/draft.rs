@@ -1,4 +1,4 @@
-//! A scene whose fields can still be changed: read from a file, a stream or a text, altered field by field, and only then
+//! A scene whose fields can still be changed. It is read from a file, a stream or a text, changed field by field, and then
 //! checked as a scene.
 
 use std::io::Read;
@@ -29,7 +29,7 @@ use crate::scene::{A_SCENE, FieldPath, InvalidInput, Scene, SceneError, json, re
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
     tree: Value,
-    /// The folder in which tables that the scene names are looked for.
+    /// The folder of the tables that the scene names.
     folder: PathBuf,
 }
 
@@ -43,8 +43,8 @@ impl Draft {
         Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
     }
 
-    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages call the stream `name`;
-    /// tables that the scene names are looked for in the current folder.
+    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages refer to the stream as `name`. Tables
+    /// that the scene names are read from the current folder.
     ///
     /// # Errors
     /// As [`Draft::read`].
@@ -53,24 +53,24 @@ impl Draft {
         Draft::from_text(&utf8(read_all(source, name)?, name)?)
     }
 
-    /// Reads text likewise.
+    /// Reads text in the same way.
     ///
     /// # Errors
     /// Text that is neither JSON nor TOML.
     pub fn from_text(text: &str) -> Result<Draft, SceneError> {
         let is_json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
-        // an empty text is no scene in either format; JSON's message says so
+        // an empty text is not a scene in either format; JSON's message states this
         let tree = if is_json || text.trim().is_empty() { json::parse(text, A_SCENE)? } else { toml::parse(text)? };
         Ok(Draft { tree, folder: PathBuf::new() })
     }
 
     /// Sets one field, as in `striker.speed_m_s=2`, `structure.segments[0].material=steel` or
-    /// `structure.ends=["clamped","free"]`. The value is JSON; anything else is taken as a text. Objects on the way that
-    /// are not there are made.
+    /// `structure.ends=["clamped","free"]`. The value is JSON; anything else is treated as a text. Missing objects on the path are
+    /// created.
     ///
     /// # Errors
-    /// No `=`, no path of a field, a list that is shorter, or broken JSON after a bracket or quotation mark. A name that
-    /// no scene has is found when the scene is read.
+    /// A missing `=`, an invalid path, an index beyond the end of a list, or invalid JSON after a bracket or quotation mark. An
+    /// unknown field is reported when the scene is read.
     pub fn set(&mut self, assignment: &str) -> Result<(), InvalidInput> {
         let fault = |allowed: &str| InvalidInput::new("--set", assignment, allowed);
         let (field, text) = assignment.split_once('=').ok_or_else(|| fault(ASSIGNMENT))?;
@@ -86,7 +86,7 @@ impl Draft {
         field.set_or_insert(&mut self.tree, value).map_err(|reason| fault(&format!("{ASSIGNMENT}; {reason}")))
     }
 
-    /// The fields as they are, and the folder in which tables that they name are looked for.
+    /// The present fields, and the folder of the tables that they name.
     pub(crate) fn tree(&self) -> (&Value, &Path) {
         (&self.tree, &self.folder)
     }

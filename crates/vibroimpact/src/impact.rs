@@ -1,4 +1,4 @@
-//! From the fields of a scene to the terms of the solver.
+//! Converts a scene into the input of the solver.
 
 use contact_models::Law;
 use invalid_input::Path;
@@ -12,12 +12,12 @@ use crate::scene::{
     self, Contact, DroppedRod, HertzStiffness, InvalidInput, Modes, Scene, chooses_modes, compliance, require_elastic,
 };
 
-/// An impact in the terms of [`vibroimpact_sim::modal`].
+/// The input of [`vibroimpact_sim::modal`] for one impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Impact {
     /// The modes of the structure at the point of impact, remainder modes last.
     pub structure: Structure,
-    /// How many of them, at the end, are remainder modes: they represent all truncated modes
+    /// Number of remainder modes, at the end of the list: they represent all truncated modes
     /// ([`beam_modes::remainder_modes`]).
     pub remainder_modes: usize,
     /// Mass and speed.
@@ -36,7 +36,7 @@ impl Impact {
         self.structure.modes.len() - self.remainder_modes.min(self.structure.modes.len())
     }
 
-    /// Static compliance of the truncated modes (m/N), with which the remainder modes answer; 0 without them.
+    /// Static compliance of the truncated modes (m/N), which the remainder modes have; 0 without them.
     pub fn residual_compliance_m_n(&self) -> f64 {
         compliance(&self.structure.modes[self.kept_modes()..])
     }
@@ -61,13 +61,13 @@ impl Impact {
 }
 
 impl Impact {
-    /// As a neighbour of another impact is posed; `at_rest` stands in where the structure does not move.
+    /// The impact as a neighbour of another one; `at_rest` is used if the structure does not move.
     pub(crate) fn posing<'a>(&'a self, at_rest: &'a Start) -> Posing<'a> {
         let Impact { structure, striker, law, start, .. } = self;
         Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
     }
 
-    /// Gives the modes the signs and the order of those of an impact nearby. `false` if they are not the same modes.
+    /// Gives the modes the signs and the order of those of a neighbouring impact. `false` if they are not the same modes.
     pub(crate) fn take_modes_of(&mut self, base: &Impact) -> bool {
         let seen = |impact: &Impact| -> Vec<Seen> {
             let of = |mode: &Mode| Seen { omega_rad_s: mode.omega_rad_s, shapes: vec![mode.shape] };
@@ -90,8 +90,7 @@ impl Impact {
 }
 
 impl Scene {
-    /// The structure with its first `count` modes, or all that are listed, and how many remainder modes it has beside
-    /// them.
+    /// The structure with its first `count` modes, or all that are listed, and the number of its remainder modes.
     pub(crate) fn structure_of(
         &self,
         count: Option<usize>,
@@ -116,7 +115,7 @@ impl Scene {
         Ok((Structure { modes: modes.concat() }, remainder))
     }
 
-    /// The modes of the structure as seen from the point of impact: the first `count`, however many the scene keeps.
+    /// The first `count` modes of the structure with their shapes at the point of impact, whatever the scene's number of modes.
     ///
     /// # Errors
     /// As [`Scene::structure`].
@@ -124,8 +123,8 @@ impl Scene {
         self.structure.modes(self.place(), Some(count))
     }
 
-    /// How many of the first `count` modes, from the lowest, have frequencies that more polynomials would change by less than
-    /// [`CONVERGED_FREQUENCY`](scene::CONVERGED_FREQUENCY); `None` where modes have a closed form, or are stated.
+    /// Number of modes among the first `count`, from the lowest, whose frequencies would change by less than
+    /// [`CONVERGED_FREQUENCY`](scene::CONVERGED_FREQUENCY) with more polynomials; `None` if modes have a closed form or are stated.
     ///
     /// # Errors
     /// As [`Scene::structure`].
@@ -151,13 +150,13 @@ impl Scene {
         Ok(Impact { structure, remainder_modes, striker, law, start, settings })
     }
 
-    /// The striker in the terms of the solvers.
+    /// The striker as input of the solvers.
     pub(crate) fn posed_striker(&self) -> Result<Striker, InvalidInput> {
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
         Ok(Striker { mass_kg, speed_m_s: self.striker.speed_m_s })
     }
 
-    /// The fall of a rod in the terms of the solver.
+    /// The fall of a rod as input of the solver.
     pub(crate) fn drop(&self, rod: &DroppedRod, settings: Settings) -> Result<Impact, InvalidInput> {
         let left_out = |field: Path, value: Option<String>| match value {
             Some(value) => Err(InvalidInput::new(field, value, "left out: a dropped rod does not have it")),

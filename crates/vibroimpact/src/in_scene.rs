@@ -1,8 +1,8 @@
-//! Errors of the solver under the names that scenes use.
+//! Errors of the solver with the field names of scenes.
 
 use invalid_input::{InvalidInput, Step};
 
-/// The solver's error under the names that scenes use.
+/// The solver's error with the field names of scenes.
 pub(crate) fn in_scene(fault: InvalidInput) -> InvalidInput {
     match fault.field.steps() {
         // lists of modes have been checked by their names; these modes were computed

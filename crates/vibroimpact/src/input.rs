@@ -1,4 +1,4 @@
-//! Input files: read whole up to a size, and tables of comma-separated values whose errors name the line.
+//! Input files up to a size limit, and tables of comma-separated values whose errors name the line.
 
 use std::fs::File;
 use std::io::Read;
@@ -10,7 +10,7 @@ use invalid_input::{InvalidInput, Step};
 use crate::scene::SceneError;
 use crate::scene::told::counted;
 
-/// Largest file that is read (bytes).
+/// Largest size of an input file (bytes).
 const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// The bytes of a file.
@@ -19,7 +19,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, SceneError> {
     read_all(file, path)
 }
 
-/// All that a source has to give; messages name it by `path`.
+/// All bytes of a source; messages refer to it as `path`.
 pub(crate) fn read_all(source: impl Read, path: &Path) -> Result<Vec<u8>, SceneError> {
     let fault = |source| SceneError::Read { path: path.to_owned(), source };
     let mut bytes = Vec::new();
@@ -47,7 +47,7 @@ pub(crate) struct Row {
 }
 
 impl Table {
-    /// Splits the text of a table; `needed` tells in messages what the table should be.
+    /// Splits the text of a table; `needed` describes the expected table in messages.
     pub fn parse(bytes: &[u8], needed: &str) -> Result<Table, InvalidInput> {
         let unreadable = |fault: csv::Error| {
             let place =
@@ -73,7 +73,7 @@ impl Table {
         Ok(Table { header, rows })
     }
 
-    /// The place of the column with this name, which may stand there once at most.
+    /// The position of the column with this name, which may occur at most once.
     pub fn column(&self, name: &str, needed: &str) -> Result<Option<usize>, InvalidInput> {
         let found: Vec<usize> = (0..self.header.len()).filter(|&i| &self.header[i] == name).collect();
         match found.as_slice() {
@@ -98,14 +98,13 @@ impl Row {
         number.ok_or_else(|| self.fault(InvalidInput::new(name, text, "a finite number")))
     }
 
-    /// A fault in this row, by its line.
+    /// An error in this row, with its line.
     pub fn fault(&self, fault: InvalidInput) -> InvalidInput {
         fault.in_line(self.line)
     }
 }
 
-/// The line in which a record stands. The reader's own count takes it to start where the last record ended, before
-/// line breaks and empty lines.
+/// The line of a record. The reader's line number refers to the end of the last record, before line breaks and empty lines.
 fn line_of(bytes: &[u8], start: &csv::Position) -> u64 {
     let rest = usize::try_from(start.byte()).ok().and_then(|place| bytes.get(place..)).unwrap_or_default();
     let passed = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();

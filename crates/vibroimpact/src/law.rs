@@ -1,4 +1,4 @@
-//! Laws of contact for a requested restitution: the parameters of each law that has it.
+//! Contact laws for a requested restitution: the parameters of each law that has it.
 //!
 //! ```
 //! use vibroimpact::law::{Kind, Parameters, Request};
@@ -38,7 +38,7 @@ pub struct Request {
     pub law: Option<Kind>,
 }
 
-/// The laws that are made to measure.
+/// The available laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "program", derive(clap::ValueEnum))]
 pub enum Kind {
@@ -54,7 +54,7 @@ pub enum Kind {
     LankaraniNikravesh,
 }
 
-/// What the command `law` prints as JSON.
+/// The object that the command `law` prints as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Answer {
     /// The requested restitution.
@@ -71,7 +71,7 @@ pub struct Answer {
     pub laws: Vec<Made>,
 }
 
-/// A law made to measure.
+/// A law with the requested restitution.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Made {
     /// Its name.
@@ -234,7 +234,7 @@ impl Parameters {
                 format!("k = {stiffness_n_m1_5:.6e} N/m^1.5, D = {damping_s_m:.6e} s/m")
             }
             Parameters::ByRestitution { stiffness_n_m1_5, restitution } => {
-                format!("k = {stiffness_n_m1_5:.6e} N/m^1.5, told a restitution of {restitution:.6}")
+                format!("k = {stiffness_n_m1_5:.6e} N/m^1.5, parameter restitution = {restitution:.6}")
             }
         }
     }
@@ -247,7 +247,7 @@ impl From<Stepped> for AtStep {
 }
 
 impl Request {
-    /// This restitution for a striker of this mass and speed against an immovable body, by every law.
+    /// A request for this restitution of a striker of this mass and speed at an immovable body, for every law.
     pub fn new(restitution: f64, mass_kg: f64, speed_m_s: f64) -> Request {
         Request { restitution, mass_kg, other_mass_kg: None, speed_m_s, compression_m: None, step_s: None, law: None }
     }
@@ -255,7 +255,7 @@ impl Request {
     /// The parameters of the laws.
     ///
     /// # Errors
-    /// A quantity out of range, and a restitution that the law asked for by name cannot have.
+    /// A quantity out of range, or a restitution that the law requested by name cannot have.
     pub fn answer(&self) -> Result<Answer, InvalidInput> {
         let Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law } = *self;
         for (field, value) in [
@@ -282,7 +282,7 @@ impl Request {
 /// The allowed values of a quantity.
 pub const POSITIVE: &str = "a number greater than 0 (from 1e-30 to 1e30)";
 
-/// A law made to measure; one that cannot have the restitution is a fault only where it was requested by name.
+/// A law with the requested restitution. A law that cannot have it is an error only if it was requested by name.
 fn made(kind: Kind, wanted: &Wanted, step_s: Option<f64>, by_name: bool) -> Result<Made, contact_models::InvalidInput> {
     let mut made = Made {
         law: kind.name(),
@@ -307,8 +307,8 @@ fn made(kind: Kind, wanted: &Wanted, step_s: Option<f64>, by_name: bool) -> Resu
     Ok(made)
 }
 
-/// The law whose mean at the step is the restitution wanted, by bisection on the restitution that it would have without a
-/// step; none if no law of the kind has it.
+/// The law whose mean restitution with the step is the requested one, by bisection on the restitution without a step; none if no
+/// law of the kind has it.
 fn for_the_step(
     kind: Kind,
     wanted: &Wanted,
@@ -338,7 +338,8 @@ impl std::fmt::Display for Answer {
 fn text(answer: &Answer) -> String {
     let Answer { restitution, reduced_mass_kg, speed_m_s, compression_m, step_s, laws } = answer;
     let mut text = format!(
-        "Laws of contact with a restitution of {restitution}, for {reduced_mass_kg} kg at {speed_m_s} m/s, pressing {compression_m} m deep"
+        "Contact laws with a restitution of {restitution}, for {reduced_mass_kg} kg at {speed_m_s} m/s and a compression \
+             of {compression_m} m"
     );
     if let Some(step_s) = step_s {
         let _ = write!(text, ", and for steps of {step_s} s");
@@ -361,7 +362,9 @@ fn text(answer: &Answer) -> String {
                 let _ = writeln!(text, "  for the step   {}", found.parameters.text());
                 let _ = writeln!(text, "                 gives {}", range(&found.restitution));
             }
-            None if made.at_the_step.is_some() => text += "  for the step   none: no damping has this mean\n",
+            None if made.at_the_step.is_some() => {
+                text += "  for the step   none: no damping has this mean restitution\n"
+            }
             None => {}
         }
     }

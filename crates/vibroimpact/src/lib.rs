@@ -1,7 +1,7 @@
 //! From a scene file to the rebound: a compact body strikes a slender vibrating one.
 //!
 //! A [`Scene`] describes an impact: a beam of segments (or a structure given by its modes), a striker, a law of contact,
-//! a location. [`Scene::impact`] turns it into the terms of the solver, and [`Impact::solve`] resolves
+//! a location. [`Scene::impact`] converts it into the input of the solver, and [`Impact::solve`] resolves
 //! every contact until it is certain that the bodies never meet again.
 //!
 //! ```
@@ -23,13 +23,13 @@
 //! # Ok::<(), vibroimpact::SceneError>(())
 //! ```
 //!
-//! | module | what it holds |
+//! | module | content |
 //! |---|---|
-//! | [`scene`] | the scene file, JSON or TOML, field by field, and what can be wrong with it |
+//! | [`scene`] | the scene file, JSON or TOML, field by field, and its errors |
 //! | [`scene::schema`] | its JSON Schema |
 //! | [`draft`] | a scene file whose fields can still be changed |
 //! | [`deflection`] | how a beam or a string deflects along its length during an impact |
-//! | [`summary`], [`text`] | a result as the program prints it, for programs and for people |
+//! | [`summary`], [`text`] | a result as JSON for programs, and as text |
 //! | [`simulate`] | the impact of a scene of any kind, its result and its tables |
 //! | [`model`] | the choice of the model: rigid, infinite beam, modes, or a net law |
 //! | [`trust`] | how far the theories behind a result can be trusted |
@@ -38,22 +38,23 @@
 //! | [`export`] | histories as CSV, pictures, the result as JSON |
 //! | [`pictures`] | an impact, modes, and results of several models as figures |
 //! | [`infinite`] | the same for impacts on infinite beams and plates |
-//! | [`sensitivity`] | derivatives of an impact by the numbers of its scene |
+//! | [`sensitivity`] | derivatives of an impact with respect to the numbers of its scene |
 //! | [`sweep`] | many scenes that differ in some fields: grids, lists, ranges, random draws |
-//! | [`plot`], [`report`] | charts, and reports that set published numbers beside ours |
+//! | [`plot`], [`report`] | charts, and reports that compare published numbers with ours |
 //!
-//! The crates underneath are re-exported whole: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
+//! The underlying crates are re-exported: [`beam_modes`], [`contact_models`], [`vibroimpact_sim`], [`emoc`],
 //! [`fitting`], [`fracdiff`], [`invalid_input`].
 //!
-//! Without default features the crate reads scenes and solves them, and leaves out the program (feature `program`) and all
-//! that becomes files: tables, pictures, reports, sweeps (feature `files`). It then also runs on `wasm32-unknown-unknown`.
+//! Without default features the crate reads scenes and solves them, without the program (feature `program`) and without files:
+//! tables, figures, reports, sweeps (feature `files`). It then also runs on `wasm32-unknown-unknown`.
 //!
 //! # Limits
 //!
 //! For a single impact structures are linear, the contact is one point, and the striker moves along one line without
-//! rotation. Gravity and friction are left out during the impact. The mathematics, with its symbols, is in the crates that solve.
+//! rotation. Gravity and friction are neglected during the impact. The mathematics, with its symbols, is in the documentation of
+//! the solvers' crates.
 
-// without files some helpers of sweeps and pictures have no user
+// without files some helpers of sweeps and figures are not used
 #![cfg_attr(not(feature = "files"), allow(dead_code, unused_imports))]
 
 mod impact;

@@ -1,8 +1,7 @@
-//! The command line: scene files in, results out.
+//! The command-line program.
 //!
-//! Exit codes: 0 for a result (sustained contact and a computation that stopped among them), 2 for input that cannot be
-//! used (a sweep none of whose points can be solved among it), 1 for results that cannot be written, 130 for a sweep that
-//! was asked to stop.
+//! Exit codes: 0 for a result (including sustained contact and a computation that stopped), 2 for invalid input (including a
+//! sweep none of whose points can be solved), 1 for results that cannot be written, 130 for a sweep that was interrupted.
 
 mod commands;
 
@@ -67,10 +66,10 @@ enum Command {
     /// Write a first scene, complete and explained field by field
     #[command(after_help = first::INIT_EXAMPLES)]
     Init(first::InitArguments),
-    /// Resolve one impact: every contact, the rebound, where the energy goes
+    /// Resolve one impact: every contact, the rebound, the energy balance
     #[command(after_help = simulate::EXAMPLES)]
     Simulate(simulate::Arguments),
-    /// State which model would be used and why, and what each would cost
+    /// Show which model would be used and why, and the cost of each
     #[command(after_help = choice::PLAN_EXAMPLES)]
     Plan(choice::PlanArguments),
     /// Solve a scene with every model, side by side
@@ -85,10 +84,10 @@ enum Command {
     /// Fit the three parameters of `emoc` to a table of restitutions
     #[command(after_help = net::FIT_EXAMPLES)]
     Fit(net::FitArguments),
-    /// Find fields of a scene from measurements: estimates, intervals, and what the data leave open
+    /// Find fields of a scene from measurements: estimates, intervals, and what the data do not determine
     #[command(after_help = identify::EXAMPLES)]
     Identify(identify::Arguments),
-    /// Give the parameters of laws of contact for a wanted restitution, exactly and for a fixed step
+    /// Find the parameters of contact laws for a given restitution, exactly and for a fixed step
     #[command(after_help = law::EXAMPLES)]
     Law(law::Arguments),
     /// Solve the impact on an infinite beam, given by its single parameter S or by a scene
@@ -97,7 +96,7 @@ enum Command {
     /// Find the periodic motion of bodies under a harmonic load, and follow it over a field
     #[command(after_help = orbit::EXAMPLES)]
     Orbit(orbit::Arguments),
-    /// Differentiate an impact by the numbers of its scene: which of them matter, and how much
+    /// Differentiate an impact with respect to the numbers of its scene: which are important, and how much
     #[command(after_help = sensitivity::EXAMPLES)]
     Sensitivity(sensitivity::Arguments),
     /// Compute many scenes that differ in some fields: grids, lists, ranges, random draws
@@ -132,7 +131,7 @@ fn main() -> ExitCode {
     });
     match run(cli.command).and_then(|printed| print(&printed)) {
         Ok(()) => ExitCode::SUCCESS,
-        // a reader that closes the pipe early is no failure
+        // a reader that closes the pipe early is not an error
         Err(failure) if is_broken_pipe(&failure) => ExitCode::SUCCESS,
         Err(failure) => {
             if let Some(NoPointSolved { printed, .. }) = failure.downcast_ref() {
@@ -150,12 +149,12 @@ fn main() -> ExitCode {
     }
 }
 
-/// Reports what is wrong with the command line, or prints the requested help. What was typed is not repeated in a
-/// way that could steer the terminal.
+/// Reports errors of the command line, or prints the requested help. The user's input is not repeated in a form that could
+/// control the terminal.
 fn misused(fault: &clap::Error) -> ExitCode {
     let hostile = |argument: &String| shorten(&printable(argument)) != *argument;
     let mut typed: Vec<String> = std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
-    // of an option and its value in one argument the value is repeated alone
+    // if an option and its value are one argument, only the value is repeated
     typed.extend(typed.clone().iter().filter_map(|argument| Some(argument.split_once('=')?.1.to_owned())));
     if fault.use_stderr() && typed.iter().any(hostile) {
         let told = typed.iter().fold(fault.render().to_string(), |told, argument| {
@@ -163,7 +162,7 @@ fn misused(fault: &clap::Error) -> ExitCode {
         });
         eprint!("{}", printable(&told));
     } else {
-        // no better place to say so
+        // there is no other place for the message
         let _ = fault.print();
     }
     ExitCode::from(u8::try_from(fault.exit_code()).unwrap_or(2))

@@ -1,4 +1,4 @@
-//! The result of `simulate` for programs: one shape, whichever model answered.
+//! The result of `simulate` for programs, with the same keys for every model.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -14,8 +14,8 @@ use crate::stop_word::word;
 use crate::summary::{Contact, Cost, Energy, RodMotion, Summary};
 use crate::trust::Check;
 
-/// What `simulate --json` prints and `result.json` holds. The keys are always the same; what a model does not resolve is
-/// null. Every name carries its unit.
+/// The object of `simulate --json` and `result.json`. The keys are always the same; quantities that a model does not resolve are
+/// null. Every name contains its unit.
 ///
 /// ```
 /// let scene = vibroimpact::Scene::from_json(r#"{
@@ -37,7 +37,7 @@ pub struct ResultFile {
     pub scene: Value,
     /// As [`Summary::outcome`].
     pub outcome: &'static str,
-    /// Why the computation stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    /// The reason why the computation stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "word")]
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
@@ -62,11 +62,11 @@ pub struct ResultFile {
     pub remainder_modes: usize,
     /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
-    /// Where the energy went; null for a model that does not resolve it.
+    /// The energy balance; null for a model that does not resolve it.
     pub energy: Option<Energy>,
-    /// What the last solution cost; null for a model that solves nothing in time. The whole cost is that of `choice`.
+    /// The cost of the last solution; null for a model without integration in time. The total cost is that of `choice`.
     pub counts: Option<Cost>,
-    /// The model, the reason for it, how near it came to the tolerance, and the whole cost.
+    /// The model, the reason for it, its accuracy compared with the tolerance, and the total cost.
     pub choice: Option<Answer>,
     /// How far the theories behind the result can be trusted, [`Scene::trust`]; empty if no check applies.
     pub trust: Vec<Check>,
@@ -90,7 +90,7 @@ pub struct SubImpact {
 }
 
 impl Simulation {
-    /// What `simulate --json` prints; `scene` is the one that was solved.
+    /// The text of `simulate --json`; `scene` is the one that was solved.
     ///
     /// # Errors
     /// As [`Scene::simulate`], for a simulation of another scene.

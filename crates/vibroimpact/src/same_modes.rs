@@ -1,11 +1,11 @@
-//! Matching the modes of a structure with those of one nearby.
+//! Matching of the modes of a structure with those of a neighbouring one.
 //!
-//! Modes come with either sign, and two of them in another order where their frequencies cross.
+//! The sign of a mode is arbitrary, and two modes change their order where their frequencies cross.
 
 /// Largest relative change of a mode from a structure to its neighbour; beyond it they count as different modes.
 const SAME: f64 = 1e-2;
 
-/// What is compared of a mode.
+/// The compared data of a mode.
 pub(crate) struct Seen {
     /// Its frequency (rad/s).
     pub omega_rad_s: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// The sign with which another mode is most like this one.
+    /// The sign with which another mode is most similar to this one.
     fn sign_of(&self, other: &Seen) -> f64 {
         let product: f64 = self.shapes.iter().zip(&other.shapes).map(|(one, other)| one * other).sum();
         if product < 0.0 { -1.0 } else { 1.0 }
@@ -28,8 +28,8 @@ impl Seen {
     }
 }
 
-/// For each mode in turn: the place of its like, which is to be swapped into its own, and the sign to multiply it by. `None` if
-/// they are not the same modes.
+/// For each mode in turn: the position of the matching mode, which is to be swapped into its own, and the sign. `None` if they are
+/// not the same modes.
 pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Option<Vec<(usize, f64)>> {
     if own.len() != found.len() {
         return None;

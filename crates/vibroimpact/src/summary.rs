@@ -45,7 +45,7 @@ pub struct Summary {
     pub choice: Option<Answer>,
 }
 
-/// How a dropped rod moves as a rigid body, vibration aside.
+/// How a dropped rod moves as a rigid body, without vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RodMotion {
     /// Velocity of the centre of mass, positive away from the floor (m/s).

@@ -185,7 +185,7 @@ pub fn result(summary: &Summary) -> String {
         Some(rod) => {
             line("rod leaves at", format!("{} at its centre", quantity(rod.centre_velocity_m_s, "m/s")));
             line("and turns at", quantity(rod.angular_velocity_rad_s, "rad/s"));
-            line("its end leaves at", format!("{}, vibration aside", quantity(rod.end_velocity_m_s, "m/s")));
+            line("its end leaves at", format!("{}, without vibration", quantity(rod.end_velocity_m_s, "m/s")));
         }
         // a stop leaves at no speed
         None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}

@@ -65,7 +65,7 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
 fn simulate_without_json_is_for_readers() {
     let folder = tempfile::tempdir().unwrap();
     let text = stdout(&run(folder.path(), &["simulate", &scene("sdnd102")]));
-    for part in ["1 body with 1 mode, 1 contact, moving ground", "the time asked for was reached", "wall", "RMS force"]
+    for part in ["1 body with 1 mode, 1 contact, moving ground", "the requested time was reached", "wall", "RMS force"]
     {
         assert!(text.contains(part), "{part} in\n{text}");
     }

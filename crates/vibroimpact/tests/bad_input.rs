@@ -272,7 +272,7 @@ fn a_sweep_takes_no_folder_of_something_else() {
     }
     stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"]));
     // its own folder it takes again
-    assert!(stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"])).contains("all was there"));
+    assert!(stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"])).contains("all points were done"));
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn the_infinite_beam_is_shown_from_the_group_velocity() {
     let plan = folder.json("plan");
     assert_eq!(plan["model"], "infinite-beam");
     let text = folder.printed("simulate", &[]).split_whitespace().collect::<Vec<_>>().join(" ");
-    for part in ["rad/s, travel at", "m/s at most and are back from an end after", "the last contact ends after"] {
+    for part in ["rad/s, travel at", "m/s at most and return from an end after", "the last contact ends after"] {
         assert!(text.contains(part), "{part}: {text}");
     }
 }

@@ -221,7 +221,12 @@ fn values_out_of_range_are_refused_by_field_value_and_range() {
         ("/striker/mass_kg", json!(0), "striker.mass_kg = 0.0", "greater than 0"),
         ("/striker/mass_kg", json!(-1), "striker.mass_kg = -1.0", "greater than 0"),
         ("/striker/radius_m", json!(0), "striker.radius_m = 0.0", "greater than 0"),
-        ("/striker/density_kg_m3", json!(1000), "striker.mass_kg = 0.11027", "left out beside density_kg_m3"),
+        (
+            "/striker/density_kg_m3",
+            json!(1000),
+            "striker.mass_kg = 0.11027",
+            "left out in the presence of density_kg_m3",
+        ),
         ("/striker/speed_m_s", json!(1e300), "striker.speed_m_s = 1", "1e30"),
         ("/contact/law", json!("herz"), "contact.law = \"herz\"", "hertz, viscous, hysteretic"),
         ("/contact/poissons_ratio", json!(0.7), "contact.poissons_ratio = 0.7", "0.5"),

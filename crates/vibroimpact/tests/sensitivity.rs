@@ -127,7 +127,7 @@ fn what_cannot_be_differentiated_is_named() {
     for (scene, more, told) in [
         ("pinned-beam.json", &["--by", "striker.mass"], "striker.radius_m"),
         ("pinned-beam.json", &["--by", "structure.kind"], "the path of a number"),
-        ("pinned-beam.json", &["--by", "modes"], "can change by a little"),
+        ("pinned-beam.json", &["--by", "modes"], "can vary continuously"),
         ("pinned-beam.json", &["--by", ".."], "the path of a field"),
         ("pinned-beam.json", &["--of", "restitutions"], "an output of this scene"),
         ("pinned-beam.json", &["--set", "model=infinite-beam"], "rigid"),

@@ -66,7 +66,7 @@ fn any_number_of_ranks_gives_the_same_bytes() {
     }
     // finished: said, and nothing done
     let output = run(folder.path(), "3", "4");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("nothing; all was there"));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("nothing; all points were done"));
 }
 
 #[test]

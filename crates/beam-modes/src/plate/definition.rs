@@ -160,7 +160,11 @@ impl Plate {
         if sizes.iter().all(|size| (1e-200..1e200).contains(size)) {
             Ok(())
         } else {
-            Err(InvalidInput::new("thickness_m", self.thickness_m, "sizes for which double precision holds the modes"))
+            Err(InvalidInput::new(
+                "thickness_m",
+                self.thickness_m,
+                "dimensions for which double precision can represent the modes",
+            ))
         }
     }
 

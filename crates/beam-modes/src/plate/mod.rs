@@ -55,9 +55,9 @@ impl Plate {
             return Ok(navier::modes(self, count));
         }
         let ample = if count > 0 { Ritz::degrees(self, count.max(AMPLE)) } else { None };
-        let degrees = ample
-            .or_else(|| Ritz::degrees(self, count))
-            .ok_or_else(|| InvalidInput::new("count", count, "fewer modes: so many take matrices of over 3000 rows"))?;
+        let degrees = ample.or_else(|| Ritz::degrees(self, count)).ok_or_else(|| {
+            InvalidInput::new("count", count, "fewer modes: this number needs matrices of more than 3000 rows")
+        })?;
         Ritz::new(self, degrees).modes(count)
     }
 

@@ -45,7 +45,7 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
             return Err(InvalidInput::new(
                 ("tail", k, "shapes"),
                 format!("{} values", mode.shapes.len()),
-                "one value a point, as many in every mode",
+                "one value for each point, the same number in every mode",
             ));
         }
     }

@@ -1,17 +1,17 @@
 //! Branches of periodic motions over one parameter.
 //!
-//! A branch is a curve in the space of the state `x` and a parameter `p`, both measured in their own size. It is followed
-//! by pseudo-arclength: a step along the tangent, then Newton's method on `P(x, p) = x` and on the distance made good, so
-//! that it goes round folds. Along it the Floquet multipliers tell where stability is lost or gained, and how:
+//! A branch is a curve in the space of the state `x` and a parameter `p`, each scaled by its size. It is followed by
+//! pseudo-arclength, also round folds: a step along the tangent is followed by Newton's method for `P(x, p) = x` and for the
+//! length of the step. The Floquet multipliers along the branch show where stability is lost or gained, and how:
 //!
-//! | point | what passes |
+//! | point | what changes |
 //! |---|---|
 //! | fold | the parameter turns: a multiplier at +1 |
 //! | period doubling | a multiplier at -1 |
 //! | Neimark-Sacker | a pair of complex multipliers at size 1 |
-//! | grazing | an interval of contact appears or goes: the contact is touched at no speed |
+//! | grazing | an interval of contact appears or disappears: the surfaces touch with zero speed |
 //!
-//! Each is located by halving the step between the two orbits that it lies between.
+//! Each special point is located by bisection between the orbits on either side.
 
 use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, find_orbit, refine};
 use super::problem::Assembly;
@@ -19,19 +19,19 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
 
-/// Change of the parameter for its differences, relative to its range.
+/// Change of the parameter for finite differences, relative to its range.
 const DIFFERENCE: f64 = 1e-6;
 /// Newton iterations of a step along the branch.
 const ITERATIONS_MAX: u32 = 8;
-/// A step that took fewer iterations than this is followed by a longer one.
+/// After a step with fewer iterations than this the next step is longer.
 const QUICK: u32 = 4;
-/// Halvings with which a special point is located.
+/// Number of bisections that locate a special point.
 const HALVINGS: u32 = 20;
 
-/// How a branch is followed.
+/// Settings for following a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BranchSettings {
-    /// How each periodic motion is found.
+    /// Settings for each periodic motion.
     pub orbit: OrbitSettings,
     /// The range of the parameter: the branch starts at the first value and goes towards the second.
     pub from: f64,
@@ -39,14 +39,14 @@ pub struct BranchSettings {
     pub to: f64,
     /// First step, as a share of the range. Default 0.02.
     pub step: f64,
-    /// Longest step, likewise. Default 0.05.
+    /// Longest step, as a share of the range. Default 0.05.
     pub longest_step: f64,
-    /// Orbits at most. Default 500.
+    /// Largest number of orbits. Default 500.
     pub max_orbits: usize,
 }
 
 impl BranchSettings {
-    /// Over this range, with the defaults.
+    /// The defaults, for this range.
     pub fn over(from: f64, to: f64) -> BranchSettings {
         let orbit = OrbitSettings::default();
         BranchSettings { orbit, from, to, step: 0.02, longest_step: 0.05, max_orbits: 500 }
@@ -55,7 +55,7 @@ impl BranchSettings {
     fn check(&self) -> Result<(), InvalidInput> {
         self.orbit.check()?;
         let range = self.from.is_finite() && self.to.is_finite() && self.from != self.to;
-        InvalidInput::unless(range, "to", self.to, "a finite number that differs from where the branch starts")?;
+        InvalidInput::unless(range, "to", self.to, "a finite number other than the start of the branch")?;
         let step = self.step > 0.0 && self.step <= 0.5;
         InvalidInput::unless(step, "step", self.step, "a positive part of the range, at most 0.5")?;
         let longest = self.longest_step >= self.step && self.longest_step <= 0.5;
@@ -64,7 +64,7 @@ impl BranchSettings {
     }
 }
 
-/// What happens at a special point of a branch.
+/// Kind of a special point of a branch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Special {
@@ -74,7 +74,7 @@ pub enum Special {
     PeriodDoubling,
     /// A pair of complex multipliers passes the unit circle.
     NeimarkSacker,
-    /// An interval of contact appears or goes.
+    /// An interval of contact appears or disappears.
     Grazing,
 }
 
@@ -97,13 +97,13 @@ pub struct BranchPoint {
 /// A special point of a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpecialPoint {
-    /// What happens.
+    /// Its kind.
     pub kind: Special,
     /// The parameter.
     pub parameter: f64,
-    /// Uncertainty of the parameter: half the distance of the two orbits that the point lies between.
+    /// Uncertainty of the parameter: half the distance of the two orbits on either side.
     pub uncertainty: f64,
-    /// The orbit of the branch that follows it.
+    /// Number of the orbit of the branch after it.
     pub before_orbit: usize,
 }
 
@@ -114,14 +114,14 @@ pub struct Branch {
     pub points: Vec<BranchPoint>,
     /// Where stability or the pattern of contacts changes.
     pub special: Vec<SpecialPoint>,
-    /// Whether the branch was followed to an end of the range; otherwise the last orbit is as far as it could be.
+    /// Whether the branch was followed to an end of the range. If not, no orbit was found beyond the last one.
     pub complete: bool,
 }
 
 /// Follows the branch of periodic motions of `build(parameter)`.
 ///
 /// # Errors
-/// Settings out of range, input that poses no problem, or what `build` finds wrong.
+/// If settings are out of range or the input is invalid, and the errors of `build`.
 pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     build: impl Fn(f64) -> Result<Assembly<L>, E>,
     settings: &BranchSettings,
@@ -175,7 +175,7 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     Ok(branch)
 }
 
-/// What differs between two neighbours on a branch; `turn` is negative where the parameter turns between them.
+/// The special points between two neighbours on a branch; `turn` is negative if the parameter turns between them.
 fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
     let mut found = Vec::new();
     if turn < 0.0 {
@@ -199,7 +199,7 @@ fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
 struct Follower<'a, F> {
     build: F,
     settings: &'a BranchSettings,
-    /// The moment of the period at which states are taken, as a part of it: it stays the same along the branch.
+    /// The phase at which states are compared, as a part of the period; it is the same along the branch.
     phase_part: f64,
 }
 
@@ -223,7 +223,7 @@ where
         DVector::from_column_slice(&orbit.state)
     }
 
-    /// State and parameter in units of their sizes.
+    /// State and parameter, scaled by their sizes.
     fn scaled(&self, point: &BranchPoint, scales: &DVector<f64>) -> DVector<f64> {
         let state = Self::state(&point.orbit).component_div(scales);
         let n = state.len();
@@ -279,7 +279,7 @@ where
         if size > 0.0 { difference / size } else { before.clone() }
     }
 
-    /// The orbit a step further along the tangent, and the iterations that it took; `None` if none was found.
+    /// The next orbit along the tangent, and the number of iterations; `None` if none was found.
     fn step(&self, from: &BranchPoint, tangent: &DVector<f64>, step: f64) -> Result<Option<(BranchPoint, u32)>, E> {
         let scales = self.scales(from)?;
         let base = self.scaled(from, &scales);
@@ -313,7 +313,7 @@ where
         Ok(None)
     }
 
-    /// The parameter of a special point within a step, and by how much it may be off.
+    /// The parameter of a special point within a step, and its uncertainty.
     fn locate(
         &mut self,
         from: &BranchPoint,
@@ -326,7 +326,7 @@ where
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let Some((point, _)) = self.step(from, tangent, middle)? else { break };
-            // a fold lies where the parameter is farthest: towards the end from which it turns back
+            // a fold is the extremum of the parameter
             let passed = if kind == Special::Fold {
                 let Some((beyond, _)) = self.step(from, tangent, middle + 1e-3 * (high - low))? else { break };
                 (beyond.parameter - point.parameter) * tangent[tangent.len() - 1] * self.range() < 0.0

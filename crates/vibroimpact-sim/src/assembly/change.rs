@@ -1,8 +1,8 @@
-//! How the numbers of an assembly change with a parameter, from four assemblies nearby.
+//! Derivatives of the numbers that define an assembly with respect to a parameter, from four neighbouring assemblies.
 //!
-//! Whoever poses an assembly computes its modes, shapes, masses and laws from numbers of his own. How these depend on a
-//! parameter is known by posing it at four neighbouring values: the slope of the polynomial through them. Unlike the
-//! motion, what poses it is smooth and exact to rounding, so that little is lost.
+//! The caller computes the modes, shapes, masses and laws of an assembly from parameters that this crate does not know. Their
+//! derivatives follow from four neighbouring values of the parameter, as the slope of the polynomial through them. Unlike the
+//! motion, these numbers are smooth and exact to rounding, so that few digits are lost.
 
 use super::load_change::LoadChange;
 use super::problem::Posed;
@@ -10,12 +10,12 @@ use super::stencil::Stencil;
 use super::system::{Link, Span, System};
 use contact_models::ContactLaw;
 
-/// Nearer to critical damping, in `|1 - zeta^2|`, `c_1` and `c_2` would magnify what panels miss of the force times the time.
+/// Limit of `|1 - zeta^2|`. Closer to critical damping `c_1` and `c_2` would magnify the panels' error of the force times the time.
 const CRITICAL: f64 = 0.1;
 
-/// What a unit of a parameter changes, by modes in the order of [`System`].
+/// Derivatives with respect to a parameter; modes are in the order of [`System`].
 pub(crate) struct Change<'a> {
-    /// Where what is carried of the modes starts, and how fast (per unit of the parameter, as everything here).
+    /// Amplitudes and rates at the start, relative to the steady motion (per unit of the parameter, as everything here).
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     /// Of each contact: its gap, and its weights `psi`.
@@ -26,17 +26,17 @@ pub(crate) struct Change<'a> {
     pub stretch: Vec<f64>,
     /// The law of each contact at the neighbours, where it changes.
     pub laws: Option<Vec<[&'a dyn ContactLaw; 4]>>,
-    /// The loads there; `None` where there are none.
+    /// The loads at the neighbours; `None` if there are none.
     pub loads: Option<LoadChange>,
     pub stencil: Stencil<4>,
     /// Whether frequencies or dampings change.
     pub moves_modes: bool,
-    /// The modes next to critical damping, by how much their damping ratios change: `c_1` and `c_2` have none of it.
+    /// Derivatives of the damping ratios of modes near critical damping, which `c_1` and `c_2` do not include.
     pub critical: Vec<(usize, f64)>,
 }
 
 impl<'a> Change<'a> {
-    /// From the assembly at the neighbours, whose modes are those of the system in the same order of their bodies.
+    /// Computes the derivatives from the neighbouring assemblies, whose modes have the same order within their bodies.
     pub fn new(system: &System, posed: [&Posed<'a>; 4], laws_change: bool, stencil: Stencil<4>) -> Change<'a> {
         let n = system.modes.len();
         let mut change = Change {
@@ -86,7 +86,7 @@ impl<'a> Change<'a> {
         change
     }
 
-    /// Another amplitude of a mode at the start, or another rate; nothing else.
+    /// A change of one amplitude or rate at the start alone.
     pub fn of_start(system: &System, place: usize, of_rate: bool) -> Change<'a> {
         let n = system.modes.len();
         let zeros = || vec![0.0; n];

@@ -2,11 +2,11 @@
 //!
 //! On a panel the force of each closed contact is a polynomial. At each of its nodes the law must hold,
 //! `F = law(xi, xi')` with `xi_c = xi_c,free + sum_c' R_cc' F_c'`, `R` the exact responses. Newton's matrix
-//! `1 - F_xi R - F_rate D R` has a block a pair of contacts, zero where they share no body. The iteration ends when what is
-//! still missing changes the impulse of no contact by more than a hundredth of what a panel may get wrong.
+//! `1 - F_xi R - F_rate D R` has a block for each pair of contacts, which is zero if they share no body. The iteration ends
+//! when the remaining correction changes the impulse of no contact by more than a hundredth of the error allowed for a panel.
 //!
-//! The rate `D xi` is computed only where an end of the branch asks for it, or the force depends on it. The law shows that
-//! itself: where it gives a force, and no derivative with the rate at any node, its force does not depend on the rate.
+//! The rate `D xi` is computed only if a boundary of the branch or the force depends on it. The force does not depend on the
+//! rate if the law returns a force whose derivative with respect to the rate is zero at all nodes.
 
 use super::solution::Counts;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, apply, slopes};
@@ -15,9 +15,9 @@ use contact_models::{Branch, ContactLaw, Force};
 
 /// More iterations than this mean that the panel is too long.
 const ITERATIONS_MAX: u32 = 16;
-/// A ratio of successive changes above this asks for a new matrix.
+/// A ratio of successive changes above this requires a new matrix.
 const SLOW: f64 = 0.1;
-/// A contact whose force changes by less than this part of itself by what it moves the bodies is left out of the matrix.
+/// A contact is left out of the matrix if the motion that its force causes changes the force by less than this share.
 const SOFT: f64 = 1e-3;
 
 /// A closed contact on a panel, before its force is known.
@@ -26,10 +26,10 @@ pub(crate) struct Unknown<'a> {
     pub branch: Branch,
     /// Compression at the start of the panel (m).
     pub start: f64,
-    /// By how much it would have grown at the nodes if no contact had a force (m): without the start, whose rounding the
-    /// slopes would magnify on short panels.
+    /// Its increase from the start to the nodes without contact forces (m). The value at the start is excluded, since slopes would
+    /// magnify its rounding on short panels.
     pub free: Nodal,
-    /// Whether an end of the branch asks for the rate, and whether the force may depend on it.
+    /// Whether a boundary of the branch depends on the rate, and whether the force may depend on it.
     pub ends_by_rate: bool,
     pub force_by_rate: bool,
     /// Requested accuracy of the force (N).
@@ -38,17 +38,17 @@ pub(crate) struct Unknown<'a> {
     pub guess: Nodal,
 }
 
-/// Force (N), compression (m) and its rate (m/s; zero unless asked for) at the nodes.
+/// Force (N), compression (m) and its rate (m/s; zero unless needed) at the nodes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Collocated {
     pub force: Nodal,
     pub compression: Nodal,
     pub rate: Nodal,
-    /// Whether the force may still depend on the rate: not if the law has given a force and no derivative with the rate.
+    /// Whether the force may depend on the rate: not if the law has returned a force without derivative with respect to the rate.
     pub force_by_rate: bool,
 }
 
-/// What Newton's method works on: forces and their derivatives as the laws give them, changes, and its matrix.
+/// Memory of Newton's method: forces and their derivatives from the laws, changes, and the matrix.
 #[derive(Default)]
 pub(crate) struct Newton {
     values: Vec<[Force; Q]>,
@@ -126,7 +126,7 @@ impl Newton {
                 factored = true;
             }
             blocks.solve_here(change);
-            // the change that is largest against the requested accuracy
+            // the largest change relative to the requested accuracy
             let (mut excess, mut converged) = (0.0f64, true);
             for (c, unknown) in unknowns.iter().enumerate() {
                 let (mut largest, mut size) = (0.0f64, 0.0f64);
@@ -135,14 +135,14 @@ impl Newton {
                     largest = largest.max(change[c][i].abs());
                     size = size.max(found[c].force[i].abs());
                 }
-                // a sum passes on what is not a number, the maxima do not
+                // a sum propagates NaN, maxima do not
                 if !found[c].force.iter().sum::<f64>().is_finite() {
                     return false;
                 }
                 converged &= largest <= 1e-15 * size;
                 excess = excess.max(largest / unknown.accuracy);
             }
-            // with the matrix kept, changes shrink by a steady ratio, which tells what is still missing
+            // with a constant matrix the changes shrink by a constant ratio, from which the remaining correction follows
             let ratio = last.map_or(1.0, |last: f64| if last > 0.0 { excess / last } else { 0.0 });
             if converged || ratio * excess <= 1.0 {
                 return true;
@@ -163,7 +163,7 @@ pub(crate) struct Blocks {
     contacts: usize,
     /// `[p * contacts + q]`; on the diagonal the factors, above it `A_pp^-1 A_pq`, below it `A_pq`.
     blocks: Vec<Matrix>,
-    /// Which of them are not zero; of those on the diagonal, which are not ones.
+    /// Which blocks are not zero; on the diagonal, which are not the identity.
     present: Vec<bool>,
 }
 
@@ -188,8 +188,8 @@ impl Blocks {
         );
     }
 
-    /// Of several contacts, without the rows of those that hardly push back on this panel: what the matrix lacks only slows
-    /// the iteration down, by no more than it was small.
+    /// If there are several contacts, the rows of those with a small response on this panel are left out. The missing parts of the
+    /// matrix only slow the iteration down, and only in proportion to their size.
     #[inline(always)]
     fn factor_stiff<'r>(
         &mut self,
@@ -332,8 +332,8 @@ fn substitute(a: &Matrix, b: &mut Nodal) {
     }
 }
 
-/// Elimination with half of the pivots, on all rows from the first of them on: of constant number, for the vector
-/// units.
+/// Elimination with half of the pivots, on all rows from the first of them on. The number of rows is constant, so that the
+/// compiler can use vector instructions.
 #[inline(always)]
 fn eliminate<const FROM: usize>(a: &mut Matrix) {
     for pivot in FROM..FROM + Q / 2 {

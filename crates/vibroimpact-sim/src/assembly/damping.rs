@@ -1,8 +1,8 @@
-//! Energy that all modes lose to modal damping within a panel.
+//! Energy that all modes dissipate by modal damping within a panel.
 //!
 //! For one mode it is a quadratic form of its state at the start and of the Legendre coefficients of its force
-//! (`damping_form.rs`). A contact drives all modes of a body by the same polynomial, `g_nk = -psi_k F_n`: what is quadratic
-//! in the force is summed over the modes once and for all, and a panel costs a few operations a mode.
+//! (`damping_form.rs`). A contact excites all modes of a body by the same polynomial, `g_nk = -psi_k F_n`. The part quadratic
+//! in the force is therefore summed over the modes only once, and a panel takes a few operations for each mode.
 
 use super::damping_form::{COARSE, COARSE_NODES, Form, Series, TERMS};
 use super::system::{Link, System};
@@ -12,10 +12,10 @@ use std::array;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// The forms of all modes on one level.
+/// The quadratic forms of all modes for one step exponent.
 pub(crate) struct Damping {
     by_mode: OnceLock<ByMode>,
-    /// `[c][c']`, where asked for: loss by `F_n F'_m`, summed over the modes.
+    /// `[c][c']`, where requested: loss by `F_n F'_m`, summed over the modes.
     pairs: Vec<OnceLock<Box<Matrix>>>,
 }
 
@@ -33,7 +33,7 @@ impl Damping {
         Damping { by_mode: OnceLock::new(), pairs }
     }
 
-    /// Makes sure that everything about level `j` is there for these contacts.
+    /// Computes everything for the step exponent `j` and these contacts that is not cached yet.
     pub fn prepare(&self, system: &System, j: i32, contacts: &[usize]) {
         let mut missing: Vec<(usize, Vec<f64>, Box<Matrix>)> = Vec::new();
         for (i, &c) in contacts.iter().enumerate() {
@@ -63,7 +63,7 @@ impl Damping {
                 }
             }
         }
-        // where another thread was first, it has found the same
+        // another thread may have been first; its result is the same
         let _ = self.by_mode.set(ByMode { free, cross });
         for (place, _, sum) in missing {
             let _ = self.pairs[place].set(sum);
@@ -111,7 +111,7 @@ impl Damping {
     }
 }
 
-/// What damping takes from these bodies within a panel of any length on which no mode turns by more than a radian (J).
+/// Energy that damping takes from these bodies within a panel of any length on which no mode turns by more than a radian (J).
 pub(crate) fn lost_within(
     system: &System,
     damped: &[Range<usize>],
@@ -121,7 +121,7 @@ pub(crate) fn lost_within(
     force: &[Nodal],
 ) -> f64 {
     let rule = &*COARSE;
-    // what a contact's force does to a mode of unit weight, term by term
+    // effect of a contact force on a mode of unit weight, term by term
     let push = |force: &Nodal| -> Vec<[f64; COARSE_NODES]> {
         let term = |rows: &[[f64; COARSE_NODES]; Q]| array::from_fn(|q| (0..Q).map(|n| rows[n][q] * force[n]).sum());
         rule.forced.iter().take(TERMS).map(term).collect()
@@ -144,7 +144,7 @@ pub(crate) fn lost_within(
             let (held, b) = (h * system.square[k] * amplitude[k], rate[k]);
             let mut values = [0.0; COARSE_NODES];
             for (p, derivative) in Series::<COARSE_NODES>::derivatives(mode, h).take(TERMS).enumerate() {
-                // a constant force and a rate act by the next power and by this one
+                // a constant force enters with the next power, a rate with this one
                 let (powers, next) = (&rule.powers[p], &rule.powers[p + 1]);
                 for q in 0..COARSE_NODES {
                     values[q] += derivative * (b * powers[q] - held * next[q]);

@@ -13,7 +13,7 @@
 //! - a mode that turns by at most [`SLOW`] rad: Gauss quadrature, with the rates from their power series;
 //! - a faster one: `S' = Re(c e^{z x})`, and `v_n` is a polynomial and a multiple of the same exponential (integration by
 //!   parts, as in [`crate::panel::forcing`]), so each product has a closed integral;
-//! - a faster one that does not vibrate or hardly: quadrature on panels that grow away from the start.
+//! - a faster one that vibrates little or not at all: quadrature on panels that grow away from the start.
 
 use crate::panel::forcing::rate;
 use crate::panel::legendre::{BASIS, Matrix, Nodal, Q, SERIES, SLOW, dot, legendre, rule};
@@ -24,9 +24,9 @@ use std::array;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
-/// A mode that turns by at most this much (rad) needs the coarser rule only.
+/// For a mode that turns by at most this much (rad) the coarser rule is sufficient.
 const GENTLE: f64 = 1.0;
-/// Terms of the power series that serve for it.
+/// Number of terms of the power series for it.
 pub(crate) const TERMS: usize = 20;
 
 /// Nodes of that rule.
@@ -215,7 +215,7 @@ fn by_parts(mode: &BodyMode, h: f64) -> Form {
     Form { bb, bq: row(&by_rate), qq: by_force.map(|one| row(&one)) }.scaled(mode, h)
 }
 
-/// Numbers that a rate is made of where it is integrated by parts.
+/// Coefficients of a rate that is integrated by parts.
 const PARTS: usize = Q + 4;
 
 /// Any damping, on panels that grow away from the start.

@@ -7,17 +7,18 @@ use crate::panel::legendre::{BASIS, Nodal, evaluate};
 use crate::panel::oscillator::{propagate, response};
 use contact_models::{Branch, ContactLaw};
 
-/// A contact on a stretch of motion: what its overlap is beyond that of modes and loads (m), and its branch while closed.
+/// A contact on a stretch of motion: the part of its overlap that does not come from modes and loads (m), and its branch while
+/// it is closed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seen {
     pub reference: f64,
     pub branch: Option<Branch>,
 }
 
-/// What happens to a contact at an instant.
+/// An event of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Event {
-    /// Its surfaces meet; where they overlap from the start they have met before.
+    /// Its surfaces meet. Surfaces that overlap at the start have met before.
     Touch { overlaps: bool },
     /// It crosses this boundary of its branch.
     Cross(usize),
@@ -26,11 +27,11 @@ pub(crate) enum Event {
 /// A stretch of motion without an event.
 #[derive(Debug, Clone)]
 pub(crate) struct Stretch {
-    /// What happened at its start, contact by contact in this order.
+    /// Events at its start, in this order.
     pub events: Vec<(usize, Event)>,
     pub start_s: f64,
     pub length_s: f64,
-    /// What is carried of the modes at its start.
+    /// Modal state at its start, relative to the steady motion.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     pub contacts: Vec<Seen>,
@@ -38,7 +39,7 @@ pub(crate) struct Stretch {
     pub forces: Vec<(usize, Nodal)>,
 }
 
-/// A stretch, with what it takes to evaluate it.
+/// A stretch with the data that its evaluation needs.
 pub(crate) struct Panel<'a> {
     pub system: &'a System,
     pub loads: &'a Loads,
@@ -47,8 +48,7 @@ pub(crate) struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    /// What is carried of the modes `h` seconds after its start: up to its length, or for all later times
-    /// where nothing is closed.
+    /// Relative modal state `h` seconds after its start: up to its length, or for all later times if no contact is closed.
     fn carried(&self, h: f64) -> (Vec<f64>, Vec<f64>) {
         let stretch = self.stretch;
         let (mut amplitude, mut rate) = (stretch.amplitude.clone(), stretch.rate.clone());
@@ -99,7 +99,7 @@ impl Panel<'_> {
         let overlap_m = seen.reference + link.sum(&amplitude);
         let rate_m_s = link.sum(&rate);
         let law = self.laws[contact];
-        // between the nodes and at a touch the motion need not meet the law to the last digit
+        // between the nodes and at a touch the motion satisfies the law only within the tolerance
         let force_n = seen.branch.map_or(0.0, |branch| law.force(&branch, overlap_m, rate_m_s).force_n.max(0.0));
         let side =
             |values: &[f64]| link.sides.each_ref().map(|side| side.as_ref().map_or(0.0, |side| side.sum(values)));

@@ -1,4 +1,4 @@
-//! How a run of an assembly changes with the numbers that pose it.
+//! Derivatives of a run of an assembly with respect to the numbers that define it.
 
 use super::change::Change;
 use super::no_derivative::NoDerivative;
@@ -13,21 +13,21 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::array;
 
-/// How all modes at the end change with all of them at the start: `[at the start][at the end]`.
+/// Derivatives of the modal state at the end with respect to that at the start: `[at the start][at the end]`.
 type Monodromy = Vec<Vec<f64>>;
 
-/// A parameter, by what the assembly becomes at four neighbouring values of it. They must lie so near that everything which
-/// poses the assembly is smooth between them, and keep the number and the order of bodies, modes, contacts and loads.
+/// A parameter, described by the assembly at four neighbouring values. They must be so close that all numbers which define the
+/// assembly are smooth between them. Number and order of bodies, modes, contacts and loads must be the same.
 #[derive(Debug, Clone)]
 pub struct Parameter<'a, L> {
-    /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
+    /// Differences of the neighbouring values from the value (unit of the parameter): four different numbers, best
     /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.
     pub offsets: [f64; 4],
     /// The assembly at these values.
     pub neighbours: [&'a Assembly<L>; 4],
-    /// The end of the run there (s).
+    /// The end of the run at these values (s).
     pub end_s: [f64; 4],
-    /// Whether a law of contact depends on the parameter.
+    /// Whether a contact law depends on the parameter.
     pub changes_laws: bool,
 }
 
@@ -36,12 +36,12 @@ pub struct Parameter<'a, L> {
 pub struct Derivative {
     /// The derivative.
     pub value: f64,
-    /// By how much it may be off, from the derivative along a coarser solution; `None` where that went another way, so that no digit of
-    /// the derivative is certain.
+    /// Its uncertainty, from the derivative along a coarser solution. `None` if that solution has another sequence of contacts, so
+    /// that no digit of the derivative is certain.
     pub uncertainty: Option<f64>,
 }
 
-/// How one interval of contact changes.
+/// Derivatives of one interval of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalDerivatives {
     /// Of first touch (s).
@@ -60,7 +60,7 @@ pub struct IntervalDerivatives {
     pub separation_speed_m_s: Option<Derivative>,
 }
 
-/// How a contact changes.
+/// Derivatives of a contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactDerivatives {
     /// Its intervals.
@@ -71,12 +71,12 @@ pub struct ContactDerivatives {
     pub velocity_m_s: [Derivative; 2],
 }
 
-/// How a run changes with one parameter, per unit of it.
+/// Derivatives of a run with respect to one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
-    /// Of the end of the run (s): that of the requested time, and zero where the run ended at rest.
+    /// Of the end of the run (s): that of the requested time, or zero if the run ended at rest.
     pub end_s: f64,
-    /// By contact.
+    /// Of each contact.
     pub contacts: Vec<ContactDerivatives>,
 }
 
@@ -87,20 +87,20 @@ pub struct Differentiated {
     pub run: Run,
     /// Its intervals, contact by contact.
     pub intervals: Vec<Vec<Interval>>,
-    /// By parameter, in the order given, or why there are none.
+    /// For each parameter, in the given order, or the reason why there are none.
     pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
-    /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
+    /// Speed of the slowest touch divided by that of the fastest. As it tends to zero, the derivatives grow without bound.
     pub nearest_graze: f64,
 }
 
 /// Factor of the tolerance of the coarser motion whose derivatives give the uncertainty.
 pub(crate) const COARSER: f64 = 32.0;
-/// Uncertainty divided by the difference from them.
+/// Factor from the difference of these derivatives to the uncertainty.
 const TIMES: f64 = 10.0;
-/// Digits that differences of the neighbours lose: what a derivative may miss of its size besides.
+/// Further relative error of a derivative, by the digits that differences of the neighbours lose.
 const ROUNDING: f64 = 1e-10;
 
-/// Accepts offsets of a parameter through which a slope can be taken.
+/// Checks the offsets of a parameter.
 pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), InvalidInput> {
     let different = (0..4).all(|k| offsets[k].is_finite() && !offsets[..k].contains(&offsets[k]));
     InvalidInput::unless(
@@ -111,17 +111,17 @@ pub(crate) fn check_offsets(parameter: usize, offsets: &[f64; 4]) -> Result<(), 
     )
 }
 
-/// How well derivatives by one parameter are known, apart from what the coarser motion tells.
+/// Accuracy of the derivatives with respect to one parameter, apart from the comparison with the coarser motion.
 #[derive(Clone, Copy)]
 pub(crate) struct Known {
-    /// What they may miss, in parts of themselves and of the output.
+    /// Their errors relative to themselves and to the output.
     relative: f64,
     rounding: f64,
 }
 
 impl Known {
-    /// At this tolerance of the run, from neighbours with these offsets, which magnify the rounding of what poses it. Two motions
-    /// can agree by chance: a derivative may miss as large a part of itself as the coarser one is solved to in any case.
+    /// For this tolerance of the run and these offsets of the neighbours, which magnify the rounding of the numbers that define it.
+    /// Two motions can agree by chance, so the relative error is at least the tolerance of the coarser motion.
     pub fn new(tolerance: f64, offsets: &[f64; 4]) -> Known {
         let nearest = offsets.iter().map(|offset| offset.abs()).filter(|offset| *offset > 0.0).fold(f64::MAX, f64::min);
         Known { relative: COARSER * tolerance + ROUNDING, rounding: 4.0 * f64::EPSILON / nearest }
@@ -134,23 +134,24 @@ impl Known {
     }
 }
 
-/// The changes along one run with one parameter: by contact the intervals, and displacement and velocity of both sides.
+/// Derivatives along one run with respect to one parameter: for each contact those of its intervals, and of displacement and
+/// velocity of both sides.
 struct Changes {
     intervals: Vec<Vec<IntervalChange>>,
     sides: Vec<[[Changed; 2]; 2]>,
 }
 
-/// An output and its change.
+/// An output and its derivative.
 #[derive(Clone, Copy, Default)]
 struct Changed {
     value: f64,
     change: f64,
 }
 
-/// By parameter, with the slowest touch in parts of the fastest.
+/// Derivatives for each parameter, and the ratio of the slowest to the fastest touch.
 type AllChanges = Result<(Vec<Changes>, f64), NoDerivative>;
 
-/// Gathers the intervals.
+/// Collects the intervals.
 struct Intervals(Vec<Vec<Interval>>);
 
 impl Observer for Intervals {
@@ -160,8 +161,8 @@ impl Observer for Intervals {
 }
 
 impl Solver<'_> {
-    /// Follows the assembly as [`Solver::run`] does, and finds how the run changes with some parameters: the tangent of the
-    /// motion, not differences of it. The whole run is kept meanwhile.
+    /// Solves the assembly as [`Solver::run`] does, and differentiates the run with respect to some parameters. The tangent of the
+    /// motion is computed; motions are not differenced. The whole run is held in memory.
     ///
     /// ```
     /// use contact_models::Hertz;
@@ -187,7 +188,7 @@ impl Solver<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`Solver::run`], and for neighbours that are no such assemblies.
+    /// As [`Solver::run`], and if the neighbours differ in the number of bodies, modes or contacts.
     pub fn differentiate<L: ContactLaw>(
         &self,
         settings: &Settings,
@@ -211,7 +212,7 @@ impl Solver<'_> {
             Ok(found) => found,
             Err(why) => return Ok(Differentiated { run, intervals, derivatives: Err(why), nearest_graze: 1.0 }),
         };
-        // the coarser run ends where this one did, which is a fixed time unless that is the one asked for
+        // the coarser run ends at the same time as this one, which is fixed unless it is the requested end
         let (end_s, ends) = match run.outcome {
             Outcome::End => (settings.end_s, asked),
             Outcome::Rest => (run.end_s, vec![0.0; parameters.len()]),
@@ -229,8 +230,8 @@ impl Solver<'_> {
         Ok(Differentiated { run, intervals, derivatives, nearest_graze })
     }
 
-    /// How all modes at the end, amplitudes and then rates, change with all of them at the start, body by body: `[at the start]
-    /// [at the end]`, with how the run ended. `None` where there is no derivative.
+    /// Derivatives of all modes at the end, amplitudes before rates, with respect to those at the start, body by body:
+    /// `[at the start][at the end]`, with the end of the run. `None` if there is no derivative.
     pub(crate) fn monodromy(
         &self,
         settings: &Settings,
@@ -254,7 +255,7 @@ impl Solver<'_> {
         Ok((run.outcome, found.map(|found| found.tangents.into_iter().map(column).collect())))
     }
 
-    /// The assemblies at the neighbouring values of a parameter, found to be such.
+    /// The assemblies at the neighbouring values of a parameter, after checks.
     fn neighbours<'n, L: ContactLaw>(
         &self,
         i: usize,
@@ -292,7 +293,7 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run with its changes, and how nearly it grazes; `end_s` has the changes of the requested time.
+    /// One run with its derivatives, and its distance from grazing; `end_s` has the derivatives of the requested time.
     fn along(
         &self,
         settings: &Settings,
@@ -328,7 +329,7 @@ impl Solver<'_> {
     }
 }
 
-/// The changes of displacement and velocity of both sides of a contact at the end.
+/// Derivatives of displacement and velocity of both sides of a contact at the end.
 fn sides(
     system: &System,
     c: usize,
@@ -355,7 +356,7 @@ fn sides(
 }
 
 impl Changes {
-    /// As derivatives, with those along the coarser motion.
+    /// Derivatives with their uncertainty from the coarser motion.
     fn beside(&self, intervals: &[Vec<Interval>], coarse: Option<&Changes>, known: Known) -> Vec<ContactDerivatives> {
         let same = coarse.filter(|coarse| {
             let counts = |changes: &Changes| changes.intervals.iter().map(Vec::len).collect::<Vec<_>>();

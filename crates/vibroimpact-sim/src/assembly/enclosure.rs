@@ -1,9 +1,9 @@
-//! How far the overlap of a contact can be from what is known of it.
+//! Bounds on the overlap of a contact.
 //!
-//! - On a panel: by how much the polynomial through the start and the nodes may miss the overlap. With a force that is a
-//!   polynomial, a mode moves along a polynomial, about `-psi F/omega^2` for a fast one, and vibrates freely about that
-//!   with an amplitude that follows from its state; what interpolation misses of that is in `interpolation.rs`.
-//! - In free flight: a time before which no contact can come. The modes above any `K` move the overlap by at most
+//! - On a panel: the error of the polynomial through the start and the nodes. Under a polynomial force a mode moves along a
+//!   polynomial, about `-psi F/omega^2` for a fast one, and vibrates freely about it with an amplitude that follows from its
+//!   state. `interpolation.rs` bounds the interpolation error of this vibration.
+//! - In free flight: a time before which no contact can begin. The modes above any `K` move the overlap by at most
 //!   `H = sum |psi_k| A_k`, `A_k^2 = a_k^2 + (b_k/omega_k)^2`, and of the rest `|g''| <= B = sum (1 + 2 zeta_k) omega_k^2
 //!   |psi_k| A_k`. So the separation is at least `u_K - H + u_K' t - B t^2/2`, and the best of these parabolas over `K`
 //!   holds.
@@ -16,14 +16,14 @@ use crate::panel::legendre::TAYLOR;
 use crate::panel::vector::{sum_over, vectorized};
 use std::ops::Range;
 
-/// A contact force and its rate, and what it acts on.
+/// A contact force, its rate, and the modes on which it acts.
 pub(crate) struct Pull<'a> {
     pub link: &'a Link,
     pub force_n: f64,
     pub rate_n_s: f64,
 }
 
-/// Where contact forces that grow steadily hold the modes of a body, and the rate of that; memory that is used again.
+/// Quasi-static displacement of the modes of a body under linearly growing contact forces, and its rate; reused memory.
 #[derive(Default)]
 pub(crate) struct Held {
     at: Vec<f64>,
@@ -48,7 +48,7 @@ impl Held {
     }
 }
 
-/// By how much the overlap of a contact and its first two derivatives along a panel of `h` may differ from the polynomial
+/// Bounds on the difference of the overlap of a contact, and its first two derivatives along a panel of `h`, from the polynomial
 /// through start and nodes. `pulls` are the contact forces at its start.
 pub(crate) fn of_panel(
     system: &System,
@@ -61,7 +61,7 @@ pub(crate) fn of_panel(
 ) -> [f64; ORDERS] {
     let mut rho = [0.0; ORDERS];
     for span in &system.links[contact].spans {
-        // by rising frequency: the first of them are interpolated to rounding
+        // by increasing frequency: the first modes are interpolated to rounding
         let omega = &system.omega[span.modes.clone()];
         let from = omega.partition_point(|omega| omega * h * (1.0 + system.most_damping) < FOLLOWED);
         let modes = span.modes.start + from..span.modes.end;
@@ -107,7 +107,7 @@ pub(crate) fn of_panel(
     rho
 }
 
-/// Adds what a vibration of this amplitude that turns by `theta` may miss.
+/// Adds the bound for a vibration of this amplitude that turns by `theta`.
 fn add(rho: &mut [f64; ORDERS], amplitude: f64, theta: f64) {
     let missed = interpolation(theta);
     for r in 0..ORDERS {
@@ -121,7 +121,7 @@ fn add(rho: &mut [f64; ORDERS], amplitude: f64, theta: f64) {
 pub(crate) struct FlightBounds {
     /// How many of the slowest modes a parabola follows, `H` of the others, `B` of these.
     cuts: Vec<(usize, f64, f64)>,
-    /// How often they have served: damped vibrations leave room for better ones.
+    /// Number of uses: as vibrations are damped, better bounds become possible.
     uses: u32,
 }
 
@@ -161,14 +161,14 @@ impl FlightBounds {
         self.uses > USES
     }
 
-    /// The overlap's second derivative in free motion without loads is never larger (m/s^2).
+    /// Bound on the overlap's second derivative in free motion without loads (m/s^2).
     pub fn curvature(&self) -> f64 {
         self.cuts.last().map_or(0.0, |cut| cut.2)
     }
 
-    /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of
-    /// all but the elastic modes, less where the surfaces touch; the loads bend it by at most `bend` (m/s^2); `noise` is its
-    /// rounding (m).
+    /// A time (s) before which an open contact cannot close, infinite if it never can. `overlap` and `rate` are those of all but
+    /// the elastic modes, relative to the overlap of touch. `bend` bounds the second derivative by the loads (m/s^2), and `noise`
+    /// is the rounding of the overlap (m).
     pub fn safe_time(
         &self,
         link: &Link,
@@ -219,7 +219,7 @@ pub(crate) fn first_closing(
     (noise, rate_noise): (f64, f64),
 ) -> (f64, bool) {
     const ITERATIONS_MAX: usize = 10_000;
-    // a grazing touch leaves the surfaces together for so short a time that the overlap stays rounding
+    // after a grazing touch the surfaces separate so soon that the overlap never exceeds rounding
     let least = if curvature > 0.0 { (noise / curvature).sqrt() } else { 0.0 };
     let mut t = 0.0;
     if series[0] >= -noise && series[1].abs() <= rate_noise {
@@ -249,7 +249,7 @@ pub(crate) fn first_closing(
             return (window, false);
         }
         if next == t {
-            // together and at rest against each other: the law tells what follows
+            // in contact and at rest relative to each other: the law decides
             return (t, true);
         }
         t = next;
@@ -257,8 +257,8 @@ pub(crate) fn first_closing(
     (t, false)
 }
 
-/// Where surfaces that are together differ from that by more than rounding for the first time within `window`, and by how
-/// much. Within the reach of its series an overlap does not vibrate, so that it is enough to look at times that double.
+/// The first time within `window` at which the overlap of touching surfaces exceeds rounding, and that overlap. Within the reach
+/// of its series an overlap does not vibrate, so it is enough to check times that double.
 pub(crate) fn first_difference(
     series: &[f64; TAYLOR],
     window: f64,
@@ -271,7 +271,7 @@ pub(crate) fn first_difference(
     (0..f64::MANTISSA_DIGITS).rev().map(at).find(|(t, overlap)| overlap.abs() > noise + rate_noise * t)
 }
 
-/// By how much the loads may bend the overlap of a contact within `lasting_s` (m/s^2).
+/// Bound on the second derivative of the overlap of a contact by the loads within `lasting_s` (m/s^2).
 pub(crate) fn bend_of_loads(loads: &Loads, contact: usize, time_s: f64, lasting_s: f64) -> f64 {
     let lasting_s = if lasting_s.is_finite() { lasting_s } else { 0.0 };
     let lines = loads.acceleration(contact, time_s).max(loads.acceleration(contact, time_s + lasting_s)).max(0.0);

@@ -1,23 +1,22 @@
-//! Event location: where on a panel an event function first falls to zero. This is the only place where one is judged.
+//! Event location: where on a panel an event function first falls to zero. No other file decides this.
 //!
-//! An event function `m` is positive inside a branch: the distance to a boundary of its law, or of two surfaces that are
-//! apart. On a panel it is known by the polynomial through the start and the nodes, which misses it by at most `rho`
-//! ([`super::enclosure`]), and to rounding. In Bernstein's form a polynomial lies within the range of its coefficients,
-//! so that a panel without event is known as such, and subdivision leads to the first zero: to a part of the panel where its
-//! coefficients fall, and so the polynomial does, which meets zero there once.
+//! An event function `m` is positive inside a branch. It is the distance to a boundary of the law, or between two separated
+//! surfaces. On a panel it is represented by the polynomial through the start and the nodes, with an error of at most `rho`
+//! ([`super::enclosure`]) and rounding. In Bernstein's form a polynomial lies within the range of its coefficients. This proves
+//! that a panel has no event, or subdivision leads to the first zero: to a part of the panel where the coefficients decrease.
+//! There the polynomial decreases too and has exactly one zero.
 //!
-//! A branch may begin on its boundary, where `m(0) = 0` to rounding. Then `(m(s) - m(0))/s`, a polynomial too, is asked
-//! in place of `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. Where
-//! that is zero too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is asked. If what is asked
-//! falls below zero before it was ever above, the branch ends where it begins.
+//! A branch may begin on its boundary, where `m(0) = 0` to rounding. The polynomial `(m(s) - m(0))/s` is then tested in place of
+//! `m`; its value at `s = 0` is the slope of `m`, known from the rate of the overlap and its acceleration. If the slope is zero
+//! too, as for a branch that begins at a turning point, `(m(s) - m(0) - s m'(0))/s^2` is tested. If the tested function is
+//! negative before it was ever positive, the branch ends where it begins.
 //!
-//! Such a beginning asks for the sign of a small number. Surfaces that touch without speed and without force part or press
-//! each other by what the forces of other contacts are about to do. These forces are polynomials, which miss them by their
-//! truncation `e`, and so leave the second derivative of the overlap open by `sum_c' W_cc' e_c'`, `W` the inverse mass of an
-//! impulse of `c'` at the contact. No shorter panel would tell more, because a force that begins like a power of time is
-//! missed by the same part of itself on all of them. This counts as rounding does: what lies within it is zero, and the
-//! forces that the contact may have meanwhile are smaller than those errors by one more power of its stiffness times the
-//! square of the panel.
+//! Such a start depends on the sign of a small number. Whether surfaces that touch without speed and without force separate or
+//! press each other follows from the forces of other contacts. These forces are polynomials with a truncation error `e`, which
+//! leaves the second derivative of the overlap uncertain by `sum_c' W_cc' e_c'`, where `W` is the inverse mass of an impulse of
+//! `c'` at the contact. A shorter panel does not help, because the relative truncation error of a force that begins like a power
+//! of time is the same on every panel. This uncertainty is treated like rounding: an event function within it counts as zero.
+//! The force that the contact may have meanwhile is smaller than these errors by its stiffness times the square of the panel.
 
 use crate::panel::legendre::{BASIS, Nodal, Q};
 use std::sync::LazyLock;
@@ -31,45 +30,45 @@ pub(crate) struct EventFunction {
     /// Its value at the start of the panel.
     pub start: f64,
     pub nodal: Nodal,
-    /// By how much the polynomial may miss it, its slope along the panel (panel length 1), and the slope of that.
+    /// Bounds on the error of the polynomial, of its slope along the panel (panel length 1), and of its second derivative.
     pub rho: [f64; 3],
     /// Rounding of its values.
     pub noise: f64,
-    /// By how much its value where the branch began may have missed zero, and its slope.
+    /// Bounds on the deviation of value and slope from zero at the beginning of the branch.
     pub residue: f64,
     pub slope_residue: f64,
 }
 
-/// What an event function does on a panel.
+/// Result of testing an event function on a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Verdict {
-    /// It stays positive.
+    /// The function stays positive.
     Clear,
-    /// The panel is too long to tell.
+    /// The panel is too long for a decision.
     Doubtful,
-    /// It falls to zero at this part of the panel.
+    /// The function falls to zero at this part of the panel.
     Meets(f64),
 }
 
-/// An event function where a panel begins (panel length 1).
+/// An event function at the start of a panel (panel length 1).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Beginning {
     pub slope: f64,
     /// The slope of that, where it is known.
     pub bend: Option<f64>,
-    /// By how much what the forces' polynomials miss may bend it.
+    /// Bound on its second derivative by the truncation of the forces.
     pub unresolved: f64,
 }
 
 impl EventFunction {
-    /// `beginning` is asked for only where the function begins at zero.
+    /// `beginning` is evaluated only if the function begins at zero.
     pub fn verdict(&self, beginning: impl FnOnce() -> Beginning) -> Verdict {
         self.question(beginning).map_or(Verdict::Meets(0.0), |question| question.verdict())
     }
 
-    /// What has to stay positive; `None` where that is not so from the start.
+    /// The polynomial that has to stay positive; `None` if it is not positive at the start.
     fn question(&self, beginning: impl FnOnce() -> Beginning) -> Option<Question> {
-        // the polynomial passes through the start: there rounding alone counts
+        // the polynomial passes through the start, where the only error is rounding
         let known = self.noise + self.residue;
         if self.start < -known {
             return None;
@@ -101,15 +100,15 @@ fn with(start: f64, nodal: &Nodal) -> [f64; POINTS] {
     values
 }
 
-/// A polynomial of which it is asked whether it stays positive.
+/// A polynomial that is tested for being positive.
 struct Question {
     bernstein: [f64; POINTS],
-    /// What it is known within, and the part of that which no shorter panel would reduce.
+    /// Its error bound, and the part of the bound that a shorter panel would not reduce.
     slack: f64,
     noise: f64,
-    /// That what lies within the slack is noise.
+    /// Treats the whole error bound as rounding.
     certain: bool,
-    /// Whether the event function begins at zero; then the value at the start is known to the noise.
+    /// Whether the event function begins at zero; its value at the start is then known to rounding.
     from_zero: bool,
 }
 
@@ -143,7 +142,7 @@ impl Question {
         }
     }
 
-    /// Whether it rises above the slack before this place.
+    /// Whether it exceeds the error bound before this place.
     fn rises_before(&self, place: f64) -> bool {
         let above = first_at_or_below(&self.bernstein.map(|b| -b), -self.slack, 0.0, 1.0);
         above.is_some_and(|above| above < place)
@@ -184,8 +183,8 @@ fn first_at_or_below(b: &[f64; POINTS], level: f64, from: f64, length: f64) -> O
     first_at_or_below(&left, level, from, half).or_else(|| first_at_or_below(&right, level, from + half, half))
 }
 
-/// Where on (0, 1) the polynomial with these falling Bernstein coefficients passes `level`, which lies between the ends: it falls
-/// throughout, so that this is the place that subdivision leads to, by Newton's method within a bracket.
+/// The place on (0, 1) where the polynomial with these decreasing Bernstein coefficients equals `level`, which lies between its
+/// end values. The polynomial decreases throughout, so Newton's method within a bracket finds the result of subdivision.
 fn falls_to(b: &[f64; POINTS], level: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let mut place = (b[0] - level) / (b[0] - b[Q]);
@@ -229,7 +228,7 @@ fn bernstein<const N: usize>(b: &[f64; N], binomials: &[f64; N], t: f64) -> f64 
     sum
 }
 
-/// From values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is what value `j` does to
+/// Matrix from values at the start and the nodes to Bernstein coefficients, by columns: `[j][i]` is the effect of value `j` on
 /// coefficient `i`.
 static TO_BERNSTEIN: LazyLock<[[f64; POINTS]; POINTS]> = LazyLock::new(|| conversion(&with(0.0, &BASIS.nodes)));
 
@@ -284,7 +283,7 @@ mod tests {
         };
         meets(verdict(|s| (0.3 - s) * (0.7 - s) * (2.0 - s), 0.0), 0.3);
         meets(verdict(|s| 0.999 - s, 0.0), 0.999);
-        // a dip between two nodes, and one that only touches
+        // a minimum below zero between two nodes, and a minimum that only touches zero
         for lowest in [0.05, 0.3, 0.5, 0.71, 0.97] {
             let dip = |depth: f64| move |s: f64| (s - lowest).powi(2) * (1.0 + s) - depth;
             let (mut above, mut below) = (0.0, lowest);
@@ -299,7 +298,7 @@ mod tests {
         assert_eq!(verdict(|s| 1.0 + s, 1e-3), Verdict::Clear);
     }
 
-    /// Where a polynomial falls throughout, the place is that of halving alone.
+    /// For a decreasing polynomial the result equals that of subdivision.
     #[test]
     fn a_falling_function_is_met_where_halving_meets_it() {
         for i in 1..200 {
@@ -325,7 +324,7 @@ mod tests {
             other => panic!("{other:?}"),
         }
         assert_eq!(verdict(|s| -s, 0.0), Verdict::Meets(0.0));
-        // a short stay inside is no branch that ends where it begins
+        // a branch that is short, but does not end where it begins
         match verdict(|s| s * (1e-7 - s), 0.0) {
             Verdict::Meets(place) => assert!(place > 0.0 && place < 1e-4, "{place}"),
             other => panic!("{other:?}"),
@@ -342,8 +341,8 @@ mod tests {
         assert_eq!(turning(-1.0), Verdict::Meets(0.0));
     }
 
-    /// Surfaces at rest against each other, which the force of another contact, `t^(3/2)`, begins to press or to part: the
-    /// polynomial of that force starts on the wrong side of zero.
+    /// Surfaces at rest against each other, which the force `t^(3/2)` of another contact begins to press or to separate. The
+    /// polynomial of that force starts with the wrong sign.
     #[test]
     fn a_branch_may_begin_from_nothing() {
         let begins = |sign: f64, wrong: f64, unresolved: f64, rho: f64| {
@@ -353,7 +352,7 @@ mod tests {
         };
         assert_eq!(begins(1.0, 1e-4, 1e-3, 0.0), Verdict::Clear);
         assert_eq!(begins(-1.0, 1e-4, 1e-3, 0.0), Verdict::Meets(0.0));
-        // vibrations that the panel does not resolve leave both open
+        // with vibrations that the panel does not resolve neither can be decided
         assert_eq!(begins(1.0, 1e-4, 1e-3, 1e-2), Verdict::Doubtful);
         assert_eq!(begins(-1.0, 1e-4, 1e-3, 1e-2), Verdict::Doubtful);
     }

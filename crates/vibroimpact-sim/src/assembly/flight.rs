@@ -1,22 +1,22 @@
-//! Motion without closed contact: nothing is solved, and panels are as long as it is certain that no contact closes. Near a
-//! touch the power series of the overlaps locate it.
+//! Motion without closed contacts. Nothing has to be solved: each panel is as long as bounds prove that no contact closes, and
+//! power series of the overlaps locate the touch.
 
 use super::enclosure::{FlightBounds, bend_of_loads, first_closing};
 use super::motion::March;
 use super::terminal::{self, series_of};
 use crate::panel::dyadic::{level_within, step_s};
 
-/// A flight is followed by power series once the next safe step is this many levels finer than the series reach.
+/// Power series are used once the next certified step is shorter than their reach by this many step exponents.
 const WINDOW: i32 = 2;
 
 impl<'a> March<'a> {
-    /// A step of free flight; `true` if there is none to make since the bodies have parted for good.
+    /// Makes a step of free flight; `true` if the bodies have separated for good and no step is needed.
     pub(super) fn fly(&mut self) -> bool {
         self.counts.flight_steps += 1;
         let lasting = self.lasting();
         let mut go = f64::INFINITY;
         for c in 0..self.states.len() {
-            // what is left of a bound is less than a new one gives
+            // the rest of an old bound is shorter than a new bound
             if self.clear_until(c) - self.time_s <= self.flown {
                 self.renew(c, lasting);
             }
@@ -72,7 +72,7 @@ impl<'a> March<'a> {
         self.pass(step_s(level));
     }
 
-    /// Free motion of any length within the series' reach; to the next break or the end where `whole`.
+    /// Free motion of any length within the reach of the series; with `whole`, to the next break or the end.
     fn coast(&mut self, length: f64, whole: bool) {
         self.show(length, &[], &[]);
         terminal::coast(self.system, length, &mut self.amplitude, &mut self.rate);

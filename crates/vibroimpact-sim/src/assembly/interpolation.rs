@@ -1,8 +1,9 @@
-//! By how much the polynomial through the start and the nodes of a panel misses a vibration.
+//! Error of the polynomial through the start and the nodes of a panel for a vibration.
 //!
-//! Interpolation at `n` points misses a vibration `A e^{i theta s}` and its derivatives by at most `A theta^n |P^(r)|/n!`, `P`
-//! the product of `s` less the points (A. Shadrin, 1995), and, however fast it is, by `A (theta^r + Lambda_r)` with the
-//! Lebesgue constants `Lambda_r` of the derivatives. A decay `A e^{-theta s}` obeys the same bounds.
+//! The error of interpolation at `n` points for a vibration `A e^{i theta s}` and its derivatives is at most
+//! `A theta^n |P^(r)|/n!`, where `P` is the product of the differences of `s` and the points (A. Shadrin, 1995). For any
+//! frequency it is at most `A (theta^r + Lambda_r)` with the Lebesgue constants `Lambda_r` of the derivatives. A decay
+//! `A e^{-theta s}` obeys the same bounds.
 
 use super::system::System;
 use crate::panel::legendre::{BASIS, Q};
@@ -39,7 +40,7 @@ static BOUNDS: LazyLock<Bounds> = LazyLock::new(|| {
     };
     let factorial: f64 = (1..=n).map(|i| i as f64).product();
     let mut bounds = Bounds { resolved: [0.0; ORDERS], lebesgue: [0.0; ORDERS] };
-    // all of these are largest at an end of the panel, but for the values, which are smooth between the nodes
+    // the derivatives are largest at an end of the panel; the values are smooth between the nodes
     const PLACES: u32 = 64;
     for i in 0..=PLACES {
         let place = f64::from(i) / f64::from(PLACES);
@@ -54,7 +55,7 @@ static BOUNDS: LazyLock<Bounds> = LazyLock::new(|| {
     bounds
 });
 
-/// By how much interpolation on a panel misses a unit vibration that turns by `theta`, and its first two derivatives.
+/// Interpolation errors of a unit vibration that turns by `theta` on a panel, and of its first two derivatives.
 pub(crate) fn interpolation(theta: f64) -> [f64; ORDERS] {
     let bounds = &*BOUNDS;
     let power = theta.powi(Q as i32 + 1);
@@ -62,8 +63,8 @@ pub(crate) fn interpolation(theta: f64) -> [f64; ORDERS] {
     std::array::from_fn(|r| (power * bounds.resolved[r]).min(fast[r] + bounds.lebesgue[r]))
 }
 
-/// By how much interpolation on a panel of one length misses unit vibrations of all modes, and their first two derivatives:
-/// zero for those that are two decays, and for those that are interpolated to rounding.
+/// Interpolation errors of unit vibrations of all modes on a panel of one length, and of their first two derivatives. They are
+/// zero for overdamped modes, which are treated as two decays, and for modes that are interpolated to rounding.
 pub(crate) struct Missed(pub [Vec<f64>; ORDERS]);
 
 impl Missed {

@@ -1,5 +1,5 @@
-//! Judges a panel that is solved: does an event function of one of its contacts fall to zero, and is the panel short enough
-//! to tell.
+//! Checks a solved panel: does an event function of one of its contacts fall to zero, and is the panel short enough for this
+//! decision?
 
 use super::collocate::Collocated;
 use super::enclosure::{Pull, of_panel};
@@ -11,10 +11,10 @@ use crate::panel::dyadic::level_within;
 use crate::panel::legendre::{BASIS, Nodal, Q, TAYLOR, evaluate, truncation};
 use crate::panel::vector::{sum_over, vectorized};
 
-/// The sum of all coefficients that a polynomial misses of `t^(3/2)`, in parts of the estimate of the next two, is less.
+/// Bound on the sum of all coefficients of `t^(3/2)` beyond the polynomial, relative to the estimate of the next two.
 const TAIL: f64 = 10.0;
 
-/// What the event functions of a panel say.
+/// Result of testing the event functions of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Judgement {
     Clear,
@@ -23,7 +23,7 @@ pub(super) enum Judgement {
 }
 
 impl<'a> March<'a> {
-    /// Judges all event functions of the contacts on a panel of `h`: the first that falls to zero.
+    /// Tests all event functions of the contacts on a panel of `h` and finds the first that falls to zero.
     pub(super) fn judge(
         &mut self,
         h: f64,
@@ -105,7 +105,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Value of an event function at the end of a terminal panel, and how fast it changes.
+    /// Value of an event function at the end of a terminal panel, and its rate.
     pub(super) fn margin(&self, target: Target, [overlap, rate, acceleration]: [f64; 3]) -> (f64, f64) {
         let state = &self.states[target.contact];
         match state.ends.get(target.boundary).filter(|_| state.is_closed()) {
@@ -138,7 +138,7 @@ impl<'a> March<'a> {
         };
         let moved: f64 = self.system.links[c].spans.iter().map(of).sum();
         let tracked = if self.states[c].is_closed() { 0.0 } else { self.noise(c) };
-        // of the motion that the contact's momentum stands for no less is known
+        // the relative accuracy of the motion that corresponds to the contact's momentum is the same
         let moved = moved.max(self.states[c].speed_m_s() * h);
         tracked + 4.0 * f64::EPSILON * (moved + self.states[c].overlap.abs())
     }
@@ -160,8 +160,7 @@ impl<'a> March<'a> {
         free - closed.iter().map(pull).sum::<f64>()
     }
 
-    /// By how much the acceleration of the overlap of a contact is left open by what the polynomials of the closed contacts'
-    /// forces miss (m/s^2).
+    /// Uncertainty of the acceleration of the overlap of a contact by the truncation of the closed contacts' forces (m/s^2).
     fn unresolved(&self, c: usize, closed: &[usize], solved: &[Collocated]) -> f64 {
         let links = &self.system.links;
         let of = |(other, solved): (&usize, &Collocated)| {

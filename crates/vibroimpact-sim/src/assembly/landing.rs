@@ -1,4 +1,4 @@
-//! Terminal panels: the length is the unknown, and the end an event, a break of the loads or the end of the run.
+//! Terminal panels, whose length is unknown. They end at an event, a break of the loads or the end of the run.
 
 use super::collocate::Unknown;
 use super::judge::Judgement;
@@ -10,16 +10,16 @@ use crate::panel::legendre::{BASIS, Nodal, Q, evaluate, truncation};
 
 /// The error of a terminal panel grows with this power of its length at least, where a force ends as `(t - end)^(3/2)`.
 const LANDING: f64 = 2.5;
-/// A force that the laws fixed on one length serves for others while it need not be carried on by more than this part.
+/// A force that was solved on one length is used for others as long as it is extrapolated by no more than this part.
 const CARRIED: f64 = 0.05;
 
-/// The length of a terminal panel that is well enough known, where one of this length exceeds what is allowed so many times.
+/// Length of a terminal panel with the allowed error, if the error with this length is too large by this factor.
 fn shorter(length: f64, excess: f64) -> f64 {
     0.9 * length * excess.powf(-1.0 / LANDING).max(1e-3)
 }
 
 impl<'a> March<'a> {
-    /// Goes on to the next break of the loads or the end, `length` away.
+    /// Advances to the next break of the loads or the end, `length` away.
     pub(super) fn land_at(&mut self, length: f64) {
         let mut window = self.window(None, length);
         let mut unknowns = self.unknowns_of(&window, length);
@@ -34,8 +34,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Longest terminal panel that accuracy allows before an event of the compression, expected after `left`: as the law says
-    /// along a parabola to it.
+    /// Longest terminal panel that accuracy allows before an event of the compression that is expected after `left`, from the law
+    /// along a parabola to the event.
     pub(super) fn foreseen(&mut self, target: Target, left: f64) -> f64 {
         let state = &self.states[target.contact];
         let Some((touch, (force, _))) = state.touch().and_then(|touch| Some((touch, touch.previous?))) else {
@@ -57,23 +57,23 @@ impl<'a> March<'a> {
         if excess > 1.0 { shorter(left, excess) } else { f64::INFINITY }
     }
 
-    /// Goes to the event, expected after `expected` seconds and at most `longest` away.
+    /// Advances to the event, which is expected after `expected` seconds and at most `longest` away.
     pub(super) fn land(&mut self, target: Target, expected: f64, longest: f64) {
         let mut window = self.window(Some(target.contact), (1.0 + CARRIED) * longest);
         let Some(at) = window.contacts.iter().position(|c| *c == target.contact) else {
             return self.refine(self.level + 1);
         };
         let Some(mut landed) = self.locate(&window, target, at, expected, longest) else {
-            // not so near after all: go on, until a panel meets the event again
+            // the event is further away than expected: continue until a panel meets it again
             return self.refine((self.level + 1).max(level_within(longest)));
         };
         self.watch_window(&mut window, &mut landed);
         let length = landed.length;
-        // the event may have come before, in a dip that this panel passed over, or another one first
+        // this panel may have passed over an earlier zero of the same event function, or over another event
         match self.judge(length, &window.contacts, window.closed, &landed.solved, &landed.overlap, false) {
             Judgement::Meets(other, place) if place < 0.99 && (other != target || place > 0.0) => {
                 self.head_for(other, place, length);
-                // from nearer by, lest the same end is found again
+                // a closer guess avoids finding the same end again
                 self.level += 1;
                 return;
             }
@@ -131,7 +131,7 @@ impl<'a> March<'a> {
                     let secant = (low * high_margin - high * low_margin) / (high_margin - low_margin);
                     let within = |x: &f64| *x > low && *x < high;
                     match [newton, secant, 0.5 * (low + high)].into_iter().find(within) {
-                        // what follows does not depend on where within these last digits the branch is left
+                        // the further motion does not depend on these last digits of the end of the branch
                         Some(next) if (next - length).abs() > 1e-13 * high => next,
                         _ => return Some(landed),
                     }
@@ -142,8 +142,8 @@ impl<'a> March<'a> {
         None
     }
 
-    /// The forces of a terminal panel, cut short or carried on to where they meet the event themselves, if that is near
-    /// enough for the laws to hold there as they do at the nodes.
+    /// The forces of a terminal panel, truncated or extrapolated to the point where the motion under them meets the event, if that
+    /// point is so close that the laws hold there as they do at the nodes.
     fn carried(&self, window: &Window, target: Target, at: usize, from: &Landed) -> Option<Landed> {
         let range = BASIS.nodes[Q - 1] * from.length..=(1.0 + CARRIED) * from.length;
         let (mut length, mut end) = (from.length, from.end[at]);
@@ -172,7 +172,7 @@ impl<'a> March<'a> {
         window.look(landed);
     }
 
-    /// The closed contacts on a terminal panel, and one more where its closing ends it, with series that serve up to `reach`.
+    /// The closed contacts on a terminal panel, and the contact whose closing ends it, with series that hold up to `reach`.
     fn window(&mut self, closing: Option<usize>, reach: f64) -> Window {
         let mut contacts = Vec::new();
         self.closed(&mut contacts);
@@ -191,7 +191,7 @@ impl<'a> March<'a> {
         window.add(self.system, self.tables, &self.loads, (c, self.states[c].overlap), moment);
     }
 
-    /// The laws of a terminal panel's closed contacts; what moves freely is found for each length that is tried.
+    /// The laws of a terminal panel's closed contacts; the free motion is computed for each length that is tried.
     fn unknowns_of(&self, window: &Window, length: f64) -> Vec<Unknown<'a>> {
         self.unknowns(&window.contacts[..window.closed], length, |_| [0.0; Q]).collect()
     }
@@ -205,7 +205,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// By how much the forces of a terminal panel are less well known than those of a panel must be.
+    /// Error of the forces of a terminal panel relative to the allowed error.
     fn excess(&self, window: &Window, landed: &Landed) -> f64 {
         let of = |(c, force): (&usize, &Nodal)| truncation(force) * landed.length / self.impulse_tolerance(*c);
         window.contacts.iter().zip(&landed.force).map(of).fold(0.0, f64::max)

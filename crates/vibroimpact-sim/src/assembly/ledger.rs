@@ -1,26 +1,26 @@
-//! The energy ledger of a run: where the energy came from and where it went, part by part.
+//! The energy balance of a run, part by part.
 //!
 //! # Parts
 //! - Energy of a body, of the whole motion: `sum (a'^2 + omega^2 a^2)/2` over its modes.
-//! - Work of a contact: `int F xi' dt` as the contacts book it; what of it is not stored when the run ends is lost.
+//! - Work of a contact: `int F xi' dt`, summed up by the contacts; the part that is not stored at the end of the run is lost.
 //! - Modal damping: `int 2 zeta omega a'^2 dt`.
 //! - Work of the loads: `int f a' dt`.
 //!
-//! A mode is what is carried of it (`a_c`, with rate `b_c`) and its steady motion under straight-line and harmonic loads
-//! (`load.rs`), `a' = b_c + s + sum_j Re(i Omega_j G_j e^{i Omega_j t})` with `s` the slope of the straight line. So the
-//! damping is that of `b_c` alone and a rest.
+//! The motion of a mode is the sum of the relative motion (`a_c`, with rate `b_c`) and the steady motion under piecewise linear
+//! and harmonic loads (`load.rs`), `a' = b_c + s + sum_j Re(i Omega_j G_j e^{i Omega_j t})`, where `s` is the slope of the
+//! linear part. The dissipation is therefore that of `b_c` alone and a remainder.
 //!
 //! # Panel by panel
-//! - Carried motion that is free, `int 2 zeta omega b_c^2 dt`: the carried energy where the flight begins less that where it
-//!   ends, exactly.
+//! - Free relative motion, `int 2 zeta omega b_c^2 dt`: the difference of its energy between the start and the end of the
+//!   flight, exactly.
 //! - The same under contact forces: the forms of `damping.rs`.
-//! - Straight-line loads on rigid modes, which carry their whole motion: with `a'' = sum_n g_n P_n + f_0 + f_1 tau` on a panel
+//! - Piecewise linear loads on rigid modes, whose whole motion is relative: with `a'' = sum_n g_n P_n + f_0 + f_1 tau` on a panel
 //!   of `h`, `int a' d tau = h a'_0 + h^2 (g_0/2 - g_1/6 + f_0/2 + f_1 h/6)` and
 //!   `int tau a' d tau = h^2 a'_0/2 + h^3 (g_0/3 - g_1/12 - g_2/60 + f_0/3 + f_1 h/8)`.
 //!
 //! # Piece by piece
-//! Between breaks of the loads everything else follows from the carried motion at the two ends and from `int F dt` and
-//! `int F e^{i Omega t} dt` of each contact, whatever happens between:
+//! Between breaks of the loads everything else follows from the relative motion at the two ends and from `int F dt` and
+//! `int F e^{i Omega t} dt` of each contact:
 //!
 //! ```text
 //! omega^2 int a_c = int g - [b_c + 2 zeta omega a_c]
@@ -29,12 +29,12 @@
 //! ```
 //!
 //! (the modal equation times 1 and times `e^{i Omega t}`, by parts; `g` is the force of the contacts, on a rigid mode with
-//! that of the straight lines). Products of two sinusoids are elementary, and taken once for the whole run.
+//! that of the linear loads). Products of two sinusoids are elementary, and computed once for the whole run.
 //!
-//! # What it is not
-//! Nothing is found as the difference of the others but `unaccounted_j`. It holds what the quadrature of a contact's work
-//! misses and the rounding of all parts: of the largest energy met on the way, of carried motion too, which is large where a
-//! sampled load changes within a small part of a slow mode's period or a harmonic one nearly meets a frequency.
+//! # Residual
+//! Only `unaccounted_j` is the difference of the other parts. It consists of the quadrature error of a contact's work and the
+//! rounding of all parts, relative to the largest energy that occurs. The energy of the relative motion is large if a sampled
+//! load changes within a small part of a slow mode's period, or if the frequency of a harmonic load is nearly that of a mode.
 
 use super::damping::lost_within;
 use super::load::Loads;
@@ -48,7 +48,7 @@ use crate::panel::legendre::Nodal;
 use num_complex::Complex64;
 use std::ops::Range;
 
-/// What is carried of the modes at a moment.
+/// Relative modal state at a moment.
 #[derive(Clone, Copy)]
 pub(crate) struct Moment<'a> {
     pub system: &'a System,
@@ -58,13 +58,13 @@ pub(crate) struct Moment<'a> {
     pub rate: &'a [f64],
 }
 
-/// The books while a run goes on.
+/// The energy balance during a run.
 pub(crate) struct Account {
     bodies_j: Vec<f64>,
     stored_j: f64,
     /// Bodies with damped modes.
     damped: Vec<Range<usize>>,
-    /// Carried energy of the damped modes where the flight began (J).
+    /// Energy of the relative motion of the damped modes at the start of the flight (J).
     flying_j: Option<f64>,
     damping_j: f64,
     load_work_j: f64,
@@ -83,7 +83,7 @@ struct Piece {
 }
 
 impl Account {
-    /// Opens the books at the start; `stored_j` is in the contacts.
+    /// The balance at the start; `stored_j` is the energy stored in the contacts.
     pub fn open(bodies: &[Body], start: &Moment, stored_j: f64) -> Account {
         let drags = |body: &&Range<usize>| (*body).clone().any(|k| start.system.drag[k] > 0.0);
         let mut account = Account {
@@ -99,7 +99,7 @@ impl Account {
         account
     }
 
-    /// Books a panel of `h` that is about to be made, with Legendre coefficients of the contacts' forces.
+    /// Adds a panel of `h` that is about to be accepted, with Legendre coefficients of the contact forces.
     pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
         let system = start.system;
         if !self.damped.is_empty() {
@@ -137,7 +137,7 @@ impl Account {
         }
     }
 
-    /// A new piece begins with what is now carried.
+    /// Begins a new piece with the present relative motion.
     pub fn begin_piece(&mut self, now: &Moment) {
         if now.loads.is_empty() {
             return;
@@ -152,7 +152,7 @@ impl Account {
         };
     }
 
-    /// The piece ends: a straight line does, or the run.
+    /// Ends a piece at a break of the loads or at the end of the run.
     pub fn end_piece(&mut self, now: &Moment) {
         self.land(now);
         if now.loads.is_empty() {
@@ -175,7 +175,7 @@ impl Account {
         }
     }
 
-    /// What a piece adds to the damping and to the work of the loads, mode by mode, beyond what its panels did.
+    /// Adds the dissipation and the work of the loads in a piece, mode by mode, that its panels do not include.
     fn of_piece(
         &self,
         now: &Moment,
@@ -209,7 +209,7 @@ impl Account {
             }
             let i_omega = Complex64::new(0.0, omega);
             let stiffness = Complex64::new((mode.omega_rad_s - omega) * (mode.omega_rad_s + omega), drag * omega);
-            // the force of the straight lines is a part of what carries a rigid mode
+            // the force of the linear loads acts on the relative motion of a rigid mode
             let by_lines = if mode.is_rigid() { f0 * wave.mean + slope * wave.first } else { Complex64::ZERO };
             let at = |i: usize| square * a[i] + i_omega * b[i];
             let seen = (at(1) * to - at(0) * from - i_omega * (turned(j) + by_lines)) / stiffness.conj();
@@ -223,7 +223,7 @@ impl Account {
         (damping, work)
     }
 
-    /// Closes the books at the end: `stored_j` is in the contacts, `contact_work_j` went there.
+    /// The final balance; `stored_j` is the energy stored in the contacts, `contact_work_j` their work.
     pub fn close(mut self, end: &Moment, stored_j: f64, contact_work_j: f64) -> Ledger {
         self.end_piece(end);
         let (damping, work) = of_harmonics(end);
@@ -257,7 +257,7 @@ fn energies(now: &Moment) -> Vec<f64> {
     now.system.bodies.iter().map(|body| body.clone().map(of).sum()).collect()
 }
 
-/// Energy of what is carried of the damped modes.
+/// Energy of the relative motion of the damped modes.
 fn carried_energy(damped: &[Range<usize>], now: &Moment) -> f64 {
     let of = |k: usize| 0.5 * (now.rate[k].powi(2) + now.system.square[k] * now.amplitude[k].powi(2));
     damped.iter().cloned().flatten().filter(|&k| now.system.drag[k] > 0.0).map(of).sum()

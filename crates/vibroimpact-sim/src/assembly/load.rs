@@ -1,19 +1,19 @@
-//! Loads: what they do to modes and contacts, without integration.
+//! Effect of loads on modes and contacts, in closed form.
 //!
-//! - Constant and sampled loads are, until the next break, straight lines in time: `f_k(t) = f0_k + f1_k (t - t0)`. An
-//!   elastic mode moves about `f_k/omega_k^2 - 2 zeta_k f1_k/omega_k^3`, a straight line too, and is carried relative to
-//!   it. A rigid mode is carried whole: over `h` seconds the load moves it by `f h^2/2 + f1 h^3/6`.
-//! - A harmonic load makes each mode, and so each contact, follow one sinusoid, `Re(G e^{i Omega t})` with
-//!   `G_k = -i e^{i phase} f_k / (omega_k^2 - Omega^2 + 2 i zeta_k omega_k Omega)`; modes are carried relative to it.
+//! - Constant and sampled loads are linear in time until the next break: `f_k(t) = f0_k + f1_k (t - t0)`. An elastic mode moves
+//!   about `f_k/omega_k^2 - 2 zeta_k f1_k/omega_k^3`, which is linear too, and is computed relative to it. The motion of a rigid
+//!   mode is not split: over `h` seconds the load moves it by `f h^2/2 + f1 h^3/6`.
+//! - Under a harmonic load each mode, and therefore each contact, follows one sinusoid, `Re(G e^{i Omega t})` with
+//!   `G_k = -i e^{i phase} f_k / (omega_k^2 - Omega^2 + 2 i zeta_k omega_k Omega)`; modes are computed relative to it.
 //!
-//! So what is carried of an elastic mode is free motion, and a contact sees of the loads a cubic and a few sinusoids.
+//! The relative motion of an elastic mode is therefore free. The effect of the loads on a contact is a cubic and some sinusoids.
 
 use super::problem::{Force, Load};
 use super::system::{Link, Span, System};
 use crate::panel::legendre::{BASIS, Q, TAYLOR};
 use num_complex::Complex64;
 
-/// How the harmonic loads turn on a panel, for all contacts: `e^{i Omega t}` at its start, and `e^{i Omega (t' - t)} - 1` at the
+/// Phases of the harmonic loads on a panel, for all contacts: `e^{i Omega t}` at its start, and `e^{i Omega (t' - t)} - 1` at the
 /// nodes and at the end.
 #[derive(Default)]
 pub(crate) struct Turns {
@@ -42,7 +42,7 @@ impl Harmonic {
     }
 }
 
-/// What straight-line loads do to one contact, at the time `t0` of the last break.
+/// Effect of piecewise linear loads on one contact, from the time `t0` of the last break.
 #[derive(Debug, Clone, Copy, Default)]
 struct Line {
     /// Shift of the elastic modes (m) and its rate (m/s).
@@ -65,11 +65,11 @@ struct Source {
 pub(crate) struct Loads {
     pub harmonics: Vec<Harmonic>,
     lines: Vec<Source>,
-    /// Times at which a straight line ends, ascending.
+    /// Breaks of the piecewise linear loads, ascending (s).
     breaks: Vec<f64>,
     next: usize,
     since_s: f64,
-    /// Modal forces at `since_s` and their rates; empty where there is no straight-line load.
+    /// Modal forces at `since_s` and their rates; empty without piecewise linear loads.
     force: Vec<f64>,
     force_rate: Vec<f64>,
     /// Modes that are rigid and loaded.
@@ -134,7 +134,7 @@ impl Loads {
         }
     }
 
-    /// Takes the straight lines that begin at `time_s`.
+    /// Sets the linear pieces that begin at `time_s`.
     fn set_lines(&mut self, system: &System, time_s: f64) {
         if self.lines.is_empty() {
             return;
@@ -169,7 +169,7 @@ impl Loads {
         line
     }
 
-    /// Modal force of the straight lines at `time_s`, and its rate.
+    /// Modal force of the piecewise linear loads at `time_s`, and its rate.
     pub fn line(&self, k: usize, time_s: f64) -> (f64, f64) {
         if self.force.is_empty() {
             return (0.0, 0.0);
@@ -177,7 +177,7 @@ impl Loads {
         (self.force[k] + self.force_rate[k] * (time_s - self.since_s), self.force_rate[k])
     }
 
-    /// Where the straight lines hold an elastic mode, at the last break, and the rate of that.
+    /// Quasi-static displacement of an elastic mode by the piecewise linear loads at the last break, and its rate.
     pub fn shift(&self, system: &System, k: usize) -> (f64, f64) {
         if self.force.is_empty() {
             return (0.0, 0.0);
@@ -187,17 +187,17 @@ impl Loads {
         (self.force[k] / (omega * omega) - 2.0 * zeta / omega * rate, rate)
     }
 
-    /// The next time at which a straight line ends, infinite if none does.
+    /// The time of the next break, infinite if there is none.
     pub fn next_break_s(&self) -> f64 {
         self.breaks.get(self.next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// How many breaks these loads have passed that others, of the same system, have not.
+    /// Number of breaks that these loads have passed and others, of the same system, have not.
     pub fn breaks_since(&self, others: &Loads) -> usize {
         self.next - others.next
     }
 
-    /// Passes the break that has been reached: the whole motion goes on, what is carried of the elastic modes jumps.
+    /// Passes the break that has been reached: the total motion is continuous, the relative motion of the elastic modes jumps.
     pub fn pass_break(&mut self, system: &System, time_s: f64, amplitude: &mut [f64], rate: &mut [f64]) {
         self.next += 1;
         self.add_shifts(system, time_s, 1.0, amplitude, rate);
@@ -213,7 +213,7 @@ impl Loads {
         }
     }
 
-    /// From the whole motion of the modes at `time_s` to what is carried of it (`sign` -1), or back (`sign` 1).
+    /// From the total motion of the modes at `time_s` to the relative motion (`sign` -1), or back (`sign` 1).
     pub fn shift_modes(&self, system: &System, time_s: f64, sign: f64, amplitude: &mut [f64], rate: &mut [f64]) {
         self.add_shifts(system, time_s, sign, amplitude, rate);
         for harmonic in &self.harmonics {
@@ -226,7 +226,7 @@ impl Loads {
         }
     }
 
-    /// Acceleration of the steady motion, relative to which the modes are carried.
+    /// Acceleration of the steady motion.
     pub fn add_accelerations(&self, time_s: f64, factor: f64, rate: &mut [f64]) {
         for harmonic in &self.harmonics {
             let turn = -factor * harmonic.omega_rad_s * harmonic.omega_rad_s * harmonic.turn(time_s);
@@ -234,7 +234,7 @@ impl Loads {
         }
     }
 
-    /// What the straight lines do to the rigid modes over `h` seconds from `time_s` on.
+    /// Effect of the piecewise linear loads on the rigid modes over `h` seconds from `time_s` on.
     pub fn push_rigid(&self, time_s: f64, h: f64, amplitude: &mut [f64], rate: &mut [f64]) {
         for &k in &self.rigid {
             let (force, slope) = self.line(k, time_s);
@@ -243,7 +243,7 @@ impl Loads {
         }
     }
 
-    /// What the loads add to the overlap of a contact and its rate at `time_s`, beyond what the modes carry.
+    /// Contribution of the steady motion to the overlap of a contact and its rate at `time_s`.
     pub fn overlap(&self, contact: usize, time_s: f64) -> (f64, f64) {
         let line = &self.contacts[contact];
         let mut overlap = (line.shift + line.shift_rate * (time_s - self.since_s), line.shift_rate);
@@ -255,21 +255,21 @@ impl Loads {
         overlap
     }
 
-    /// What the loads do to one side of a contact by itself: displacement and velocity at `time_s` beyond the modes'.
+    /// Contribution of the steady motion to displacement and velocity of one side of a contact at `time_s`.
     pub fn side(&self, system: &System, side: &Span, time_s: f64) -> (f64, f64) {
         let (mut amplitude, mut rate) = (vec![0.0; system.modes.len()], vec![0.0; system.modes.len()]);
         self.shift_modes(system, time_s, 1.0, &mut amplitude, &mut rate);
         (side.sum(&amplitude), side.sum(&rate))
     }
 
-    /// By how much the loads move the overlap of a contact within `h` seconds from `time_s` on, and what they add to its rate
-    /// then, beyond what the modes carry at `time_s`.
+    /// Change of the overlap of a contact by the loads within `h` seconds from `time_s` on, and of its rate, beyond the free motion
+    /// of the modes from `time_s`.
     pub fn moved(&self, contact: usize, time_s: f64, h: f64) -> (f64, f64) {
         let turns = self.harmonics.iter().map(|harmonic| (harmonic.turn(time_s), swept(harmonic.omega_rad_s * h)));
         self.moved_by(contact, time_s, h, turns)
     }
 
-    /// How the harmonic loads turn on a panel of `h`.
+    /// Phases of the harmonic loads on a panel of `h`.
     pub fn turn(&self, time_s: f64, h: f64, turns: &mut Turns) {
         if self.harmonics.is_empty() {
             return;
@@ -311,7 +311,7 @@ impl Loads {
         (moved, rate)
     }
 
-    /// A bound on what the loads move the overlap of a contact by within `h` seconds from `time_s` on (m).
+    /// A bound on the change of the overlap of a contact by the loads within `h` seconds from `time_s` on (m).
     pub fn most_moved(&self, contact: usize, time_s: f64, h: f64) -> f64 {
         let line = &self.contacts[contact];
         let acceleration = self.acceleration(contact, time_s).abs();
@@ -320,7 +320,7 @@ impl Loads {
         lines + self.harmonics.iter().map(of).sum::<f64>()
     }
 
-    /// By how much more [`Loads::moved`] moves the overlap within `h` seconds, for each second that they begin later.
+    /// Derivative of the displacement [`Loads::moved`] within `h` seconds with respect to the time of its start.
     pub fn moved_later(&self, contact: usize, time_s: f64, h: f64) -> f64 {
         let mut moved = 0.5 * h * h * self.contacts[contact].jerk;
         for harmonic in &self.harmonics {
@@ -330,7 +330,7 @@ impl Loads {
         moved
     }
 
-    /// Acceleration of the overlap that the harmonic loads alone make (m/s^2).
+    /// Acceleration of the overlap by the harmonic loads alone (m/s^2).
     pub fn bend(&self, contact: usize, time_s: f64) -> f64 {
         let of = |harmonic: &Harmonic| {
             let moved = harmonic.contacts[contact] * harmonic.turn(time_s);
@@ -339,12 +339,12 @@ impl Loads {
         self.harmonics.iter().map(of).sum()
     }
 
-    /// Acceleration of the overlap by the rigid modes' straight-line loads (m/s^2).
+    /// Acceleration of the overlap by the piecewise linear loads on the rigid modes (m/s^2).
     pub fn acceleration(&self, contact: usize, time_s: f64) -> f64 {
         self.contacts[contact].acceleration + self.contacts[contact].jerk * (time_s - self.since_s)
     }
 
-    /// Adds `g^(p)/p!` of what the loads do to the overlap of a contact.
+    /// Adds `g^(p)/p!` of the contribution of the loads to the overlap of a contact.
     pub fn add_series(&self, contact: usize, time_s: f64, series: &mut [f64; TAYLOR]) {
         let line = &self.contacts[contact];
         series[1] += line.shift_rate;

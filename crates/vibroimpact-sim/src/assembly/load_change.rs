@@ -1,8 +1,8 @@
-//! How what the loads do changes with a parameter.
+//! Derivatives of the effect of loads with respect to a parameter.
 //!
-//! Loads move modes and contacts in closed form ([`super::load`]), so that the slope through four neighbouring values of
-//! the parameter gives the change at a fixed time. Where the time itself is shifted, the rate of that motion times the shift
-//! comes on top of it; that part belongs to whoever knows the shift.
+//! The motion under loads has a closed form ([`super::load`]), so its derivative at a fixed time is the slope through four
+//! neighbouring values of the parameter. If the time itself is shifted, the rate of that motion times the shift has to be added;
+//! the caller does so.
 
 use super::load::Loads;
 use super::problem::Posed;
@@ -48,7 +48,7 @@ impl LoadChange {
         (amplitude, rate)
     }
 
-    /// Of the steady motion, relative to which modes are carried.
+    /// Of the steady motion.
     pub fn steady(&self, system: &System, time_s: f64) -> (Vec<f64>, Vec<f64>) {
         let motions = self.neighbours.each_ref().map(|(system, loads)| {
             let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);
@@ -69,7 +69,7 @@ impl LoadChange {
         self.slope(|_, loads| loads.moved(contact, time_s, h).0)
     }
 
-    /// Of the straight-line force on a rigid mode at `time_s`, and of its slope.
+    /// Of the piecewise linear force on a rigid mode at `time_s`, and of its slope.
     pub fn line(&self, k: usize, system: &System, time_s: f64) -> (f64, f64) {
         let body = system.bodies.iter().position(|modes| modes.contains(&k)).unwrap_or_default();
         let number = system.place[body].iter().position(|place| *place == k).unwrap_or_default();
@@ -79,12 +79,12 @@ impl LoadChange {
         (of(|pair| pair.0), of(|pair| pair.1))
     }
 
-    /// Of the time at which the straight lines end.
+    /// Of the time of the next break.
     pub fn next_break_s(&self) -> f64 {
         self.slope(|_, loads| loads.next_break_s())
     }
 
-    /// Passes the break: the change of the jump of what is carried.
+    /// Passes the break: the derivative of the jump of the relative motion.
     pub fn pass_break(&mut self, system: &System) -> (Vec<f64>, Vec<f64>) {
         let motions = self.neighbours.each_mut().map(|(system, loads)| {
             let [mut amplitude, mut rate] = [(); 2].map(|()| vec![0.0; system.modes.len()]);

@@ -1,9 +1,9 @@
-//! The march: try a panel, judge it, commit it.
+//! Time integration: compute a trial panel, check it, accept it.
 //!
-//! A trial never changes the motion (`trial.rs`). A panel is judged by three questions: is the force of every closed contact
-//! known well enough, does an event function fall to zero on it, and is the panel short enough to tell (`judge.rs`). It is
-//! then committed, tried again shorter, or cut at the event, which is located (`landing.rs`) and handed to the law
-//! (`transition.rs`). Without closed contact there is nothing to solve, and panels are as long as it is certain that none
+//! A trial never changes the motion (`trial.rs`). A panel has to pass three checks: is the force of every closed contact accurate
+//! enough, does no event function fall to zero on it, and is the panel short enough for this decision (`judge.rs`)? It is then
+//! accepted, tried again with a shorter length, or ended at the event, which is located (`landing.rs`) and changes the branch of
+//! the law (`transition.rs`). Without closed contacts nothing has to be solved, and panels are as long as bounds prove that none
 //! closes (`flight.rs`).
 
 use super::judge::Judgement;
@@ -23,9 +23,9 @@ const GROWTH: f64 = 250.0;
 const SHARE: f64 = 0.85;
 /// Number of successive events without progress in time that counts as chatter.
 const CHATTER: u64 = 10_000;
-/// Number of committed panels between two checks for rest.
+/// Number of accepted panels between two checks for rest.
 const REST: u64 = 64;
-/// Number of panels with contact after which the laws are checked, many times what an impact needs.
+/// Number of panels with contact after which the laws are checked, much more than an impact needs.
 const TRY_LAWS: u64 = 5_000;
 /// Number of panels between two questions to the observer whether to stop.
 const ASK: u64 = 64;
@@ -68,7 +68,7 @@ impl<'a> March<'a> {
         outcome
     }
 
-    /// A straight line of the loads ends, another one begins.
+    /// Passes a break of the loads.
     fn pass_break(&mut self) {
         let mut account = self.account.take();
         if let Some(account) = &mut account {
@@ -82,7 +82,7 @@ impl<'a> March<'a> {
         self.forget_horizons();
     }
 
-    /// Whether nothing opens or closes any more, or nothing that does matters.
+    /// Whether no contact opens or closes any more, or only contacts below the tolerance do.
     fn rests(&self) -> bool {
         let over = self.settings.stop_when_over && rest::has_faded(self, 0.1 * self.settings.tolerance);
         over || self.settings.stop_at_rest && rest::is_certain(self)
@@ -96,10 +96,10 @@ impl<'a> March<'a> {
         now
     }
 
-    /// A step while contacts are closed: to an event that is near, to the end, or by a panel.
+    /// A step with closed contacts: to a near event, to the end, or by a panel.
     fn contact(&mut self, trial: &mut Trial<'a>) {
         let lasting = self.lasting();
-        // a terminal panel is no better than one of about its length
+        // a terminal panel is not better than a panel of similar length
         let usual = 2.0 * step_s(self.level.clamp(J_MIN + 1, J_MAX));
         let mut reach = self.reach.min(self.landing).min(usual);
         let mut level = self.level;
@@ -124,7 +124,7 @@ impl<'a> March<'a> {
         self.try_panel(level, trial);
     }
 
-    /// A panel with closed contacts, and what follows from it.
+    /// Computes a panel with closed contacts, and accepts or rejects it.
     fn try_panel(&mut self, level: i32, trial: &mut Trial<'a>) {
         let h = step_s(level);
         trial.closed = self.closed(&mut trial.contacts);
@@ -136,7 +136,7 @@ impl<'a> March<'a> {
         if let Judgement::Meets(target, place) = judgement
             && place > 0.0
         {
-            // where it lies is found out when it is near
+            // it is located once it is near
             self.counts.rejected_steps += 1;
             self.horizon = Some(Horizon { target, at_s: self.time_s + place * h });
             return;
@@ -147,12 +147,12 @@ impl<'a> March<'a> {
         let mut error = 0.0f64;
         for (i, &c) in contacts[..closed].iter().enumerate() {
             let tolerance = self.impulse_tolerance(c);
-            // modes that turn several times within the panel escape the coefficients, but not the law at its end
+            // modes that turn several times within the panel do not show in the coefficients, but in the law at its end
             let missed = (self.force_at(c, trial.end[i]) - evaluate(&trial.force[i], 1.0)).abs();
             error = error.max(truncation(&trial.force[i]) * h / tolerance).max(missed * h / tolerance);
         }
         if error.is_nan() || error > 1.0 {
-            // the error falls at least like h^5, but for the first panels of a contact, which are begun short enough
+            // the error decreases at least like h^5, except on the first panels of a contact, which are short enough from the start
             let finer = (error.log2() / 5.0) as i32;
             return self.refine(level + finer.clamp(1, 4));
         }
@@ -166,8 +166,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether the run has to stop here. Before it stops in the middle of a contact, and once a run is long, the laws are
-    /// tried: one that breaks its contract is what keeps a run from ending.
+    /// Whether the run has to stop here. Before it stops during a contact, and once if the run is long, the laws are checked: a law
+    /// that violates its contract can prevent a run from ending.
     fn limit(&mut self) -> Option<Reason> {
         let reason = self.reached_limit();
         let in_contact = matches!(reason, Some(Reason::FinestStep | Reason::LawRange | Reason::Chatter));

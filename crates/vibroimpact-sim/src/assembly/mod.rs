@@ -21,30 +21,30 @@
 //!
 //! # The method
 //! The modes are linear and uncoupled, and are propagated exactly on panels of `2^-j` s whose tables are cached
-//! (`tables.rs`). Modes are carried relative to their steady motion under the loads, which therefore cost nothing on a panel
+//! (`tables.rs`). Modes are computed relative to their steady motion under the loads, so that loads cost nothing on a panel
 //! (`load.rs`). The only unknowns are the forces of closed contacts, polynomials through Gauss nodes whose values the laws
 //! determine. Newton's method finds them, with a matrix that has a block for every two contacts on one body
 //! (`collocate.rs`).
 //!
-//! The march (`march.rs`) tries a panel, judges it, and commits it, tries a shorter one, or cuts it at an event. Three rules
-//! hold for every panel that is committed:
+//! Time integration (`march.rs`) computes a panel and checks it. The panel is accepted, tried again with a shorter length, or
+//! ended at an event. Three rules hold for every accepted panel:
 //!
 //! 1. the truncation of each force, and its defect in the law at the end of the panel, are below a tenth of the tolerance
 //!    in impulse;
 //! 2. no event function falls to zero on it. An event function is the distance to a boundary of a law's branch, or of
-//!    the separation of an open contact. It is known by a polynomial and a bound on the error of that (`enclosure.rs`), and
-//!    `event.rs` alone judges it; a panel on which it is within the bound of zero is too long;
+//!    the separation of an open contact. It is represented by a polynomial with an error bound (`enclosure.rs`), and only
+//!    `event.rs` tests it; a panel on which it comes within the bound of zero is too long;
 //! 3. it lies in one branch of every law. An event is the end of a terminal panel (`terminal.rs`), whose length is the
 //!    root of the event function; one law transition follows.
 //!
-//! Without closed contact a panel is as long as the bound on the motion of the open ones allows.
+//! Without closed contacts a panel is as long as the bound on the motion of the open ones allows.
 //!
-//! On request an energy ledger is kept panel by panel (`ledger.rs`, `damping.rs`).
+//! On request the energy balance is computed panel by panel (`ledger.rs`, `damping.rs`).
 //!
 //! # Limits
 //! Bodies are linear, contacts are points that move along one axis; there is no friction. A harmonic load at the frequency
-//! of an undamped mode is refused. Errors grow along a chaotic motion: compare with a run at another tolerance to see up
-//! to when event times agree.
+//! of an undamped mode is rejected. Errors grow along a chaotic motion: compare with a run at another tolerance to find the time
+//! up to which event times agree.
 
 mod branch;
 pub(crate) mod change;

@@ -1,4 +1,4 @@
-//! What the march carries: the modes, the contacts, and what is expected next. Every part of the march works on it.
+//! The state of time integration: the modes, the contacts, and the expected next event. All its steps work on this state.
 
 use super::collocate::Newton;
 use super::dense::{Event, Stretch};
@@ -16,10 +16,10 @@ use crate::panel::dyadic::J_MIN;
 use crate::panel::vector::sum_over;
 use contact_models::{ContactLaw, Memory};
 
-/// Share of the stated tolerance that one panel may use up.
+/// Share of the stated tolerance that is allowed for one panel.
 const STEP_SHARE: f64 = 0.1;
 
-/// Which event function of which contact: a boundary of its branch, or its closing.
+/// An event function of a contact: a boundary of its branch, or its closing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Target {
     pub contact: usize,
@@ -33,7 +33,7 @@ pub(super) struct Horizon {
     pub at_s: f64,
 }
 
-/// The motion on its way. Its methods are in the files of the march, each of which uses only those above it.
+/// The motion during time integration. Its methods are in several files, each of which uses only those above it.
 pub(crate) struct March<'a> {
     pub(super) laws: &'a [&'a dyn ContactLaw],
     pub(super) posed: &'a Posed<'a>,
@@ -44,31 +44,31 @@ pub(crate) struct March<'a> {
     pub(super) settings: Settings,
     pub(super) observer: &'a mut dyn Observer,
     pub(super) time_s: f64,
-    /// What is carried of the modes, see [`super::load`].
+    /// The modal state relative to the steady motion, see [`super::load`].
     pub(super) amplitude: Vec<f64>,
     pub(super) rate: Vec<f64>,
     pub(super) states: Vec<State>,
     pub(super) counts: Counts,
-    /// The energy ledger, where it is wanted.
+    /// The energy balance, if it is requested.
     pub(super) account: Option<Account>,
-    /// All stretches of the motion, where they are wanted, and the events since the last of them.
+    /// All stretches of the motion, if they are requested, and the events since the last one.
     pub(super) record: Option<Vec<Stretch>>,
     pub(super) pending: Vec<(usize, Event)>,
-    /// Time, amplitudes and rates when the last contact opened, where the run may end there.
+    /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Memory for the enclosures, and for Newton's method.
     pub(super) held: Held,
     pub(super) newton: Newton,
-    /// Level on which the next panel is tried.
+    /// Step exponent of the next trial panel.
     pub(super) level: i32,
     pub(super) horizon: Option<Horizon>,
-    /// Longest terminal panel that accuracy allows, as far as those of these branches have shown (s).
+    /// Longest terminal panel that accuracy allows, from the terminal panels on these branches so far (s).
     pub(super) landing: f64,
-    /// Longest terminal panel for which the series serve (s).
+    /// Longest terminal panel for which the power series hold (s).
     pub(super) reach: f64,
-    /// Number of committed panels at which rest is looked for again.
+    /// Number of accepted panels at the next check for rest.
     pub(super) ask_rest_at: u64,
-    /// Number of committed panels at which the laws are tried, once.
+    /// Number of accepted panels at which the laws are checked, once.
     pub(super) try_laws_at: u64,
     /// Length of the last panel of flight (s).
     pub(super) flown: f64,
@@ -141,7 +141,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// What is carried now.
+    /// The present relative modal state.
     pub(super) fn here(&self) -> Moment<'_> {
         let (amplitude, rate) = (&self.amplitude, &self.rate);
         Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate }
@@ -181,7 +181,7 @@ impl<'a> March<'a> {
         (self.states[c].reference + (link.sum(&self.amplitude) + shift), link.sum(&self.rate) + shift_rate)
     }
 
-    /// Rounding of an overlap that is a difference of where bodies are (m).
+    /// Rounding of an overlap that is computed as a difference of positions (m).
     pub(super) fn noise(&self, c: usize) -> f64 {
         self.rounding(c, &self.amplitude, self.states[c].reference.abs())
     }
@@ -191,7 +191,7 @@ impl<'a> March<'a> {
         self.rounding(c, &self.rate, 0.0)
     }
 
-    /// Rounding of a sum over the modes that a contact sees, and of something beside them.
+    /// Rounding of a sum over the modes of a contact and another term.
     fn rounding(&self, c: usize, values: &[f64], beside: f64) -> f64 {
         let of = |Span { modes, psi }: &Span| {
             let [sum] = sum_over([psi, &values[modes.clone()]], |[psi, value]| [(psi * value).abs()]);
@@ -200,8 +200,8 @@ impl<'a> March<'a> {
         4.0 * f64::EPSILON * (self.system.links[c].spans.iter().map(of).sum::<f64>() + beside)
     }
 
-    /// Impulse that a panel may get wrong (N s): a part of the momentum exchanged, but no more than what would give the
-    /// modes, light ones too, this part of the contact's energy.
+    /// Allowed error of the impulse on a panel (N s): a part of the exchanged momentum, but at most the impulse that would give the
+    /// modes, even light ones, this part of the contact's energy.
     pub(super) fn impulse_tolerance(&self, c: usize) -> f64 {
         let (state, tolerance) = (&self.states[c], self.settings.tolerance);
         let share = STEP_SHARE * tolerance * state.momentum;
@@ -226,7 +226,7 @@ impl<'a> March<'a> {
         self.level = level;
     }
 
-    /// What was expected does not hold any more.
+    /// Discards the expected event.
     pub(super) fn forget_horizons(&mut self) {
         self.horizon = None;
         self.landing = f64::INFINITY;
@@ -238,13 +238,13 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Time goes on, with what the loads do to the rigid modes meanwhile.
+    /// Advances the time, with the effect of the loads on the rigid modes.
     pub(super) fn pass(&mut self, h: f64) {
         self.loads.push_rigid(self.time_s, h, &mut self.amplitude, &mut self.rate);
         self.time_s += h;
     }
 
-    /// The end of the run and the breaks of loads are met to the last digit.
+    /// The end of the run and the breaks of loads are reached exactly.
     pub(super) fn arrive_exactly(&mut self) {
         let target = self.settings.end_s.min(self.loads.next_break_s());
         if target.is_finite() && (self.time_s - target).abs() <= 1e-12 * target {

@@ -1,14 +1,14 @@
-//! Why a run has no derivative.
+//! Reasons why a run has no derivative.
 
 use std::fmt;
 
-/// Why a run has no derivative.
+/// The reason why a run has no derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum NoDerivative {
     /// It stopped early, or an impact did not end with a rebound.
     Outcome,
-    /// A contact only grazes, with no speed: after a change it may be missed.
+    /// A contact grazes with zero speed, and may disappear after a change.
     Graze {
         /// The contact, by its place in the list.
         contact: usize,
@@ -22,19 +22,19 @@ pub enum NoDerivative {
         /// When (s).
         time_s: f64,
     },
-    /// The law of a contact takes another course after a change.
+    /// The law of a contact may follow another branch after a change.
     Fork {
         /// The contact, by its place in the list.
         contact: usize,
         /// When (s).
         time_s: f64,
     },
-    /// A contact begins, ends or changes its law's branch just at a break of a load.
+    /// A contact begins, ends or changes its branch at the time of a break of a load.
     Break {
         /// When (s).
         time_s: f64,
     },
-    /// The derivatives are no finite numbers.
+    /// The derivatives are not finite.
     Infinite,
 }
 
@@ -49,7 +49,7 @@ impl fmt::Display for NoDerivative {
                 write!(f, "contact {contact} begins with a jump of its force beside another at {time_s} s")
             }
             NoDerivative::Fork { contact, time_s } => {
-                write!(f, "the law of contact {contact} takes either of two courses at {time_s} s")
+                write!(f, "the law of contact {contact} may follow either of two branches at {time_s} s")
             }
             NoDerivative::Break { time_s } => write!(f, "an event coincides with a break of a load at {time_s} s"),
             NoDerivative::Infinite => f.write_str("the derivatives are not finite"),

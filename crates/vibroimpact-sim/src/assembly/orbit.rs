@@ -1,13 +1,13 @@
 //! Periodic motions under harmonic loads.
 //!
-//! After `n` periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by the march. A periodic
-//! motion is a fixed point, found by Newton's method, `(DP - 1) dx = x - P(x)`; the eigenvalues of `DP` there are its
-//! Floquet multipliers, and it is stable where none exceeds 1 in size. `DP` is the tangent of the march, made of the exact
-//! pieces of the motion ([`Solver::differentiate`] has the same for other parameters). Where contacts graze the map has no
-//! derivative; central differences take its place, and Newton's method need not converge.
+//! After `n` periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by time integration. A periodic
+//! motion is a fixed point, found by Newton's method, `(DP - 1) dx = x - P(x)`. The eigenvalues of `DP` there are its Floquet
+//! multipliers, and it is stable if none exceeds 1 in size. `DP` is the tangent of the motion, composed of its exact pieces
+//! ([`Solver::differentiate`] computes the same for other parameters). At grazing contacts the map has no derivative. Central
+//! differences then replace it, and Newton's method may fail to converge.
 //!
-//! The states are compared at a moment at which every contact is open, if the motion has one: what a law remembers of a
-//! contact under way is no part of `x`.
+//! The states are compared at a moment at which every contact is open, if there is one, because the internal variables of a
+//! closed contact are not part of `x`.
 
 use super::problem::{Assembly, Force, Settings};
 use super::solution::{ContactSample, Interval, Motion, Observer, Outcome, Reason};
@@ -18,16 +18,16 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Changes for differences, relative to the size of the motion.
+/// Step of finite differences, relative to the size of the motion.
 const DIFFERENCE: f64 = 1e-5;
 /// Moments of a period at which it is sampled.
 const SAMPLES: usize = 1024;
-/// A multiplier may exceed 1 by this much before a motion counts as unstable: where contacts graze, no more is known.
+/// A motion counts as unstable if a multiplier exceeds 1 by more than this, which is the accuracy at grazing contacts.
 const MARGINAL: f64 = 1e-6;
-/// Frequencies of loads are multiples of one if they are so to this accuracy.
+/// Relative accuracy to which frequencies of loads must be multiples of one frequency.
 const COMMENSURATE: f64 = 1e-9;
 
-/// How a periodic motion is searched for.
+/// Settings of the search for a periodic motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitSettings {
     /// Periods of the loads after which the motion repeats. Default 1.
@@ -38,7 +38,7 @@ pub struct OrbitSettings {
     pub tolerance: f64,
     /// Largest difference `|P(x) - x|` of a periodic motion, relative to its size. Default 1e-9.
     pub closure: f64,
-    /// Newton iterations at most. Default 30.
+    /// Largest number of Newton iterations. Default 30.
     pub max_iterations: u32,
 }
 
@@ -63,7 +63,7 @@ impl OrbitSettings {
     }
 }
 
-/// How one side of a contact moves on an orbit.
+/// Motion of one side of a contact on an orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SideMotion {
     /// Amplitude of the displacement at the orbit's first harmonic of the loads (m).
@@ -99,20 +99,20 @@ pub struct Orbit {
     pub iterations: u32,
 }
 
-/// The result of the search for a periodic motion.
+/// Outcome of the search for a periodic motion.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum OrbitOutcome {
-    /// It was found.
+    /// A periodic motion was found.
     Found(Box<Orbit>),
-    /// Newton's method came no nearer than this to a motion that repeats itself.
+    /// Newton's method did not converge; this was the closest approach to a motion that repeats itself.
     NotFound {
         /// `|P(x) - x|`, relative to the size of the motion.
         closure: f64,
     },
     /// A run of a period stopped before its end.
     Stopped(Outcome),
-    /// The search was stopped from outside after it had come this near.
+    /// The observer interrupted the search at this distance.
     Interrupted {
         /// `|P(x) - x|`, relative to the size of the motion.
         closure: f64,
@@ -137,7 +137,7 @@ impl fmt::Display for OrbitOutcome {
 /// Finds a periodic motion near where a transient from the assembly's start leads.
 ///
 /// # Errors
-/// Input that poses no problem; no harmonic load, or several whose frequencies are no multiples of one.
+/// If the input is invalid, or if there is no harmonic load, or several whose frequencies are not multiples of one frequency.
 pub fn find_orbit<L: ContactLaw + Clone>(
     assembly: &Assembly<L>,
     settings: &OrbitSettings,
@@ -145,7 +145,7 @@ pub fn find_orbit<L: ContactLaw + Clone>(
     find_orbit_until(assembly, settings, &|| false)
 }
 
-/// As [`find_orbit`]; `stop` is asked now and then whether to end the search with what it has come to.
+/// As [`find_orbit`]; `stop` is called from time to time, and ends the search with its best result so far.
 ///
 /// # Errors
 /// As [`find_orbit`].
@@ -197,7 +197,7 @@ pub(crate) fn refine<L: ContactLaw + Clone>(
         let Some(step) = matrix.lu().solve(&(&state - &image)) else {
             return Ok(OrbitOutcome::NotFound { closure });
         };
-        // a full step, or a shorter one that brings the ends nearer
+        // a full step, or a shorter one that reduces the distance
         let mut part = 1.0;
         let next = loop {
             if (map.stop)() {
@@ -354,7 +354,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         Ok(Ok(state))
     }
 
-    /// Sizes of the state's numbers: every rate as large as the largest, every amplitude as goes with it.
+    /// Scales of the state: the largest rate for all rates, and the corresponding amplitude for each mode.
     pub fn scales(&self, state: &DVector<f64>, image: &DVector<f64>) -> DVector<f64> {
         let n = state.len() / 2;
         let omega: Vec<f64> =
@@ -519,7 +519,7 @@ impl Survey {
 
 impl Observer for Survey {
     fn interval(&mut self, contact: usize, interval: &Interval) {
-        // one that is under way at the start is counted where it begins
+        // an interval that has begun before the start is counted where it begins
         if interval.start_s > 0.0 || interval.end_s.is_none() {
             self.intervals[contact] += 1;
         }

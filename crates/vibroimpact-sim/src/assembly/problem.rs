@@ -1,14 +1,14 @@
-//! The problem in the terms of mechanics: bodies by their modes, contacts between their points, loads.
+//! The mechanical problem: bodies with their modes, contacts between their points, and loads.
 
 pub use crate::panel::oscillator::BodyMode;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 
-/// Bounds on sizes: wide enough for any system of units, narrow enough that no product overflows.
+/// Bounds on magnitudes: wide enough for any system of units, narrow enough that no product overflows.
 const SCALE_MAX: f64 = 1e30;
-/// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
+/// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
-/// A harmonic load nearer than this, relative to the frequency of an undamped mode that it drives, is resonance.
+/// A harmonic load whose frequency is closer than this (relative) to that of an undamped mode which it excites is resonant.
 const RESONANCE: f64 = 1e-9;
 
 /// A linear body: its modes, and their motion at the start.
@@ -34,7 +34,7 @@ impl Body {
         }
     }
 
-    /// These modes, undeformed and at rest.
+    /// A body with these modes, undeformed and at rest.
     pub fn at_rest(modes: Vec<BodyMode>) -> Body {
         let zeros = vec![0.0; modes.len()];
         Body { amplitude: zeros.clone(), rate: zeros, modes }
@@ -85,7 +85,7 @@ pub enum Force {
         /// Phase at the start (rad).
         phase_rad: f64,
     },
-    /// Straight lines between measured or stated values; zero before the first and after the last.
+    /// Piecewise linear between measured or stated values; zero before the first and after the last.
     Sampled {
         /// Times (s), ascending; equal neighbours make a jump.
         times_s: Vec<f64>,
@@ -122,7 +122,7 @@ pub struct Assembly<L> {
 pub struct Settings {
     /// Time at which the run ends (s); infinity only with `stop_when_over`.
     pub end_s: f64,
-    /// Impulse that a step may get wrong, relative to the largest momentum exchanged by its contact so far: 1e-13 to 0.1.
+    /// Allowed error of the impulse on a step, relative to the largest momentum exchanged by its contact so far: 1e-13 to 0.1.
     /// Default 1e-9.
     pub tolerance: f64,
     /// Stop after this many steps, of contacts and flights together. Default 2,000,000,000.
@@ -132,10 +132,10 @@ pub struct Settings {
     /// End the run, [`super::Outcome::Rest`], once it is certain that no contact opens or closes any more. Default true.
     pub stop_at_rest: bool,
     /// Without loads: end the run, [`super::Outcome::Parted`], once all contacts are open and none can ever close again,
-    /// at the time at which the last one opened, or, as at rest, once what still moves has less energy than the tolerance
-    /// lets a contact get wrong. Default false.
+    /// at the time at which the last one opened, or, as at rest, once the energy of the remaining motion is below the error that
+    /// the tolerance allows for a contact. Default false.
     pub stop_when_over: bool,
-    /// Rest is not looked for before this time (s). Default 0.
+    /// Rest is not checked before this time (s). Default 0.
     pub rest_from_s: f64,
 }
 
@@ -177,7 +177,7 @@ fn require_all_finite(values: &[f64], count: usize, field: &'static str) -> Resu
     wrong.map_or(Ok(()), |k| Err(InvalidInput::new((field, k), values[k], FINITE)))
 }
 
-/// An assembly as the engine reads it, with laws of any type: the engine is compiled once.
+/// An assembly with laws of any type by reference, so that the engine is compiled only once.
 pub(crate) struct Posed<'a> {
     pub bodies: &'a [Body],
     /// Of every contact.
@@ -205,7 +205,7 @@ impl<L> Assembly<L> {
         }
     }
 
-    /// Checks every number.
+    /// Checks all numbers.
     ///
     /// # Errors
     /// The first field out of range, with its value and what would be allowed.
@@ -244,7 +244,7 @@ impl<L> Assembly<L> {
         }
     }
 
-    /// An undamped mode driven at its own frequency grows without bound, which a steady motion cannot describe.
+    /// Rejects loads at the frequency of an undamped mode, whose motion would grow without bound.
     fn require_no_resonance(&self, load: &Load, omega_rad_s: f64) -> Result<(), InvalidInput> {
         let modes = self.bodies[load.body].modes.iter().zip(&load.shape);
         let resonant = modes.filter(|(_, shape)| **shape != 0.0).any(|(mode, _)| {
@@ -254,7 +254,7 @@ impl<L> Assembly<L> {
             !resonant,
             ["force", "omega_rad_s"],
             omega_rad_s,
-            "a frequency that is not that of an undamped mode which the load drives (or a damped mode)",
+            "a frequency other than that of an undamped mode which the load excites, or a damped mode",
         )
     }
 }

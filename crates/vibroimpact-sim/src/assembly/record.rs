@@ -1,4 +1,4 @@
-//! What is kept and shown of a run: the energy ledger, the observer's panels, and the record of all stretches.
+//! Records of a run: the energy balance, the panels for the observer, and all stretches of motion.
 
 use super::dense::{Panel, Seen, Stretch};
 use super::ledger::Moment;
@@ -7,7 +7,7 @@ use super::state::State;
 use crate::panel::legendre::Nodal;
 
 impl<'a> March<'a> {
-    /// Shows the energy ledger and the observer a panel that is about to be committed.
+    /// Adds a panel that is about to be accepted to the energy balance, and shows it to the observer.
     pub(super) fn show(&mut self, h: f64, contacts: &[usize], force: &[Nodal]) {
         if let Some(account) = &mut self.account {
             let (amplitude, rate) = (&self.amplitude, &self.rate);
@@ -26,7 +26,7 @@ impl<'a> March<'a> {
         }
         if let Some(record) = &mut self.record {
             stretch.events = std::mem::take(&mut self.pending);
-            // a flight without loads is one stretch, however many panels it took to see that nothing closes
+            // a flight without loads is one stretch, whatever the number of its panels
             let flies_on =
                 |last: &Stretch| free && self.loads.is_empty() && last.forces.is_empty() && stretch.events.is_empty();
             match record.last_mut().filter(|last| flies_on(last)) {
@@ -49,13 +49,13 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Where the record ends, as a stretch of no length.
+    /// The end of the record, as a stretch of zero length.
     pub(super) fn last(&mut self) -> Stretch {
         let events = std::mem::take(&mut self.pending);
         Stretch { events, ..self.stretch(0.0, &[], &[]) }
     }
 
-    /// The record, with the endless flight that follows where bodies have parted for good, or have never been otherwise.
+    /// The record, with the endless flight that follows if the bodies have separated for good or never meet.
     pub(super) fn recorded(&mut self, parted: bool) -> Vec<Stretch> {
         let mut record = self.record.take().unwrap_or_default();
         if parted || record.is_empty() {

@@ -1,11 +1,11 @@
-//! Up to when the events of a run are certain: a second run finds them again.
+//! The time up to which the events of a run are certain, from a second run.
 
 use super::solution::{Interval, Observer};
 
-/// How much larger the tolerance of the second run is.
+/// Factor of the tolerance of the second run.
 pub const COARSER: f64 = 32.0;
 
-/// Compares the intervals of a run, as they come, with those of another.
+/// Compares the intervals of a run with those of another as they are found.
 pub(crate) struct Comparison<'a> {
     known: &'a [Vec<Interval>],
     seen: Vec<usize>,
@@ -28,7 +28,7 @@ impl<'a> Comparison<'a> {
         Comparison { known, seen, tolerance, end_s, differs_at, stop, stopped: false }
     }
 
-    /// Up to here every event was found again; `None` if the second run was stopped before it had told.
+    /// The time up to which every event was found again; `None` if the second run was stopped before it was known.
     pub fn certain_until(&self) -> Option<f64> {
         if self.stopped {
             return None;
@@ -64,7 +64,7 @@ impl Observer for Comparison<'_> {
     }
 
     fn interrupts(&mut self) -> bool {
-        // nothing that comes later than a difference counts
+        // events after a difference do not count
         let differs = self.differs_at < f64::INFINITY;
         self.stopped |= !differs && (self.stop)();
         differs || self.stopped

@@ -1,5 +1,5 @@
-//! Responses of the contacts to each other's forces on panels, for the runs of one system: those of the elastic modes, which the tables
-//! keep, with those of the rigid modes, which differ from striker to striker, added once.
+//! Responses of the contacts to each other's forces on panels, for the runs of one system. They are the sum of the responses of
+//! the elastic modes, which the tables cache, and of those of the rigid modes, which differ from striker to striker.
 
 use super::system::System;
 use super::tables::{Response, Tables};
@@ -12,13 +12,13 @@ pub(crate) struct Responses {
 }
 
 struct Level {
-    /// `[c][c']`: which of those found, where asked for.
+    /// `[c][c']`: number of the response, where it was requested.
     pairs: Vec<Option<usize>>,
     found: Vec<Response>,
 }
 
 impl Responses {
-    /// Makes sure that everything about level `j` is there for these contacts and these forces, in the tables as well.
+    /// Computes everything for the step exponent `j` and these contacts and forces that is not cached yet, also in the tables.
     pub fn prepare(&mut self, system: &System, tables: &Tables, j: i32, contacts: &[usize], forces: &[usize]) {
         let count = system.links.len();
         let of_neighbours = |c: usize| forces.iter().filter(move |other| system.neighbours[c].contains(other));
@@ -29,7 +29,7 @@ impl Responses {
             return;
         }
         tables.prepare(system, j, contacts, forces);
-        // of the pairs of contacts most share a body with few others
+        // most contacts share a body with few others
         let empty = || Level { pairs: vec![None; count * count], found: Vec::with_capacity(3 * contacts.len()) };
         self.levels.get_or_init(j, empty);
         let Some(Level { pairs, found }) = self.levels.get_mut(j) else { return };

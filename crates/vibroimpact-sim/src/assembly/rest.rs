@@ -1,4 +1,4 @@
-//! Rest: when it is certain that no contact opens or closes any more.
+//! Rest: the proof that no contact opens or closes any more.
 //!
 //! With the closed contacts `C` held closed, the loads have a static equilibrium: forces `F*` and rigid amplitudes with
 //!
@@ -13,7 +13,7 @@
 //! ```
 //!
 //! with `U` the energy that a contact stores: every term is positive, and `E'` never grows. A contact that opens at the
-//! compression `xi_r` has to pass `F* (xi* - xi_r) - U(xi*)` of it to open. While none opens, no more can happen than this:
+//! compression `xi_r` needs the energy `F* (xi* - xi_r) - U(xi*)` to open. As long as none opens, the motion is bounded as follows:
 //! an elastic mode moves by at most `sqrt(2 E')/omega`; a closed contact yields by at most the `d_c` at which its own term
 //! is `E'`; and the rigid modes follow them. With `P` the weights of the rigid modes in the closed contacts, and any `G`
 //! with `G P = 1`,
@@ -42,9 +42,9 @@ struct Equilibrium {
     rigid_part: DMatrix<f64>,
 }
 
-/// Whether the one contact of two bodies that no load drives has no more than this part of the speed of its first approach
-/// left: neither between their rigid motions, nor in its force, nor in their vibrations. Vibrations are measured from the
-/// deflection under the present force where something holds the bodies.
+/// Whether the remaining motion of two bodies with one contact and without loads is below this part of the speed of their first
+/// approach. The motion consists of their relative rigid motion, the contact force and their vibrations. If a body is supported,
+/// vibrations are measured from its deflection under the present force.
 pub(crate) fn has_faded(march: &March, part: f64) -> bool {
     let [state] = march.states.as_slice() else { return false };
     let (system, link) = (march.system, &march.system.links[0]);
@@ -66,8 +66,8 @@ pub(crate) fn has_faded(march: &March, part: f64) -> bool {
     energy < (part * state.speed_m_s()).powi(2) / state.inverse_mass
 }
 
-/// The compression at which a contact on this branch opens, itself or after the force has vanished on it; `None` if another
-/// branch, which opens at another one, may come first.
+/// The compression at which a contact on this branch opens, or at which its force vanishes before it opens. `None` if another
+/// branch, which opens at another compression, may come first.
 fn opens_at(law: &dyn ContactLaw, branch: &Branch, compression: f64, depth: usize) -> Option<f64> {
     let ends = || boundaries(law, branch);
     if ends().any(|boundary| boundary.per_rate == 0.0 && boundary.per_compression < 0.0) {
@@ -90,12 +90,12 @@ fn opens_at(law: &dyn ContactLaw, branch: &Branch, compression: f64, depth: usiz
     None
 }
 
-/// Whether nothing that can still happen opens or closes a contact.
+/// Whether no possible motion opens or closes a contact.
 pub(crate) fn is_certain(march: &March) -> bool {
     if !march.loads.are_constant() {
         return false;
     }
-    // a body that nothing holds flies on
+    // a free body keeps moving
     let closed: Vec<usize> = (0..march.states.len()).filter(|&c| march.states[c].is_closed()).collect();
     equilibrium(march, closed).is_some_and(|equilibrium| holds(march, &equilibrium))
 }
@@ -205,7 +205,7 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
         let term = |moved: f64| stored(i, still + moved) - stored(i, still) - at.force[i] * moved;
         let touch = march.states[c].touch();
         let opens_at = touch.and_then(|touch| opens_at(march.laws[c], &touch.branch, still, 1));
-        // it stays closed, and yields less than that in opening
+        // the contact stays closed, and its displacement in the opening direction is smaller than that
         let Some(opening) = opens_at.map(|xi| xi - still).filter(|&opening| term(opening) > energy) else {
             return false;
         };
@@ -216,7 +216,7 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
         gives[i] = closing.max(opening) + speed * elastic;
     }
     let gram = at.rigid_part.transpose() * &at.rigid_part;
-    // without rigid modes there is nothing to solve, which nalgebra does not take
+    // without rigid modes the system is empty, which nalgebra does not accept
     let inverse = match gram.is_empty() {
         true => Some(at.rigid_part.transpose()),
         false => gram.lu().solve(&at.rigid_part.transpose()),
@@ -226,8 +226,8 @@ fn holds(march: &March, at: &Equilibrium) -> bool {
     open.all(|(c, state)| stays_open(march, at, c, state, speed, (&inverse, &gives)))
 }
 
-/// How far a contact moves before its term of the energy, which is convex, is all of it: at most twice that. `first` is a
-/// guess of the distance.
+/// A bound, at most twice too large, on the displacement of a contact at which its term of the energy, which is convex, equals
+/// the whole energy. `first` is a guess.
 fn yields(term: impl Fn(f64) -> f64, energy: f64, first: f64) -> Option<f64> {
     const DOUBLINGS: usize = 60;
     const HALVINGS: usize = 40;

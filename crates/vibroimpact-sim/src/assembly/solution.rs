@@ -1,24 +1,24 @@
-//! The result of a run, and what an observer sees while it is under way.
+//! The result of a run, and the interface of observers of a run.
 
 use std::fmt;
 
-/// Why a run ended.
+/// The reason why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
     /// The end of the requested time was reached.
     End,
     /// The energy above the static equilibrium under the loads is too small to open a contact that is closed or to close
-    /// one that is open. What still vibrates goes on.
+    /// one that is open. Vibrations may continue.
     Rest,
-    /// All contacts are open and none can ever close again; the run ends where the last one opened. Only where it was
-    /// asked for ([`Settings::stop_when_over`](super::Settings::stop_when_over)).
+    /// All contacts are open and none can ever close again; the run ends where the last one opened. Only if this was
+    /// requested ([`Settings::stop_when_over`](super::Settings::stop_when_over)).
     Parted,
-    /// The run stopped before; everything up to there is kept.
+    /// The run stopped before its end; everything up to that time is valid.
     Stopped(Reason),
 }
 
-/// Why a run stopped before its end.
+/// The reason why a run stopped before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -26,15 +26,15 @@ pub enum Reason {
     Steps,
     /// `Settings::max_intervals` were found.
     Intervals,
-    /// A step would have to be shorter than the numbers resolve.
+    /// A step would have to be too short for floating-point numbers.
     FinestStep,
     /// A compression or rate left the range in which laws compute ([`contact_models::LARGEST`]).
     LawRange,
-    /// Contacts opened and closed again and again without time going on.
+    /// Contacts opened and closed again and again while time did not advance.
     Chatter,
-    /// A law of contact does not keep what laws promise ([`contact_models::check_contract`] says which promise, and where).
+    /// A contact law violates its contract ([`contact_models::check_contract`] reports which part, and where).
     Law,
-    /// The observer asked for it.
+    /// The observer requested it.
     Interrupted,
 }
 
@@ -43,8 +43,8 @@ invalid_input::names!(Reason, "stopped_by", {
     Intervals: "limit of intervals",
     FinestStep: "finest step",
     LawRange: "range of the contact law",
-    Chatter: "contacts that open and close without time going on",
-    Law: "contact law that breaks its contract",
+    Chatter: "contacts that open and close while time does not advance",
+    Law: "contact law that violates its contract",
     Interrupted: "interrupted",
 });
 
@@ -69,7 +69,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// One interval of contact, from touch to release in the law's own sense.
+/// One interval of contact, from touch to release as defined by the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// First touch (s); 0 for a contact that touches at the start.
@@ -88,7 +88,7 @@ pub struct Interval {
     pub separation_speed_m_s: Option<f64>,
 }
 
-/// What a contact did over the whole run.
+/// Statistics of a contact over the whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Statistics {
     /// Intervals of contact.
@@ -103,14 +103,14 @@ pub struct Statistics {
     pub squared_force_n2_s: f64,
     /// `int F xi' dt` while the compression grows (J): over the time of the run, the contact work rate.
     pub compression_work_j: f64,
-    /// `int F xi' dt` (J): what went into the contact, stored or lost.
+    /// `int F xi' dt` (J): the energy that the contact has received, stored or dissipated.
     pub work_j: f64,
 }
 
 /// A contact at the end of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEnd {
-    /// What it did.
+    /// Its statistics.
     pub statistics: Statistics,
     /// Displacement of either side (m).
     pub displacement_m: [f64; 2],
@@ -122,9 +122,9 @@ pub struct ContactEnd {
     pub stored_j: f64,
 }
 
-/// Where the energy went: the bodies' and the stored energy at the start and the work of the loads are the bodies' and the
-/// stored energy at the end, the losses, and what is unaccounted for. Every part is an integral of its own, so the last one
-/// is a check of all the others.
+/// The energy balance. The energy of the bodies and the stored energy at the start, plus the work of the loads, equal the energy
+/// of the bodies and the stored energy at the end, plus the losses and the residual. Every part is computed separately, so the
+/// residual is a check of all others.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ledger {
     /// Kinetic and elastic energy of each body at the start and at the end (J).
@@ -133,20 +133,20 @@ pub struct Ledger {
     pub stored_j: [f64; 2],
     /// Work of the loads (J).
     pub load_work_j: f64,
-    /// Lost in modal damping (J).
+    /// Energy dissipated by modal damping (J).
     pub modal_damping_j: f64,
-    /// Lost in the contacts (J).
+    /// Energy dissipated in the contacts (J).
     pub contact_loss_j: f64,
-    /// What is missing in the balance (J).
+    /// The residual of the balance (J).
     pub unaccounted_j: f64,
 }
 
 /// The cost of the computation, in deterministic counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Panels committed with a closed contact.
+    /// Accepted panels with a closed contact.
     pub contact_steps: u64,
-    /// Panels tried and not committed.
+    /// Rejected panels.
     pub rejected_steps: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
@@ -179,9 +179,9 @@ impl std::ops::AddAssign for Counts {
 /// The result of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// Why it ended.
+    /// The reason why it ended.
     pub outcome: Outcome,
-    /// When (s).
+    /// The time at which it ended (s).
     pub end_s: f64,
     /// Modal amplitudes at the end (m kg^1/2), body by body.
     pub amplitude: Vec<Vec<f64>>,
@@ -195,14 +195,14 @@ pub struct Run {
     pub counts: Counts,
 }
 
-/// Follows a run while it goes on; every method may be left out.
+/// Observes a run. Every method has a default.
 pub trait Observer {
-    /// An interval of contact has ended, or the run has with the contact still closed.
+    /// An interval of contact has ended, or the run has ended with the contact still closed.
     fn interval(&mut self, contact: usize, interval: &Interval) {
         let _ = (contact, interval);
     }
 
-    /// A stretch of motion without an event has been made, and can be evaluated anywhere.
+    /// A stretch of motion without an event has been computed, and can be evaluated anywhere.
     fn panel(&mut self, panel: &dyn Motion) {
         let _ = panel;
     }
@@ -212,18 +212,18 @@ pub trait Observer {
         false
     }
 
-    /// Whether the energy ledger is computed. Default: no.
+    /// Whether the energy balance is computed. Default: no.
     fn wants_energy(&self) -> bool {
         false
     }
 
-    /// Whether the run should stop; asked from time to time.
+    /// Whether the run should stop; called from time to time.
     fn interrupts(&mut self) -> bool {
         false
     }
 }
 
-/// Watches nothing.
+/// An observer that does nothing.
 impl Observer for () {}
 
 /// The state of a contact at a moment.

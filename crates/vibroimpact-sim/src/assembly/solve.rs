@@ -1,4 +1,4 @@
-//! From an assembly to a run.
+//! Solves an assembly.
 
 use super::dense::{Stretch, in_users_order};
 use super::motion::March;
@@ -12,10 +12,10 @@ use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use std::fmt;
 
-/// Follows an assembly from its start to the end of the requested time, and tells the observer what happens.
+/// Computes the motion of an assembly from its start to the requested end, and notifies the observer.
 ///
 /// # Errors
-/// Names the field, its value and what would be allowed, for input that poses no problem.
+/// If the input is invalid. The error names the field, its value and the allowed values.
 ///
 /// ```
 /// use contact_models::Hertz;
@@ -42,7 +42,7 @@ pub fn run<L: ContactLaw>(
     Solver::new(assembly)?.run(settings, observer)
 }
 
-/// Solves an assembly, more than once if needed: its tables are built at first use and cached.
+/// A solver for an assembly. It can be used repeatedly: tables are built at first use and cached.
 pub struct Solver<'a> {
     pub(crate) posed: Posed<'a>,
     pub(crate) system: System,
@@ -56,7 +56,7 @@ impl fmt::Debug for Solver<'_> {
 }
 
 impl<'a> Solver<'a> {
-    /// A solver for an assembly; builds no table yet.
+    /// A solver for an assembly, without tables so far.
     ///
     /// # Errors
     /// As [`run`].
@@ -77,11 +77,10 @@ impl<'a> Solver<'a> {
         Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::default()), settings, observer, false).0)
     }
 
-    /// Up to which time the touches and releases of contacts are certain: a second run, with a tolerance
-    /// [`COARSER`] times as large, finds each of them at a time that differs by less than its own tolerance of the time
-    /// since the start. `intervals` are those of the run to be judged, contact by contact, in order; the run ended at
-    /// `end_s`. Beyond that time only statistics mean anything. `None` if `stop`, which is asked from time to time, ended the
-    /// second run.
+    /// The time up to which the touches and releases of contacts are certain. Up to this time a second run, with a tolerance
+    /// [`COARSER`] times as large, finds each of them at a time that differs by less than its tolerance times the time since the
+    /// start. Beyond it only statistics are meaningful. `intervals` are those of the run to be checked, contact by contact, in
+    /// order; the run ended at `end_s`. `None` if `stop`, which is called from time to time, ended the second run.
     ///
     /// # Errors
     /// As [`run`].
@@ -100,8 +99,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// One run, and all stretches of its motion if they are requested; after bodies have parted for good the last one is endless,
-/// otherwise one of no length ends it.
+/// One run, and all stretches of its motion if they are requested. If the bodies have separated for good, the last stretch is
+/// endless; otherwise the last one has zero length.
 pub(crate) fn follow(
     posed: &Posed,
     (system, tables, responses): (&System, &Tables, &mut Responses),

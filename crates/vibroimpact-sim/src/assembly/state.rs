@@ -1,4 +1,4 @@
-//! The contacts as the march carries them.
+//! The state of the contacts during time integration.
 
 use super::collocate::Collocated;
 use super::enclosure::FlightBounds;
@@ -13,15 +13,15 @@ pub(crate) struct State {
     pub phase: Phase,
     /// Boundaries of the branch of a closed contact, which do not change along it.
     pub ends: Vec<Boundary>,
-    /// Overlap of the surfaces (m) and its rate (m/s). While closed it is summed up as it changes: as the difference of
-    /// where the bodies are it would carry their rounding, which a stiff contact turns into force.
+    /// Overlap of the surfaces (m) and its rate (m/s). In a closed contact it is the sum of its increments: a difference of
+    /// positions would contain their rounding, which a stiff contact would turn into force.
     pub overlap: f64,
     pub rate: f64,
-    /// What the overlap is beyond that of modes and loads (m): less the gap, and the rounding met so far.
+    /// The part of the overlap that does not come from modes and loads (m): minus the gap, and the rounding so far.
     pub reference: f64,
-    /// Largest momentum exchanged so far, or to be expected from the loads (N s).
+    /// Largest momentum exchanged so far, or expected from the loads (N s).
     pub momentum: f64,
-    /// Inverse mass with which the contact feels the bodies (1/kg).
+    /// Inverse effective mass of the bodies at the contact (1/kg).
     pub inverse_mass: f64,
     pub statistics: Statistics,
 }
@@ -31,9 +31,9 @@ pub(crate) struct State {
 pub(crate) enum Phase {
     Open {
         memory: Memory,
-        /// It is certain that the contact stays open until then (s), if its bodies meet no force.
+        /// Time up to which the contact certainly stays open (s), if no force acts on its bodies.
         clear_until: f64,
-        /// What that rests on, while its bodies meet no force.
+        /// The bounds behind this time, as long as no force acts on its bodies.
         bounds: Option<Box<FlightBounds>>,
     },
     Closed(Box<Touch>),
@@ -43,13 +43,13 @@ pub(crate) enum Phase {
 #[derive(Debug, Clone)]
 pub(crate) struct Touch {
     pub branch: Branch,
-    /// Whether an end of the branch asks for the rate.
+    /// Whether a boundary of the branch depends on the rate.
     pub ends_by_rate: bool,
-    /// Whether the force depends on the rate, as far as the law has shown on this branch.
+    /// Whether the force may depend on the rate, from the law's values on this branch so far.
     pub force_by_rate: bool,
-    /// By how much the event function that led to the branch missed zero there.
+    /// Value at the transition of the event function that led to the branch; ideally zero.
     pub residue: f64,
-    /// The same of the rate (m/s), where that function asked for it.
+    /// The corresponding error of the rate (m/s), if that function depends on it.
     pub rate_residue: f64,
     /// Legendre coefficients of the last panel's force, and its length.
     pub previous: Option<(Nodal, f64)>,
@@ -59,18 +59,18 @@ pub(crate) struct Touch {
 }
 
 impl State {
-    /// The speed that goes with the momentum (m/s).
+    /// The speed that corresponds to the momentum (m/s).
     pub fn speed_m_s(&self) -> f64 {
         self.momentum * self.inverse_mass
     }
 
-    /// Compression and speed of the contact, in size: those met so far, within what laws compute with.
+    /// Scales of compression and speed of the contact: the largest so far, within the range of the laws.
     pub fn scales(&self) -> Option<(f64, f64)> {
         let touch = self.touch()?;
         let compression = touch.peak_compression.value().max(self.overlap);
         let speed = touch.interval.approach_speed_m_s.max(self.rate.abs());
         let within = |value: f64| (1e-30..=1e10).contains(&value);
-        // of a contact that has only begun, what its speed covers in a microsecond
+        // for a contact that has just begun, the distance covered at its speed in a microsecond
         let compression = if within(compression) { compression } else { 1e-6 * speed };
         (within(compression) && within(speed)).then_some((compression, speed))
     }
@@ -94,8 +94,8 @@ impl State {
         }
     }
 
-    /// Books a committed panel of `h` of a closed contact: its force, by nodes and by coefficients, its compression and rate
-    /// there and its compression at the end.
+    /// Adds an accepted panel of `h` of a closed contact to its statistics: its force at the nodes and by coefficients, its
+    /// compression and rate at the nodes, and its compression at the end.
     pub fn book(&mut self, h: f64, solved: &Collocated, coefficients: Nodal, rate: &Nodal, end: f64) {
         let Phase::Closed(touch) = &mut self.phase else { return };
         let Collocated { force: nodal, compression, force_by_rate, .. } = solved;
@@ -113,7 +113,7 @@ impl State {
             statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];
             statistics.compression_work_j += weight * power.max(0.0);
         }
-        // by parts: the compression is known at the nodes and at the end, better than its rate between
+        // integration by parts: the compression at the nodes and at the end is more accurate than its rate
         let slope = apply(&BASIS.derivatives[1], &coefficients);
         statistics.work_j += evaluate(&coefficients, 1.0) * (end - self.overlap);
         for i in 0..Q {

@@ -1,7 +1,7 @@
 //! Slopes through neighbouring values.
 
-/// Neighbouring values of a parameter, and what they say about the slope at the value between them or beside them: that of
-/// the polynomial through them.
+/// Computes a slope from values at neighbouring points of a parameter on both sides or on one side: that of the polynomial
+/// through them.
 ///
 /// ```
 /// use vibroimpact_sim::modal::Stencil;
@@ -18,7 +18,7 @@ pub struct Stencil<const N: usize> {
 }
 
 impl<const N: usize> Stencil<N> {
-    /// From distances that differ from each other; zero, the value itself, may be among them.
+    /// From distances that differ from each other, one of which may be zero.
     pub fn new(offsets: [f64; N]) -> Stencil<N> {
         // derivative at zero of Lagrange's polynomials
         let weight = |i: usize| {

@@ -1,11 +1,11 @@
-//! The assembly as the march needs it: all modes in one list, each contact as a row of weights over them.
+//! The assembly in the form for time integration: all modes in one list, each contact as a row of weights over them.
 
 use super::problem::{Point, Posed};
 use crate::panel::oscillator::BodyMode;
 use crate::panel::vector::sum_over;
 use std::ops::Range;
 
-/// Weights `psi_k` over the modes of one body: what the modes' unit amplitudes add to the overlap of a contact.
+/// Weights `psi_k` over the modes of one body: the overlap of a contact for unit amplitudes of the modes.
 #[derive(Debug, Clone)]
 pub(crate) struct Span {
     pub modes: Range<usize>,
@@ -24,13 +24,13 @@ impl Span {
 #[derive(Debug, Clone)]
 pub(crate) struct Link {
     pub spans: Vec<Span>,
-    /// Displacement of either side by itself; none for the ground.
+    /// Weights of the displacement of either side; none for the ground.
     pub sides: [Option<Span>; 2],
-    /// Elastic modes that move it, by rising frequency: number and `psi`.
+    /// Elastic modes that move it, by increasing frequency: number and `psi`.
     pub elastic: Vec<(usize, f64)>,
-    /// Rigid modes that move it, likewise.
+    /// Rigid modes that move it: number and `psi`.
     pub rigid: Vec<(usize, f64)>,
-    /// `sum psi_k^2` over all modes (1/kg): what an impulse changes its rate by.
+    /// `sum psi_k^2` over all modes (1/kg): the change of its rate by a unit impulse.
     pub mobility: f64,
 }
 
@@ -74,7 +74,7 @@ impl Link {
 /// All modes and contacts.
 #[derive(Debug, Clone)]
 pub(crate) struct System {
-    /// The modes, body by body, each by rising frequency.
+    /// The modes, body by body, each by increasing frequency.
     pub modes: Vec<BodyMode>,
     /// `omega_k` (rad/s), `2 zeta_k omega_k` (1/s), `omega_k^2` (1/s^2), and `1/omega_k` (s), which is infinite for rigid modes.
     pub omega: Vec<f64>,
@@ -87,7 +87,7 @@ pub(crate) struct System {
     pub most_damping: f64,
     /// The modes of each body.
     pub bodies: Vec<Range<usize>>,
-    /// Where each mode of each body, as the user counts them, has its place.
+    /// Position in this list of each mode of each body in the user's order.
     pub place: Vec<Vec<usize>>,
     pub links: Vec<Link>,
     /// The contacts that share a body with a contact, itself included.
@@ -179,7 +179,7 @@ impl System {
         Link { spans, sides, elastic, rigid, mobility }
     }
 
-    /// Inverse mass with which a contact feels the modes: the rigid ones, or all where there is none (1/kg).
+    /// Inverse effective mass at a contact (1/kg): that of the rigid modes, or of all modes if there is no rigid one.
     pub fn inverse_mass(&self, contact: usize) -> f64 {
         let link = &self.links[contact];
         let of = |modes: &[(usize, f64)]| modes.iter().map(|(_, psi)| psi * psi).sum::<f64>();

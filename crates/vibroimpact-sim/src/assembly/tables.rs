@@ -1,6 +1,6 @@
 //! Tables of panels `h = 2^-j` s: free motion and forced response of every mode, and the response of every contact to
-//! the force of another. They do not depend on the masses of rigid bodies. Each is made when it is first asked for and does
-//! not change from then on, so that runs and threads share them and find the same.
+//! the force of another. They do not depend on the masses of rigid bodies. Each table is computed at first use and never changes,
+//! so that runs and threads can share it and have the same results.
 
 use super::damping::Damping;
 use super::interpolation::Missed;
@@ -27,17 +27,17 @@ pub(crate) struct Response {
 /// Free motion and forced responses of all modes on a panel.
 #[derive(Default)]
 pub(crate) struct Forced {
-    /// How far free motion moves at the nodes, from amplitude and from rate, mode by mode.
+    /// Displacement of free motion at the nodes, from amplitude and from rate, mode by mode.
     pub at_nodes: Vec<(Nodal, Nodal)>,
     /// Amplitude and rate at the end, a row for each unit Legendre force on the modes.
     amplitude: Rows<Q>,
     rate: Rows<Q>,
 }
 
-/// The same on one level, with the responses of pairs of contacts.
+/// The same for one step exponent, with the responses of pairs of contacts.
 struct Expanded {
     forced: Forced,
-    /// `[c][c']`, where asked for: the response of the elastic modes, of contacts that share some.
+    /// `[c][c']`, where requested: the response of the elastic modes, for contacts that share some.
     elastic: Vec<OnceLock<Box<Response>>>,
 }
 
@@ -51,7 +51,7 @@ struct Level {
 
 pub(crate) struct Tables {
     levels: Levels<Level>,
-    /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where asked for.
+    /// Derivatives at zero of the elastic modes' response of contact `c` to an impulse of contact `c'`, where requested.
     kernels: Vec<OnceLock<[f64; TAYLOR]>>,
     contacts: usize,
 }
@@ -62,24 +62,24 @@ impl Tables {
         Tables { levels: Levels::default(), kernels: unset(contacts), contacts }
     }
 
-    /// Free motion over one panel of level `j`.
+    /// Free motion over one panel with the step exponent `j`.
     pub fn rotation(&self, system: &System, j: i32) -> &Rotation {
         self.level(j).rotation.get_or_init(|| Rotation::new(&system.modes, step_s(j)))
     }
 
-    /// What interpolation misses on level `j`.
+    /// Interpolation errors for the step exponent `j`.
     pub fn missed(&self, system: &System, j: i32) -> &Missed {
         self.level(j).missed.get_or_init(|| Missed::new(system, step_s(j)))
     }
 
-    /// What modal damping takes on level `j` while these contacts are closed; only the energy ledger asks.
+    /// Dissipation by modal damping for the step exponent `j` with these closed contacts; only for the energy balance.
     pub fn damping(&self, system: &System, j: i32, contacts: &[usize]) -> &Damping {
         let damping = self.level(j).damping.get_or_init(|| Damping::new(system));
         damping.prepare(system, j, contacts);
         damping
     }
 
-    /// For a system that differs in the weights of the elastic modes: what does not depend on them stays.
+    /// Tables for a system with other weights of the elastic modes: everything that does not depend on them is reused.
     pub fn change_weights(&mut self) {
         for level in self.levels.iter_mut() {
             level.damping = OnceLock::new();
@@ -95,7 +95,7 @@ impl Tables {
         self.levels.get_or_init(j, Level::default)
     }
 
-    /// Makes sure that everything about level `j` is there for these contacts and these forces.
+    /// Computes everything for the step exponent `j` and these contacts and forces that is not cached yet.
     pub fn prepare(&self, system: &System, j: i32, contacts: &[usize], forces: &[usize]) {
         self.rotation(system, j);
         let count = self.contacts;
@@ -119,7 +119,7 @@ impl Tables {
         let found = found.unwrap_or_else(|| Forced::again(system, step_s(j), &weights));
         for (((c, other), nodes), weights) in pairs.into_iter().zip(found).zip(&weights) {
             let (end, end_rate) = expanded.forced.end(system, weights);
-            // where another thread was first, it has found the same
+            // another thread may have been first; its result is the same
             let _ = expanded.elastic[c * count + other].set(Box::new(Response { nodes, end, end_rate }));
         }
     }
@@ -128,7 +128,7 @@ impl Tables {
         self.level(j).expanded.get()
     }
 
-    /// How far free motion moves the overlap of a contact at the nodes. Needs [`Tables::prepare`].
+    /// Change of the overlap of a contact by free motion at the nodes. Needs [`Tables::prepare`].
     pub fn free_at_nodes(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> Nodal {
         self.expanded(j).map_or([0.0; Q], |level| level.forced.free_at_nodes(&link.spans, amplitude, rate))
     }
@@ -139,7 +139,7 @@ impl Tables {
         found.map_or_else(Response::default, |response| **response)
     }
 
-    /// How far free motion over a panel moves the overlap of a contact, and its rate then.
+    /// Change of the overlap of a contact by free motion over a panel, and its rate at the end.
     pub fn free_at_end(&self, j: i32, link: &Link, amplitude: &[f64], rate: &[f64]) -> (f64, f64) {
         let (mut moved, mut speed) = (0.0, 0.0);
         let Some(rotation) = self.level(j).rotation.get() else { return (moved, speed) };
@@ -168,7 +168,7 @@ impl Tables {
         self.rotation(system, j).apply(amplitude, rate);
     }
 
-    /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
+    /// Adds the effect of a contact force with these Legendre coefficients on the modes within a panel.
     pub fn push(&self, j: i32, link: &Link, force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
         if let Some(level) = self.expanded(j) {
             level.forced.push(&link.spans, force, amplitude, rate);
@@ -194,7 +194,7 @@ impl Tables {
     }
 }
 
-/// For every pair of so many contacts, nothing yet.
+/// An empty table for every pair of this many contacts.
 fn unset<T>(contacts: usize) -> Vec<OnceLock<T>> {
     std::iter::repeat_with(OnceLock::new).take(contacts * contacts).collect()
 }
@@ -250,7 +250,7 @@ impl Forced {
         sums.at_nodes()
     }
 
-    /// What the elastic modes with these weights do at the end.
+    /// Response of the elastic modes with these weights at the end.
     fn end(&self, system: &System, weights: &[f64]) -> (Nodal, Nodal) {
         let elastic = |(weight, mode): (&f64, &BodyMode)| if mode.is_rigid() { 0.0 } else { -weight };
         let weights: Vec<f64> = weights.iter().zip(&system.modes).map(elastic).collect();
@@ -262,7 +262,7 @@ impl Forced {
         (rows(&self.amplitude), rows(&self.rate))
     }
 
-    /// How far free motion moves `sum_k psi_k a_k` at the nodes.
+    /// Change of `sum_k psi_k a_k` by free motion at the nodes.
     pub fn free_at_nodes(&self, spans: &[Span], amplitude: &[f64], rate: &[f64]) -> Nodal {
         vectorized(
             #[inline(always)]
@@ -282,7 +282,7 @@ impl Forced {
         )
     }
 
-    /// Adds what a contact force with these Legendre coefficients does to the modes within a panel.
+    /// Adds the effect of a contact force with these Legendre coefficients on the modes within a panel.
     pub fn push(&self, spans: &[Span], force: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
         vectorized(
             #[inline(always)]
@@ -296,7 +296,7 @@ impl Forced {
     }
 }
 
-/// Responses as they are summed over the modes, for each list of weights.
+/// Partial sums of responses over the modes, for each list of weights.
 struct Sums<'a> {
     system: &'a System,
     h: f64,
@@ -333,7 +333,7 @@ impl Sums<'_> {
 
     fn add_waiting(&mut self) {
         let (count, h) = (std::mem::take(&mut self.count), self.h);
-        // the last of a body are made up by modes without weight
+        // the last modes of a body are padded by modes without weight
         let modes = array::from_fn(|l| self.system.modes[self.waiting[l.min(count - 1)]]);
         for (compliance, weights) in self.compliances.iter_mut().zip(self.weights) {
             let weights = array::from_fn(|l| if l < count { weights[self.waiting[l]] } else { 0.0 });
@@ -404,7 +404,7 @@ mod tests {
         System::new(&assembly.with_laws(Vec::new()))
     }
 
-    /// What the modes of one body need of their series does not depend on the other body.
+    /// The number of terms for the modes of one body does not depend on the other body.
     #[test]
     fn the_response_of_two_bodies_is_the_sum_of_theirs() {
         let nodes = |system: &System| {

@@ -1,7 +1,7 @@
 //! Panels of any length, for the step that ends at an event.
 //!
-//! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series, whose
-//! terms at the contacts are the same few numbers whatever the length tried.
+//! Such a panel is shorter than a period of every mode and load, so free motion and responses are Taylor series. Their
+//! coefficients at the contacts do not depend on the trial length.
 
 use super::collocate::{Collocated, Newton, Unknown, collocate};
 use super::load::Loads;
@@ -148,8 +148,8 @@ impl Window {
         landed
     }
 
-    /// Overlap of a contact and its first two derivatives at the end, if these forces were cut short or carried on to
-    /// another length.
+    /// Overlap of a contact and its first two derivatives at the end, if these forces are truncated or extrapolated to another
+    /// length.
     pub fn end(&self, from: &Landed, c: usize, length: f64) -> [f64; 3] {
         let mut end = value(&self.free[c], length);
         let part = length / from.length;
@@ -163,7 +163,7 @@ impl Window {
         end
     }
 
-    /// The same forces, cut short or carried on to another length.
+    /// The same forces, truncated or extrapolated to another length.
     pub fn carried(&self, from: &Landed, length: f64) -> Landed {
         let places = BASIS.nodes.map(|s| s * (length / from.length));
         let carry = |nodal: &Nodal| evaluate_at(&BASIS.coefficients(nodal), &places);
@@ -178,7 +178,7 @@ impl Window {
     }
 }
 
-/// Adds what the closed contacts' forces do to an overlap at the nodes, by its responses to each of them.
+/// Adds the effect of the closed contacts' forces on an overlap at the nodes.
 fn respond(overlap: &mut Nodal, responses: &[Option<Matrix>], solved: &[Collocated]) {
     for (response, solved) in responses.iter().zip(solved) {
         if let Some(response) = response {
@@ -211,7 +211,7 @@ pub(crate) fn value(series: &Series, t: f64) -> [f64; 3] {
     [value, slope, 2.0 * bend]
 }
 
-/// Derivatives of a response times `length^p`, and how many matter.
+/// Derivatives of a response times `length^p`, and the number of significant ones.
 fn scaled(kernel: &Series, length: f64) -> (Series, usize) {
     let mut scaled = *kernel;
     let mut power = 1.0;
@@ -261,8 +261,8 @@ fn add_end(kernel: &Series, length: f64, nodal: &Nodal, last: f64, end: &mut [f6
     }
 }
 
-/// `g^(p)/p!` of the free motion of a contact's overlap under the loads, to be used up to `reach` (s); its value is that of
-/// the modes alone.
+/// `g^(p)/p!` of the free motion of a contact's overlap under the loads, valid up to `reach` (s); the value at zero is that of the
+/// modes alone.
 pub(crate) fn series_of(
     system: &System,
     loads: &Loads,
@@ -367,7 +367,7 @@ fn powers(length: f64) -> Series {
     })
 }
 
-/// Adds what nodal contact forces do to the modes within a panel of `length`.
+/// Adds the effect of nodal contact forces on the modes within a panel of `length`.
 pub(crate) fn push(system: &System, link: &Link, length: f64, nodal: &Nodal, amplitude: &mut [f64], rate: &mut [f64]) {
     // the response of a mode is the sum of the derivatives of its impulse response times the moments of the force
     let mut power = length;

@@ -1,5 +1,5 @@
-//! How contacts close, pass from one branch of their law to the next, and open. Each transition is an event of the run; time
-//! does not pass in it.
+//! Transitions: a contact closes, passes from one branch of its law to the next, or opens. Each transition is an instantaneous
+//! event of the run.
 
 use super::dense::Event;
 use super::enclosure::first_difference;
@@ -11,7 +11,7 @@ use crate::panel::dyadic::{J_MAX, J_MIN, level_within, step_s};
 use crate::panel::peak::Peak;
 use contact_models::{After, Branch, Memory, boundaries};
 
-/// A polynomial through the nodes follows `t^(3/2)`, a force at first touch, to about this fraction of its size.
+/// Relative error of the polynomial through the nodes for `t^(3/2)`, a force at first touch.
 pub(super) const SINGULAR: f64 = 1e-4;
 
 impl<'a> March<'a> {
@@ -24,7 +24,7 @@ impl<'a> March<'a> {
             self.states[c].inverse_mass = self.system.inverse_mass(c);
             self.states[c].momentum = self.momentum_of_loads(c);
         }
-        // the fastest first, whose speed is the measure for those that touch without one
+        // the fastest contact first, since its speed is the scale for contacts that touch without speed
         let mut order: Vec<usize> = (0..self.states.len()).collect();
         order.sort_by(|&one, &other| self.states[other].rate.total_cmp(&self.states[one].rate));
         for c in order {
@@ -37,10 +37,10 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether surfaces that touch begin to part.
+    /// Whether surfaces that touch begin to separate.
     fn parts_from_here(&self, c: usize) -> bool {
         let reach = self.reach.min(self.settings.end_s);
-        // rigid bodies alone have no time of their own
+        // rigid bodies alone have no time scale
         let reach = if reach.is_finite() { reach } else { 1.0 };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), reach);
         series[0] = 0.0;
@@ -48,8 +48,7 @@ impl<'a> March<'a> {
         differs.is_some_and(|(_, overlap)| overlap < 0.0)
     }
 
-    /// The momentum that the loads give a contact while it yields to them (N s), a scale for contacts that nothing else
-    /// has closed.
+    /// The momentum that the loads give a contact during its deformation (N s), a scale for contacts that only loads have closed.
     fn momentum_of_loads(&self, c: usize) -> f64 {
         let inverse = self.states[c].inverse_mass;
         let mut acceleration = self.loads.acceleration(c, 0.0).abs();
@@ -74,14 +73,14 @@ impl<'a> March<'a> {
         (2.0 * acceleration * 10f64.powf(low)).sqrt() / inverse
     }
 
-    /// The first contact of two surfaces that meet now, with this overlap beyond where they touch.
+    /// Closes a contact of two surfaces that meet now, with this overlap beyond that of touch.
     pub(super) fn touch(&mut self, c: usize, beyond: f64) {
         let law = self.law(c);
         let Phase::Open { memory, .. } = self.states[c].phase else { return };
         let (overlap, _) = self.overlap_of_modes(c);
         let link = &self.system.links[c];
         let mobility = link.mobility;
-        // how fast the bodies approach each other, but for their vibrations; these push with their own small masses
+        // the speed of approach of the bodies without their vibrations, whose effective masses are small
         let vibrates: f64 =
             if link.rigid.is_empty() { 0.0 } else { link.elastic.iter().map(|(k, psi)| psi * self.rate[*k]).sum() };
         let state = &mut self.states[c];
@@ -113,7 +112,7 @@ impl<'a> March<'a> {
             peak_force: Peak::NONE,
             peak_compression: Peak::NONE,
         };
-        // of surfaces that overlap at the start, what their compression will push
+        // for surfaces that overlap at the start, the momentum from their compression
         let stored_j = if beyond > 0.0 { law.stored_energy_j(&touch.branch, state.overlap) } else { 0.0 };
         let speed = rigid.abs().max((2.0 * stored_j * inverse).sqrt());
         let momentum =
@@ -121,7 +120,7 @@ impl<'a> March<'a> {
         state.phase = Phase::Closed(Box::new(touch));
         state.momentum = state.momentum.max(momentum);
         if state.momentum == 0.0 && inverse > 0.0 {
-            // what it will pass on comes from the others
+            // the momentum that it will transmit comes from the others
             let speed = self.states.iter().map(State::speed_m_s).fold(0.0, f64::max);
             self.states[c].momentum = speed / inverse;
         }
@@ -143,13 +142,13 @@ impl<'a> March<'a> {
         if let Phase::Closed(touch) = phase {
             touch.branch = branch;
             touch.ends_by_rate = ends.iter().any(|boundary| boundary.per_rate != 0.0);
-            // until the first panel shows that it does not
+            // until the first panel shows the opposite
             touch.force_by_rate = true;
         }
         self.forget_horizons();
     }
 
-    /// What follows where an event function has fallen to zero.
+    /// The transition at a zero of an event function.
     pub(super) fn transition(&mut self, target: Target) {
         let c = target.contact;
         let law = self.law(c);
@@ -175,7 +174,7 @@ impl<'a> March<'a> {
                 }
                 self.intervals += 1;
                 let state = &mut self.states[c];
-                // the surfaces part where the law says so, not where the sum over the modes puts them
+                // the law determines where the surfaces separate, not the sum over the modes
                 state.reference += state.overlap - overlap;
                 state.phase = Phase::Open { memory, clear_until: now, bounds: None };
                 self.forget_horizons();
@@ -185,7 +184,7 @@ impl<'a> March<'a> {
         }
     }
 
-    /// The bodies have parted, perhaps for good: what follows is free motion.
+    /// A contact has opened: the motion that follows is free.
     fn depart(&mut self) {
         if self.settings.stop_when_over {
             self.departure.0 = self.time_s;
@@ -203,7 +202,7 @@ impl<'a> March<'a> {
         self.last_event_s = self.time_s;
     }
 
-    /// The coarsest level on which the force, begun at first touch, is still small against the tolerance.
+    /// Step exponent of the longest panel on which a force that begins at first touch is represented within the tolerance.
     fn first_level(&self, c: usize) -> i32 {
         let Some(touch) = self.states[c].touch() else { return J_MIN };
         let mut series = series_of(self.system, &self.loads, c, self.moment(), self.reach);

@@ -1,5 +1,5 @@
-//! A panel of `2^-j` s with closed contacts: the forces that the laws ask for, and what they do to the motion. A trial changes
-//! nothing; a panel that has been judged is committed.
+//! A panel of `2^-j` s with closed contacts: the forces by the laws, and their effect on the motion. A trial does not change the
+//! motion; a panel that passes the checks is accepted.
 
 use super::collocate::{Collocated, Unknown, collocate};
 use super::load::Turns;
@@ -8,10 +8,10 @@ use super::state::Phase;
 use crate::panel::dyadic::step_s;
 use crate::panel::legendre::{BASIS, Nodal, Q, evaluate_at, slopes};
 
-/// Share of the impulse that a panel may get wrong by which the nodal forces may miss the law.
+/// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 const NEWTON_SHARE: f64 = 1e-2;
 
-/// A panel that is tried; the memory serves one trial after the other.
+/// A trial panel; its memory is reused.
 #[derive(Default)]
 pub(super) struct Trial<'a> {
     /// Closed contacts, then open ones that could close, and how many are closed.
@@ -112,7 +112,7 @@ impl<'a> March<'a> {
         contacts.iter().enumerate().filter_map(unknown)
     }
 
-    /// By how much the overlap of a contact would have grown at the nodes if there were no contact force.
+    /// Increase of the overlap of a contact up to the nodes without contact forces.
     fn free_at_nodes(&self, level: i32, c: usize, turns: &Turns) -> Nodal {
         let panel = (self.time_s, step_s(level));
         let moved = self.tables.free_at_nodes(level, &self.system.links[c], &self.amplitude, &self.rate);
@@ -132,7 +132,7 @@ impl<'a> March<'a> {
         self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
     }
 
-    /// Books a panel of `h` that has been made.
+    /// Accepts a panel of `h`.
     pub(super) fn book(
         &mut self,
         h: f64,

@@ -1,4 +1,4 @@
-//! Which contacts take part in a panel: the closed ones, and those open ones that may close meanwhile.
+//! The contacts that are computed on a panel: the closed ones, and those open ones that may close on it.
 
 use super::enclosure::{FlightBounds, bend_of_loads};
 use super::motion::March;
@@ -8,7 +8,7 @@ use crate::panel::legendre::Nodal;
 use crate::panel::vector::{sum_over, vectorized};
 
 impl<'a> March<'a> {
-    /// The closed contacts, whose number it returns.
+    /// Lists the closed contacts and returns their number.
     pub(super) fn closed(&self, contacts: &mut Vec<usize>) -> usize {
         contacts.clear();
         contacts.extend((0..self.states.len()).filter(|&c| self.states[c].is_closed()));
@@ -37,8 +37,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// Whether an open contact can come as far as to close within `h`. Free motion from `a` and `a'` takes a mode no farther
-    /// than `min(omega h, 2) |a| + h |a'|`; an impulse moves the overlap by no more than `h` times what it changes its rate by.
+    /// Whether an open contact can close within `h`. Free motion from `a` and `a'` displaces a mode by at most
+    /// `min(omega h, 2) |a| + h |a'|`. An impulse changes the overlap by at most `h` times the change of its rate.
     fn may_close(&self, c: usize, h: f64, (closed, force): (&[usize], &[Nodal])) -> bool {
         let (links, state) = (&self.system.links, &self.states[c]);
         let (mut overlap, mut reach, mut size) = (self.loads.overlap(c, self.time_s).0, 0.0, state.reference.abs());
@@ -71,7 +71,7 @@ impl<'a> March<'a> {
         state.touch_m() - (state.reference + overlap) <= reach + 1e-12 * (size + reach)
     }
 
-    /// Finds out until when an open contact stays open, if its bodies meet no force.
+    /// Finds the time up to which an open contact stays open if no force acts on its bodies.
     pub(super) fn renew(&mut self, c: usize, lasting: f64) {
         let link = &self.system.links[c];
         let (shift, shift_rate) = self.loads.overlap(c, self.time_s);

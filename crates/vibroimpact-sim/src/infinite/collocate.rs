@@ -4,7 +4,7 @@ use super::panel::hertz;
 use super::problem::NODES;
 use super::rule::dot;
 
-/// `x_i + sum_j m_ij f(x_j) = known_i` with `f = x_+^(3/2)`, and room for solving it: kept from one panel to the next.
+/// `x_i + sum_j m_ij f(x_j) = known_i` with `f = x_+^(3/2)`, and memory for its solution, reused from panel to panel.
 #[derive(Debug, Default)]
 pub(super) struct Equations {
     /// `m`, a row a node and one more for the end of the panel.
@@ -18,8 +18,8 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    /// Solves at the nodes from the guess in `x`, until what is left is below `rest` of the largest value or below
-    /// rounding. Returns whether it settled.
+    /// Solves at the nodes from the guess in `x`, until the correction is below `rest` of the largest value or below rounding.
+    /// Returns whether it converged.
     pub fn solve(&mut self, x: &mut [f64], rest: f64) -> bool {
         let p = x.len();
         self.step.resize(p, 0.0);
@@ -46,12 +46,12 @@ impl Equations {
             for (x, step) in x.iter_mut().zip(&self.step) {
                 *x += step;
             }
-            // what the next step would be if they went on shrinking at this rate
+            // the next correction at the present rate of convergence
             let next = if last.is_finite() { size * (size / last).min(1.0) } else { size };
             if next <= rest.max(1e-16) * scale || (size < 1e-13 * scale && size > 0.3 * last) {
                 return true;
             }
-            // once close, the factors serve on
+            // close to the solution the factors are reused
             factors_serve = size < 0.1 * scale && size < 0.2 * last;
             last = size;
         }

@@ -24,14 +24,14 @@ use super::rule::{Kind, Tables, dot, series, series_slope};
 use super::sustained::Watch;
 use super::units::{Touch, Units};
 
-/// How the march through a contact ended.
+/// How the integration of a contact ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ending {
     /// Separation, this long after touch (units of `T`).
     Separated(f64),
-    /// Contact known to last; integrated up to this time after touch.
+    /// The contact is known to last; integrated up to this time after touch.
     Sustained(f64),
-    /// Stopped at the first minimum of the compression, as asked (units of `v T`).
+    /// Stopped at the first minimum of the compression, as requested (units of `v T`).
     Minimum(f64),
     /// The limit on panels was reached at this time after touch.
     Limit(f64),
@@ -48,7 +48,7 @@ pub(super) struct Turn {
     pub minimum: bool,
 }
 
-/// The march through one contact.
+/// The integration of one contact.
 pub(super) struct March<'a> {
     structure: Structure,
     tables: &'static Tables,
@@ -75,7 +75,7 @@ pub(super) struct March<'a> {
     x: f64,
     rate: f64,
     falling: bool,
-    /// Slowly forgotten largest force: the yardstick of the resolution.
+    /// Slowly decaying maximum of the force, the scale of the resolution.
     f_scale: f64,
     pub pieces: Vec<Piece>,
     pub turns: Vec<Turn>,
@@ -83,7 +83,7 @@ pub(super) struct March<'a> {
     equations: Equations,
     /// The last panel solved, taken or not.
     hint: Option<Hint>,
-    /// Times of the nodes of the panel on trial after some earlier moment: room.
+    /// Memory for the times of the nodes of the trial panel after some earlier moment.
     later: Vec<f64>,
 }
 
@@ -96,7 +96,7 @@ struct Hint {
     x_series: Vec<f64>,
 }
 
-/// A panel on trial.
+/// A trial panel.
 struct Trial {
     kind: Kind,
     start: f64,
@@ -105,9 +105,9 @@ struct Trial {
     x: Vec<f64>,
     x_series: Vec<f64>,
     x_end: f64,
-    /// Unresolved part of the force relative to the yardstick.
+    /// Unresolved part of the force relative to its scale.
     tail: f64,
-    /// The tolerance asked for, or the rounding error of the force where that is larger.
+    /// The requested tolerance, or the rounding error of the force if that is larger.
     attainable: f64,
 }
 
@@ -150,7 +150,7 @@ impl<'a> March<'a> {
         self.touch.body - self.units.impulse * self.impulse_since_touch
     }
 
-    /// Marches until the contact ends, lasts, or (if asked) passes its first minimum.
+    /// Integrates until the contact ends, lasts, or (if requested) passes its first minimum.
     pub fn run(&mut self, to_minimum: bool, budget: usize) -> Ending {
         let mut watch = Watch::new(self.structure, self.touch.s, self.touch.time);
         let mut kind = Kind::Start;
@@ -167,7 +167,7 @@ impl<'a> March<'a> {
             let low = first_low.or((trial.x_end < 0.0).then_some(1.0));
             let ratio = trial.tail / trial.attainable;
             if h > floor && (low.is_some() || ratio > 1.0) {
-                // not to be taken: a separation may lie ahead, or the panel is too long
+                // the panel is not accepted: a separation may lie ahead, or the panel is too long
                 let shorter = h * (0.9 * ratio.powf(-1.0 / self.tables.p as f64)).clamp(0.25, 0.8);
                 if kind == Kind::Middle
                     && let Some(length) = separation_ahead(&trial, low, &found)
@@ -198,7 +198,7 @@ impl<'a> March<'a> {
             // below 4e-15 the coefficients are rounding and say nothing about the length
             let unresolved = (trial_tail - 4e-15).max(1e-30) / attainable;
             let growth = 0.95 * unresolved.powf(-1.0 / self.tables.p as f64);
-            // a panel at the floor was taken as it is: leave the spot
+            // a panel of the smallest length was accepted as it is: continue after it
             h *= if h <= floor { 4.0 } else { growth.clamp(1.0, 2.0) };
             if self.near.len() >= 12 {
                 self.move_origin(p, false);
@@ -229,8 +229,8 @@ impl<'a> March<'a> {
         }
     }
 
-    /// A guess of the compression at the nodes of a panel from the present `p`: what the last panel solved says of
-    /// that time or, beyond it, a parabola.
+    /// A guess of the compression at the nodes of a panel from the present `p`: that of the last solved panel or, beyond it, a
+    /// parabola.
     fn guess(&self, kind: Kind, p: f64, h: f64) -> Vec<f64> {
         let rule = self.tables.rule(kind);
         let elapsed = &rule.elapsed[..self.tables.p];
@@ -316,7 +316,7 @@ impl<'a> March<'a> {
         None
     }
 
-    /// Takes a panel into the record; returns the first minimum in it.
+    /// Adds a panel to the record; returns the first minimum in it.
     fn accept(&mut self, trial: Trial, found: &[(f64, f64, bool)], falling: bool) -> Option<f64> {
         let panel = Panel::new(self.tables, trial.kind, trial.start, trial.h, trial.x);
         let (impulse, moment) = (panel.impulse(self.tables), panel.moment(self.tables));
@@ -437,7 +437,7 @@ impl<'a> March<'a> {
     }
 }
 
-/// Time from the start of a rejected panel to the separation that its solution foretells.
+/// Time from the start of a rejected panel to the separation that its solution predicts.
 fn separation_ahead(trial: &Trial, low: Option<f64>, found: &[(f64, f64, bool)]) -> Option<f64> {
     let h = trial.h;
     let Some(low) = low else {

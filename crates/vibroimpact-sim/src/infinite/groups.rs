@@ -4,7 +4,7 @@ use super::problem::Structure;
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
-/// A compact body about to strike an infinite structure: the four constants that matter.
+/// A compact body about to strike an infinite structure, described by four constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {
     /// The struck structure.

@@ -1,8 +1,8 @@
 //! The memory of past forces: a positive measure of point impulses.
 //!
-//! What a finished piece of contact does to the structure afterwards is
-//! `int sqrt(t - s) f(s) ds` with `f >= 0`, so any quadrature with positive weights stands for
-//! it as a set of impulses. Once the piece lies further back than half its own length, the
+//! The later effect of a finished piece of contact on the structure is
+//! `int sqrt(t - s) f(s) ds` with `f >= 0`, so any quadrature with positive weights represents
+//! it by a set of impulses. Once the piece lies further back than half its own length, the
 //! Gauss rule of the measure (Lanczos / Stieltjes recurrence, eigenvalues of the Jacobi matrix)
 //! with 14 nodes replaces it to rounding error: the Bernstein ellipse of `sqrt` has parameter
 //! `2 + sqrt(3)`, and `3.73^(-28) = 1e-16`.
@@ -28,7 +28,7 @@ struct Block {
     oldest: f64,
 }
 
-/// All that happened before the local time origin.
+/// All impulses before the local time origin.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
     /// Oldest first.
@@ -106,7 +106,7 @@ fn gauss_rule(measure: &[Impulse]) -> Vec<Impulse> {
         let norm = next.iter().map(|q| q * q).sum::<f64>().sqrt();
         beta[k] = norm;
         if norm < 1e-14 && k + 1 < n {
-            // the measure has no more than k + 1 points that matter
+            // the measure has no more than k + 1 significant points
             alpha.truncate(k + 1);
             beta.truncate(k + 1);
             break;

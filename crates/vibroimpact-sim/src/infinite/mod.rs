@@ -35,7 +35,7 @@
 //!
 //! *Other laws, other structures*: [`solve_law`] solves the same equation for any [`ContactLaw`](contact_models::ContactLaw)
 //! and for any [`Receptance`] that is a sum of powers of time. It shares panels, history and solution with the solver for
-//! `S`, takes the rate from an integral of its own, and locates where the law changes its branch.
+//! `S`, computes the rate from a separate integral, and locates changes of the law's branch.
 //!
 //! # Example
 //!

@@ -1,4 +1,4 @@
-//! One panel of a contact: its collocation solution, and what it does to later times.
+//! One panel of a contact: its collocation solution, and its effect on later times.
 
 use super::problem::{NODES, Structure};
 use super::rule::{Kind, Tables, dot, series, series_slope};

@@ -1,9 +1,9 @@
-//! What the solution keeps of a panel.
+//! The data of a panel in the solution.
 
 use super::panel::Panel;
 use super::rule::{Kind, Tables};
 
-/// A panel as the solution keeps it.
+/// A panel of the solution.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub kind: Kind,

@@ -1,4 +1,4 @@
-//! The problem and how accurately it is solved.
+//! The problem and the settings of its solution.
 
 use invalid_input::InvalidInput;
 
@@ -8,7 +8,7 @@ pub(super) const NODES: std::ops::RangeInclusive<usize> = 8..=32;
 /// Smallest and largest `S` that [`solve`](super::solve()) accepts.
 pub const S_RANGE: std::ops::RangeInclusive<f64> = 1e-12..=1e8;
 
-/// The struck structure, which decides the kernel `K` of the Volterra equation.
+/// The struck structure, which determines the kernel `K` of the Volterra equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Structure {
     /// Infinite Euler-Bernoulli beam: `K = sqrt(t)` (thesis Eq. 2.1).
@@ -30,7 +30,8 @@ pub struct Settings {
     /// Sustained contact is followed at least up to this time (units of `T`). Default 0: as far as
     /// it takes to know that it lasts.
     pub horizon: f64,
-    /// Whether to solve a second time with more nodes, for [`Solution::relative_uncertainty`](super::Solution::relative_uncertainty). Default true.
+    /// Whether to solve a second time with more nodes, for
+    /// [`Solution::relative_uncertainty`](super::Solution::relative_uncertainty). Default true.
     pub estimate_uncertainty: bool,
     /// Most panels to try before stopping ([`StopReason::Steps`](crate::StopReason)). Default 200,000. Only `S`
     /// close above the critical value needs many: the separations number 33 at `S = 1.6`, 120 at

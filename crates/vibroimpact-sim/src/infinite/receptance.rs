@@ -1,4 +1,4 @@
-//! What an impulse does to the struck point, and the units in which an impact is solved.
+//! Impulse response of the struck point, and the units in which an impact is solved.
 
 use super::groups::{Groups, Impact};
 use super::problem::Structure;
@@ -19,11 +19,11 @@ pub struct Term {
     pub power: f64,
 }
 
-/// The impulse response of the struck point of a structure without ends, `y(t) = sum_k c_k t^(p_k)` m per N s: what
-/// the frequency-domain receptance `sum_k c_k Gamma(1 + p_k) / (i omega)^(1 + p_k)` is in time.
+/// The impulse response of the struck point of an infinite structure, `y(t) = sum_k c_k t^(p_k)` m per N s: the counterpart in
+/// time of the receptance `sum_k c_k Gamma(1 + p_k) / (i omega)^(1 + p_k)`.
 ///
-/// All `c_k` are positive and all `p_k` below 1, so that the point never stops moving away after an impulse but ever
-/// slows down. It follows that the gap is convex in flight: the next contact is found with certainty, or there is none.
+/// All `c_k` are positive and all `p_k` are below 1, so that the point keeps moving away after an impulse, with decreasing
+/// speed. It follows that the gap is convex in flight: the next contact is found with certainty, or there is none.
 ///
 /// | structure, struck at | `y(t)` |
 /// |---|---|
@@ -49,7 +49,7 @@ pub struct Receptance {
 /// The units in which an impact on an infinite structure is solved: `T`, `F`, `v T` and `v`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
-    /// Unit of time `T`: an impulse has moved the struck point by then as far as the free striker, `m y(T) = T`.
+    /// Unit of time `T`, at which an impulse has displaced the struck point as far as the free striker, `m y(T) = T`.
     pub time_s: f64,
     /// Unit of force `F = m v / T`.
     pub force_n: f64,

@@ -5,7 +5,7 @@
 //! `t^2 (1-t)^2` times Jacobi polynomials of weight `t^4 (1-t)^4`. For a given speed `v` the mass `m`
 //! and the coefficients follow from `x(1) = 0` (Eq. 2.24) and from the residual `f^2 - x^3` being
 //! orthogonal to every `phi_k` (Eqs. 2.23, 2.25), by Newton's method and continuation from the
-//! gentle limit, in which the beam stands still.
+//! limit of small speeds, in which the beam does not move.
 
 use super::problem::S_RANGE;
 use super::rule::gauss;
@@ -24,7 +24,7 @@ pub struct FirstContact {
     pub coefficients: Vec<f64>,
 }
 
-/// What continuation holds fixed.
+/// The quantity that continuation holds fixed.
 #[derive(Debug, Clone, Copy)]
 enum Given {
     Speed,
@@ -33,7 +33,7 @@ enum Given {
 
 /// Logarithm of a speed gentle enough for the limit of a beam at rest to be a good guess.
 const GENTLE: f64 = 0.0;
-/// Largest pull, relative to the largest force, that still counts as none.
+/// Largest tensile force, relative to the largest force, that is tolerated.
 const UNDERSHOOT: f64 = 0.03;
 /// Duration of Hertz contact with a rigid support in its natural unit (Hertz 1882).
 const RIGID_DURATION: f64 = 3.218_065_459_719_043;
@@ -221,16 +221,16 @@ fn follow(given: Given, target: f64, n: usize, field: &'static str, value: f64) 
     Ok(FirstContact { speed, mass, s: mass.powi(8) * speed, coefficients: unknowns })
 }
 
-/// Whether the force pushes all the time, to plotting accuracy: a polynomial that follows
-/// `t^(3/2)` at the ends may undershoot there by a few percent (at the largest S), while the unphysical
-/// solutions pull with forces like those with which they push.
+/// Whether the force is compressive all the time, to plotting accuracy: a polynomial that approximates
+/// `t^(3/2)` at the ends may become negative there by a few percent (at the largest S), while the unphysical
+/// solutions have tensile forces as large as the compressive ones.
 fn physical(grid: &Grid, unknowns: &[f64]) -> bool {
     let force = |phi: &Vec<f64>| phi.iter().zip(unknowns).map(|(phi, a)| a * phi).sum::<f64>();
     let (low, high) = grid.phi.iter().map(force).fold((0.0_f64, 0.0_f64), |(low, high), f| (low.min(f), high.max(f)));
     low >= -UNDERSHOOT * high
 }
 
-/// Newton's method for `(a_1 .. a_n, ln m, ln v)`; `None` if it does not settle.
+/// Newton's method for `(a_1 .. a_n, ln m, ln v)`; `None` if it does not converge.
 fn newton(grid: &Grid, given: Given, target: f64, mut unknowns: Vec<f64>) -> Option<Vec<f64>> {
     let n = unknowns.len() - 2;
     for _ in 0..30 {

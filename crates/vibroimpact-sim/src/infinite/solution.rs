@@ -18,14 +18,14 @@ use std::fmt;
 pub enum Outcome {
     /// The body leaves for good: after the last separation it does not move towards the structure.
     Rebound,
-    /// SubImpact does not end. Decided once relative oscillations of the force about that of an
+    /// The contact does not end. Decided once relative oscillations of the force about that of an
     /// attached body ([`attached`](super::attached)) have shrunk below one half over two natural
     /// periods, at a time from which the beam's damping outweighs everything that makes them grow
     /// (`d ln a / d ln t = 9/8 - 0.300 S^(1/4) t^(5/8)`, at least four times over).
     Sustained,
     /// The computation stopped before the impact had ended; what was found up to
-    /// [`known_until`](Solution::known_until) stands. Of a beam close to the critical `S` how it ends may be beyond the
-    /// digits of numbers ([`StopReason::DigitsExhausted`]): see [`certain_separations`](Solution::certain_separations).
+    /// [`known_until`](Solution::known_until) is valid. On a beam close to the critical `S` the end may depend on more digits than
+    /// floating-point numbers have ([`StopReason::DigitsExhausted`]): see [`certain_separations`](Solution::certain_separations).
     Stopped(StopReason),
 }
 
@@ -39,7 +39,7 @@ impl Outcome {
         }
     }
 
-    /// Why the computation stopped before the impact had ended, if it did.
+    /// The reason why the computation stopped before the end of the impact, if it did.
     pub fn stopped_by(self) -> Option<StopReason> {
         match self {
             Outcome::Stopped(reason) => Some(reason),
@@ -95,7 +95,7 @@ pub struct State {
     pub compression: f64,
     /// Its rate.
     pub compression_rate: f64,
-    /// SubImpact force.
+    /// Contact force.
     pub force: f64,
     /// Displacement of the striker since first touch.
     pub striker_displacement: f64,
@@ -124,7 +124,7 @@ impl State {
     }
 }
 
-/// Contacts of two solutions are the same while the relative difference of their times is smaller.
+/// Largest relative difference of the times of contacts that count as the same in two solutions.
 const SAME: f64 = 0.5;
 
 /// Free flight after a contact.
@@ -135,7 +135,7 @@ pub(super) struct Flight {
     pub course: Course,
 }
 
-/// How a flight goes on.
+/// The end of a flight.
 #[derive(Debug, Clone)]
 pub(super) enum Course {
     Hertz(Departure),
@@ -160,12 +160,12 @@ impl Course {
     }
 }
 
-/// The record of a contact from which its motion is rebuilt.
+/// The record of a contact from which its motion is evaluated.
 #[derive(Debug, Clone)]
 struct Record {
     units: Units,
     pieces: Vec<Piece>,
-    /// Largest force; `None` where the extrema of the compression tell it.
+    /// Largest force; `None` if it follows from the extrema of the compression.
     peak_force: Option<f64>,
     body_travel: f64,
 }
@@ -184,18 +184,18 @@ pub struct Solution {
     /// Local extrema of the compression during contact, in order.
     pub extrema: Vec<Extremum>,
     /// Estimated relative error of contact starts, durations and speeds of the body at separation:
-    /// three times the largest difference between this solution and one with more nodes, and what
-    /// the tolerance leaves open where the two agree by accident (1e-5 of it). Infinite if the two
-    /// differ in the number of contacts or in the outcome. `None` if not asked for.
+    /// three times the largest difference between this solution and one with more nodes, plus 1e-5
+    /// of the tolerance, since the two may agree by accident. Infinite if the two
+    /// differ in the number of contacts or in the outcome. `None` if not requested.
     pub relative_uncertainty: Option<f64>,
-    /// How many separations, from the first, both solutions have at the same times, to half of these. Beyond them nothing
-    /// is known. `None` if no second solution was requested.
+    /// Number of separations, from the first, that both solutions have at the same times, within half of these times. Later ones
+    /// are not known. `None` if no second solution was requested.
     pub certain_separations: Option<usize>,
     /// The motion can be requested up to this time (units of `T`).
     pub known_until: f64,
     /// Panels in the solution.
     pub panels: usize,
-    /// Panels solved in all, rejected ones and iterations for separation included.
+    /// Number of solved panels, including rejected ones and iterations for separation.
     pub panels_tried: usize,
     pub(super) flights: Vec<Flight>,
     records: Vec<Record>,
@@ -238,7 +238,7 @@ impl Solution {
         self.records.push(Record { units, pieces, peak_force: None, body_travel });
     }
 
-    /// The same of a contact whose forces stand in its pieces, in the units of the impact.
+    /// The same for a contact whose pieces contain the forces, in the units of the impact.
     pub(super) fn push_general(&mut self, contact: SubImpact, pieces: Vec<Piece>, peak_force: f64, body_travel: f64) {
         self.sub_impacts.push(contact);
         self.records.push(Record { units: Units::OF_IMPACT, pieces, peak_force: Some(peak_force), body_travel });
@@ -300,7 +300,7 @@ impl Solution {
         }
     }
 
-    /// Motion a while after the touch of a contact (index from 0; time in units of `T`). Unlike
+    /// Motion at a time after the touch of a contact (index from 0; time in units of `T`). Unlike
     /// [`at`](Self::at) it keeps its precision in late contacts, where the time itself has few
     /// digits left for what happens within a contact. `None` outside the contact.
     pub fn in_contact(&self, index: usize, after_touch: f64) -> Option<State> {
@@ -357,7 +357,7 @@ impl Solution {
         if self.outcome != finer.outcome || self.sub_impacts.len() != finer.sub_impacts.len() {
             self.relative_uncertainty = Some(f64::INFINITY);
             if (self.outcome == Outcome::Rebound) != (finer.outcome == Outcome::Rebound) {
-                // whether the body leaves or comes back depends on digits that are not there
+                // whether the body leaves or returns depends on further digits
                 self.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
             }
             return;

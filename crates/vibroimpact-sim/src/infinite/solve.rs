@@ -8,7 +8,7 @@ use super::units::Touch;
 use crate::StopReason;
 use invalid_input::InvalidInput;
 
-/// Times beyond this (units of `T`) are not followed: powers of them leave the range of numbers.
+/// Largest time (units of `T`), beyond which powers of the time would overflow.
 pub(super) const LATEST: f64 = 1e120;
 
 /// Solves the impact for one value of `S` (within [`S_RANGE`]).

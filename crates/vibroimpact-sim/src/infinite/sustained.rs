@@ -1,7 +1,7 @@
-//! When a contact is known to last.
+//! The proof that a contact lasts.
 //!
-//! In sustained contact the force settles on that of a body attached to the beam, `f_a(t)` (see
-//! [`attached`]): force ratio `r = f / f_a` to 1. Around it the compression oscillates. With the
+//! In sustained contact the force converges to that of a body attached to the beam, `f_a(t)` (see
+//! [`attached`]): the force ratio `r = f / f_a` tends to 1. Around it the compression oscillates. With the
 //! tangent stiffness `k = (3/2) sqrt(S x)` at the attached compression,
 //! `k = 0.945 S^(1/3) t^(-1/2)`, small oscillations obey `p^2 + (sqrt(pi)/2) k sqrt(p) + k = 0`:
 //! the beam damps them at the rate `gamma = 0.300 S^(1/4) t^(-3/8)`, while adiabatic change of `k`
@@ -12,8 +12,8 @@
 //! d ln a / d ln t = 9/8 - gamma t,      gamma t = 0.300 S^(1/4) t^(5/8).
 //! ```
 //!
-//! Damping wins for all times after that at which `gamma t = 9/8`, ever more clearly, so relative
-//! oscillations only shrink from then on. Contact is taken to last once, over two natural
+//! After the time at which `gamma t = 9/8`, damping prevails more and more, so relative
+//! oscillations only decrease from then on. A contact counts as sustained once, over two natural
 //! periods, (1) `gamma t` was above `4 * 9/8`, (2) `r` stayed within `[1/2, 3/2]` and (3) its largest
 //! deviation from 1 did not grow from the first period to the second (or is below 2 %). A
 //! separation needs `r = 0`.
@@ -28,7 +28,7 @@ use super::problem::Structure;
 use super::rule::{Kind, Tables};
 use super::units::Units;
 
-/// Follows the force ratio of one contact.
+/// Monitors the force ratio of one contact.
 pub(super) struct Watch {
     structure: Structure,
     s: f64,
@@ -42,7 +42,7 @@ impl Watch {
         Watch { structure, s, touch_time, deviations: Vec::new() }
     }
 
-    /// Takes note of the forces in a panel.
+    /// Records the forces in a panel.
     pub fn see(&mut self, units: &Units, tables: &Tables, piece: &Piece) {
         if self.structure == Structure::Plate || piece.kind != Kind::Middle {
             return;

@@ -1,8 +1,8 @@
-//! What a contact starts from, and the units in which it is solved.
+//! The state at the start of a contact, and the units in which it is solved.
 
 use super::problem::Structure;
 
-/// What is fixed at touch.
+/// The state at touch.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Touch {
     pub s: f64,
@@ -32,7 +32,7 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// Those of the impact itself.
+    /// The units of the impact itself.
     pub const OF_IMPACT: Units = Units { time: 1.0, length: 1.0, speed: 1.0, linear: 1.0, memory: 1.0, impulse: 1.0 };
 
     pub fn new(structure: Structure, s: f64, closing: f64) -> Units {

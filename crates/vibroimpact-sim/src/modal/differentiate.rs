@@ -1,4 +1,4 @@
-//! How an impact changes with the numbers that pose it.
+//! Derivatives of an impact with respect to the numbers that define it.
 
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
@@ -16,16 +16,16 @@ use std::fmt;
 
 pub use crate::assembly::{Derivative, NoDerivative, Stencil};
 
-/// An impact, all of it.
+/// All input of an impact.
 #[derive(Clone, Copy)]
 pub struct Posing<'a> {
     /// The structure, as seen from the contact.
     pub structure: &'a Structure,
     /// The compact body.
     pub striker: &'a Striker,
-    /// The law of their contact.
+    /// The contact law.
     pub law: &'a dyn ContactLaw,
-    /// How the structure moves at the start.
+    /// Motion of the structure at the start.
     pub start: &'a Start,
 }
 
@@ -39,20 +39,20 @@ impl fmt::Debug for Posing<'_> {
     }
 }
 
-/// A parameter, by what the impact becomes at four neighbouring values of it. They must lie so near that everything which
-/// poses the impact is smooth between them, and keep the number and the order of the modes.
+/// A parameter, described by the impact at four neighbouring values. They must be so close that all numbers which define the
+/// impact are smooth between them. Number and order of the modes must be the same.
 #[derive(Debug, Clone, Copy)]
 pub struct Parameter<'a> {
-    /// By how much the neighbouring values differ from the value (unit of the parameter): four different numbers, best
+    /// Differences of the neighbouring values from the value (unit of the parameter): four different numbers, best
     /// `-2, -1, 1, 2` steps, or `1, 2, 3, 4` at a bound.
     pub offsets: [f64; 4],
     /// The impact at these values.
     pub neighbours: [Posing<'a>; 4],
-    /// Whether the law of contact depends on the parameter.
+    /// Whether the contact law depends on the parameter.
     pub changes_law: bool,
 }
 
-/// How one interval of contact changes.
+/// Derivatives of one interval of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SubImpactDerivatives {
     /// Of first touch (s).
@@ -67,7 +67,7 @@ pub struct SubImpactDerivatives {
     pub peak_compression_m: Derivative,
 }
 
-/// How an impact changes with one parameter, per unit of it.
+/// Derivatives of an impact with respect to one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives {
     /// Of the net restitution.
@@ -89,13 +89,13 @@ pub struct Derivatives {
 pub struct Differentiated {
     /// The impact.
     pub solution: Solution,
-    /// By parameter, in the order given, or why there are none.
+    /// For each parameter, in the given order, or the reason why there are none.
     pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
-    /// Speed of the slowest touch in parts of the fastest. Towards zero the derivatives grow beyond all bounds.
+    /// Speed of the slowest touch divided by that of the fastest. As it tends to zero, the derivatives grow without bound.
     pub nearest_graze: f64,
 }
 
-/// The changes along one run with one parameter.
+/// Derivatives along one run with respect to one parameter.
 #[derive(Clone)]
 struct Changes {
     numbers: [f64; 3],
@@ -105,8 +105,8 @@ struct Changes {
 }
 
 impl Solver {
-    /// Solves one impact, and how all of it changes with some parameters: the tangent of the motion, not differences of
-    /// it. Each parameter costs a part of the impact.
+    /// Solves one impact and differentiates it with respect to some parameters. The tangent of the motion is computed; motions are
+    /// not differenced. Each parameter costs less than an impact.
     ///
     /// ```
     /// use contact_models::Hertz;
@@ -208,7 +208,7 @@ impl Solver {
     }
 }
 
-/// What it takes to differentiate motions of one impact.
+/// Data for the derivatives of one impact.
 struct Along<'a> {
     modes: &'a [Mode],
     moved: &'a [usize],
@@ -222,7 +222,7 @@ struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// The changes along the motion of one run, and how nearly it grazes.
+    /// Derivatives along the motion of one run, and its distance from grazing.
     fn changes(&self, run: &Run, expansions: &mut Expansions) -> Result<(Vec<Changes>, f64), NoDerivative> {
         if run.outcome != Outcome::Rebound {
             return Err(NoDerivative::Outcome);
@@ -272,7 +272,7 @@ fn restitution_change(
 }
 
 impl Changes {
-    /// As derivatives, with those along the coarser motion.
+    /// Derivatives with their uncertainty from the coarser motion.
     fn beside(&self, coarse: Option<&Changes>, solution: &Solution, known: Known) -> Derivatives {
         let with = |of: &dyn Fn(&Changes) -> f64, output: f64| known.beside(of(self), coarse.map(of), output);
         let number = |i: usize, output: f64| with(&|changes| changes.numbers[i], output);

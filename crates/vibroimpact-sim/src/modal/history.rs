@@ -1,4 +1,4 @@
-//! The record of an impact: motion and force at any time, and where the energy went.
+//! The record of an impact: motion and force at any time, and the energy balance.
 
 use super::problem::{Mode, Start, Striker};
 use super::solution::{Outcome, Solution};
@@ -28,7 +28,7 @@ pub struct Sample {
     pub force_n: f64,
 }
 
-/// Where the energy went (J).
+/// The energy balance (J).
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnergyLedger {
     /// Kinetic energy of the striker and energy of the structure at the start.
@@ -39,24 +39,24 @@ pub struct EnergyLedger {
     pub modes_j: Vec<f64>,
     /// Lost to modal damping, from the modes' velocities.
     pub modal_damping_j: f64,
-    /// Work that the contact law took up over the compression: dissipated, where all contacts have ended.
+    /// Work of the contact force over the compression: dissipated, if all contacts have ended.
     pub contact_j: f64,
-    /// What is missing: initial less all others. Measures the defect of the collocated force.
+    /// Residual: the initial energy minus all others. It measures the error of the collocated force.
     pub residual_j: f64,
 }
 
-/// The recorded motion of one impact; evaluates itself exactly at any time, given its contact force.
+/// The recorded motion of one impact. It is evaluated exactly at any time, given the contact force.
 #[derive(Debug, Clone)]
 pub struct History<L> {
     recorded: Recorded<L>,
     loads: Loads,
     end_s: f64,
-    /// Up to here the motion is known (s).
+    /// Time up to which the motion is known (s).
     known_until_s: f64,
     ledger: EnergyLedger,
 }
 
-/// What a run leaves behind.
+/// The data of a run.
 #[derive(Debug, Clone)]
 pub(crate) struct Recorded<L> {
     pub modes: Vec<Mode>,
@@ -67,7 +67,7 @@ pub(crate) struct Recorded<L> {
     pub law: L,
     pub system: System,
     pub stretches: Vec<Stretch>,
-    /// Work that the contact took up, and what the modes that move it lost to damping (J).
+    /// Work of the contact, and dissipation by damping of the modes that move it (J).
     pub contact_work_j: f64,
     pub damping_j: f64,
 }
@@ -86,13 +86,13 @@ impl<L: ContactLaw> History<L> {
         }
     }
 
-    /// Time of the last event (s), or up to which a contact that lasts was followed.
+    /// Time of the last event (s), or the time up to which a sustained contact was computed.
     pub fn duration_s(&self) -> f64 {
         self.end_s
     }
 
-    /// Up to this time (s) the motion is known; later ones are answered as this one. Infinite after a rebound, which free
-    /// motion follows without end. A contact that lasts is followed at least up to [`Settings::until_s`](super::Settings).
+    /// Time (s) up to which the motion is known. Later times are treated as this one. It is infinite after a rebound, which is
+    /// followed by free motion. A sustained contact is computed at least up to [`Settings::until_s`](super::Settings).
     pub fn known_until_s(&self) -> f64 {
         self.known_until_s
     }
@@ -112,9 +112,9 @@ impl<L: ContactLaw> History<L> {
         times
     }
 
-    /// Motion and force at `time_s` (s); times before 0 and not-a-number are answered as 0, those beyond
-    /// [`known_until_s`](History::known_until_s) as that. The force is that of the law at the compression and its rate, and
-    /// so is never negative.
+    /// Motion and force at `time_s` (s). Times before 0 and NaN are treated as 0, later times than
+    /// [`known_until_s`](History::known_until_s) as that time. The force is that of the law at the compression and its rate, and
+    /// therefore never negative.
     pub fn at(&self, time_s: f64) -> Sample {
         let laws: [&dyn ContactLaw; 1] = [&self.recorded.law];
         let (panel, h) = self.panel(time_s, &laws);
@@ -141,7 +141,7 @@ impl<L: ContactLaw> History<L> {
         self.motion(time_s).0
     }
 
-    /// Where the energy went until the last event. Every part is found by itself: `residual_j` can fail to vanish.
+    /// The energy balance until the last event. Every part is computed separately, so `residual_j` is an independent check.
     pub fn energy_ledger(&self) -> EnergyLedger {
         self.ledger.clone()
     }

@@ -3,10 +3,10 @@
 use super::problem::{Mode, Start, Striker};
 use crate::assembly::{Assembly, Body, Contact, Point};
 
-/// A stop that moves is a body heavier than the structure by so much that no contact slows it.
+/// Mass of a moving stop relative to the structure, so large that no contact slows it down.
 const IMMOVABLE: f64 = 1e30;
 
-/// Number of the structure among the bodies, and of the striker, which is not there if it is a stop at rest.
+/// Number of the structure among the bodies, and of the striker, which is absent if it is a stop at rest.
 pub(crate) const STRUCTURE: usize = 0;
 pub(crate) const STRIKER: usize = 1;
 

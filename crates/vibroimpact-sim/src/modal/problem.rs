@@ -1,9 +1,9 @@
-//! The problem as the field poses it: a structure in modes, a striker, how both start.
+//! The problem: a structure with its modes, a striker, and the initial motion.
 
 use crate::assembly::BodyMode;
 use invalid_input::InvalidInput;
 
-/// Frequencies beyond this (rad/s) belong to no structure; the limit keeps every power of them finite.
+/// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
 /// Bounds on masses, speeds and shapes: wide enough for any unit system, narrow enough that no product overflows.
 const SCALE_MIN: f64 = 1e-30;
@@ -16,7 +16,7 @@ const SHAPE_FLOOR: f64 = 1e-30;
 pub struct Mode {
     /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
     pub omega_rad_s: f64,
-    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`.
+    /// Damping ratio `zeta_k`; the modal equation contains `2 zeta_k omega_k`.
     pub damping_ratio: f64,
     /// Mass-normalised shape at the contact, `phi_k(b)` (kg^-1/2).
     pub shape: f64,
@@ -43,7 +43,7 @@ impl Mode {
 /// (`beam_modes::remainder_modes`), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Structure {
-    /// The modes kept, in any order. None at all is a rigid, immovable structure.
+    /// The modes, in any order. An empty list is a rigid, immovable structure.
     pub modes: Vec<Mode>,
 }
 
@@ -92,7 +92,7 @@ impl Striker {
     }
 }
 
-/// How the structure moves at the start, and how far away the striker then is.
+/// Motion of the structure at the start, and initial distance of the striker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
     /// Modal amplitudes `a_k` (m kg^1/2), one for each mode.
@@ -129,11 +129,11 @@ impl Start {
     }
 }
 
-/// How accurately, and how far.
+/// Accuracy and extent of the solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Accuracy aimed at, relative to the striker's momentum, a contact: 1e-13 to 0.1. Default 1e-9.
-    /// An impact that amplifies errors ends with fewer digits; `Solution::restitution_uncertainty` tells.
+    /// Requested accuracy of the impulse of each contact, relative to the striker's momentum: 1e-13 to 0.1. Default 1e-9.
+    /// The result of an impact that amplifies errors is less accurate; see `Solution::restitution_uncertainty`.
     pub tolerance: f64,
     /// Solve again, more coarsely, to estimate the uncertainty of the restitution. Default true.
     pub estimate_uncertainty: bool,
@@ -142,8 +142,8 @@ pub struct Settings {
     /// Stop after this many steps in contact ([`StopReason::Steps`](crate::StopReason)), or in the search for contacts
     /// ([`StopReason::Flight`](crate::StopReason)). Default 200,000; an ordinary impact needs hundreds.
     pub max_steps: u64,
-    /// Follow a contact that lasts at least up to this time (s), for the history of a recorded impact; after a rebound the
-    /// history knows every time anyhow. Default 0: no further than it takes to know that it lasts.
+    /// Compute a sustained contact at least up to this time (s), for the history of a recorded impact. After a rebound the history
+    /// is known for all times. Default 0: up to the time at which the contact is known to last.
     pub until_s: f64,
 }
 

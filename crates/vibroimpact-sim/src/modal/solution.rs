@@ -5,7 +5,7 @@ use std::fmt;
 
 pub use crate::assembly::Counts;
 
-/// How an impact ended.
+/// Outcome of an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Outcome {
@@ -13,8 +13,8 @@ pub enum Outcome {
     Rebound,
     /// The bodies never met.
     NoContact,
-    /// The bodies stay in contact: the motion has died down, or what is left of it cannot part them (a structure pressed
-    /// against an immovable stop, whose energy is below what parting takes).
+    /// The bodies stay in contact: the motion has decayed, or the remaining motion cannot separate them (for example a structure
+    /// that is pressed against an immovable stop).
     Sustained,
     /// The computation stopped before the impact had ended; the solution holds what was found until then.
     Stopped(StopReason),
@@ -31,7 +31,7 @@ impl Outcome {
         }
     }
 
-    /// Why the computation stopped before the impact had ended, if it did.
+    /// The reason why the computation stopped before the end of the impact, if it did.
     pub fn stopped_by(self) -> Option<StopReason> {
         match self {
             Outcome::Stopped(reason) => Some(reason),
@@ -67,17 +67,17 @@ pub struct SubImpact {
 /// The result of one impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
     /// Net restitution: relative speed of separation over that of approach, both of the rigid-body motions
     /// (for a structure without rigid-body modes: of the striker alone). `None` unless the bodies approached
     /// each other, fast enough for the ratio to be a number, and the impact ended.
     pub restitution: Option<f64>,
-    /// Estimated error of the restitution, from two or three coarser solutions; `None` if not asked for.
+    /// Estimated error of the restitution, from two or three coarser solutions; `None` if not requested.
     pub restitution_uncertainty: Option<f64>,
     /// Every interval of contact, in order of time.
     pub sub_impacts: Vec<SubImpact>,
-    /// Costs, of the coarser solutions included.
+    /// Costs, including those of the coarser solutions.
     pub counts: Counts,
     /// Time of the last separation, or at which the computation stopped (s).
     pub end_s: f64,

@@ -1,4 +1,4 @@
-//! From first touch to the certainty that the bodies never meet again.
+//! Solves an impact from first touch until it is certain that the bodies never meet again.
 
 use super::history::{History, Recorded, all_modes};
 use super::posed;
@@ -17,15 +17,16 @@ use invalid_input::InvalidInput;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// Looser tolerances than this make steps that hardly differ any more, and cost as much: what these get wrong would go
-/// unnoticed.
+/// Loosest tolerance of a solution. At looser tolerances the steps, and thus the costs, hardly differ any more, and their errors
+/// would not be noticed.
 pub(crate) const LOOSEST: f64 = 1e-4;
 /// Factors of the tolerance for the coarser solutions that give the uncertainty: in the same unit of time, in
 /// another one, and a third where these differ by more than the tolerance.
 const COARSER: f64 = 32.0;
 const OTHERWISE: f64 = 8.0;
 const THIRD: f64 = 8.0;
-/// Uncertainty divided by the difference from them: without and with the third; and what is stated of the tolerance in any case.
+/// Factors from the difference to the uncertainty, without and with the third solution, and the share of the tolerance that is
+/// always added.
 const ORDINARY: f64 = 2.5;
 const AMPLIFIED: f64 = 5.0;
 const LEAST: f64 = 3e-3;

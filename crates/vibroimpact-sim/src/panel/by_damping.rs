@@ -1,4 +1,4 @@
-//! How a mode on a step changes with its damping ratio: in closed form, next to critical damping as well.
+//! Derivatives of a mode on a step with respect to its damping ratio, in closed form, also near critical damping.
 //!
 //! With `sigma = zeta omega`, `D = omega^2 (zeta^2 - 1)` and `S = sinh(sqrt(D) t)/sqrt(D)`, `C = dS/dt`, which are entire
 //! functions of `D`, the displacement after a unit velocity is `K = e^{-sigma t} S`. By `d sigma/d zeta = omega`,

@@ -1,4 +1,4 @@
-//! Panels of `h = 2^-j` s, whose tables can be kept.
+//! Panels of `h = 2^-j` s, whose tables can be cached.
 
 use super::oscillator::{BodyMode, Propagator, propagate};
 use super::rows::Rows;
@@ -11,25 +11,25 @@ use std::sync::OnceLock;
 pub(crate) const J_MIN: i32 = -120;
 pub(crate) const J_MAX: i32 = 200;
 
-/// Step length of a level (s): the number with just this exponent.
+/// Step length (s) for a step exponent.
 pub(crate) fn step_s(j: i32) -> f64 {
     f64::from_bits(((1023 - j) as u64) << 52)
 }
 
-/// The coarsest level whose step is not longer than `t` (s), a positive number.
+/// Step exponent of the longest step that is not longer than `t` (s), a positive number.
 pub(crate) fn level_within(t: f64) -> i32 {
     let exponent = ((t.to_bits() >> 52) & 0x7ff) as i32 - 1023;
     (-exponent).clamp(J_MIN, J_MAX)
 }
 
-/// Levels that are made together: a run needs a few, side by side.
+/// Number of neighbouring step exponents in a group: a run needs a few neighbouring ones.
 const GROUP: usize = 32;
-/// Groups of all levels, and of one more, for the half steps of the finest.
+/// Number of groups for all step exponents and one more, for half of the shortest step.
 const GROUPS: usize = (J_MAX + 1 - J_MIN) as usize / GROUP + 1;
 
 type Group<T> = [OnceLock<Box<T>>; GROUP];
 
-/// Something for each level, made when it is first asked for.
+/// A value for each step exponent, computed at first use.
 pub(crate) struct Levels<T> {
     groups: [OnceLock<Box<Group<T>>>; GROUPS],
 }
@@ -41,32 +41,32 @@ impl<T> Default for Levels<T> {
 }
 
 impl<T> Levels<T> {
-    /// What there is on level `j`.
+    /// The value for the step exponent `j`, if it exists.
     pub fn get(&self, j: i32) -> Option<&T> {
         let (group, place) = Self::place(j);
         self.groups[group].get()?[place].get().map(|found| &**found)
     }
 
-    /// What there is on level `j`, made now if it is missing.
+    /// The value for the step exponent `j`, which is computed if it is missing.
     pub fn get_or_init(&self, j: i32, make: impl FnOnce() -> T) -> &T {
         let (group, place) = Self::place(j);
         let group = self.groups[group].get_or_init(|| Box::new(array::from_fn(|_| OnceLock::new())));
         group[place].get_or_init(|| Box::new(make()))
     }
 
-    /// What there is on level `j`, to be changed.
+    /// The value for the step exponent `j`, mutable.
     pub fn get_mut(&mut self, j: i32) -> Option<&mut T> {
         let (group, place) = Self::place(j);
         self.groups[group].get_mut()?[place].get_mut().map(|found| &mut **found)
     }
 
-    /// All that has been made.
+    /// All existing values.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         let groups = self.groups.iter_mut().filter_map(OnceLock::get_mut);
         groups.flat_map(|group| group.iter_mut().filter_map(OnceLock::get_mut)).map(|found| &mut **found)
     }
 
-    /// Group of a level, and its place there.
+    /// Group of a step exponent, and its position there.
     fn place(j: i32) -> (usize, usize) {
         let i = (j - J_MIN) as usize;
         (i / GROUP, i % GROUP)

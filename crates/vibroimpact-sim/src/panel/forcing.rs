@@ -1,16 +1,16 @@
-//! What a step in contact needs to know about the structure: its free motion at the nodes, its compliance there to
-//! nodal forces, and the response of every mode at the end of the step.
+//! Data of the structure for a step in contact: its free motion at the nodes, its compliance there to nodal forces, and the
+//! response of every mode at the end of the step.
 //!
-//! With `S(t)` the displacement of a mode `t` after a unit velocity, all of it is in `S`, `S'` and in
-//! `int_0^c S(h (c-s)) P_n(2s-1) ds`. How these are found depends on the angle `|z|`, `z = lambda h`, by which the
-//! mode turns in the step (`lambda = -zeta omega + i omega_d`):
+//! With `S(t)` the displacement of a mode `t` after a unit velocity, these follow from `S`, `S'` and
+//! `int_0^c S(h (c-s)) P_n(2s-1) ds`. Their computation depends on the angle `|z|`, `z = lambda h`, by which the mode turns in
+//! the step (`lambda = -zeta omega + i omega_d`):
 //!
-//! - up to [`SLOW`] rad by power series. About the middle of the step they need half the terms, and even and odd ones
-//!   serve the nodes of both halves;
+//! - up to [`SLOW`] rad by power series. About the middle of the step they need half the terms, and the even and odd terms are
+//!   the same for the nodes of both halves;
 //! - beyond that by parts: `int_0^c e^{z(c-s)} f(s) ds = e^{zc} sum f^(k)(0)/z^{k+1} - sum f^(k)(c)/z^{k+1}`, which
-//!   ends after `Q` terms, `f` being a polynomial. The second sum of all modes together takes no more than `Q`
-//!   numbers; the first is one product of two short vectors a mode;
-//! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series serve.
+//!   ends after `Q` terms, since `f` is a polynomial. The second sum of all modes together needs only `Q` numbers; the first
+//!   is a product of two short vectors for each mode;
+//! - near critical damping and above it, where roots nearly coincide, by quadrature unless the series apply.
 
 use super::legendre::{BASIS, HALF_SERIES, Matrix, Nodal, Q, RECIPROCAL, SERIES, SLOW};
 use super::oscillator::{BodyMode, NEARLY_CRITICAL, Propagator, propagate, response};
@@ -18,7 +18,7 @@ use super::vector::{LANES, sum_of_lanes, vectorized};
 use num_complex::Complex64;
 use std::array;
 
-/// How the response of a mode on a step is found.
+/// Method of computing the response of a mode on a step.
 #[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 pub(crate) enum Way {
     Series,
@@ -57,9 +57,9 @@ pub(crate) fn rate(mode: &BodyMode) -> f64 {
     mode.omega_rad_s * if mode.damping_ratio < NEARLY_CRITICAL { 1.0 } else { 2.0 * mode.damping_ratio }
 }
 
-/// What one mode contributes to a level.
+/// Contribution of one mode for a step exponent.
 pub(crate) struct Part {
-    /// How far free motion has moved at the nodes, from displacement and from velocity.
+    /// Change by free motion at the nodes, from displacement and from velocity.
     pub at_nodes: (Nodal, Nodal),
     /// Displacement and velocity at the end of the step to unit Legendre forces, for unit weight.
     pub end: (Nodal, Nodal),
@@ -69,7 +69,7 @@ pub(crate) struct Part {
 pub(crate) struct Compliance {
     /// Slow modes: derivatives of their common impulse response at zero, times `h^p`, in [`LANES`] partial sums.
     impulse: [[f64; LANES]; SERIES],
-    /// How many of them the modes of this body, and of those before, need.
+    /// Number of terms that the modes of this body and of the bodies before need.
     terms: usize,
     most_terms: usize,
     /// Fast modes: `sum h^2 w Im(z^-(k+1)) / (omega_d h)`, what multiplies the derivatives of the force at the node.
@@ -109,7 +109,7 @@ impl Compliance {
         }
     }
 
-    /// Ends a body: what the modes of the next need of their series does not depend on it.
+    /// Ends a body: the number of terms for the modes of the next body does not depend on it.
     pub fn end_body(&mut self) {
         self.terms = 2;
     }
@@ -123,7 +123,7 @@ impl Compliance {
         }
     }
 
-    /// Adds with this weight what moves so far after a time under unit Legendre forces.
+    /// Adds a response to unit Legendre forces with this weight.
     pub fn add_response(&mut self, weight: f64, h: f64, moved: impl Fn(f64) -> Nodal) {
         let basis = &*BASIS;
         for i in 0..Q {
@@ -381,7 +381,7 @@ mod tests {
                 for turned in [SLOW, 1.01 * SLOW, 8.0, 12.0, 20.0, 100.0, 1e3, 3e4] {
                     let mode = mode(turned / h, zeta);
                     let both = each_way(&mode, h, &Way::ByParts(ByParts::new(&mode, h)));
-                    // an angle is no more exact than its last digit, and nearly equal roots cancel
+                    // the angle has a rounding error, and nearly equal roots cancel
                     let floor = (2e-14 + f64::EPSILON * turned) / ((1.0 - zeta) * (1.0 + zeta)).sqrt();
                     assert_close(both, h, 1.0, floor, &format!("{turned} {zeta} {h}"));
                 }

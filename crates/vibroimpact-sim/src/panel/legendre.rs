@@ -4,7 +4,7 @@ use gauss_quad::legendre::GaussLegendre;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
-/// Nodes a step. The force on a step is a polynomial of degree `Q - 1`.
+/// Number of nodes on a step. The force on a step is a polynomial of degree `Q - 1`.
 pub(crate) const Q: usize = 8;
 /// Powers of time in a Taylor series over a terminal step.
 pub(crate) const TAYLOR: usize = 14;
@@ -17,7 +17,7 @@ pub(crate) const SLOW: f64 = 6.0;
 const FINE: usize = 20;
 
 pub(crate) type Nodal = [f64; Q];
-/// A matrix that acts on nodal values is kept by columns: `matrix[j][i]` is what value `j` does to value `i`.
+/// A matrix that acts on nodal values, stored by columns: `matrix[j][i]` is the effect of value `j` on value `i`.
 pub(crate) type Matrix = [[f64; Q]; Q];
 
 /// Constant matrices of the basis, computed once.
@@ -148,8 +148,8 @@ pub(crate) fn slopes(start: f64, nodal: &Nodal, h: f64) -> Nodal {
     std::array::from_fn(|i| (basis.slope_from_start[i] * start + from_nodes[i]) / h)
 }
 
-/// What a polynomial may be missing: its next two coefficients, if they fall as the last two do against the two before.
-/// Pairs, because a single coefficient vanishes by accident.
+/// Truncation estimate of a polynomial: its next two coefficients, extrapolated from the last two and the two before. Pairs are
+/// used because a single coefficient may vanish by accident.
 pub(crate) fn truncation(coefficients: &Nodal) -> f64 {
     let last = coefficients[Q - 1].abs().max(coefficients[Q - 2].abs());
     let before = coefficients[Q - 3].abs().max(coefficients[Q - 4].abs());

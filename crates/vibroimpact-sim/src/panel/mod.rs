@@ -1,4 +1,4 @@
-//! One panel of time: the force on it as a polynomial, and what a vibrating mode does meanwhile, exactly.
+//! One panel of time: the force on it as a polynomial, and the exact motion of a vibrating mode.
 
 pub(crate) mod by_damping;
 pub(crate) mod dyadic;

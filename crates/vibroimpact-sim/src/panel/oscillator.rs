@@ -8,7 +8,7 @@ use num_complex::Complex64;
 pub struct BodyMode {
     /// Undamped circular frequency `omega_k` (rad/s); 0 for a rigid-body mode.
     pub omega_rad_s: f64,
-    /// Damping ratio `zeta_k`; the modal equation carries `2 zeta_k omega_k`. A rigid-body mode has none.
+    /// Damping ratio `zeta_k`; the modal equation contains `2 zeta_k omega_k`. A rigid-body mode has none.
     pub damping_ratio: f64,
 }
 
@@ -19,8 +19,8 @@ impl BodyMode {
     }
 }
 
-/// Free motion over a time: `(a, a')` at the end are `p11 a + p12 a'` and `p21 a + p22 a'`. Of `p11` what it is less
-/// than 1 is kept, which over a short time is small: a body in contact moves little, however far from its place.
+/// Free motion over a time: `(a, a')` at the end are `p11 a + p12 a'` and `p21 a + p22 a'`. The difference `p11 - 1` is stored,
+/// which is small over a short time: a body in contact moves little, whatever its displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Propagator {
     pub p11_less_1: f64,

@@ -2,8 +2,8 @@
 
 use super::legendre::{BASIS, Nodal, Q, evaluate, evaluate_at};
 
-/// The largest value of a quantity over the steps of a contact: the step with the largest nodal value is kept, and its
-/// polynomial searched once the contact is over.
+/// The largest value of a quantity over the steps of a contact. The step with the largest nodal value is stored, and its
+/// polynomial is searched when the contact has ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Peak {
     largest: f64,

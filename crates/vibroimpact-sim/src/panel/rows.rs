@@ -20,7 +20,7 @@ impl<const R: usize> Rows<R> {
         }
     }
 
-    /// From the value `first` of a row on, so many.
+    /// A part of a row from the value `first` on.
     #[inline(always)]
     fn row(&self, row: usize, first: usize, count: usize) -> &[f64] {
         &self.values[row * self.length + first..][..count]
@@ -31,7 +31,7 @@ impl<const R: usize> Rows<R> {
 macro_rules! parts {
     ($count:literal: $($row:literal)*) => {
         impl Rows<$count> {
-            /// From the value `first` of all rows on, so many.
+            /// A part of all rows from the value `first` on.
             #[inline(always)]
             pub fn part(&self, first: usize, count: usize) -> [&[f64]; $count] {
                 [$(self.row($row, first, count)),*]

@@ -1,6 +1,6 @@
-//! Loops over the modes, on the widest vector units that the machine has.
+//! Loops over the modes, with the widest vector instructions of the machine.
 //!
-//! A sum is taken in [`LANES`] partial sums whatever the machine, so that all give the same bits.
+//! A sum consists of [`LANES`] partial sums on every machine, so that all results have the same bits.
 
 use pulp::Arch;
 use std::sync::LazyLock;
@@ -16,7 +16,7 @@ pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     ARCH.dispatch(work)
 }
 
-/// The sum that the partial sums make up.
+/// The total of the partial sums.
 #[inline(always)]
 pub(crate) fn sum_of_lanes(lanes: [f64; LANES]) -> f64 {
     (lanes[0] + lanes[2]) + (lanes[1] + lanes[3])

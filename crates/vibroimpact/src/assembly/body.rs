@@ -90,12 +90,12 @@ pub struct Start {
     /// Their rates (m kg^1/2 / s); those of the rest are 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rate_m_kg0_5_s: Vec<f64>,
-    /// Modes given by how they move at a location, which is named in each.
+    /// Modes whose motion is given at a location, which each entry names.
     #[serde(default, deserialize_with = "crate::scene::json::objects", skip_serializing_if = "Vec::is_empty")]
     pub moving_modes: Vec<MovingMode>,
 }
 
-/// What stands beside the fields of the structure.
+/// Fields of a body in addition to those of the structure.
 #[derive(Deserialize)]
 struct Beside {
     modes: Option<usize>,
@@ -132,7 +132,7 @@ impl Body {
         }
     }
 
-    /// Puts the numbers of a table of modes in the place of its name; `folder` is that of the scene.
+    /// Replaces the name of a table of modes by its numbers; `folder` is that of the scene.
     pub(super) fn read_table(&mut self, folder: &Path) -> Result<(), SceneError> {
         if let Body::Elastic(body) = self
             && let Elastics::Structure(Structure::ModesFile(named)) = &body.structure

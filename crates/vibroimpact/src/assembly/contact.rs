@@ -106,7 +106,7 @@ impl Side {
     }
 }
 
-/// What stands beside the law.
+/// Fields in addition to those of the law.
 #[derive(Deserialize)]
 struct Beside {
     name: String,
@@ -174,7 +174,7 @@ impl Contact {
         self.law.law(&striker).map_err(|fault| self.own(fault))
     }
 
-    /// What a restitution or materials refer to: the field here, and the value.
+    /// A quantity to which a restitution or materials refer: its field here, and the value.
     fn references(&self) -> [(&'static str, Option<f64>); 3] {
         [
             ("reduced_mass_kg", self.reduced_mass_kg),
@@ -183,7 +183,7 @@ impl Contact {
         ]
     }
 
-    /// A fault of the law under the names that a contact has here.
+    /// An error of the law, with the field names of a contact here.
     fn own(&self, fault: InvalidInput) -> InvalidInput {
         let fault = fault.without("contact").without("striker");
         let place = ["mass_kg", "radius_m", "speed_m_s"].iter().position(|name| fault.field == *name);

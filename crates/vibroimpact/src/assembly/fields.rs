@@ -1,8 +1,8 @@
-//! What each field of a scene of bodies may hold, where a scene of one impact has no such field.
+//! Allowed values of the fields that only scenes of bodies have.
 
 use crate::scene::ranges::{NOT_NEGATIVE, POSITIVE};
 
-/// Field and what it may hold.
+/// A field and its allowed values.
 pub(crate) const FIELDS: &[(&str, &str)] = &[
     ("bodies", "an object with one object for each named body, which has the field kind"),
     ("contacts", "a list of contacts, each an object with name, between, gap_m, and a law with its parameters"),

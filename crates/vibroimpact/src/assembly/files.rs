@@ -1,4 +1,4 @@
-//! The files of a run: intervals as they are found, histories, sections, pictures, report, the result as JSON.
+//! The files of a run: intervals, which are written as they are found, histories, sections, figures, report, and result as JSON.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -28,7 +28,7 @@ const INTERVALS: [(&str, Kind); 9] = [
     ("separation_speed_m_s", Kind::Number),
 ];
 
-/// The files that hold all intervals, while a run is under way. They appear when it is over.
+/// The files with all intervals during a run. They appear under their names when the run has ended.
 pub struct IntervalFiles {
     folder: PathBuf,
     aside: TempDir,
@@ -96,7 +96,7 @@ impl IntervalFiles {
         Ok(self.parquet.add(cells.iter().map(String::as_str), &path)?)
     }
 
-    /// Ends the files and puts them in their places.
+    /// Completes the files and moves them to their names.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -132,7 +132,7 @@ pub fn history(names: &[String], rows: &[Row]) -> Table {
 /// `report.html`.
 ///
 /// # Errors
-/// None that a run could cause; those of the writers are passed on.
+/// Errors of the writers, which a run cannot cause.
 pub fn files(
     title: &str,
     scene: &AssemblyScene,

@@ -69,7 +69,7 @@ pub struct GroundMotion {
     pub file: Option<String>,
 }
 
-/// One way to say how something runs in time.
+/// One way to state a function of time.
 struct Course<'a> {
     amplitude: (&'static str, Option<f64>),
     frequency_hz: Option<f64>,
@@ -77,7 +77,7 @@ struct Course<'a> {
     times_s: &'a [f64],
     values: (&'static str, &'a [f64]),
     file: Option<&'a str>,
-    /// Whether a value without a frequency is one, which is constant.
+    /// Whether a value without a frequency is allowed, which is then constant.
     constant: bool,
 }
 
@@ -93,7 +93,7 @@ impl Course<'_> {
         for (field, value) in [(name, amplitude), ("frequency_hz", self.frequency_hz), ("phase_deg", self.phase_deg)] {
             let Some(value) = value else { continue };
             if sampled {
-                let allowed = format!("left out beside times_s and {list}");
+                let allowed = format!("left out in the presence of times_s and {list}");
                 return Err(InvalidInput::new(field, number(value), allowed));
             }
             require_finite(field, value)?;
@@ -144,7 +144,7 @@ impl Course<'_> {
     }
 }
 
-/// Accepts a number that the solver can work with.
+/// Checks that a number is in the range of the solver.
 pub(super) fn require_finite(field: impl Into<invalid_input::Path>, value: f64) -> Result<(), InvalidInput> {
     const LARGEST: f64 = 1e30;
     if value.abs() <= LARGEST {
@@ -155,7 +155,7 @@ pub(super) fn require_finite(field: impl Into<invalid_input::Path>, value: f64) 
 }
 
 impl Load {
-    /// Where it acts.
+    /// The point of action.
     pub(super) fn point(&self) -> Point {
         Point { body: self.body.clone(), location_m: self.location_m, location: self.location.clone() }
     }
@@ -198,7 +198,7 @@ impl GroundMotion {
         };
         match (self.displacement_m, self.acceleration_m_s2) {
             (Some(_), Some(acceleration)) => {
-                let allowed = "left out beside displacement_m";
+                let allowed = "left out in the presence of displacement_m";
                 Err(InvalidInput::new("acceleration_m_s2", number(acceleration), allowed))
             }
             (Some(_), None) => match course(("displacement_m", self.displacement_m)).to_force()? {
@@ -224,11 +224,11 @@ impl GroundMotion {
 
 fn refuse_lists(lists: &[(&str, &Vec<f64>)]) -> Result<(), InvalidInput> {
     lists.iter().find(|(_, list)| !list.is_empty()).map_or(Ok(()), |(field, list)| {
-        Err(InvalidInput::new(*field, format!("{} values", list.len()), "left out beside file"))
+        Err(InvalidInput::new(*field, format!("{} values", list.len()), "left out in the presence of file"))
     })
 }
 
-/// The two columns of a table, from a scene that stands in `folder`.
+/// The two columns of a table, for a scene in `folder`.
 fn read_history(folder: &Path, file: &str, column: &str) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
     let needed = format!("a table of comma-separated values whose line of names holds time_s and {column}");
     let bytes = read_bytes(&folder.join(table_path("file", file)?))?;

@@ -6,15 +6,15 @@
 //! | field | meaning |
 //! |---|---|
 //! | `bodies` | the bodies by their names: [`Body`] |
-//! | `contacts` | where they may touch each other or the ground: [`Contact`] |
+//! | `contacts` | the points at which they may touch each other or the ground: [`Contact`] |
 //! | `gravity_m_s2` | gravity along `-x` on every body; default 0 |
 //! | `loads` | forces: [`Load`] |
 //! | `ground_motion` | a motion of the ground: [`GroundMotion`] |
 //! | `static_start` | whether elastic modes start at their deflection under the constant loads; default `false` |
 //! | `end_s` | time at which the run ends |
-//! | `tolerance` | accuracy aimed at, of the impulses; default 1e-9 |
+//! | `tolerance` | requested accuracy of the impulses; default 1e-9 |
 //!
-//! Bodies start undeformed and at rest unless they say otherwise.
+//! Bodies start undeformed and at rest unless the scene states another start.
 
 mod body;
 mod contact;
@@ -65,7 +65,7 @@ use crate::scene::{
     read_tree, toml, versioned_tree,
 };
 
-/// What a scene file holds: one impact, or bodies, contacts and loads.
+/// A scene file: one impact, or bodies, contacts and loads.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnyScene {
     /// A scene with a structure and a striker.
@@ -80,7 +80,7 @@ impl AnyScene {
     /// # Errors
     /// As [`Scene::from_value`] and [`AssemblyScene::from_value`].
     pub fn from_value(value: &Value) -> Result<AnyScene, InvalidInput> {
-        // contacts without a structure want bodies, of which the fault then tells
+        // a scene with contacts but without a structure is missing its bodies, which the error then names
         let of_bodies =
             value.get("bodies").is_some() || value.get("contacts").is_some() && value.get("structure").is_none();
         Ok(match of_bodies {
@@ -108,7 +108,7 @@ impl AnyScene {
         Ok(AnyScene::from_value(&json::parse(text, A_SCENE)?)?)
     }
 
-    /// Puts the numbers of tables in the place of their names; `folder` is that of the scene.
+    /// Replaces the names of tables by their numbers; `folder` is that of the scene.
     ///
     /// # Errors
     /// A table that cannot be read or used, with its line.
@@ -195,7 +195,7 @@ impl AssemblyScene {
     /// Reads a scene from a JSON tree.
     ///
     /// # Errors
-    /// As [`AssemblyScene::from_json`], text aside.
+    /// As [`AssemblyScene::from_json`], except for the text.
     pub fn from_value(value: &Value) -> Result<AssemblyScene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
         let value = numbers_of_materials(value)?;
@@ -231,7 +231,7 @@ impl AssemblyScene {
         Ok(scene)
     }
 
-    /// Puts the numbers of tables of modes and of histories in the place of their names; `folder` is that of the scene.
+    /// Replaces the names of tables of modes and of histories by their numbers; `folder` is that of the scene.
     ///
     /// # Errors
     /// A table that cannot be read or used, with its line.
@@ -253,7 +253,7 @@ impl AssemblyScene {
         format!("{:#}", versioned_tree(self))
     }
 
-    /// The scene as TOML text, likewise.
+    /// The scene as TOML text, in the same form.
     ///
     /// # Errors
     /// A whole number that TOML cannot hold, which is never one that a scene may have.
@@ -262,8 +262,8 @@ impl AssemblyScene {
     }
 }
 
-/// Puts the numbers of tables into the tree of a scene of bodies that stands in `folder`. The tree need not be a whole
-/// scene; objects that name no table stay as they are.
+/// Inserts the numbers of tables into the tree of a scene of bodies in `folder`. The tree may be incomplete; objects that name no
+/// table are not changed.
 pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), SceneError> {
     fn replace<T: Serialize>(
         value: &mut Value,
@@ -297,7 +297,7 @@ pub(crate) fn read_tables_into(tree: &mut Value, folder: &Path) -> Result<(), Sc
     })
 }
 
-/// A fault of a field under its object's path; one within the table names the table.
+/// An error of a field with the path of its object; an error within the table names the table.
 fn of_table(fault: SceneError, path: impl Into<invalid_input::Path>) -> SceneError {
     match fault {
         SceneError::Invalid(fault) if !fault.field.has_place() => fault.within(path).into(),

@@ -1,4 +1,4 @@
-//! The picture of a run.
+//! The figure of a run.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -6,14 +6,14 @@ use rustfft::num_complex::Complex;
 use super::{Course, Simulation};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
-/// Contacts that are drawn; more would hide each other.
+/// Largest number of contacts that are drawn; more would overlap.
 const DRAWN: usize = 6;
-/// Intervals beyond which their stripes and peaks are not drawn.
+/// Largest number of intervals whose stripes and peaks are drawn.
 const MOST_SPANS: usize = 400;
-/// Points of an impact map that are drawn.
+/// Largest number of points of an impact map.
 const MOST_MAPPED: usize = 5000;
 
-/// Gaps and forces over time; below, each speed of approach against the one before it (the impact map), the state once in
+/// Gaps and forces over time; below, each speed of approach plotted against the one before it (the impact map), the state once in
 /// each period of the load (the Poincare section), and the spectrum of the displacements.
 pub fn picture(title: &str, found: &Simulation) -> Figure {
     let none = Course::default();
@@ -54,7 +54,7 @@ pub fn picture(title: &str, found: &Simulation) -> Figure {
     figure.row([spectrum(course, names)])
 }
 
-/// Each speed of approach against the one before it.
+/// Each speed of approach plotted against the one before it.
 fn impact_map(found: &Simulation, names: &[String]) -> Panel {
     let axes = Panel::new(Axis::new("speed of approach").unit("m/s"), Axis::new("of the next").unit("m/s"));
     names.iter().enumerate().fold(axes.title("Impact map").height(170.0), |panel, (c, _)| {
@@ -76,8 +76,8 @@ fn section(course: &Course, names: &[String]) -> Panel {
     })
 }
 
-/// Amplitudes of the displacement of each contact's first side (of its second where that is still), over frequency; the
-/// mean is taken out, and a Hann window keeps what does not fit the time in its place.
+/// Amplitudes of the displacement of each contact's first side (or second, if the first does not move) over frequency. The mean is
+/// subtracted, and a Hann window reduces leakage.
 fn spectrum(course: &Course, names: &[String]) -> Panel {
     let rows: Vec<_> = course.even_rows().collect();
     let count = rows.len();

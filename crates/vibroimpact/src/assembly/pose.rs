@@ -1,4 +1,4 @@
-//! From the fields of a scene of bodies to the terms of the solver, and back again in its errors.
+//! Converts a scene of bodies into the input of the solver, and the solver's errors into errors of fields of the scene.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -16,28 +16,28 @@ use crate::scene::fields::NOT_NEGATIVE;
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, Place};
 
-/// An assembly in the terms of [`vibroimpact_sim::assembly`], and the names of its parts.
+/// The input of [`vibroimpact_sim::assembly`], and the names of its parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posed {
-    /// What is to be solved.
+    /// The assembly.
     pub assembly: Assembly<Law>,
-    /// How far and how accurately.
+    /// End and accuracy of the run.
     pub settings: Settings,
     /// Names of the bodies, in the order of the assembly.
     pub bodies: Vec<String>,
-    /// Names of the contacts, likewise; a two-sided contact is two of them.
+    /// Names of the contacts in the order of the assembly; a two-sided contact is two of them.
     pub contacts: Vec<String>,
     /// For each contact of the assembly the number of that of the scene.
     of_scene: Vec<usize>,
-    /// How many loads the scene has; those of gravity and of the ground follow.
+    /// Number of loads in the scene; those of gravity and of the ground follow.
     loads: usize,
 }
 
 impl AssemblyScene {
-    /// The scene in the terms of the solver.
+    /// Converts the scene into the input of the solver.
     ///
     /// # Errors
-    /// A value out of range, a name that names nothing, or fields of which too few or too many are given.
+    /// A value out of range, an unknown name, or too few or too many fields.
     ///
     /// ```
     /// use vibroimpact::assembly::AssemblyScene;
@@ -137,7 +137,7 @@ impl AssemblyScene {
     }
 }
 
-/// A fault of a location or a field of an object under the object's path; that of a body has its own path already.
+/// An error of a location or a field of an object with the object's path; an error of a body has its path already.
 fn beside(fault: InvalidInput, path: impl Into<Path>) -> InvalidInput {
     if fault.field.first() == Some("bodies") { fault } else { fault.within(path) }
 }

@@ -27,7 +27,7 @@ pub fn report(headline: &str, scene: &AssemblyScene, summary: &Summary, figure: 
         rows.push(vec!["touches and releases are certain until".to_owned(), reliable]);
     }
     report.table(&["result", ""], &rows);
-    report.figure("run", figure, "Gaps and forces over time (grey: in contact), and what they come to.")?;
+    report.figure("run", figure, "Gaps and forces over time (grey: in contact), with their statistics.")?;
     report.heading("Contacts");
     report.table(&CONTACT, &contact_rows(summary));
     report.heading("Energy");

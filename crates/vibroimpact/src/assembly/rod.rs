@@ -82,7 +82,7 @@ impl Rod {
         read(value)
     }
 
-    /// The rod in the terms of [`beam_modes`].
+    /// The rod as input of [`beam_modes`].
     ///
     /// # Errors
     /// A segment whose section is not given in exactly one way, or by numbers that are not positive.

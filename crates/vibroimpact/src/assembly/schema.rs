@@ -1,4 +1,4 @@
-//! What the JSON Schema of scenes of bodies says beyond the fields of each type: which fields go with which kind.
+//! The JSON Schema of scenes of bodies beyond the fields of each type: the fields of each kind.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ impl JsonSchema for Body {
         "Body".into()
     }
 
-    /// One form for each kind: the fields of the structure, and those of a body beside them.
+    /// One form for each kind: the fields of the structure, and those of a body.
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let rod = (Rod::json_schema(generator).to_value(), true);
         let forms = Structure::json_schema(generator).to_value();
@@ -51,7 +51,7 @@ fn body(mut form: Value, beside: &Value, computed: bool) -> Value {
     form
 }
 
-/// The ways to say how something runs in time: an amplitude with a frequency, or without one where it may be
+/// The ways to state a function of time: an amplitude with a frequency, or without one where it may be
 /// `constant`; a list of values at times; a table.
 pub(super) fn courses(amplitudes: &[&str], values: &str, constant: bool) -> Value {
     let all = [amplitudes, &["frequency_hz", "phase_deg", "file"]].concat();
@@ -61,7 +61,7 @@ pub(super) fn courses(amplitudes: &[&str], values: &str, constant: bool) -> Valu
     };
     let lists =
         |of_each: &str, number: u64| ["times_s", values].map(|field| (field.to_owned(), json!({ of_each: number })));
-    // without lists; beside what is given, the fields that are free may stand
+    // without lists; in addition to the given fields, the optional ones are allowed
     let way = |given: &[(&str, &str)], free: &[&str]| {
         let required: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
         let mut properties = absent(&[&required, free].concat());

@@ -1,4 +1,4 @@
-//! A body as its points see it: modes and their shapes.
+//! The modes of a body and their shapes at its points.
 
 use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
@@ -10,13 +10,13 @@ use super::rod::Rod;
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
 
-/// A body whose modes have been computed, to be seen from any of its points.
+/// A body whose modes have been computed, for shapes at any of its points.
 pub(super) struct Seen<'a> {
     name: &'a str,
     body: &'a Body,
     known: KnownModes,
     rod: Option<Modes>,
-    /// Where contacts and loads stand on a beam with residual compliance (m), and the remainder modes that they see.
+    /// Locations of contacts and loads on a beam with residual compliance (m), and the remainder modes for these locations.
     places_m: Vec<f64>,
     remainder: Vec<PointsMode>,
     /// The modes, remainder modes last.
@@ -24,8 +24,7 @@ pub(super) struct Seen<'a> {
 }
 
 impl<'a> Seen<'a> {
-    /// The modes of the body with this name, on which contacts and loads stand at `places_m`, as far as they are locations on
-    /// a beam or rod.
+    /// The modes of the body with this name, for contacts and loads at `places_m` if the body is a beam or rod.
     pub fn new(name: &'a str, body: &'a Body, places_m: Vec<f64>) -> Result<Seen<'a>, InvalidInput> {
         let known = KnownModes::default();
         let (remainder, modes) = (Vec::new(), Vec::new());
@@ -53,7 +52,7 @@ impl<'a> Seen<'a> {
                     seen.remainder = seen.remainder_of(body)?;
                 }
                 let listed = modes.iter().map(|mode| (mode.omega_rad_s, mode.damping_ratio));
-                // as that of the last mode kept
+                // as that of the last retained mode
                 let damping = modes.last().map_or(0.0, |mode| mode.damping_ratio);
                 let rest = seen.remainder.iter().map(|mode| (mode.omega_rad_s, damping));
                 let mode = |(omega_rad_s, damping_ratio)| BodyMode { omega_rad_s, damping_ratio };
@@ -63,12 +62,12 @@ impl<'a> Seen<'a> {
         Ok(seen)
     }
 
-    /// A fault of the body under its path.
+    /// An error of the body with its path.
     pub fn of_body(&self, fault: InvalidInput) -> InvalidInput {
         fault.without("structure").within(["bodies", self.name])
     }
 
-    /// Shapes of the modes at a location (kg^-1/2). A fault of the location has the field `location_m` or `location`, any other
+    /// Shapes of the modes at a location (kg^-1/2). An error of the location has the field `location_m` or `location`, any other error
     /// its whole path.
     pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
         let listed = self.modes_at(place)?.into_iter().map(|mode| mode.shape);
@@ -77,10 +76,10 @@ impl<'a> Seen<'a> {
         Ok(listed.chain(rest).collect())
     }
 
-    /// The remainder modes of a beam, which the block form gives for all its contacts and loads together.
+    /// The remainder modes of a beam, computed in block form for all its contacts and loads together.
     fn remainder_of(&self, body: &Elastic) -> Result<Vec<PointsMode>, InvalidInput> {
         let Elastics::Structure(Structure::Beam(beam)) = &body.structure else {
-            let allowed = "false: only beams know what their modes leave out";
+            let allowed = "false: only beams have remainder modes here";
             return Err(self.of_body(InvalidInput::new("residual_compliance", "true", allowed)));
         };
         let kept = body.modes.unwrap_or_default();
@@ -96,7 +95,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// The modes as seen from a location, without remainder modes; errors as in [`Seen::shape`].
+    /// The modes with their shapes at a location, without remainder modes; errors as in [`Seen::shape`].
     pub fn modes_at(&mut self, place: Place) -> Result<Vec<Mode>, InvalidInput> {
         match self.body {
             Body::Mass(mass) => {
@@ -151,7 +150,7 @@ impl<'a> Seen<'a> {
         };
         let values = || format!("{} values", given.len());
         match computed {
-            // the sag of the truncated modes under their weight is far smaller than their response at a point
+            // the deflection of the truncated modes under gravity is far smaller than their response to a force at a point
             Some(mut computed) => {
                 computed.resize(self.modes.len(), 0.0);
                 Ok(computed)
@@ -196,7 +195,7 @@ fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
     rod.to_rod()?.modes(count)
 }
 
-/// A rigid mass within what the solver computes with.
+/// A rigid mass within the range of the solver.
 fn check_mass(mass: &Mass) -> Result<(), InvalidInput> {
     const LARGEST: f64 = 1e30;
     if !(LARGEST.recip()..=LARGEST).contains(&mass.mass_kg) {

@@ -1,4 +1,4 @@
-//! A scene of bodies solved.
+//! Solves a scene of bodies.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,24 +10,23 @@ use super::watch::{Course, Sink, Watch};
 use super::{AssemblyScene, Posed};
 use crate::export::Failure;
 
-/// Most intervals of contact that are kept in memory unless the caller says otherwise, about 80 MB; those beyond are
-/// counted, and go into files.
+/// Default of the largest number of intervals of contact in memory, about 80 MB; further ones are counted and written to files.
 pub const MOST_INTERVALS: usize = 1_000_000;
 
-/// What is wanted of a run.
+/// Options of a run.
 pub struct Wanted<'a> {
     /// Intervals of contact that are kept in memory, the first of all contacts together; the rest are counted.
     pub intervals: usize,
-    /// Whether it is found out until when the times of the events are certain, which takes a second run. It needs all
-    /// intervals in memory.
+    /// Whether to find the time up to which the times of the events are certain. This takes a second run, and needs all intervals in
+    /// memory.
     pub reliability: bool,
     /// Whether samples of the motion are kept, for histories and pictures.
     pub course: bool,
-    /// Takes all intervals as they are found, with the number of their contact.
+    /// Called for every interval when it is found, with the number of its contact.
     pub take: Option<Sink<'a>>,
-    /// Ends the run when it becomes true; what was found is kept.
+    /// Ends the run when it becomes true; the results so far are returned.
     pub stop: &'a AtomicBool,
-    /// Hears from time to time how far the run has come (s).
+    /// Called from time to time with the time that the run has reached (s).
     pub tell: &'a mut dyn FnMut(f64),
 }
 
@@ -41,24 +40,24 @@ impl fmt::Debug for Wanted<'_> {
     }
 }
 
-/// What [`AssemblyScene::simulate`] found.
+/// The result of [`AssemblyScene::simulate`].
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    /// What was solved.
+    /// The solved problem.
     pub posed: Posed,
     /// The result.
     pub run: Run,
-    /// Until when touches and releases are certain (s): a second run with a tolerance 32 times as large finds each of them
-    /// within that tolerance of the time since the start. `None` if it was not found out: it was not wanted, not all
-    /// intervals were kept, or the run was interrupted.
+    /// Time up to which touches and releases are certain (s): up to it a second run with a tolerance 32 times as large finds each of
+    /// them within that tolerance times the time since the start. `None` if it was not requested, if not all intervals were kept, or
+    /// if the run was interrupted.
     pub reliable_until_s: Option<f64>,
     /// Intervals of contact, contact by contact, as many as were requested.
     pub intervals: Vec<Vec<Interval>>,
-    /// How many more there were.
+    /// Number of intervals beyond these.
     pub left_out: Vec<u64>,
     /// The period of the first harmonic load (s), if there is one.
     pub period_s: Option<f64>,
-    /// The motion to which it has settled at the end, as periods of this load.
+    /// The motion to which the run has converged at the end, in periods of this load.
     pub steady: Option<SteadyMotion>,
     /// Samples of the motion, if they were requested.
     pub course: Option<Course>,
@@ -96,7 +95,7 @@ impl AssemblyScene {
     /// Solves the scene and records what is requested.
     ///
     /// # Errors
-    /// As [`AssemblyScene::pose`], or a fault of what takes the intervals.
+    /// As [`AssemblyScene::pose`], and errors of the receiver of the intervals.
     pub fn simulate_with(&self, wanted: Wanted) -> Result<Simulation, Failure> {
         let posed = self.pose()?;
         let period_s = period_s(&posed);

@@ -1,8 +1,8 @@
-//! To which motion a run has settled at its end: after how many periods of the load it repeats itself, and with how many
-//! intervals of contact.
+//! The motion to which a run has converged at its end: the number of periods of the load after which it repeats itself, and the
+//! number of intervals of contact in them.
 //!
 //! With `T` the period of the load, the displacements `u(t)` of both sides of every contact are compared at moments `T/8`
-//! apart. The motion has settled to `n` periods if over the last `n T` they differ from those of the `n T` before by at most
+//! apart. The motion has converged to `n` periods if over the last `n T` they differ from those of the `n T` before by at most
 //! a thousandth of their range.
 
 use std::collections::VecDeque;
@@ -10,13 +10,13 @@ use std::collections::VecDeque;
 use serde::Serialize;
 use vibroimpact_sim::assembly::Motion;
 
-/// Most periods of the load after which a motion is found to repeat itself.
+/// Largest number of periods of the load after which a repetition is detected.
 const MOST_PERIODS: usize = 16;
 /// Moments within a period.
 const MOMENTS: usize = 8;
 /// Moments that are kept: two stretches of the longest motion.
 const KEPT: usize = 2 * MOST_PERIODS * MOMENTS + 1;
-/// Difference that is none, relative to the range of the motion and to the displacements themselves.
+/// Tolerance of differences, relative to the range of the motion and to the displacements themselves.
 const SAME: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
@@ -48,14 +48,14 @@ impl Moments {
         Moments { step_s: period_s / MOMENTS as f64, next: 0, kept: VecDeque::new(), ended: 0 }
     }
 
-    /// Takes note of an interval that has ended.
+    /// Records an interval that has ended.
     pub fn end_interval(&mut self) {
         self.ended += 1;
     }
 
     pub fn add(&mut self, panel: &dyn Motion, contacts: usize) {
         let time_s = |number: u64| number as f64 * self.step_s;
-        // a panel of many periods leaves no more behind than what is kept
+        // of a panel with many periods only the stored moments are needed
         let last = (panel.end_s() / self.step_s) as u64;
         self.next = self.next.max(last.saturating_sub(KEPT as u64));
         while time_s(self.next) < panel.end_s() {

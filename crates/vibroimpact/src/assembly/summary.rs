@@ -1,4 +1,4 @@
-//! The result of a scene of bodies as programs read it.
+//! The result of a scene of bodies for programs.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use super::{AssemblyScene, Simulation};
 use crate::export::{self, Failure};
 use crate::scene::versioned_tree;
 
-/// What `simulate --json` prints for a scene of bodies: one object, every name with its unit.
+/// The object that `simulate --json` prints for a scene of bodies; every name contains its unit.
 #[derive(Serialize)]
 struct ResultFile<'a> {
     /// Version of the program.
@@ -22,36 +22,36 @@ struct ResultFile<'a> {
     summary: &'a Summary,
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// `end`, `rest` or `stopped`.
     pub outcome: &'static str,
-    /// Why it stopped; null if it did not.
+    /// The reason why it stopped; null if it did not.
     pub reason: Option<&'static str>,
-    /// When it ended (s).
+    /// The time at which it ended (s).
     pub end_s: f64,
-    /// Until when touches and releases are certain (s), from a second run with a tolerance 32 times as large; from then on
-    /// only statistics mean anything. Null if it was not found out.
+    /// Time up to which touches and releases are certain (s), from a second run with a tolerance 32 times as large; after it only
+    /// statistics are meaningful. Null if it was not computed.
     pub reliable_until_s: Option<f64>,
-    /// The periodic motion under a harmonic load to which it has settled at the end; null if there is none.
+    /// The periodic motion under a harmonic load to which it has converged at the end; null if there is none.
     pub steady_motion: Option<SteadyMotion>,
     /// The contacts by their names.
     pub contacts: BTreeMap<String, Statistics>,
     /// Either side of each contact at the end.
     pub points: Vec<Point>,
-    /// Where the energy went; null if it was not followed.
+    /// The energy balance; null if it was not computed.
     pub energy: Option<Energy>,
-    /// What the computation cost.
+    /// The cost of the computation.
     pub counts: Cost,
 }
 
-/// What a contact did.
+/// The results of a contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statistics {
     /// Intervals of contact in order of time.
     pub intervals: Vec<Interval>,
-    /// How many more there were than are listed.
+    /// Number of intervals that are not listed.
     pub intervals_left_out: u64,
     /// Number of intervals.
     pub count: u64,
@@ -67,12 +67,12 @@ pub struct Statistics {
     pub contact_work_rate_w: f64,
 }
 
-/// One interval of contact, from touch to release in the law's own sense.
+/// One interval of contact, from touch to release as defined by the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
     /// First touch (s).
     pub start_s: f64,
-    /// Release (s); null if the contact was under way at the end.
+    /// Release (s); null if the contact was closed at the end.
     pub end_s: Option<f64>,
     /// Impulse (N s).
     pub impulse_n_s: f64,
@@ -82,7 +82,7 @@ pub struct Interval {
     pub peak_compression_m: f64,
     /// Rate of compression at the touch (m/s).
     pub approach_speed_m_s: f64,
-    /// Rate of opening at the release (m/s); null if the contact was under way at the end.
+    /// Rate of opening at the release (m/s); null if the contact was closed at the end.
     pub separation_speed_m_s: Option<f64>,
 }
 
@@ -99,8 +99,8 @@ pub struct Point {
     pub velocity_m_s: f64,
 }
 
-/// Where the energy went (J). At the start plus `load_work_j` is at the end plus the losses plus the residual, which is a
-/// measure of accuracy.
+/// The energy balance (J). The energy at the start plus `load_work_j` equals the energy at the end plus the losses plus the
+/// residual, which is a measure of accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Energy {
     /// Kinetic and elastic energy of each body.
@@ -109,11 +109,11 @@ pub struct Energy {
     pub contacts_stored_j: f64,
     /// Work of the loads.
     pub load_work_j: f64,
-    /// Lost in modal damping.
+    /// Dissipated by modal damping.
     pub modal_damping_j: f64,
-    /// Lost in the contacts.
+    /// Dissipated in the contacts.
     pub contact_loss_j: f64,
-    /// Not accounted for.
+    /// The residual of the balance.
     pub residual_j: f64,
 }
 
@@ -131,7 +131,7 @@ pub struct BodyEnergy {
 pub struct Cost {
     /// Steps accepted with a closed contact.
     pub contact_steps: u64,
-    /// Steps tried and taken back.
+    /// Rejected steps.
     pub rejected_steps: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
@@ -158,16 +158,16 @@ impl Interval {
 }
 
 impl Summary {
-    /// What `simulate --json` prints, and `result.json` holds: the result with the scene that it belongs to.
+    /// The text of `simulate --json` and of `result.json`: the result with its scene.
     ///
     /// # Errors
-    /// None that a run could cause; those of the writer are passed on.
+    /// Errors of the writer, which a run cannot cause.
     pub fn json(&self, scene: &AssemblyScene) -> Result<String, Failure> {
         let vibroimpact = env!("CARGO_PKG_VERSION");
         export::json(&ResultFile { vibroimpact, scene: versioned_tree(scene), summary: self })
     }
 
-    /// The same with at most so many intervals listed, those of all contacts together that begin first.
+    /// The same with at most this many intervals of all contacts together, the first ones.
     pub fn listing(mut self, most: usize) -> Summary {
         let mut starts: Vec<f64> =
             self.contacts.values().flat_map(|contact| contact.intervals.iter().map(|one| one.start_s)).collect();
@@ -183,7 +183,7 @@ impl Summary {
         self
     }
 
-    /// Gathers a result for printing.
+    /// Collects a result for printing.
     pub fn new(found: &Simulation) -> Summary {
         let run = &found.run;
         let end_s = run.end_s;

@@ -1,4 +1,4 @@
-//! The result of a scene of bodies as a person reads it in a terminal.
+//! The result of a scene of bodies as text for the terminal.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
 use crate::text::{counted, quantity};
 
-/// Intervals of contact that are listed one by one; the rest are counted.
+/// Largest number of intervals of contact that are listed; the others are counted.
 const LISTED: usize = 20;
 
 /// A scene in a line.
@@ -32,27 +32,27 @@ pub fn headline(scene: &AssemblyScene, posed: &Posed) -> String {
     line
 }
 
-/// How the run ended, in words.
+/// The outcome of the run in words.
 pub(super) fn outcome(summary: &Summary) -> String {
     let end = quantity(summary.end_s, "s");
     match (summary.outcome, summary.reason) {
-        ("end", _) => format!("end: the time asked for was reached, {end}"),
-        ("rest", _) => format!("rest at {end}: nothing can open or close a contact any more"),
+        ("end", _) => format!("end: the requested time was reached, {end}"),
+        ("rest", _) => format!("rest at {end}: no contact can open or close any more"),
         (_, Some(reason)) => format!("stopped at {end}: {reason}"),
         (other, None) => format!("{other} at {end}"),
     }
 }
 
-/// Until when the times of the events are certain, in words.
+/// The time up to which the times of the events are certain, in words.
 pub(super) fn reliability(summary: &Summary) -> Option<String> {
     let until = summary.reliable_until_s?;
     Some(match until >= summary.end_s {
         true => format!("{}, the whole run", quantity(until, "s")),
-        false => format!("{}; from there on only statistics mean anything", quantity(until, "s")),
+        false => format!("{}; after that only statistics are meaningful", quantity(until, "s")),
     })
 }
 
-/// The names of the columns of an interval, and an interval in them.
+/// The column names of an interval, and the row of an interval.
 pub(super) const INTERVAL: [&str; 7] = ["contact", "from", "to", "impulse", "largest force", "approach", "separation"];
 
 pub(super) fn interval_cells(name: &str, interval: &Interval) -> [String; 7] {
@@ -122,7 +122,7 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
 pub fn result(summary: &Summary) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
-        // a String does not fail to be written
+        // writing to a String cannot fail
         let _ = writeln!(text, "  {name:<22}{value}");
     };
     line("outcome", outcome(summary));
@@ -153,7 +153,7 @@ pub fn result(summary: &Summary) -> String {
     text
 }
 
-/// A table whose first column stands on the left and whose others stand on the right.
+/// A table whose first column is left-aligned and whose other columns are right-aligned.
 fn columns(headers: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let headers = headers.iter().map(|name| (*name).to_owned()).collect();
     let rows: Vec<Vec<String>> = std::iter::once(headers).chain(rows).collect();

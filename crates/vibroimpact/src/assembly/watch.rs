@@ -1,4 +1,4 @@
-//! What is recorded of a run: intervals of contact, samples of the motion, a Poincare section.
+//! Records of a run: intervals of contact, samples of the motion, a Poincare section.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,14 +9,14 @@ use crate::export::Failure;
 
 /// Equal intervals of a history.
 pub(super) const HISTORY_INTERVALS: usize = 4096;
-/// Samples in contact on top of these, as long as there are no more than this many.
+/// Largest number of additional samples in contact.
 const MOST_IN_CONTACT: usize = 40_000;
 /// Samples within a stretch of contact.
 const WITHIN: usize = 4;
 /// Most points of a section.
 const MOST_SECTIONS: usize = 100_000;
 
-/// Takes the intervals one after the other.
+/// Receives the intervals one after the other.
 pub type Sink<'a> = &'a mut dyn FnMut(usize, &Interval) -> Result<(), Failure>;
 
 /// All contacts at one moment.
@@ -35,7 +35,7 @@ pub struct Course {
     pub rows: Vec<Row>,
     /// For each row whether it is one of those at equal distances.
     pub even: Vec<bool>,
-    /// Distance of these (s).
+    /// Interval between these (s).
     pub step_s: f64,
     /// Once in each period of the loads, where they have one.
     pub section: Vec<Row>,
@@ -82,21 +82,21 @@ fn multiples(start: f64, end: f64, step: f64) -> impl Iterator<Item = f64> {
     (first..).map(move |i| i as f64 * step).take_while(move |time| *time < end)
 }
 
-/// Follows a run.
+/// Observes a run.
 pub(super) struct Watch<'a> {
-    /// Intervals that are kept, contact by contact.
+    /// Stored intervals, contact by contact.
     pub intervals: Vec<Vec<Interval>>,
     /// How many more there were.
     pub left_out: Vec<u64>,
-    /// How many may still be kept.
+    /// Number of intervals that may still be stored.
     room: usize,
-    /// Where all intervals go.
+    /// Receiver of all intervals.
     sink: Option<Sink<'a>>,
-    /// Why they could not go there.
+    /// Error of the receiver.
     pub fault: Option<Failure>,
     /// Samples of the motion, if they are requested.
     pub course: Option<Course>,
-    /// The end of the motion, where it has a period.
+    /// The end of the motion, if the load has a period.
     pub moments: Option<Moments>,
     stop: &'a AtomicBool,
     tell: &'a mut dyn FnMut(f64),

@@ -59,9 +59,9 @@ struct Progress {
     bar: Option<ProgressBar>,
 }
 
-/// Time before the first line where there is no terminal.
+/// Time before the first line if there is no terminal.
 const FIRST: Duration = Duration::from_secs(1);
-/// Time between two lines there.
+/// Time between two lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(30);
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;

@@ -1,4 +1,4 @@
-//! The commands `plan` and `compare`: which model, and why.
+//! The commands `plan` and `compare`, which show the choice of the model and all models.
 
 use clap::Args;
 use vibroimpact::export::{self, Failure};
@@ -50,13 +50,13 @@ pub struct CompareArguments {
     picture: Picture,
 }
 
-/// Carries `plan` out and returns what is to be printed.
+/// Runs `plan` and returns the text to print.
 pub fn plan(PlanArguments { scene, json }: PlanArguments) -> Result<String, Failure> {
     let plan = scene.impact()?.plan()?;
     if json { export::json(&plan) } else { Ok(model::plan_text(&plan)) }
 }
 
-/// Carries `compare` out and returns what is to be printed.
+/// Runs `compare` and returns the text to print.
 pub fn compare(CompareArguments { scene, json, picture }: CompareArguments) -> Result<String, Failure> {
     let scene = scene.impact()?;
     picture.require_room()?;

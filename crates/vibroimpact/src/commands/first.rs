@@ -1,4 +1,4 @@
-//! The first steps of a new user: `demo` solves a scene that the program brings along, `init` writes one to start from.
+//! The first steps of a new user: `demo` solves a built-in scene, `init` writes one to start from.
 
 use std::path::{Path, PathBuf};
 
@@ -12,20 +12,19 @@ use super::simulate;
 use super::source::Changes;
 
 pub const DEMO_EXAMPLES: &str = "Examples:
-  vibroimpact demo                               the impact, to read
-  vibroimpact demo --plot demo.svg               and as a picture
-  vibroimpact demo --animate demo.svg            beam and ball moving, in slow motion, in a browser
-  vibroimpact demo --report demo.html            and as a page with pictures and tables
-  vibroimpact demo --set location_m=0.5          the same at another location
-  vibroimpact init                               write this scene into a file, to change it
+  vibroimpact demo                               prints a summary of the impact
+  vibroimpact demo --plot demo.svg               also draws a picture
+  vibroimpact demo --animate demo.svg            also writes an animation of beam and ball, for a browser
+  vibroimpact demo --report demo.html            also writes a page with pictures and tables
+  vibroimpact demo --set location_m=0.5          the same impact at another location
+  vibroimpact init                               writes this scene into a file that you can change
 
-The scene is a steel ball of 40 mm that strikes a steel bar on two supports at 1 m/s. Nothing is written unless a file
-is asked for.";
+A steel ball of 40 mm strikes a steel bar on two supports at 1 m/s. No file is written unless an option names one.";
 
 pub const INIT_EXAMPLES: &str = "Examples:
   vibroimpact init                               a ball on a beam, into impact.toml
   vibroimpact init --kind plate pane.toml        a ball on a plate, into pane.toml
-  vibroimpact init - | vibroimpact simulate -    to the standard output, and solved at once
+  vibroimpact init - | vibroimpact simulate -    writes to the standard output, and solves the scene at once
 
 The file is complete, and each of its fields is explained in it. Change a line, and solve it again.";
 
@@ -84,7 +83,7 @@ fn toml_file(name: &str) -> Result<PathBuf, String> {
     if is_toml || name == "-" { Ok(path) } else { Err("allowed is a file name that ends in .toml, or -".to_owned()) }
 }
 
-/// Carries `demo` out and returns what is to be printed.
+/// Runs `demo` and returns the text to print.
 pub fn demo(DemoArguments { changes, extent, products }: DemoArguments) -> Result<String, Failure> {
     products.require_room()?;
     extent.require_room(&products)?;
@@ -101,14 +100,14 @@ const NEXT: &str = "
     vibroimpact init                           writes the scene, with comments, to change it
 ";
 
-/// Carries `init` out and returns what is to be printed.
+/// Runs `init` and returns the text to print.
 pub fn init(InitArguments { file, kind, force }: InitArguments) -> Result<String, Failure> {
     if file == Path::new("-") {
         return Ok(kind.scene().to_owned());
     }
     require_free("FILE", Some(&file), force)?;
     let name = printable(&file.display().to_string()).replace('\n', " ");
-    // the comments speak of the file by its name
+    // the comments refer to the file by its name
     let scene = kind.scene().replace("impact.toml", &name);
     let told = write_single(&file, scene.as_bytes(), false)?;
     Ok(if told.is_empty() { told } else { format!("{told}  solve it with: vibroimpact simulate {name}\n") })

@@ -1,4 +1,4 @@
-//! A sign of life from work whose progress is not known.
+//! Messages during work whose progress is not known.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -36,7 +36,7 @@ fn watched_from<T>(first: Duration, tell: impl Fn(Duration) + Send, work: impl F
             }
         });
         let result = work();
-        // ends the silence, and with it the thread
+        // ends the wait, and with it the thread
         drop(done);
         result
     })
@@ -54,7 +54,7 @@ mod tests {
         let tell = |elapsed| heard.lock().unwrap().push(elapsed);
         assert_eq!(watched_from(FIRST, tell, || 7), 7);
         assert!(heard.lock().unwrap().is_empty());
-        // the work waits until it has been heard of three times
+        // the work lasts until three messages have been written
         let count = || heard.lock().unwrap().len();
         watched_from(Duration::from_millis(1), tell, || {
             while count() < 3 {

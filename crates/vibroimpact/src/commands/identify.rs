@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Probability with which an interval holds its field
     #[arg(long, default_value_t = 0.95)]
     level: f64,
-    /// Possible experiments (CSV), which are ranked by how much they would tell
+    /// Possible experiments (CSV), which are ranked by the information that they would give
     #[arg(long, value_name = "FILE")]
     candidates: Option<PathBuf>,
     /// Print one JSON object in place of the text
@@ -63,7 +63,7 @@ pub struct Arguments {
     picture: Picture,
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { data, scene, changes, free, starts, level, candidates, json, picture } = arguments;
     picture.require_room()?;

@@ -15,15 +15,16 @@ use super::source::Changes;
 use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
-  vibroimpact infinite-beam --s 15                       a summary to read
+  vibroimpact infinite-beam --s 15                       a summary
   vibroimpact infinite-beam --s 15 --json                one JSON object for programs
   vibroimpact infinite-beam beam.json --out beam/        CSV tables, the picture impact.svg, result.json
   vibroimpact infinite-beam --s 15 --plot s15.png        the picture alone; .svg or .png
   vibroimpact infinite-beam turning-points --count 20    where the n-th separation disappears
 
-S = C^10 k_H^2 m^8 v is the one number that matters; S up to 1.5605 gives a rebound after one contact, larger S one
-or more separations, then sustained contact, and S above 35264 sustained contact at once. S from 1e-12 to 1e8 is
-solved. Within about 1e-6 of the critical S the separations number thousands, and the outcome may be \"stopped\", with how many are certain.
+With Hertz contact the impact depends only on S = C^10 k_H^2 m^8 v. S up to 1.5605 gives a rebound after one contact,
+larger S one or more separations and then sustained contact, and S above 35264 sustained contact at once. S from 1e-12
+to 1e8 can be solved. Within about 1e-6 of the critical S there are thousands of separations. The outcome may then be
+\"stopped\", with the number of separations that are certain.
 A scene has { \"kind\": \"infinite-beam\" } as its structure, with the section of a segment, and any contact.";
 
 /// The impact to solve, and where its result goes.
@@ -58,7 +59,7 @@ enum Study {
     },
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     match arguments {
         Arguments { study: Some(Study::TurningPoints { count, json }), .. } => list(count, json),
@@ -85,8 +86,8 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     }
 }
 
-/// Returns what is to be printed of a scene with an infinite structure, whose tables and pictures go until `until_s`;
-/// `json` is the result for programs.
+/// Returns the text to print for a scene with an infinite structure. Tables and figures extend until `until_s`; `json` is the
+/// result for programs.
 pub fn of_scene(
     scene: &Scene,
     (scale, solution): (&Scale, &Solution),
@@ -101,13 +102,13 @@ pub fn of_scene(
     result(&headline, solution, &posed, json, products)
 }
 
-/// How an impact was posed: in physical units by a scene, or by `S` alone.
+/// Origin of an impact: a scene in physical units, or `S` alone.
 struct Posed<'a> {
     scene: Option<&'a Scene>,
     scale: Option<&'a Scale>,
     /// How far its theory can be trusted.
     trust: &'a [Check],
-    /// How far tables and pictures go (units of `T`), if it is stated.
+    /// End of tables and figures (units of `T`), if it is stated.
     until: Option<f64>,
 }
 

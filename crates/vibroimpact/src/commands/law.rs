@@ -1,4 +1,4 @@
-//! The command `law`: parameters of laws of contact for a wanted restitution.
+//! The command `law`: parameters of contact laws for a given restitution.
 
 use clap::Args;
 use vibroimpact::export::{self, Failure};
@@ -6,22 +6,22 @@ use vibroimpact::law::{Kind, POSITIVE, Request};
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact law --restitution 0.5 --mass-kg 0.1 --speed-m-s 2
-                                     the parameters of every law that can do it
+                                     the parameters of every law that can have this restitution
   vibroimpact law --restitution 0.5 --mass-kg 0.1 --speed-m-s 2 --step-s 0.002
-                                     the same for an engine with this step, and how far it misses
+                                     the same for an engine with this step, and its deviation
   vibroimpact law --restitution 0.5 --mass-kg 0.1 --speed-m-s 2 --step-s 0.002 --law mujoco --json
 
-Most engines and papers take a damping by a formula that is not the law's own restitution. Asked for 0.5 they give 0.550
-(MuJoCo, and spring and dashpot by exp(-pi z/sqrt(1-z^2)), as the force ends before the gap opens), 0.663 (Hunt and
-Crossley), 0.725 (Lankarani and Nikravesh), 0.470 (Flores). Here the damping is that of the exact relation; \"by the paper\"
-is what the formula would have given.
+Most engines and papers compute the damping by an approximate formula. For a wanted restitution of 0.5 the result is 0.550
+(MuJoCo, and spring and dashpot by exp(-pi z/sqrt(1-z^2)), since the force ends before the gap opens), 0.663 (Hunt and
+Crossley), 0.725 (Lankarani and Nikravesh) or 0.470 (Flores). Here the damping follows from the exact relation; \"by the
+paper\" is the restitution that results from the published formula.
 
-Damping goes with the restitution (and the speed of approach), stiffness with how deep the bodies may press. Two bodies
-count by their reduced mass: give the other's as --other-mass-kg.
+The damping depends on the restitution (and on the speed of approach), the stiffness on the largest compression. For two free
+bodies state the mass of the other body as --other-mass-kg.
 
-A fixed step misses: the touch lies anywhere within a step, so that there is a range. \"at the step\" is for semi-implicit
-Euler (MuJoCo and most engines); the parameters \"for the step\" are such that the mean of that range is the wanted one.
-In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers given.";
+With a fixed step the first touch may lie anywhere within a step, so the restitution has a range. \"at the step\" is for
+semi-implicit Euler (MuJoCo and most engines). With the parameters \"for the step\" the mean of that range is the wanted
+restitution. In MuJoCo set solimp to two equal numbers, as in solimp=\"0.95 0.95 0.001\", and solref to the two numbers.";
 
 /// The requested restitution and what it refers to.
 #[derive(Args)]
@@ -58,13 +58,13 @@ fn positive(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("allowed is {POSITIVE}"))
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law, json } = arguments;
     let request = Request { restitution, mass_kg, other_mass_kg, speed_m_s, compression_m, step_s, law };
     let answer = request.answer().map_err(|fault| match fault.field.first() {
         Some("restitution") => fault.under("--restitution"),
-        // a stiffness that nothing can have
+        // an impossible stiffness
         _ => fault,
     })?;
     if json { export::json(&answer) } else { Ok(answer.to_string()) }

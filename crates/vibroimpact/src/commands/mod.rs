@@ -41,7 +41,7 @@ fn headline(scene: &Scene) -> Result<String, Failure> {
     if scene.is_infinite() {
         return Ok(text::infinite_headline(scene, &scene.posed_on_infinite()?.striker));
     }
-    // that of a dropped rod is not the striker's
+    // the speed of a dropped rod is not that of a striker
     let rod = matches!(scene.structure, scene::Structure::DroppedRod(_));
     let mass_kg = if rod { f64::NAN } else { scene.striker.mass_kg()? };
     Ok(text::headline(scene, &Striker { mass_kg, speed_m_s: scene.striker.speed_m_s }))

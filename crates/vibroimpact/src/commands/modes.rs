@@ -33,7 +33,7 @@ pub struct Arguments {
     picture: Picture,
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, count, json, picture }: Arguments) -> Result<String, Failure> {
     let scene = scene.impact()?;
     picture.require_room()?;

@@ -83,7 +83,7 @@ pub struct FitArguments {
     json: bool,
 }
 
-/// Carries `emoc` out and returns what is to be printed.
+/// Runs `emoc` and returns the text to print.
 pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     let EmocArguments { scene, mu0, alpha0, alpha1, emoc_modes, json } = arguments;
     let stated = mu0.is_some() || alpha0.is_some() || alpha1.is_some();
@@ -94,7 +94,7 @@ pub fn emoc(arguments: EmocArguments) -> Result<String, Failure> {
     if json { export::json(&rebound) } else { Ok(text::net_rebound(&rebound, stated)) }
 }
 
-/// Carries `fit` out and returns what is to be printed.
+/// Runs `fit` and returns the text to print.
 pub fn fit(FitArguments { data, scene, changes, emoc_modes, json }: FitArguments) -> Result<String, Failure> {
     let scene = changes.draft(&scene)?.impact()?;
     let observations = scene.observations(&net::read(&data)?, emoc_modes).map_err(of_option(EMOC_MODES))?;

@@ -16,17 +16,17 @@ use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
   vibroimpact orbit rig.json                     the periodic motion to which the start leads
-  vibroimpact orbit rig.json --periods 2         one that repeats itself after two periods of the load
+  vibroimpact orbit rig.json --periods 2         a motion that repeats itself after two periods of the load
   vibroimpact orbit rig.json --over 'loads[0].frequency_hz' --from 20 --to 80 --plot response.svg
                                                  the frequency response, with its unstable parts
   vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --json --csv branch.csv
 
 The scene is one of bodies with a harmonic load. After a transient from its start, Newton's method finds the periodic
-motion; its Floquet multipliers tell whether it is stable. Over a field (a path as in a sweep) the branch is followed
-round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. Which motion a start
-leads to is mapped by a sweep over fields of the start. Ctrl-C ends the search and prints what it has found.
+motion; its Floquet multipliers show whether it is stable. Over a field (a path as in a sweep) the branch is followed
+round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. A sweep over fields of the
+start shows to which motion a start leads. Ctrl-C ends the search and prints the results so far.
 
-The exit code is 0 for every result, 2 for a scene or a field that cannot be used, 1 if writing fails.";
+The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writing fails.";
 
 /// The periodic motion to find, and the file for its branch.
 #[derive(Args)]
@@ -61,7 +61,7 @@ pub struct Arguments {
     picture: Picture,
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     arguments.picture.require_room()?;
     arguments.picture.require_room_for("--csv", arguments.csv.as_deref())?;

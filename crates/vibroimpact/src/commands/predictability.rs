@@ -16,7 +16,7 @@ pub const EXAMPLES: &str = r#"Examples:
 
 The blur is the standard deviation of a field about its value on the map, or about that of the scene: a number in the unit of
 the field (normally distributed), or a share of its value in per cent (its logarithm normally distributed). Every point of the
-map gets the same number of draws. The folder holds a picture of median and spread (report.html), distribution.csv with mean,
+map has the same number of draws. The folder contains a picture of median and spread (report.html), distribution.csv with mean,
 standard deviation and quantiles at every point and their sampling errors, and every draw (results.csv). What is mapped is the
 restitution; of a scene of bodies it is the intervals of contact, the largest force and the contact work rate. Ctrl-C stops;
 the same command continues from there.
@@ -71,7 +71,7 @@ fn blur(text: &str) -> Result<Blur, &'static str> {
     read().ok_or("give FIELD=WIDTH, as in location_m=0.001 or striker.speed_m_s=1%")
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let Arguments { scene, over, blur, draws, seed, run } = arguments;
     compute(&Sweep::predictability(&scene.draft()?, &over, &blur, draws, seed)?, Part::WHOLE, &run)

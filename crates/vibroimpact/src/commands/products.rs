@@ -1,4 +1,4 @@
-//! How the commands give their results: printed, as a folder of files, as a picture, as a report.
+//! Forms of the results of the commands: printed text, a folder of files, a figure, a report.
 
 use std::path::{Path, PathBuf};
 
@@ -43,17 +43,17 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Refuses to replace what is there already, before anything is solved.
+    /// Rejects options that would replace existing files, before anything is solved.
     pub fn require_room(&self) -> Result<(), InvalidInput> {
         require_free("--plot", self.plot.as_deref(), self.force)
     }
 
-    /// Refuses likewise to replace another file, which an option names.
+    /// The same for another file, which an option names.
     pub fn require_room_for(&self, option: &str, path: Option<&Path>) -> Result<(), InvalidInput> {
         require_free(option, path, self.force)
     }
 
-    /// Draws the picture, if one is requested, and returns a line about it for people; empty if the result is JSON.
+    /// Draws the figure, if it is requested, and returns a line about it for the text; empty if the result is JSON.
     pub fn draw(&self, json: bool, figure: impl FnOnce() -> Result<Figure, Failure>) -> Result<String, Failure> {
         match &self.plot {
             Some(path) => write_single(path, &picture(path, &figure()?)?, json),
@@ -67,7 +67,7 @@ fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// Refuses to replace a file that is there already.
+/// Rejects the name of an existing file.
 pub fn require_free(option: &str, path: Option<&Path>, force: bool) -> Result<(), InvalidInput> {
     match path {
         Some(path) if !force && is_there(path) => {
@@ -96,7 +96,7 @@ impl Products {
         self.force
     }
 
-    /// Refuses to replace what is there already, before anything is solved.
+    /// Rejects options that would replace existing files, before anything is solved.
     pub fn require_room(&self) -> Result<(), InvalidInput> {
         if let Some(folder) = &self.out
             && !self.force
@@ -112,8 +112,8 @@ impl Products {
         Ok(())
     }
 
-    /// Writes the requested files and returns lines about them for people; empty if the result is JSON. Every file is
-    /// complete in memory before the first is written.
+    /// Writes the requested files and returns lines about them for the text; empty if the result is JSON. All files are completed in
+    /// memory before the first one is written.
     pub fn write(
         &self,
         figure: impl FnOnce() -> Figure,
@@ -151,7 +151,7 @@ impl Products {
             return Ok(String::new());
         }
         let place = printable(&folder.display().to_string());
-        // the best of what is there to look at
+        // the most readable of the written files
         let first = ["report.html", "run.svg", "impact.svg"].into_iter().find(|name| names.contains(name));
         let look = first.map_or_else(String::new, |first| {
             format!("  look at {} first, with a browser\n", printable(&folder.join(first).display().to_string()))
@@ -164,7 +164,7 @@ fn picture(path: &Path, figure: &Figure) -> Result<Vec<u8>, Failure> {
     Ok(figure.bytes(Format::of(path).ok_or(Format::ENDINGS)?)?)
 }
 
-/// Writes one file and returns a line about it for people; empty if the result is JSON.
+/// Writes one file and returns a line about it for the text; empty if the result is JSON.
 pub fn write_single(path: &Path, content: &[u8], json: bool) -> Result<String, Failure> {
     write_whole(path, content).map_err(|error| format!("cannot write to {}: {error}", path.display()))?;
     let silent = json || is_quiet();

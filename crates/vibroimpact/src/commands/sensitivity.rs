@@ -10,17 +10,17 @@ use super::products::Picture;
 use super::source::SceneSource;
 
 pub const EXAMPLES: &str = "Examples:
-  vibroimpact sensitivity ball.json                 the restitution by every number of the scene
+  vibroimpact sensitivity ball.json                 the restitution with respect to every number of the scene
   vibroimpact sensitivity ball.json --by striker.mass_kg,location_m
-                                                    by these two
+                                                    with respect to these two fields
   vibroimpact sensitivity ball.json --of sub_impacts[0].peak_force_n --plot peak.svg
                                                     the first peak of the force, as a table and as a tornado picture
   vibroimpact sensitivity ball.json --json          all outputs by all fields
   vibroimpact sensitivity rattle.json --by contacts[0].gap_m --of points[0].velocity_m_s
                                                     a scene of bodies: how fast a point is at the end
 
-A derivative is exact: the motion itself is differentiated, and no second impact is compared. It holds for small changes;
-an impact with several contacts may lose or gain one soon after. The result states how near its slowest contact is to that.";
+Derivatives are computed from the motion itself, not from differences of two impacts. They hold for small changes: an impact
+with several contacts may lose or gain one after a larger change. The result states how close the slowest contact is to this.";
 
 /// The derivatives to compute.
 #[derive(Args)]
@@ -40,7 +40,7 @@ pub struct Arguments {
     picture: Picture,
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, by, of, json, picture }: Arguments) -> Result<String, Failure> {
     picture.require_room()?;
     let (printed, figure) = match scene.any()? {

@@ -1,4 +1,4 @@
-//! What shells, readers of manuals and editors need: `completions`, `manual`, `schema`.
+//! The commands `completions`, `manual` and `schema`, for shells, manual pages and editors.
 
 use std::path::PathBuf;
 

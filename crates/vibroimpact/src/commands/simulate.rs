@@ -20,11 +20,11 @@ use super::source::SceneSource;
 use super::voice::signature;
 
 pub const EXAMPLES: &str = "Examples:
-  vibroimpact simulate ball.json                 a summary to read
+  vibroimpact simulate ball.json                 a summary
   vibroimpact simulate ball.json --json          one JSON object for programs
   vibroimpact simulate ball.json --out ball/     CSV histories, the picture impact.svg, result.json
   vibroimpact simulate ball.json --plot ball.png the picture alone; .svg or .png
-  vibroimpact simulate ball.json --animate a.svg a picture that moves: beam and ball in slow motion, in a browser
+  vibroimpact simulate ball.json --animate a.svg an animation of beam and ball in slow motion, for a browser
   vibroimpact simulate ball.json --out ball/ --until 0.5
                                                  histories until half a second after the clock has started
   vibroimpact simulate ball.json --report b.html a page with pictures and tables that needs no other file
@@ -47,7 +47,7 @@ pub struct Arguments {
     products: Products,
 }
 
-/// How much of the motion is shown.
+/// The extent of the motion that is shown.
 #[derive(Args)]
 pub struct Extent {
     /// Most intervals of contact that are listed for a scene of bodies, the first ones; files hold all
@@ -62,12 +62,12 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Refuses to replace a file, before anything is solved.
+    /// Rejects the name of an existing file, before anything is solved.
     pub fn require_room(&self, products: &Products) -> Result<(), InvalidInput> {
         require_free("--animate", self.animate.as_deref(), products.may_replace())
     }
 
-    /// Why a motion cannot be animated.
+    /// The error for a motion that cannot be animated.
     fn require_still(&self) -> Result<(), InvalidInput> {
         match &self.animate {
             None => Ok(()),
@@ -91,7 +91,7 @@ fn seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| "allowed is a time in seconds, a finite number greater than 0".to_owned())
 }
 
-/// Carries the command out and returns what is to be printed.
+/// Runs the command and returns the text to print.
 pub fn run(Arguments { scene, extent, products }: Arguments) -> Result<String, Failure> {
     let scene = scene.any()?;
     products.require_room()?;
@@ -107,7 +107,7 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
     }
     let scene = match (scene, until) {
         (AnyScene::Impact(scene), _) => *scene,
-        // it tells by itself how far it has come
+        // it reports its progress itself
         (AnyScene::Bodies(scene), None) => return bodies::simulate(&scene, intervals, products),
         (AnyScene::Bodies(_), Some(until)) => {
             let allowed = "left out for a scene of bodies, whose field end_s states the end".to_owned();
@@ -198,7 +198,7 @@ fn without_course(
         json.clone()
     } else {
         let trust = trust::trust_text(trust);
-        let hint = "\n  This model gives the net result alone; \"model\": \"modal\" resolves the course in time.\n";
+        let hint = "\n  This model gives the net result alone; \"model\": \"modal\" resolves the motion in time.\n";
         format!("{headline}\n\n{}{trust}{hint}{}", model::net_text(answer), signature())
     };
     let figure = || pictures::of_answer(&headline, answer);

@@ -1,4 +1,4 @@
-//! Where a command takes its scene from: a file or the standard input, and fields that are set on the command line.
+//! The scene of a command: a file or the standard input, and fields that are set on the command line.
 
 use std::io::stdin;
 use std::path::{Path, PathBuf};

@@ -39,7 +39,7 @@ The axes of "vary" form a grid, whose last axis runs fastest; each of its points
 gets results.csv, results.parquet, report.html with pictures, summary.json. The bytes are the same for any number of
 threads, parts and ranks. A scene that cannot be solved is a row with its error.
 
-Ctrl-C stops; the same command goes on from there, also after a crash. A folder that holds anything else is refused.
+Ctrl-C stops; the same command continues from there, also after a crash. A folder with anything else in it is rejected.
 Exit codes: 0 finished, 130 stopped, 2 for input that cannot be used (nothing is computed, or no point could be solved),
 1 if reading or writing fails. With the output redirected, lines on the standard error report the progress."#;
 
@@ -49,10 +49,10 @@ pub const MERGE_EXAMPLES: &str = "Example:
 The folders must be those of all parts of one sweep, each once and finished; the message names those that are missing.
 The results are the same, byte for byte, as those of an undivided sweep.";
 
-/// Exit code of a sweep that was asked to stop.
+/// Exit code of a sweep that was interrupted.
 pub const STOPPED: u8 = 130;
 
-/// Where results go, and how they are computed and printed.
+/// Destination, computation and form of the results.
 #[derive(Args)]
 pub struct Run {
     /// The folder for the results; an unfinished sweep in it is resumed
@@ -99,7 +99,7 @@ fn part(text: &str) -> Result<Part, &'static str> {
     Part::parse(text).ok_or("give K/N with whole numbers, K from 1 to N, N at most 1000000")
 }
 
-/// Carries the command `sweep` out and returns what is to be printed.
+/// Runs the command `sweep` and returns the text to print.
 pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
     let part = arguments.shard.unwrap_or(Part::WHOLE);
     if !arguments.mpi {
@@ -109,7 +109,7 @@ pub fn sweep(arguments: SweepArguments) -> Result<String, Failure> {
     let mut progress = Progress::new(is_quiet());
     match over_ranks(&arguments, part, &stop, &mut progress)? {
         Some(tally) => told(&tally, &arguments.run, &progress),
-        // another rank tells
+        // another rank reports it
         None => Ok(String::new()),
     }
 }
@@ -146,7 +146,7 @@ fn over_ranks(_: &SweepArguments, _: Part, _: &AtomicBool, _: &mut Progress) -> 
     Err(SweepError::Refused(text.to_owned()))
 }
 
-/// Carries the command `merge` out and returns what is to be printed.
+/// Runs the command `merge` and returns the text to print.
 pub fn merge(arguments: MergeArguments) -> Result<String, Failure> {
     let tally = sweep::merge(&arguments.parts, &arguments.out)?;
     solved(&tally, printed(&tally, &arguments.out, arguments.json, None)?)
@@ -160,7 +160,7 @@ pub struct NoPointSolved {
     points: u64,
     /// The error of the first.
     first: String,
-    /// The text that is printed all the same.
+    /// The text that is printed nevertheless.
     pub printed: String,
 }
 
@@ -205,7 +205,7 @@ fn printed(tally: &Tally, out: &Path, as_json: bool, progress: Option<&Progress>
         (Some(_), Some(rate)) => {
             text += &format!("  {:<22}{computed} points in {elapsed_s:.1} s, {rate:.0} a second\n", "computed now");
         }
-        (Some(_), None) => text += &format!("  {:<22}nothing; all was there\n", "computed now"),
+        (Some(_), None) => text += &format!("  {:<22}nothing; all points were done\n", "computed now"),
         (None, _) => {}
     }
     Ok(text)
@@ -243,7 +243,7 @@ impl Progress {
                 self.bar = Some(bar);
             }
             if !self.quiet && status.done > 0 && !status.is_complete() {
-                eprintln!("{} of {} points are there; going on", status.done, status.points);
+                eprintln!("{} of {} points are done; continuing", status.done, status.points);
             }
         }
         self.last = Some(status);

@@ -1,22 +1,22 @@
-//! How much is printed in addition to the result: progress and notes on the standard error, names of written files.
+//! The amount of output in addition to the result: progress and notes on the standard error, names of written files.
 
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use vibroimpact::text::quantity;
 
-/// How much is said.
+/// The amount of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Voice {
-    /// Nothing but results and errors.
+    /// Only results and errors.
     Quiet,
     /// Progress of long work, and files that were written.
     Normal,
-    /// Also what is done, and how long it takes.
+    /// Also each step and its time.
     Verbose,
 }
 
-/// That of this run of the program, and when it began.
+/// The amount of output of this run of the program, and its start.
 static VOICE: OnceLock<(Voice, Instant)> = OnceLock::new();
 
 /// Sets, once and before anything else, how much is printed.
@@ -40,7 +40,7 @@ pub fn note(text: impl FnOnce() -> String) {
     }
 }
 
-/// The program and its time so far, for the end of a result that people read.
+/// The program and its time so far, for the end of a printed result.
 pub fn signature() -> String {
     format!("\n  vibroimpact {}, {}\n", env!("CARGO_PKG_VERSION"), seconds(get().1.elapsed()))
 }

@@ -11,23 +11,23 @@ use crate::plot::Figure;
 use crate::simulate::Resolved;
 use crate::summary::Summary;
 
-/// The files of one impact, ready in memory, so that nothing is written unless all of it can be.
+/// The files of one impact in memory, so that nothing is written unless all files are complete.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Files(pub(crate) Vec<(&'static str, Vec<u8>)>);
 
 impl Files {
-    /// Every name that a file of the result of a scene with bodies may have beside those of [`Files::NAMES`].
+    /// File names of the result of a scene with bodies in addition to [`Files::NAMES`].
     pub const NAMES_OF_BODIES: [&str; 5] =
         ["intervals.csv", "intervals.parquet", "run.svg", "report.html", "section.csv"];
-    /// Every name that a file of the result of one impact may have.
+    /// File names of the result of one impact.
     pub const NAMES: [&str; 6] =
         ["result.json", "history.csv", "modal_energies.csv", "sub_impacts.csv", "contacts.csv", "impact.svg"];
 
     /// `result.json`, `history.csv`, `modal_energies.csv`, `sub_impacts.csv` and `impact.svg`. `result` is the text of
-    /// the first, `until_s` how far the tables go.
+    /// the first, `until_s` the end of the tables.
     ///
     /// # Errors
-    /// None that an impact could cause; those of the writers are passed on.
+    /// Errors of the writers, which an impact cannot cause.
     pub fn new(result: String, resolved: &Resolved, until_s: f64, figure: &Figure) -> Result<Files, Failure> {
         Ok(Files(vec![
             ("result.json", result.into_bytes()),
@@ -46,14 +46,14 @@ impl Files {
     /// `result.json` and `impact.svg`, for a model that does not resolve the motion in time.
     ///
     /// # Errors
-    /// None that an impact could cause.
+    /// Errors of the writers, which an impact cannot cause.
     pub fn of_net(result: String, figure: &Figure) -> Result<Files, Failure> {
         Ok(Files(vec![("result.json", result.into_bytes()), ("impact.svg", figure.svg()?.into_bytes())]))
     }
 
-    /// Writes the files into a folder, which is made if it is missing. Each file appears whole or not at all, and
-    /// none before all have been written beside their places. Files of an earlier result are replaced, and those that
-    /// this result does not have are removed.
+    /// Writes the files into a folder, which is created if it is missing. Each file appears complete or not at all, and none appears
+    /// before all have been written under temporary names. Files of an earlier result are replaced, and those that this result does
+    /// not have are removed.
     ///
     /// # Errors
     /// A folder or file that cannot be written.

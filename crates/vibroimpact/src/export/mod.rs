@@ -11,10 +11,10 @@ use vibroimpact_sim::modal::{History, Sample};
 #[cfg(feature = "files")]
 pub use files::Files;
 
-/// Whatever can go wrong between the numbers and the disk.
+/// Any error of formatting or writing results.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
-/// Equal intervals of a history; every step in contact comes on top.
+/// Equal intervals of a history, in addition to every step in contact.
 const HISTORY_INTERVALS: usize = 1000;
 /// Equal intervals of the modal energies.
 const ENERGY_INTERVALS: usize = 400;
@@ -30,7 +30,7 @@ pub fn json(summary: &impl serde::Serialize) -> Result<String, Failure> {
 /// Columns of numbers, each under its name; all of one length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Names, which carry the units, and values.
+    /// Names, which contain the units, and values.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
@@ -53,7 +53,7 @@ impl Table {
     }
 }
 
-/// Motion and force over time until `until_s`: what `history.csv` holds.
+/// Motion and force over time until `until_s`: the table `history.csv`.
 pub fn history<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     let times = history.times(until_s, HISTORY_INTERVALS);
     let samples: Vec<Sample> = times.into_iter().map(|time_s| history.at(time_s)).collect();
@@ -71,7 +71,7 @@ pub fn history<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     }
 }
 
-/// The energy of each mode over time until `until_s`: what `modal_energies.csv` holds.
+/// The energy of each mode over time until `until_s`: the table `modal_energies.csv`.
 pub fn modal_energies<L: ContactLaw>(history: &History<L>, until_s: f64) -> Table {
     let times: Vec<f64> = (0..=ENERGY_INTERVALS).map(|i| until_s * i as f64 / ENERGY_INTERVALS as f64).collect();
     let rows: Vec<Vec<f64>> = times.iter().map(|time_s| history.modal_energies_j(*time_s)).collect();

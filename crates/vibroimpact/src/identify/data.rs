@@ -22,10 +22,10 @@ const SD: &str = "_sd";
 const NEEDED: &str = "a table of comma-separated values whose line of names holds fields of the scene and what was \
                       measured: quantities, their standard deviations (restitution_sd and so on), force_file";
 
-/// Measured impacts, a row each.
+/// Measured impacts, one per row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Data {
-    /// Fields of the scene that the rows state.
+    /// Fields of the scene whose values the rows state.
     pub fields: Vec<FieldPath>,
     /// The rows.
     pub rows: Vec<Row>,
@@ -40,14 +40,14 @@ pub struct Row {
     pub line: u64,
     /// The values of the fields.
     pub values: Vec<Value>,
-    /// What was measured, with the standard deviation if it is stated.
+    /// The measured values, with their standard deviations if they are stated.
     pub measured: Vec<(Quantity, f64, Option<f64>)>,
     /// The force over time, with the standard deviation of its noise (N) if it is stated.
     pub force: Option<(ForceRecord, Option<f64>)>,
 }
 
 impl Data {
-    /// Reads a table of measurements, and the force histories that it names, which stand in its folder or below.
+    /// Reads a table of measurements, and the force histories that it names, from its folder or below.
     ///
     /// # Errors
     /// A file that cannot be read; a column or a cell that cannot be used, by line and name.
@@ -102,7 +102,7 @@ impl Data {
         Ok(Data { fields: columns.fields(), rows, stated })
     }
 
-    /// Reads a table of experiments that could be made: fields of the scene only.
+    /// Reads a table of candidate experiments, which contains only fields of the scene.
     ///
     /// # Errors
     /// A file that cannot be read; a column of measured values, or a cell that cannot be used.
@@ -113,7 +113,7 @@ impl Data {
     /// Reads such a table from the bytes of a file.
     ///
     /// # Errors
-    /// As [`Data::read_candidates`], the file aside.
+    /// As [`Data::read_candidates`], except for the file.
     pub fn parse_candidates(bytes: &[u8]) -> Result<Data, SceneError> {
         let table = Table::parse(bytes, NEEDED)?;
         let columns = Columns::of(&table)?;
@@ -127,7 +127,7 @@ impl Data {
     }
 }
 
-/// What each column holds, by its place.
+/// The content of each column, by its position.
 struct Columns {
     fields: Vec<(FieldPath, usize)>,
     measured: Vec<(Quantity, usize, Option<usize>)>,

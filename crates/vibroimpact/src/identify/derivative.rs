@@ -1,4 +1,4 @@
-//! Predictions of the impact of a row, and their derivatives in the free fields.
+//! Predictions of the impact of a row, and their derivatives with respect to the free fields.
 
 use fitting::Parameter;
 use vibroimpact_sim::modal::{self as solver, Start};
@@ -13,17 +13,17 @@ use crate::model::Kept;
 /// rounding leaves about 1e-6 of the derivative, and truncation less.
 const STEP: f64 = 1e-4;
 
-/// What a row predicts.
+/// Predictions for a row.
 pub(super) struct Prediction {
     /// The measured quantities in their order, then the samples of the gauge at the offset.
     pub values: Vec<f64>,
     /// Offset of the clock of the gauge (s), if there is one.
     pub offset_s: Option<f64>,
-    /// How many contacts the impact has.
+    /// Number of contacts of the impact.
     pub sub_impacts: usize,
 }
 
-/// The predictions of a row; its gauge is taken at `offset_s`, or where it fits best.
+/// The predictions of a row, with the gauge at the offset `offset_s`, or at the best offset.
 pub(super) fn predict(
     model: &Model,
     row: &Row,
@@ -47,11 +47,11 @@ fn seen(row: &Row, course: &Course, offset_s: Option<f64>) -> Prediction {
 
 /// Derivatives of the predictions of a row.
 pub(super) struct Derivatives {
-    /// In the coordinates of the parameters, of prediction `i` in coordinate `j` at `i * n + j`.
+    /// With respect to the coordinates of the parameters: prediction `i` and coordinate `j` at `i * n + j`.
     pub rows: Vec<f64>,
-    /// In the offset of the gauge's clock, of each of its samples (N/s); empty without a gauge.
+    /// Derivatives of the samples of the gauge with respect to the offset of its clock (N/s); empty without a gauge.
     pub in_offset: Vec<f64>,
-    /// Whether the number of contacts changes within the steps: the impact grazes there, and a derivative need not exist.
+    /// Whether the number of contacts changes within the steps. The impact is then near grazing, and the derivative may not exist.
     pub grazes: bool,
 }
 
@@ -72,7 +72,7 @@ pub(super) fn derivatives(
     differences(model, row, coordinates, parameters, kept)
 }
 
-/// The four neighbours at which the solver wants an impact posed, and the differences take it, in steps.
+/// The four neighbouring points, in steps, for the solver's derivatives and for differences.
 const STEPS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 
 fn shifted(coordinates: &[Parameter], parameters: &[f64], j: usize, steps: f64) -> Vec<f64> {

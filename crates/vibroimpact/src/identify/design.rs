@@ -1,4 +1,4 @@
-//! Which further experiment would tell most.
+//! Ranking of further experiments by their information.
 
 use fitting::{Information, Parameter};
 
@@ -8,9 +8,9 @@ use super::forward::Model;
 use super::quantity::Quantity;
 use super::summary::Candidate;
 
-/// Orders candidates by what they add to the information that is there, the most telling first. `noise` holds the quantities that
-/// each would measure, with their standard deviations; the interval of the search stands for what is known of a parameter without
-/// data. A candidate that cannot be resolved comes last, with a ratio of 1.
+/// Sorts candidates by the information that they add, the most informative first. `noise` contains the quantities that each would
+/// measure, with their standard deviations. The interval of the search represents the prior knowledge of a parameter. A
+/// candidate that cannot be resolved comes last, with a ratio of 1.
 pub(super) fn design(
     model: &Model,
     candidates: &Data,

@@ -1,4 +1,4 @@
-//! Which combinations of parameters the data leave open, in words.
+//! Description of the combinations of parameters that the data do not determine.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use fitting::{Direction, Information};
 use super::summary::Undetermined;
 use crate::text::significant;
 
-/// A direction along which the coordinates, mostly logarithms, have a larger standard deviation is left open.
+/// Largest standard deviation of the coordinates, mostly logarithms, along a direction that counts as determined.
 const OPEN: f64 = 0.5;
-/// A parameter with this share of a direction stands for all of it.
+/// A direction with at least this share of one parameter is described by this parameter alone.
 const ALONE: f64 = 0.95;
-/// Entries of a direction below this are not told.
+/// Entries of a direction below this value are not mentioned.
 const TOLD: f64 = 0.1;
 /// The change of the first parameter in an example.
 const EXAMPLE: f64 = 0.1;
 
-/// The combinations that are left open, the worst first.
+/// The combinations that are not determined, the worst first.
 pub(super) fn undetermined(information: &Information, fields: &[String]) -> Vec<Undetermined> {
     let open = |direction: &Direction| direction.standard_deviation > OPEN;
     let told = |direction: Direction| {
@@ -39,7 +39,7 @@ fn words(direction: &Direction, fields: &[String]) -> String {
     let sd = direction.standard_deviation;
     if lead * lead >= ALONE {
         return if sd.is_infinite() {
-            format!("The data say nothing about {first}.")
+            format!("The data contain no information about {first}.")
         } else {
             format!(
                 "The data do not determine {first}: its standard deviation is a factor of {}.",
@@ -85,6 +85,6 @@ mod tests {
     fn a_parameter_without_effect_is_named() {
         let information = Information::of(&[100.0, 0.0], 2).unwrap();
         let found = undetermined(&information, &["a".to_owned(), "b".to_owned()]);
-        assert_eq!(found[0].text, "The data say nothing about b.");
+        assert_eq!(found[0].text, "The data contain no information about b.");
     }
 }

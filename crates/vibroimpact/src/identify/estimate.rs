@@ -18,10 +18,10 @@ use crate::scene::{InvalidInput, Scene};
 
 /// Most free fields.
 const MOST_FREE: usize = 12;
-/// Ends of the two intervals that differ by more than this share of the half-width are told apart.
+/// The two intervals count as different if their ends differ by more than this share of the half-width.
 const BENT: f64 = 0.1;
 
-/// What is asked.
+/// Options of the identification.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// Probability with which each interval is to hold its parameter.
@@ -29,7 +29,7 @@ pub struct Request {
     /// Number of starting points of the search: the scene's values, then the best points of a quasi-random sequence over the intervals
     /// of the search.
     pub starts: usize,
-    /// Experiments that could be made; [`Data::read_candidates`].
+    /// Candidate experiments; see [`Data::read_candidates`].
     pub candidates: Option<Data>,
 }
 
@@ -43,8 +43,8 @@ impl Default for Request {
 /// Finds the free fields of a scene from measurements.
 ///
 /// # Errors
-/// A field that is not there or no number, too few measurements, a row whose impact cannot be resolved or does not have what was
-/// measured.
+/// A field that does not exist or is not a number, too few measurements, or a row whose impact cannot be resolved or does not have
+/// a measured quantity.
 ///
 /// ```
 /// use vibroimpact::Scene;
@@ -215,7 +215,7 @@ impl Work<'_> {
         self.groups.iter().enumerate().map(of_group).collect()
     }
 
-    /// Measurements beside predictions.
+    /// Measurements and predictions.
     fn beside(&self, rows: &[f64], information: &Information) -> (Vec<Predicted>, Vec<RecordFit>) {
         let n = self.coordinates.len();
         let (mut predictions, mut records) = (Vec::new(), Vec::new());

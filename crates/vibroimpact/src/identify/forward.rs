@@ -22,7 +22,7 @@ use crate::scene::{InvalidInput, Scene};
 
 /// Tolerance of the solver: differences of impacts are to be smooth.
 const TOLERANCE: f64 = 1e-10;
-/// An impact that takes more than this is none that was measured: the search turns back from it.
+/// Largest cost of an impact; the search avoids parameters with more expensive impacts, which were not measured.
 const MOST_SUB_IMPACTS: usize = 1000;
 const MOST_STEPS: u64 = 20_000;
 /// Rows, spread over the table, for which the number of modes is chosen.
@@ -38,17 +38,17 @@ pub(super) struct Model<'a> {
     pub free: &'a [Free],
     tree: Value,
     modes: Option<usize>,
-    /// What impacts leave for the next, for each thread.
+    /// Memory that is reused from impact to impact, for each thread.
     kept: Vec<Mutex<Kept>>,
 }
 
-/// Rows that take less than this together are solved on one thread: to start another costs as much.
+/// Rows that together take less than this are solved on one thread, since starting another costs as much.
 const WORTH_A_THREAD: Duration = Duration::from_millis(4);
 
 /// A resolved impact of a row.
 pub(super) struct Course {
     pub solution: Solution,
-    /// The force that the gauge shows, if one was recorded.
+    /// The output of the force gauge, if one was recorded.
     pub signal: Option<Signal>,
 }
 
@@ -75,7 +75,7 @@ impl<'a> Model<'a> {
                 let tolerance = Some(tolerance(&scene, row));
                 let scene = Scene { model: crate::model::Model::Modal, tolerance, ..scene };
                 let answer = scene.answer_with(&mut kept).map_err(in_line)?;
-                // the theory of bending is chosen with the modes, and kept like them
+                // the theory of bending is chosen together with the modes and then fixed
                 if let (None, Some(beam)) = (most, model.tree.get_mut("structure")) {
                     let answered = scene.as_answered(Some(&answer)).tree();
                     if let Some(theory) = answered.get("structure").and_then(|structure| structure.get("theory")) {
@@ -89,7 +89,7 @@ impl<'a> Model<'a> {
             most = most.max(count);
         }
         model.modes = most;
-        // an impact that cannot be resolved is told before the search begins
+        // an impact that cannot be resolved is reported before the search begins
         for row in &data.rows {
             model.impact(row, start, &mut kept).map_err(|fault| in_line(row, fault))?;
         }
@@ -173,7 +173,7 @@ impl<'a> Model<'a> {
         Ok(Course { solution, signal })
     }
 
-    /// Calls `work` for every row, on all threads; the answers come in the order of the rows.
+    /// Calls `work` for every row, on all threads; the results are in the order of the rows.
     pub fn for_rows<T: Send>(&self, work: impl Fn(usize, &Row, &mut Kept) -> T + Sync) -> Vec<T> {
         let size = self.data.rows.len().div_ceil(self.kept.len().max(1)).max(1);
         let chunks = self.data.rows.chunks(size).zip(&self.kept).enumerate();
@@ -204,7 +204,7 @@ fn tolerance(scene: &Scene, row: &Row) -> f64 {
     if least.is_finite() { (SHARE_OF_NOISE * least).clamp(TIGHTEST, LOOSEST) } else { stated }
 }
 
-/// A fault in the scene of a row, by its line.
+/// An error in the scene of a row, with its line.
 fn in_line(row: &Row, fault: InvalidInput) -> InvalidInput {
     fault.in_line(row.line)
 }

@@ -7,14 +7,14 @@ use serde_json::Value;
 use crate::scene::FieldPath;
 use crate::scene::json::{number, quote};
 
-/// The time constant of the gauge, which is no field of the scene.
+/// The time constant of the gauge, which is not a field of the scene.
 pub(super) const TIME_CONSTANT: &str = "gauge.time_constant_s";
-/// Without stated limits a parameter is sought within this factor of its value in the scene.
+/// Without stated limits the search covers this factor on either side of the value in the scene.
 const FACTOR: f64 = 3.0;
 const WAY: &str =
     "a field of the scene that is a number, alone or as field=low..high with two finite numbers, low < high";
 
-/// A free field, and where it is sought.
+/// A free field, and the interval of its search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Free {
     /// Its path in the scene, or `gauge.time_constant_s`.
@@ -27,7 +27,7 @@ impl Free {
     /// Reads `field` or `field=low..high`.
     ///
     /// # Errors
-    /// Limits that are no two rising numbers, or an empty name.
+    /// Limits that are not two ascending numbers, or an empty name.
     ///
     /// ```
     /// let free = vibroimpact::identify::Free::parse("striker.mass_kg=0.1..0.5").unwrap();
@@ -48,7 +48,7 @@ impl Free {
         Ok(Free { field: field.to_owned(), search })
     }
 
-    /// The parameter of the search: positive where start and limits are, otherwise between the limits.
+    /// The parameter of the search: logarithmic if start and limits are positive, otherwise between the limits.
     pub(super) fn parameter(&self, tree: &Value) -> Result<Parameter, InvalidInput> {
         let name = format!("--free {}", self.field);
         let start = self.start(tree, &name)?;
@@ -61,7 +61,7 @@ impl Free {
             }
         };
         let range = if low > 0.0 { Range::Positive } else { Range::Between { low, high } };
-        // a start on a limit, as no damping, has no logistic coordinate
+        // a start on a limit, such as zero damping, has no logistic coordinate
         let inside = match range {
             Range::Between { low, high } => low + (high - low) / 64.0,
             _ => low,

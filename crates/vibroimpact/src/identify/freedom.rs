@@ -1,4 +1,4 @@
-//! How many standard deviations an interval extends, Eq. (3).
+//! Half-widths of the intervals in standard deviations, Eq. (3).
 
 use fitting::two_sided_quantile;
 

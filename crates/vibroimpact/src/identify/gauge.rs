@@ -1,4 +1,4 @@
-//! Force histories: reading them, and what a gauge shows of a contact force.
+//! Force histories, and the response of a gauge to a contact force.
 
 use contact_models::Law;
 use fitting::chi_square_tail;
@@ -13,7 +13,7 @@ const MOST: usize = 100_000;
 const LEAST: usize = 8;
 /// Equal intervals in which the computed force is tabulated.
 const INTERVALS: usize = 2000;
-/// Shifts tried to find the offset, and samples used for it.
+/// Number of shifts that are tried for the offset, and number of samples used.
 const SHIFTS: usize = 1000;
 const COARSE_SAMPLES: usize = 300;
 /// Steps of Newton's method for the offset, and the change, as a share of the contact, at which it ends.
@@ -21,12 +21,12 @@ const MOST_STEPS: usize = 30;
 const SETTLED: f64 = 1e-10;
 const NEEDED: &str = "a table of comma-separated values with the columns time_s and force_n";
 
-/// The force of an impact as a gauge has shown it.
+/// The force of an impact as recorded by a gauge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceRecord {
     /// Name of the file.
     pub file: String,
-    /// Times (s), rising, from any origin.
+    /// Times (s), ascending, from any origin.
     pub time_s: Vec<f64>,
     /// Forces (N).
     pub force_n: Vec<f64>,
@@ -36,7 +36,7 @@ impl ForceRecord {
     /// Reads a history from the bytes of a file.
     ///
     /// # Errors
-    /// Other columns, times that do not rise, too few samples or too many.
+    /// Other columns, times that are not ascending, too few samples or too many.
     ///
     /// ```
     /// use vibroimpact::identify::ForceRecord;
@@ -65,8 +65,8 @@ impl ForceRecord {
         read().map_err(|fault| fault.in_place(file))
     }
 
-    /// The offset `d` (s) for which the shown force, `signal(t - d)`, is nearest to the record: the best of many shifts,
-    /// then Newton's method in the manner of Gauss.
+    /// The offset `d` (s) for which the computed output, `signal(t - d)`, is closest to the record: the best of many shifts, improved
+    /// by the Gauss-Newton method.
     pub(super) fn offset_s(&self, signal: &Signal) -> f64 {
         let (first, last) = (self.time_s[0], self.time_s[self.time_s.len() - 1]);
         let stride = self.time_s.len().div_ceil(COARSE_SAMPLES);
@@ -104,7 +104,7 @@ impl ForceRecord {
     }
 }
 
-/// What a gauge shows of a force, tabulated: Eq. (2) without offset and noise.
+/// Tabulated response of a gauge to a force: Eq. (2) without offset and noise.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Signal {
     spacing_s: f64,
@@ -114,7 +114,7 @@ pub(super) struct Signal {
 }
 
 impl Signal {
-    /// From the history of an impact; a time constant of 0 is a gauge without delay.
+    /// Computes the response from the history of an impact; a time constant of 0 is a gauge without delay.
     pub fn new(history: &History<Law>, time_constant_s: f64) -> Signal {
         let spacing_s = history.duration_s().max(f64::MIN_POSITIVE) / INTERVALS as f64;
         let force: Vec<f64> = (0..=INTERVALS).map(|k| history.at(spacing_s * k as f64).force_n).collect();
@@ -126,7 +126,7 @@ impl Signal {
         self.spacing_s * INTERVALS as f64
     }
 
-    /// The force shown at a time (N), by cubic interpolation.
+    /// The output at a time (N), by cubic interpolation.
     pub fn at(&self, time_s: f64) -> f64 {
         self.cubic(time_s, |w| {
             [
@@ -187,8 +187,8 @@ fn filtered(force: Vec<f64>, spacing_s: f64, time_constant_s: f64) -> Vec<f64> {
     shown
 }
 
-/// Correlation of neighbouring residuals, and the probability that white noise has one as large. A wrong model leaves
-/// residuals that resemble their neighbours.
+/// Correlation of neighbouring residuals, and the probability that white noise has one as large. Residuals of a wrong model are
+/// correlated with their neighbours.
 pub(super) fn lag_one(residuals: &[f64]) -> (f64, f64) {
     let squares: f64 = residuals.iter().map(|r| r * r).sum();
     let products: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();

@@ -1,4 +1,4 @@
-//! Whether the misfit is one of noise.
+//! Tests whether the misfit can be explained by noise.
 
 use fitting::{chi_square_tail, fisher_tail};
 
@@ -6,13 +6,14 @@ use super::data::Data;
 use super::gauge::lag_one;
 use super::summary::LackOfFit;
 
-/// A model that leaves a misfit less probable than this is noticed.
+/// A model is rejected if its misfit is less probable than this.
 pub(super) const NOTICED: f64 = 0.01;
 
-/// Judges residuals of unit variance, which stand as the rows of the table hold them.
+/// Tests residuals of unit variance, in the order of the rows of the table.
 ///
-/// Stated standard deviations: the sum of squares against chi-square. Estimated ones: what repeated rows differ by among themselves against
-/// the rest (Fisher). Force histories besides: the correlation of neighbouring residuals.
+/// With stated standard deviations the sum of squares is compared with the chi-square distribution. With estimated ones the
+/// differences between repeated rows are compared with the other residuals (Fisher). For force histories the correlation of
+/// neighbouring residuals is tested too.
 pub(super) fn lack_of_fit(data: &Data, residuals: &[f64], freedom: usize) -> Vec<LackOfFit> {
     let mut found = Vec::new();
     let mut judge = |test: String, statistic: f64, probability: f64| {

@@ -6,7 +6,7 @@ use super::data::Data;
 use super::summary::{Identification, Predicted, ProfileCurve, RecordFit};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
-/// Force histories drawn; the rest are left out.
+/// Largest number of force histories that are drawn.
 const MOST_RECORDS: usize = 4;
 /// Panels of profiles in a row.
 const IN_A_ROW: usize = 3;
@@ -31,7 +31,7 @@ pub fn picture(title: &str, data: &Data, found: &Identification) -> Figure {
     figure
 }
 
-/// What stands along the horizontal axis: the one field that varies, or the line of the table.
+/// The quantity of the horizontal axis: the only field that varies, or the line of the table.
 struct Across {
     name: String,
     /// The place of each line along the axis.

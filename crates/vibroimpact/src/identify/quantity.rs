@@ -1,4 +1,4 @@
-//! What can be measured of an impact as one number.
+//! Quantities of an impact that can be measured as one number.
 
 use vibroimpact_sim::modal::{Derivatives, Solution, SubImpact};
 
@@ -64,7 +64,7 @@ impl Quantity {
         Quantity::ALL.map(Quantity::name).join(", ")
     }
 
-    /// Whether a value can have been measured, and what is allowed.
+    /// Checks that a value is possible for this quantity.
     pub(super) fn allows(self, value: f64) -> Result<(), &'static str> {
         match self {
             Quantity::Restitution | Quantity::StrikerVelocity => Ok(()),
@@ -73,7 +73,7 @@ impl Quantity {
         }
     }
 
-    /// Its value in a resolved impact; not-a-number where it has none.
+    /// Its value in a resolved impact; NaN if there is none.
     pub(super) fn of(self, solution: &Solution) -> f64 {
         let contacts = &solution.sub_impacts;
         let first = contacts.first();
@@ -94,11 +94,11 @@ impl Quantity {
         value.unwrap_or(f64::NAN)
     }
 
-    /// Its derivative, from those of the impact; `None` where it has none.
+    /// Its derivative, from those of the impact; `None` if there is none.
     pub(super) fn change(self, solution: &Solution, change: &Derivatives) -> Option<f64> {
         let (contacts, changes) = (&solution.sub_impacts, &change.sub_impacts);
         let first = changes.first()?;
-        // the largest changes as that contact does
+        // the derivative of the largest value is that of its contact
         let largest = |of: fn(&SubImpact) -> f64| {
             let place = (0..contacts.len()).max_by(|&a, &b| of(&contacts[a]).total_cmp(&of(&contacts[b])))?;
             changes.get(place)

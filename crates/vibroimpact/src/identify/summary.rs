@@ -1,10 +1,10 @@
-//! What an identification found.
+//! The result of an identification.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-/// What `vibroimpact identify --json` prints.
+/// The object that `vibroimpact identify --json` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identification {
     /// The parameters, in the order asked for.
@@ -13,11 +13,11 @@ pub struct Identification {
     pub level: f64,
     /// Correlations of the parameters' coordinates, row by row; null where the data do not determine all.
     pub correlation: Option<Vec<Vec<f64>>>,
-    /// Combinations that the data leave open.
+    /// Combinations that the data do not determine.
     pub undetermined: Vec<Undetermined>,
-    /// Number of measured values, samples of force histories among them.
+    /// Number of measured values, including samples of force histories.
     pub count: usize,
-    /// That number less the parameters and the offsets of force histories.
+    /// That number minus the parameters and the offsets of force histories.
     pub degrees_of_freedom: usize,
     /// Weighted sum of squares, Eq. (1).
     pub sum_of_squares: f64,
@@ -25,19 +25,20 @@ pub struct Identification {
     pub converged: bool,
     /// Noise of each measured quantity.
     pub noise: Vec<Noise>,
-    /// Tests of the model against the noise; empty where the data allow none.
+    /// Tests of the model against the noise; empty if the data allow none.
     pub lack_of_fit: Vec<LackOfFit>,
     /// Number of modes, chosen once; null for all that are listed.
     pub modes: Option<usize>,
-    /// Rows whose number of contacts changes within the steps of the derivative: they graze, and the sum of squares is rough there.
+    /// Rows whose number of contacts changes within the steps of the derivative: they are near grazing, and the sum of squares is not
+    /// smooth there.
     pub grazing_lines: Vec<u64>,
-    /// Where the searches started, and where they led.
+    /// Starting points of the searches, and their ends.
     pub starts: Vec<StartFound>,
     /// Measured and predicted values.
     pub predictions: Vec<Predicted>,
     /// Force histories.
     pub records: Vec<RecordFit>,
-    /// Experiments that could be made, the most telling first; empty if none were asked about.
+    /// Candidate experiments, the most informative first; empty if none were stated.
     pub candidates: Vec<Candidate>,
     /// The profiles behind the intervals.
     pub profiles: Vec<ProfileCurve>,
@@ -48,24 +49,24 @@ pub struct Identification {
 pub struct Identified {
     /// Path of the field.
     pub field: String,
-    /// What the scene says; of the time constant of a gauge, where the search began.
+    /// The value in the scene; for the time constant of a gauge, the start of the search.
     pub start: f64,
-    /// What the data say.
+    /// The estimate.
     pub value: f64,
     /// Interval by the covariance; null where the data do not determine the parameter.
     pub covariance_interval: Option<[f64; 2]>,
-    /// Interval by the likelihood profile; an end is null where the sum of squares does not rise enough.
+    /// Interval by the likelihood profile; an end is null if the sum of squares does not rise enough.
     pub profile_interval: [Option<f64>; 2],
-    /// Whether the two differ by more than a tenth of their half-width: the covariance is then too simple.
+    /// Whether the two differ by more than a tenth of their half-width; the interval by the covariance is then too simple.
     pub bent: bool,
 }
 
-/// A combination of parameters that the data leave open.
+/// A combination of parameters that the data do not determine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Undetermined {
     /// Unit vector in the coordinates of the parameters (logarithms, mostly), by their fields; entries below 0.1 are left out.
     pub direction: BTreeMap<String, f64>,
-    /// Standard deviation along it; null where the data say nothing.
+    /// Standard deviation along it; null if the data contain no information.
     pub standard_deviation: Option<f64>,
     /// The same in words.
     pub text: String,
@@ -82,18 +83,18 @@ pub struct Noise {
     pub standard_deviation: f64,
     /// Whether it was stated.
     pub stated: bool,
-    /// Root mean square of measurement less prediction, in its unit.
+    /// Root mean square difference of measurement and prediction, in its unit.
     pub rms: f64,
 }
 
 /// A test of the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LackOfFit {
-    /// Which.
+    /// The test.
     pub test: String,
     /// Sum of squares, ratio of variances, or correlation.
     pub statistic: f64,
-    /// Probability that the right model leaves as much.
+    /// Probability that the right model has a value at least as extreme.
     pub probability: f64,
     /// Whether that is below 0.01.
     pub noticed: bool,
@@ -110,16 +111,16 @@ pub struct StartFound {
     pub robust_sum: Option<f64>,
 }
 
-/// A measured value beside its prediction.
+/// A measured value and its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Predicted {
     /// Line of the table.
     pub line: u64,
-    /// Which quantity.
+    /// The quantity.
     pub quantity: &'static str,
-    /// Measured.
+    /// The measured value.
     pub measured: f64,
-    /// Predicted with the parameters found.
+    /// The prediction with the estimated parameters.
     pub predicted: f64,
     /// Standard deviation of the measurement.
     pub measured_sd: f64,
@@ -127,7 +128,7 @@ pub struct Predicted {
     pub predicted_sd: Option<f64>,
 }
 
-/// A force history beside its prediction.
+/// A force history and its prediction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordFit {
     /// Line of the table.
@@ -141,14 +142,14 @@ pub struct RecordFit {
     pub samples: [Vec<f64>; 3],
 }
 
-/// An experiment that could be made.
+/// A candidate experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Candidate {
     /// Line of the table of candidates.
     pub line: u64,
     /// Its fields.
     pub fields: BTreeMap<String, serde_json::Value>,
-    /// Volume of the confidence region with it over that without: the less, the more it tells.
+    /// Volume of the confidence region with it over that without; the smaller, the more informative.
     pub volume_ratio: f64,
     /// Standard deviation of each parameter's coordinate with it over that without.
     pub sd_ratios: Vec<f64>,
@@ -161,7 +162,7 @@ pub struct ProfileCurve {
     pub field: String,
     /// Values at which it was held.
     pub values: Vec<f64>,
-    /// Least sum of squares there, less that of the fit.
+    /// Minimum of the sum of squares there, minus that of the fit.
     pub rise: Vec<f64>,
     /// The rise at the ends of the interval.
     pub limit: f64,

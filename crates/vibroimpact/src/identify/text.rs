@@ -1,4 +1,4 @@
-//! An identification as a person reads it.
+//! The result of an identification as text.
 
 use std::fmt::Write;
 
@@ -8,12 +8,13 @@ use crate::text::{filled, quantity};
 
 /// Lines are at most this long.
 const WIDTH: usize = 100;
-/// Candidates and lines listed; the rest are counted.
+/// Largest number of candidates and lines that are listed; the others are counted.
 const LISTED: usize = 10;
 /// Residuals beyond this many standard deviations are listed.
 const FAR: f64 = 3.0;
 
-/// Parameters with their intervals, what the data leave open, whether the model fits, and which experiment would tell most.
+/// Parameters with their intervals, combinations that the data do not determine, the tests of the model, and the most informative
+/// experiments.
 pub fn text(found: &Identification) -> String {
     let mut text = String::new();
     let level = significant(100.0 * found.level, 3);
@@ -132,6 +133,6 @@ fn candidates(found: &Identification, text: &mut String) {
         );
     }
     if found.candidates.len() > LISTED {
-        let _ = writeln!(text, "  and {} that tell less", found.candidates.len() - LISTED);
+        let _ = writeln!(text, "  and {} that are less informative", found.candidates.len() - LISTED);
     }
 }

@@ -15,25 +15,25 @@ use crate::scene::json::number;
 /// Relative change of the sum of squares at which a search ends; its derivatives are differences.
 const TOLERANCE: f64 = 1e-8;
 const MOST_EVALUATIONS: usize = 400;
-/// Points evaluated for each starting point that is searched from.
+/// Number of evaluated points for each starting point of the search.
 const CANDIDATES_PER_START: usize = 64;
-/// No parameter is sought further than this from where it starts, in its transformed coordinate: a factor of 20,000.
+/// Largest distance of a parameter from its start, in its transformed coordinate: a factor of 20,000.
 const FURTHEST: f64 = 10.0;
 /// Rounds of fit and estimate of the noise, and the relative change at which they agree.
 const MOST_ROUNDS: usize = 12;
 const AGREED: f64 = 1e-3;
-/// Relative noise with which the first round weighs quantities against each other.
+/// Relative noise that determines the weights of the quantities in the first round.
 const FIRST_NOISE: f64 = 0.05;
-/// Times that a profile may come upon a better minimum.
+/// Largest number of times that a profile may find a better minimum.
 const MOST_RESTARTS: usize = 4;
 
-/// What is summed of residuals.
+/// The function of the residuals that is summed.
 #[derive(Clone, Copy, PartialEq)]
 enum Loss {
     /// Their squares.
     Squares,
-    /// `ln(1 + r^2)`, which hardly counts how far off a row is whose contacts have split or joined: parameters near the best are then
-    /// recognised by the rows that fit.
+    /// `ln(1 + r^2)`, in which outliers, such as rows whose contacts have split or joined, count little: parameters near the best ones
+    /// are then recognised by the rows that fit.
     Robust,
 }
 
@@ -67,14 +67,14 @@ pub(super) struct Work<'a> {
     pub coordinates: Vec<Parameter>,
     /// Of each residual: the measured value, and which of `groups` it belongs to.
     pub measured: Vec<(f64, usize)>,
-    /// What has noise of its own: a quantity, or the force.
+    /// A group of values with the same noise: a quantity, or the force.
     pub groups: Vec<&'static str>,
     /// Standard deviation of each residual.
     pub sd: Vec<f64>,
     pub freedom: usize,
     pub parameters: Vec<f64>,
     pub sum_of_squares: f64,
-    /// Derivatives at the parameters last asked about.
+    /// Derivatives at the last parameters.
     pub known: Mutex<Option<Known>>,
 }
 
@@ -102,7 +102,7 @@ impl<'a> Work<'a> {
                 records += 1;
             }
         }
-        // quantities without noise of their own begin with the same share of their size
+        // quantities without stated noise begin with the same share of their size
         let size =
             |place: usize| measured.iter().filter(|(_, of)| *of == place).map(|(v, _)| v.abs()).fold(0.0, f64::max);
         let first: Vec<f64> = (0..groups.len()).map(|place| (FIRST_NOISE * size(place)).max(1e-30)).collect();
@@ -116,7 +116,7 @@ impl<'a> Work<'a> {
         Ok(work)
     }
 
-    /// What is measured must exist where the search begins.
+    /// Checks that the measured quantities exist at the start of the search.
     fn require_predictions(&self) -> Result<(), InvalidInput> {
         for (row, prediction) in self.model.data.rows.iter().zip(self.predictions(&self.parameters)) {
             let values = prediction.map(|found| found.values).unwrap_or_default();
@@ -136,7 +136,7 @@ impl<'a> Work<'a> {
         self.model.for_rows(|_, row, kept| predict(self.model, row, parameters, None, kept))
     }
 
-    /// Writes the residuals, Eq. (1); not-a-number where an impact cannot be resolved.
+    /// Writes the residuals, Eq. (1); NaN if an impact cannot be resolved.
     pub fn residuals(&self, parameters: &[f64], residuals: &mut [f64]) {
         let far = |(c, p): (&Parameter, &f64)| (c.inward(*p) - c.inward(c.start)).abs() > FURTHEST;
         if self.coordinates.iter().zip(parameters).any(far) {
@@ -190,7 +190,7 @@ impl<'a> Work<'a> {
             },
             jacobian: Some(&|p, rows| {
                 self.jacobian(p, rows);
-                // the crate asks for derivatives in the parameters themselves
+                // the crate `fitting` needs derivatives with respect to the parameters themselves
                 let slopes: Vec<f64> = self.coordinates.iter().zip(p).map(|(c, p)| c.slope(*p)).collect();
                 rows.iter_mut().zip(slopes.iter().cycle()).for_each(|(entry, slope)| *entry /= slope);
                 if loss == Loss::Robust {
@@ -211,8 +211,8 @@ impl<'a> Work<'a> {
         Some((found.starts, found.parameters))
     }
 
-    /// Fits from where the robust search of several starts ends and from the parameters as they are, and estimates the noise where it is
-    /// not stated. Tells the starts, and whether the search converged.
+    /// Fits from the end of the robust search and from the present parameters, and estimates the noise if it is not stated. Returns the
+    /// starts, and whether the search converged.
     pub fn search(&mut self, starts: usize) -> Result<(Vec<Start>, bool), InvalidInput> {
         let (told, scouted) = if starts > 1 { self.scout(starts) } else { None }.unzip();
         let mut begin = vec![self.parameters.clone()];
@@ -243,7 +243,7 @@ impl<'a> Work<'a> {
         Ok((told.unwrap_or_default(), agreed && outcome == Outcome::Converged))
     }
 
-    /// Estimates the noise of each group from residuals; whether the estimates have settled.
+    /// Estimates the noise of each group from residuals. Returns whether the estimates have converged.
     fn estimate_noise(&mut self, residuals: &[f64]) -> bool {
         let mut settled = true;
         for (place, freedom) in self.freedom_of_groups().into_iter().enumerate() {
@@ -261,7 +261,7 @@ impl<'a> Work<'a> {
         settled
     }
 
-    /// Degrees of freedom `f_q` of the noise of each group, Eq. (4): its values less their leverage, at least one.
+    /// Degrees of freedom `f_q` of the noise of each group, Eq. (4): the number of its values minus their leverage, at least one.
     pub fn freedom_of_groups(&self) -> Vec<f64> {
         let (n, m) = (self.coordinates.len(), self.measured.len());
         let known = self.information().ok().and_then(|(rows, information)| Some((rows, information.covariance()?)));
@@ -279,7 +279,7 @@ impl<'a> Work<'a> {
         left.into_iter().map(|left| (share * left).max(1.0)).collect()
     }
 
-    /// The Jacobian at the parameters found, row by row, and its information.
+    /// The Jacobian at the estimated parameters, row by row, and its information.
     pub fn information(&self) -> Result<(Vec<f64>, Information), InvalidInput> {
         let n = self.coordinates.len();
         let mut rows = vec![0.0; self.measured.len() * n];
@@ -289,7 +289,7 @@ impl<'a> Work<'a> {
         Ok((rows, information))
     }
 
-    /// The profile of each parameter. A better minimum, met on the way, takes the place of the fit.
+    /// The profile of each parameter. A better minimum that is found on the way replaces the fit.
     pub fn profiles(&mut self, z: &[f64]) -> Result<Vec<Profile>, InvalidInput> {
         let settings = Settings { tolerance: 1e-5, ..settings() };
         let mut restarts = 0;
@@ -297,7 +297,7 @@ impl<'a> Work<'a> {
             let sds = self.information()?.1.standard_deviations();
             let mut profiles = Vec::new();
             for j in 0..self.coordinates.len() {
-                // where the data say nothing, the first step is modest
+                // without information from the data the first step is small
                 let step = z[j] * if sds[j].is_finite() { sds[j].clamp(1e-9, 1.0) } else { 1.0 };
                 let found = self.with_problem(Loss::Squares, &self.parameters, |problem| {
                     profile(problem, &settings, &self.parameters, self.sum_of_squares, j, z[j] * z[j], step)

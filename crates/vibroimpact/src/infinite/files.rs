@@ -11,11 +11,11 @@ use crate::plot::{Axis, Colour, Figure, Panel, Series};
 /// Times that span more than this ratio are drawn on a logarithmic axis.
 const WIDE: f64 = 30.0;
 
-/// `result.json`, `history.csv`, `contacts.csv` and `impact.svg`, ready in memory; `result` is the text of the first,
+/// `result.json`, `history.csv`, `contacts.csv` and `impact.svg` in memory; `result` is the text of the first,
 /// `until` as for [`history`]. With `scale` the tables are in SI units, otherwise in units of `T`, `F`, `v T` and `v`.
 ///
 /// # Errors
-/// None that an impact could cause; those of the writers are passed on.
+/// Errors of the writers, which an impact cannot cause.
 pub fn files(
     result: String,
     solution: &Solution,
@@ -57,9 +57,9 @@ fn contacts_csv(summary: &Summary, units: &Units) -> Result<Vec<u8>, Failure> {
     Ok(table.into_inner()?)
 }
 
-/// Where the bodies were, how fast the striker went, and the force, with every contact's peak marked and numbered, as in
-/// thesis Fig. 2.3; in SI units with `scale`, otherwise in units of the solution. Grey stripes are the times in contact.
-/// Time and force are on logarithmic axes where later contacts would not show otherwise.
+/// Displacements, velocity of the striker, and force with the numbered peak of every contact, as in thesis Fig. 2.3; in SI units
+/// with `scale`, otherwise in units of the solution. Grey stripes are the times in contact. Time and force have logarithmic axes
+/// if later contacts would not be visible otherwise.
 ///
 /// ```
 /// use vibroimpact::infinite::picture;

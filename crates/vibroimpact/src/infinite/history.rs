@@ -8,7 +8,7 @@ use crate::export::Table;
 /// Samples of each kind in the history.
 pub(super) const SAMPLES: usize = 1000;
 
-/// Factors from the units of the solution, and what the quantities are then measured in.
+/// Factors from the units of the solution, and the resulting units.
 pub(super) struct Units {
     pub time: f64,
     pub force: f64,
@@ -45,7 +45,7 @@ impl Units {
 
 /// Motion and force over time: what `history.csv` holds, in SI units with `scale`, otherwise in units of the solution.
 /// As elsewhere in this crate, displacements and velocities are positive away from the structure.
-/// They go until `until` (units of `T`) as far as the motion is known, or a while past the last contact.
+/// They extend until `until` (units of `T`) as far as the motion is known, or until shortly after the last contact.
 pub fn history(solution: &Solution, scale: Option<&Scale>, until: Option<f64>) -> Table {
     let samples = samples(solution, until.unwrap_or_else(|| telling_time(solution)), SAMPLES);
     let units = Units::new(scale);

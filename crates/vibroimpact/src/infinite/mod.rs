@@ -1,5 +1,5 @@
-//! Impacts on infinite beams and plates, as files and people read them: [`Summary`] for programs, [`text`] for people,
-//! [`files`] for tables, [`picture`] for a figure. The solver is [`vibroimpact_sim::infinite`].
+//! Output of impacts on infinite beams and plates: [`Summary`] for programs, [`text`] for the terminal, [`files`] for tables,
+//! [`picture`] for a figure. The solver is [`vibroimpact_sim::infinite`].
 
 #[cfg(feature = "files")]
 mod files;
@@ -20,7 +20,7 @@ pub use history::history;
 pub use pose::Posed;
 pub use text::{text, turning_points_text};
 
-/// What `infinite-beam --json` prints: one object. Times are in units of `T`, speeds of `v`, forces of `F` (thesis
+/// The object that `infinite-beam --json` prints. Times are in units of `T`, speeds of `v`, forces of `F` (thesis
 /// Eqs. 2.9 and 2.10).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
@@ -28,12 +28,12 @@ pub struct Summary {
     pub s: Option<f64>,
     /// `rebound`, `sustained` or `stopped`.
     pub outcome: &'static str,
-    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    /// The reason why it stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "crate::stop_word::word")]
     pub stopped_by: Option<StopReason>,
     /// Number of separations.
     pub separations: usize,
-    /// How many of them, from the first, a solution of higher resolution has too; what follows is not known.
+    /// Number of separations, from the first, that a solution of higher resolution has too; later ones are not known.
     pub certain_separations: Option<usize>,
     /// Speed away from the structure after the last separation over the speed of impact; null unless the striker
     /// rebounds.
@@ -48,7 +48,7 @@ pub struct Summary {
     pub digits: Option<f64>,
     /// The contacts in order of time.
     pub contacts: Vec<Contact>,
-    /// The same in physical units, if the impact was posed in them.
+    /// The same in physical units, if the impact was stated in them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub physical: Option<Physical>,
 }
@@ -97,7 +97,7 @@ pub struct PhysicalContact {
 }
 
 impl Summary {
-    /// Gathers a solution for printing, in physical units too if they are given.
+    /// Collects a solution for printing, in physical units too if they are given.
     ///
     /// ```
     /// use vibroimpact::infinite::Summary;
@@ -153,7 +153,7 @@ impl Physical {
     }
 }
 
-/// What `infinite-beam turning-points --json` prints.
+/// The object that `infinite-beam turning-points --json` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TurningPoints {
     /// The `S` above which the first separation is not the last.
@@ -188,7 +188,7 @@ impl TurningPoints {
         Ok(TurningPoints::new(critical_s(), &turning_points(count)?))
     }
 
-    /// Gathers turning points for printing.
+    /// Collects turning points for printing.
     pub fn new(critical: CriticalS, points: &[TurningPoint]) -> TurningPoints {
         let turning = |&TurningPoint { n, s, uncertainty }: &TurningPoint| Turning { n, s, uncertainty };
         TurningPoints {
@@ -235,8 +235,7 @@ pub fn samples(solution: &Solution, until: f64, count: usize) -> Vec<Sample> {
     samples
 }
 
-/// How far a picture of the whole impact should reach (units of `T`): past the last separation, or into sustained
-/// contact.
+/// End of a figure of the whole impact (units of `T`): after the last separation, or in sustained contact.
 pub fn telling_time(solution: &Solution) -> f64 {
     let last = solution.sub_impacts.last().map_or(0.0, |contact| contact.end.unwrap_or(contact.start));
     match solution.outcome {

@@ -1,11 +1,11 @@
-//! Impacts on infinite structures as a person reads them in a terminal.
+//! Impacts on infinite structures as text for the terminal.
 
 use std::fmt::Write;
 
 use super::{Summary, TurningPoints};
 use crate::text::{quantity, stopped};
 
-/// Contacts listed one by one; the rest are counted.
+/// Largest number of contacts that are listed; the others are counted.
 const LISTED: usize = 20;
 
 /// The result of an impact.
@@ -24,12 +24,12 @@ pub fn text(summary: &Summary) -> String {
     line("outcome", stopped(summary.stopped_by).unwrap_or_else(|| outcome.to_owned()));
     line("separations", summary.separations.to_string());
     if let Some(certain) = summary.certain_separations.filter(|certain| *certain < summary.separations) {
-        line("of them certain", format!("the first {certain}; what follows is not known"));
+        line("of them certain", format!("the first {certain}; later ones are not known"));
     }
     let digits = summary.digits.unwrap_or(0.0);
     let decimals = (digits as usize).clamp(1, 12);
     if let Some(ratio) = summary.first_rebound_ratio {
-        // the first contact has lost no digits yet
+        // the first contact has full precision
         line("first rebound ratio", format!("{ratio:.*}", decimals.max(10)));
     }
     if let Some(ratio) = summary.rebound_ratio {

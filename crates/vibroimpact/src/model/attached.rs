@@ -1,16 +1,16 @@
-//! A law with two parameters: one contact for light balls, a ride on the slow motion for heavy ones.
+//! A law with two parameters: a single contact for light balls, and common motion with the slow modes for heavy ones.
 //!
-//! A light ball meets the beam once. Modes that are slow against the contact take up an impulse; modes that are fast
-//! follow it without loss. With `tau` the duration of the contact with an immovable surface (Hertz),
+//! A light ball touches the beam once. Modes that are slow compared with the contact take up an impulse; fast modes follow it
+//! quasi-statically without loss. With `tau` the duration of the contact with an immovable surface (Hertz),
 //!
 //! ```text
 //! Z_w = m sum phi_k^2 exp(-(c omega_k tau)^2),      A = exp(-q Z_w).
 //! ```
 //!
-//! A heavy ball meets the beam many times, until both have one velocity: as if attached, it then rides on the beam.
-//! The beam with the mass attached at the contact has modes `psi_j`, and `s_j = m psi_j^2` is the share of the ball's
-//! velocity that rides on mode `j`. Half a period of that mode later the share returns with the opposite sign, and the
-//! ball is thrown off. Of many shares with unlike periods the largest tells:
+//! A heavy ball touches the beam many times, until both have the same velocity. It then moves with the beam as if attached.
+//! The beam with the mass attached at the contact has modes `psi_j`, and `s_j = m psi_j^2` is the share of the ball's velocity in
+//! mode `j`. Half a period of that mode later this share has the opposite sign, and the ball separates. Among many shares with
+//! different periods the largest is decisive:
 //!
 //! ```text
 //! e = A + (1 - A) max_j s_j.
@@ -21,12 +21,12 @@
 
 use vibroimpact_sim::modal::Mode;
 
-/// A mode that moves less than this share of the ball's mass at the contact has no attached mode of its own.
+/// A mode with `m phi^2` below this value at the contact has no separate attached mode.
 const NEGLIGIBLE: f64 = 1e-12;
-/// Halvings of the interval of a root: to the last bit.
+/// Number of bisections for a root to the last bit.
 const HALVINGS: usize = 60;
 
-/// The largest share of the velocity of a mass that, attached to the structure, rides on one mode.
+/// The largest share of the velocity of a mass attached to the structure that belongs to one mode.
 pub fn largest_share(mass_kg: f64, modes: &[Mode]) -> f64 {
     // m phi^2 and omega^2 of the modes that move here
     let moving: Vec<[f64; 2]> = modes
@@ -61,7 +61,7 @@ fn root(moving: &[[f64; 2]], mut low: f64, mut high: f64) -> f64 {
 
 fn share(moving: &[[f64; 2]], x: f64) -> f64 {
     let sum: f64 = moving.iter().map(|[weight, pole]| weight * (x / (pole - x)).powi(2)).sum();
-    // at a pole itself the mass stands still
+    // at a pole the mass does not move
     if sum.is_finite() { 1.0 / (1.0 + sum) } else { 0.0 }
 }
 
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn one_mode_holds_its_share_of_the_joint_mass() {
-        // a mass m on a modal mass 1/phi^2: after the plastic impact m/(m + 1/phi^2) of the velocity is left
+        // a mass m on a modal mass 1/phi^2: after the plastic impact m/(m + 1/phi^2) of the velocity remains
         let share = largest_share(0.5, &[mode(100.0, 2.0)]);
         assert!((share - 2.0 / 3.0).abs() < 1e-12, "{share}");
         assert_eq!(largest_share(0.5, &[mode(100.0, 0.0)]), 0.0);

@@ -1,17 +1,17 @@
-//! What became of a tier.
+//! The result of trying a model.
 
 use super::Answer;
 use crate::impact::Impact;
 use crate::scene::InvalidInput;
 
-/// An answer, and the modal problem that it came from if it came from one.
+/// An answer, and the modal problem behind it if there is one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
-    /// What was found, by what.
+    /// The answer.
     pub answer: Answer,
     /// The modal problem last solved, to be recorded; `None` for the other models.
     pub impact: Option<Impact>,
 }
 
-/// What became of a tier: an answer, or why it does not apply.
+/// The result of trying a model: an answer, or the reason why it does not apply.
 pub(super) type Tried = Result<Result<Choice, String>, InvalidInput>;

@@ -1,4 +1,4 @@
-//! Which model a scene is given to.
+//! The choice of the model for a scene.
 
 use super::choice::{Choice, Tried};
 use super::pose::Pose;
@@ -7,11 +7,11 @@ use crate::impact::Impact;
 use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure, chooses_modes, modal_only};
 
 impl Scene {
-    /// Chooses the model and answers: restitution, how well it is known, why this model, at what cost.
+    /// Chooses the model and solves the scene. The answer states the restitution, its uncertainty, the reason for the model, and the
+    /// cost.
     ///
     /// # Errors
-    /// A value out of range, fields of which too few or too many are given, or a `model` that cannot be had for the
-    /// structure or the law.
+    /// A value out of range, too few or too many fields, or a `model` that is not available for the structure or the law.
     ///
     /// ```
     /// use vibroimpact::{Scene, model::Model};
@@ -35,7 +35,7 @@ impl Scene {
         Ok(self.choose()?.answer)
     }
 
-    /// As [`Scene::answer`], with the modal problem that the answer came from.
+    /// As [`Scene::answer`], with the modal problem behind the answer.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -46,8 +46,8 @@ impl Scene {
         Ok(Choice { answer: Answer { cost, ..answer }, ..choice })
     }
 
-    /// As [`Scene::answer`], by what earlier scenes have left: the same answer to the last bit, sooner. What another theory
-    /// of bending would change is left open: it takes further impacts.
+    /// As [`Scene::answer`], with cached data of earlier scenes: the same answer to the last bit in less time. The uncertainty of the
+    /// theory of bending is not estimated, since that takes further impacts.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -78,14 +78,14 @@ impl Scene {
     }
 }
 
-/// A model that was requested and cannot be had.
+/// The error for a model that was requested and is not available.
 pub(super) fn refused(model: Model, reason: String) -> InvalidInput {
     InvalidInput::new("model", format!("\"{}\"", model.as_str()), reason)
 }
 
 impl Scene {
-    /// Finds what [`Scene::answer`] would refuse, as far as that shows without solving a modal impact; other models
-    /// cost little, and are solved.
+    /// Finds the errors of [`Scene::answer`] that can be found without solving a modal impact. Other models cost little, and are
+    /// solved.
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) {
             return self.answer().map(drop);
@@ -100,8 +100,8 @@ impl Scene {
 }
 
 impl Scene {
-    /// The scene with all that stated which the program would choose: the theory of bending and, in place of a tolerance
-    /// of the whole, as many modes as the restitution needs to converge, with remainder modes for the others.
+    /// The scene with the program's choices stated: the theory of bending and, in place of a tolerance for the whole restitution, as
+    /// many modes as the restitution needs to converge, with remainder modes for the others.
     pub(crate) fn settled(&self) -> Result<Scene, InvalidInput> {
         if !chooses_modes(self) {
             return Ok(Scene { model: Model::Auto, ..self.clone() });
@@ -111,7 +111,7 @@ impl Scene {
         let impact = settled_impact(&scene)?;
         let kept = impact.kept_modes();
         let fastest = impact.structure.modes[..kept].last().map_or(0.0, |mode| mode.omega_rad_s);
-        // slow modes that are hardly excited were left out of those
+        // the count does not include slow modes that are hardly excited
         let mut asked = (2 * kept.max(8)).min(MOST_MODES);
         let count = loop {
             let known = scene.mode_shapes(asked)?;
@@ -134,7 +134,7 @@ impl Scene {
     }
 }
 
-/// The cheapest tier that is certain to reach the tolerance.
+/// The cheapest model that is certain to reach the tolerance.
 fn auto(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if !chooses_modes(pose.scene) {
         return stated::stated(pose.scene, pose.kept, cost);
@@ -153,11 +153,11 @@ pub(super) fn settled_impact(scene: &Scene) -> Result<Impact, InvalidInput> {
     let open = scene.with_theory(&mut Cost::default())?;
     let scene = open.as_ref().map_or(scene, |(scene, _)| scene);
     let choice = modal(&mut Pose::new(scene, kept)?, &mut Cost::default())?;
-    // the modal tier always has one
+    // the modal model always has one
     choice.impact.map_or_else(|| scene.impact_of(Some(0), kept), Ok)
 }
 
-/// The modal tier.
+/// The modal model.
 pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidInput> {
     if chooses_modes(pose.scene) && pose.approaches() {
         settle::settle(pose, cost)
@@ -166,7 +166,7 @@ pub(super) fn modal(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, InvalidI
     }
 }
 
-/// A tier that was requested; `Err` inside says why it cannot be had.
+/// A model that was requested; the inner `Err` states why it is not available.
 pub(super) fn forced_tier(model: Model, pose: &mut Pose, cost: &mut Cost) -> Tried {
     match model {
         Model::Rigid => rigid::forced(pose, cost),

@@ -1,4 +1,4 @@
-//! Every tier side by side.
+//! Comparison of all models.
 
 use serde::Serialize;
 
@@ -7,40 +7,40 @@ use super::pose::Pose;
 use super::{Answer, Cost, Kept, Model};
 use crate::scene::{InvalidInput, Scene, modal_only};
 
-/// What [`Scene::compare`] found.
+/// The result of [`Scene::compare`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// What the automatic choice answers.
+    /// The answer of the automatic choice.
     pub chosen: Answer,
-    /// The tier with the smallest uncertainty, against which the others are set.
+    /// The model with the smallest uncertainty, with which the others are compared.
     pub best: Model,
-    /// Each tier.
+    /// Each model.
     pub tiers: Vec<Tier>,
 }
 
 impl Comparison {
-    /// Whether it is not known what the truncated modes change in the best tier.
+    /// Whether the effect of the truncated modes in the best model is unknown.
     pub(super) fn best_leaves_modes_out(&self) -> bool {
         let best = self.tiers.iter().filter(|tier| tier.model == self.best);
         best.filter_map(|tier| tier.answer.as_ref()).any(|answer| answer.uncertainty.modes_left_out.is_none())
     }
 }
 
-/// One tier.
+/// One model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tier {
-    /// The tier.
+    /// The model.
     pub model: Model,
-    /// What it answers; null if it cannot be had.
+    /// Its answer; null if it is not available.
     pub answer: Option<Answer>,
-    /// Why it cannot be had.
+    /// The reason why it is not available.
     pub refused: Option<String>,
-    /// Its restitution less that of the best tier.
+    /// Its restitution minus that of the best model.
     pub difference: Option<f64>,
 }
 
 impl Scene {
-    /// Answers the scene by every model, whatever it asks for.
+    /// Solves the scene with every model, whichever it requests.
     ///
     /// # Errors
     /// As [`Scene::answer`], for the scene with `"model": "auto"`.
@@ -51,7 +51,7 @@ impl Scene {
         let this = self.as_answered(Some(&chosen));
         let (mut tiers, mut kept) = (Vec::new(), Kept::default());
         for model in [Model::Rigid, Model::Emoc, Model::InfiniteBeam, Model::Modal] {
-            // the tiers see what was requested, because being asked for widens what they accept
+            // the models accept a wider range of scenes if they are requested
             let scene = Scene { model, ..this.clone() };
             let found = match (scene.is_infinite(), modal_only(&scene)) {
                 (true, _) if model == Model::InfiniteBeam => Ok(chosen.clone()),

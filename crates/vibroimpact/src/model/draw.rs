@@ -1,4 +1,4 @@
-//! One draw among many: the restitution, without a word on how well it is known.
+//! One draw among many: the restitution without an uncertainty.
 
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::Settings;
@@ -8,11 +8,11 @@ use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
 
-/// Tolerance of the solver where the scene states none: no draw is told by itself, and the scatter of a thousand is
-/// a hundred times as large.
+/// Tolerance of the solver if the scene states none. No single draw is reported, and the scatter of a thousand draws is a hundred
+/// times as large.
 const TOLERANCE: f64 = 1e-4;
 
-/// What one impact of many came to.
+/// The result of one impact among many.
 pub(crate) struct Draw {
     pub model: Model,
     pub outcome: &'static str,
@@ -30,8 +30,8 @@ impl From<Answer> for Draw {
 }
 
 impl Scene {
-    /// Solves one draw of many. Stated modes are solved once, at [`TOLERANCE`] where the scene states none; whatever else
-    /// is answered as usual.
+    /// Solves one draw of many. A scene with stated modes is solved once, at [`TOLERANCE`] if it states none; all other scenes are
+    /// solved as usual.
     pub(crate) fn draw_with(&self, kept: &mut Kept) -> Result<Draw, InvalidInput> {
         let stated = modal_only(self).is_some() || !chooses_modes(self);
         if self.is_infinite() || !matches!(self.model, Model::Auto | Model::Modal) || !stated {

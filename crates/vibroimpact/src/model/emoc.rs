@@ -1,12 +1,12 @@
-//! The net law: one contact for light strikers, a ride on the slow motion for heavy ones (chapter 7's study of laws).
+//! The net law: a single contact for light strikers, common motion with the slow modes for heavy ones (chapter 7's study of laws).
 //!
 //! ```text
 //! Z_w = m sum phi_k^2 exp(-(c omega_k tau)^2),    A = exp(-q Z_w),    e = A + (1 - A) max_j m psi_j^2
 //! ```
 //!
 //! `tau` is the duration of a contact with an immovable surface, `psi_j` the modes of the structure with the striker
-//! attached ([`largest_share`]). It beats the thesis's three-parameter form on every beam of chapter 7, with one set of
-//! parameters for all.
+//! attached ([`largest_share`]). It is more accurate than the thesis's three-parameter form on every beam of chapter 7, with one
+//! set of parameters for all.
 
 use vibroimpact_sim::modal::Mode;
 
@@ -18,26 +18,26 @@ use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
 
-/// Parameters of the law, and how well they predict impacts on beams that they were not fitted to.
+/// Parameters of the law, and their accuracy for beams to which they were not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Validated {
-    /// How fast a mode may be and still take up an impulse.
+    /// Determines up to which frequency a mode takes up an impulse.
     pub c: f64,
-    /// How much of the impulse the modes keep.
+    /// Determines the share of the impulse that the modes keep.
     pub q: f64,
-    /// 95 of 100 predictions for a beam left out of the fit err by less.
+    /// Error that 95 of 100 predictions for a beam left out of the fit do not exceed.
     pub error_95: f64,
     /// The largest error of such a prediction.
     pub largest_error: f64,
-    /// Masses of the striker over that of the beam.
+    /// Validated range of the striker's mass over that of the beam.
     pub mass_ratios: [f64; 2],
-    /// Damping ratios.
+    /// Validated range of damping ratios.
     pub damping_ratios: [f64; 2],
-    /// Speeds (m/s).
+    /// Validated range of speeds (m/s).
     pub speeds_m_s: [f64; 2],
 }
 
-/// From `cargo xtask study-auto`, which fits and validates the law anew and states both beside these.
+/// From `cargo xtask study-auto`, which fits and validates the law again and compares the results with these values.
 pub const VALIDATED: Validated = Validated {
     c: 0.300,
     q: 2.951,
@@ -48,7 +48,7 @@ pub const VALIDATED: Validated = Validated {
     speeds_m_s: [0.05, 5.0],
 };
 
-/// Modes with `exp(-(c omega tau)^2)` below `exp(-FAST)` take up nothing.
+/// Modes with `exp(-(c omega tau)^2)` below `exp(-FAST)` are neglected.
 const FAST: f64 = 30.0;
 
 /// The law's restitution for a striker of mass `mass_kg`, a contact of `duration_s` at a wall, and the modes of a
@@ -61,7 +61,7 @@ pub fn law(c: f64, q: f64, mass_kg: f64, duration_s: f64, modes: &[Mode]) -> f64
     first + (1.0 - first) * largest_share(mass_kg, modes)
 }
 
-/// Whether a scene is of the class that the law was validated for; if not, why.
+/// Checks that a scene is of the class for which the law was validated; if not, states the reason.
 fn class(pose: &Pose) -> Result<Result<(), String>, InvalidInput> {
     let Source::Beam { beam, .. } = &pose.source else {
         return Ok(Err("the law was validated for beams".to_owned()));
@@ -78,11 +78,11 @@ fn class(pose: &Pose) -> Result<Result<(), String>, InvalidInput> {
     } else if built.rigid_body_count() > 0 {
         "the law was validated for beams that are held".to_owned()
     } else if !within(ratio, VALIDATED.mass_ratios) {
-        format!("a striker of {} times the mass of the beam is outside what the law was validated for", small(ratio))
+        format!("a striker of {} times the mass of the beam is outside the validated range of the law", small(ratio))
     } else if !within(damping, VALIDATED.damping_ratios) {
-        format!("a damping ratio of {} is outside what the law was validated for", small(damping))
+        format!("a damping ratio of {} is outside the validated range of the law", small(damping))
     } else if !within(pose.striker.speed_m_s, VALIDATED.speeds_m_s) {
-        format!("a speed of {} m/s is outside what the law was validated for", small(pose.striker.speed_m_s))
+        format!("a speed of {} m/s is outside the validated range of the law", small(pose.striker.speed_m_s))
     } else {
         return Ok(Ok(()));
     };

@@ -1,14 +1,14 @@
-//! How many modes will do, before any impact is solved.
+//! A guess of the number of modes before any impact is solved.
 //!
-//! With remainder modes for all others, the restitution converges in the number `N` of modes, fast once mode `N` is fast
-//! against the contact: with `k` the contact's stiffness and `c_N` the compliance left out, once
+//! With remainder modes for all others, the restitution converges in the number `N` of modes, and quickly once mode `N` is fast
+//! compared with the contact: with `k` the contact's stiffness and `c_N` the compliance of the truncated modes, once
 //!
 //! ```text
 //! R(N) = omega_N^2 / ( k (1/m + 3 c_N omega_N^2) )
 //! ```
 //!
-//! is large (`3 c_N omega_N^2` is what the modes up to `N` of a beam add to the inverse mass at the location). The guess is
-//! the `N` at which `R` is a power of the tolerance; see `cargo xtask study-auto` for how well it does.
+//! is large (`3 c_N omega_N^2` is the contribution of the modes up to `N` of a beam to the inverse mass at the location). The
+//! guess is the `N` at which `R` equals a power of the tolerance; `cargo xtask study-auto` measures its accuracy.
 
 use vibroimpact_sim::modal::Mode;
 
@@ -17,20 +17,20 @@ use super::pose::{MOST_MODES, Pose, Source};
 use crate::scene::compliance;
 use crate::scene::{BeamTheory, InvalidInput};
 
-/// From one number of modes to the next.
+/// Factor from one number of modes to the next.
 pub(super) const RAISE: f64 = std::f64::consts::SQRT_2;
-/// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, whose `c_N` falls as
-/// `1/omega_N` only while remainder modes do as well as for the others; and of all else, where `R` grows no faster than the
-/// number of modes. It converges at about twice the number: from too few it takes one step more, from too many every step
-/// costs too much.
+/// `R` at the guess, `first / tolerance^order`: by Euler-Bernoulli's theory; by Timoshenko's, for which `c_N` decreases only as
+/// `1/omega_N`, while remainder modes are as good as for the others; and for all other structures, for which `R` grows no faster
+/// than the number of modes. The restitution converges at about twice the number. A guess that is too small costs one step more;
+/// with one that is too large every step is too expensive.
 const TARGET: [f64; 2] = [0.2, 0.47];
 const TARGET_WITH_SHEAR: [f64; 2] = [0.4, 0.3];
 const TARGET_OF_OTHERS: [f64; 2] = [0.1, 0.47];
-/// Fewest modes to begin with, besides rigid-body motions.
+/// Smallest number of modes at the start, in addition to rigid-body motions.
 const FEWEST: usize = 4;
 
-/// `R(N)` where the modes up to `omega_N` add so much to the inverse mass of the striker. The stiffness is that at the
-/// compression which the contact reaches on both together.
+/// `R(N)` for this contribution of the modes up to `omega_N` to the inverse mass of the striker. The stiffness is that at the
+/// largest compression of the striker with this effective mass.
 fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
     let (wall, striker) = (&pose.wall, &pose.striker);
     let square = omega_rad_s * omega_rad_s;
@@ -41,7 +41,7 @@ fn resolution(pose: &Pose, omega_rad_s: f64, added: f64) -> f64 {
     square / (wall.stiffness_n_m * softer.powf(wall.exponent - 1.0) * inverse_mass)
 }
 
-/// The number of modes that is expected to do, before any is computed: on average over a beam's length, the modes up
+/// The expected number of modes, before any is computed: on average over a beam's length, the modes up
 /// to wave number `k` have the density `1/(pi m')` in `k`, and `omega_n = (n pi / sum l (m'/EI)^(1/4))^2`.
 fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
     let (beam, location_m) = match &pose.source {
@@ -73,13 +73,13 @@ fn expected(pose: &Pose, target: f64) -> Result<usize, InvalidInput> {
     Ok(enough.unwrap_or(MOST_MODES))
 }
 
-/// The number of modes with which to begin, and the one with which the restitution may have converged.
+/// The number of modes at the start, and the one with which the restitution may have converged.
 pub(super) fn guess(pose: &mut Pose, cost: &mut Cost) -> Result<(usize, usize), InvalidInput> {
     let found = resolving(pose, 1.0, cost)?;
     Ok((fewer(found), found))
 }
 
-/// The number of modes at which `R` is so many times that of the guess.
+/// The number of modes at which `R` is this multiple of that of the guess.
 pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<usize, InvalidInput> {
     let [first, order] = match pose.scene.structure.bending_theory() {
         Some(BeamTheory::Timoshenko) => TARGET_WITH_SHEAR,
@@ -107,11 +107,11 @@ pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<
             None => computed = (computed + computed / 4 + 1).min(most),
         }
     };
-    // room for two further steps: a single change would not tell whether the restitution has converged
+    // two further steps must be possible, since a single change does not show whether the restitution has converged
     Ok(found.min(most.div_ceil(2)))
 }
 
-/// `R` at a number of modes, beside these remainder modes.
+/// `R` at a number of modes, with these remainder modes.
 pub(super) fn resolution_of(
     pose: &mut Pose,
     count: usize,

@@ -1,4 +1,4 @@
-//! The modal problem of a scene, whoever states the number of its modes.
+//! The modal problem of a scene, with a stated or chosen number of modes.
 
 use vibroimpact_sim::modal::{self, Settings};
 
@@ -8,11 +8,11 @@ use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes};
 
 impl Scene {
-    /// The structure as the solver sees it: its modes at the point of impact and, as far as the scene asks for them, a few
-    /// remainder modes for all others. See [`Scene::impact`] for `"modes": "auto"`.
+    /// The structure as input of the solver: its modes at the point of impact and, if the scene requests them, a few remainder modes
+    /// for all others. See [`Scene::impact`] for `"modes": "auto"`.
     ///
     /// # Errors
-    /// A value out of range, or fields of which too few or too many are given.
+    /// A value out of range, or too few or too many fields.
     pub fn structure(&self) -> Result<modal::Structure, InvalidInput> {
         if let Structure::DroppedRod(rod) = &self.structure {
             return Ok(self.drop(rod, Settings::default())?.structure);
@@ -24,9 +24,9 @@ impl Scene {
         }
     }
 
-    /// The whole scene in the terms of the modal solver. Where the program chooses the modes, with as many as the
-    /// restitution needs to converge, which takes a few solves; [`Scene::choose`](crate::Scene::choose) states how well
-    /// it converged, and whether another model would do.
+    /// The whole scene as input of the modal solver. If the program chooses the modes, their number is the one that the restitution
+    /// needs to converge, which takes a few solutions. [`Scene::choose`](crate::Scene::choose) states the accuracy of the convergence,
+    /// and whether another model is sufficient.
     ///
     /// # Errors
     /// As [`Scene::structure`].

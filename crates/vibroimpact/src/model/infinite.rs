@@ -1,4 +1,4 @@
-//! A contact that ends before a wave has come back from an end: the infinite beam.
+//! The infinite beam, for contacts that end before a wave returns from an end.
 //!
 //! *Damping.* Modes of one damping ratio `zeta` make, on a beam without ends, the impulse response
 //!
@@ -7,22 +7,22 @@
 //! w = sqrt(EI/m') k^2,
 //! ```
 //!
-//! that of an undamped beam (thesis Eq. 2.1) with another constant. So a damped beam has its infinite beam too, exactly.
+//! that of an undamped beam (thesis Eq. 2.1) with another constant. An infinite beam can therefore represent damping exactly.
 //!
-//! *Ends.* A wave of frequency `w` travels at `c_g = 2 sqrt(w) (EI/m')^(1/4)` and is back from an end at distance `d`
-//! after `2 d/c_g`. Within a contact of duration `tau` this leaves out frequencies below `z/tau`, with
+//! *Ends.* A wave of frequency `w` travels at `c_g = 2 sqrt(w) (EI/m')^(1/4)` and returns from an end at distance `d` after
+//! `2 d/c_g`. Within a contact of duration `tau`, waves with frequencies below `z/tau` do not return, with
 //!
 //! ```text
 //! z = d^2 / (sqrt(EI/m') tau).
 //! ```
 //!
-//! A beam of Euler and Bernoulli has no greatest speed, so what comes back in time is small but not nothing: what a
-//! tolerance lets matter are waves up to the frequency `z/tau` whose `z` makes the bound below equal to it. Everything
-//! is similar in `z`, the damping and the number `S` of thesis Eq. 2.8; [`reflection_bound`] holds for every `S`.
+//! In Euler-Bernoulli's theory wave speeds have no upper bound, so the returning waves are small but not zero. The waves relevant
+//! to a tolerance are those up to the frequency `z/tau` for which the bound below equals the tolerance. The problem depends only
+//! on `z`, the damping and the number `S` of thesis Eq. 2.8; [`reflection_bound`] holds for every `S`.
 //!
-//! *Later contacts.* The striker leaves at `e v`. Until `z` at the time elapsed has fallen to 2 the location moves away
-//! from it as on the infinite beam; afterwards it never comes back further than `W = sum phi_k^2 P/omega_k` beyond
-//! where it started, `P` the impulse. If the striker is then out of reach, it stays so.
+//! *Later contacts.* The striker leaves at `e v`. Until `z` at the elapsed time has decreased to 2 the location moves away from it
+//! as on the infinite beam. Afterwards it never moves further than `W = sum phi_k^2 P/omega_k` beyond its start, where `P` is the
+//! impulse. If the striker is then out of reach, it stays so.
 
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Outcome};
@@ -37,16 +37,16 @@ use crate::scene::{End, InvalidInput, Scene};
 
 /// Times and distances from which [`reflection_bound`] holds.
 const LEAST_Z: f64 = 2.0;
-/// What waves that come back change at `z = 1`; see [`reflection_bound`].
+/// Effect of returning waves at `z = 1`; see [`reflection_bound`].
 const WAVES: f64 = 10.0;
 /// Above this `S` the striker does not leave an infinite beam after one contact (thesis 2.2.6: 1.559).
 const CRITICAL_S: f64 = 1.560;
-/// Error of the infinite beam's own solution, as a share of the change of speed.
+/// Error of the solution for the infinite beam, as a share of the change of speed.
 const SOLVER: f64 = 1e-7;
 /// Modes summed one by one for the reach of the location.
 const SUMMED: usize = 24;
 
-/// How an end sends waves back.
+/// Reflection of waves by an end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reflection {
     /// As one image of the source: a pinned or guided end.
@@ -66,9 +66,9 @@ impl From<End> for Reflection {
 
 /// Largest change of the restitution of one contact by an end, for `z` of at least 2; infinite below.
 ///
-/// The powers follow from the smoothness of the force; where damping is by modes, a clamped or free end also answers
-/// slowly and from afar. The factors are twice the largest found in resolved impacts on beams of all four ends, `S`
-/// from 1e-5 to 1.2, damping ratios up to 0.1 and `z` up to 32 (`tests/model.rs` goes through them again).
+/// The powers follow from the smoothness of the force; with modal damping a clamped or free end also has a slow and distant
+/// response. The factors are twice the largest in resolved impacts on beams with all four ends, `S` from 1e-5 to 1.2, damping
+/// ratios up to 0.1 and `z` up to 32 (`tests/model.rs` computes them again).
 pub fn reflection_bound(end: Reflection, z: f64, damping_ratio: f64) -> f64 {
     if !(z >= LEAST_Z && damping_ratio <= 0.1) {
         return f64::INFINITY;
@@ -80,7 +80,7 @@ pub fn reflection_bound(end: Reflection, z: f64, damping_ratio: f64) -> f64 {
     }
 }
 
-/// A uniform beam with its place.
+/// A uniform beam with the location of impact.
 struct Uniform {
     rigidity: f64,
     mass_per_length: f64,
@@ -90,7 +90,7 @@ struct Uniform {
 }
 
 impl Uniform {
-    /// The beam of a scene with Hertz contact, or why there is none.
+    /// The beam of a scene with Hertz contact, or the reason why there is none.
     fn new(pose: &Pose) -> Result<Result<Uniform, String>, InvalidInput> {
         let Source::Beam { beam, location_m, .. } = &pose.source else {
             return Ok(Err("the structure is not a beam of segments".to_owned()));
@@ -99,7 +99,7 @@ impl Uniform {
             return Ok(Err("the infinite beam is solved for hertz contact".to_owned()));
         }
         if let Some(more) = beam.beyond_slender().map_err(|fault| fault.within("structure"))? {
-            return Ok(Err(format!("the beam has {more}, the infinite beam has not")));
+            return Ok(Err(format!("the beam has {more}, unlike the infinite beam")));
         }
         let built = beam.to_beam().map_err(|fault| fault.within("structure"))?;
         let Some(first) = built.segments.first() else { return Ok(Err("there is no beam".to_owned())) };
@@ -137,14 +137,14 @@ impl Uniform {
         })
     }
 
-    /// What both ends may change in a contact of this duration, and the smaller `z`.
+    /// Bound on the effect of both ends in a contact of this duration, and the smaller `z`.
     fn reflections(&self, duration_s: f64) -> (f64, f64) {
         let z = self.distances.map(|d| d * d / (self.spread() * duration_s));
         let bound = |i: usize| reflection_bound(self.ends[i].into(), z[i], self.damping_ratio);
         (bound(0) + bound(1), z[0].min(z[1]))
     }
 
-    /// The fastest waves that matter to a contact of this duration, and when they are back from the nearer end.
+    /// The fastest relevant waves for a contact of this duration, and the time at which they return from the nearer end.
     fn first_return(&self, duration_s: f64, tolerance: f64) -> FirstReturn {
         let omega_rad_s = (WAVES / tolerance).powf(0.25).max(LEAST_Z) / duration_s;
         let group_velocity_m_s = 2.0 * (omega_rad_s * self.spread()).sqrt();
@@ -152,13 +152,13 @@ impl Uniform {
         FirstReturn { omega_rad_s, group_velocity_m_s, after_s: 2.0 * distance_m / group_velocity_m_s }
     }
 
-    /// How long the location answers as that of an infinite beam (s).
+    /// Time during which the location moves as that of an infinite beam (s).
     fn undisturbed_s(&self) -> f64 {
         self.distances[0].min(self.distances[1]).powi(2) / (LEAST_Z * self.spread())
     }
 }
 
-/// The fastest waves that matter at a tolerance.
+/// The fastest waves that are relevant at a tolerance.
 struct FirstReturn {
     omega_rad_s: f64,
     group_velocity_m_s: f64,
@@ -168,8 +168,8 @@ struct FirstReturn {
 impl FirstReturn {
     fn text(&self, duration_s: f64) -> String {
         format!(
-            "waves that matter, up to {} rad/s, travel at {} m/s at most and are back from an end after {} s, the last \
-             contact ends after {} s",
+            "relevant waves, up to {} rad/s, travel at {} m/s at most and return from an end after {} s; the last contact \
+            ends after {} s",
             small(self.omega_rad_s),
             small(self.group_velocity_m_s),
             small(self.after_s),
@@ -178,7 +178,7 @@ impl FirstReturn {
     }
 }
 
-/// How far the location of impact can come back towards the striker after an impulse (m).
+/// Largest displacement of the location of impact towards the striker after an impulse (m).
 fn reach(modes: &[Mode], impulse: f64, beam_mass: f64) -> f64 {
     let elastic = || modes.iter().filter(|mode| mode.omega_rad_s > 0.0);
     let summed: f64 = elastic().map(|mode| mode.shape.powi(2) * impulse / mode.omega_rad_s).sum();
@@ -189,7 +189,7 @@ fn reach(modes: &[Mode], impulse: f64, beam_mass: f64) -> f64 {
     summed + beyond
 }
 
-/// The infinite beam, if nothing from the ends can change the restitution by more than the tolerance.
+/// The infinite beam, if the ends cannot change the restitution by more than the tolerance.
 pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     let beam = match Uniform::new(pose)? {
         Ok(beam) => beam,
@@ -253,7 +253,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let beam_mass = beam.mass_per_length * (beam.distances[0] + beam.distances[1]);
     let reach = reach(modes, impulse, beam_mass);
     let departs = ratio.unwrap_or(0.0) * speed * (beam.undisturbed_s() - duration_s);
-    // twice: from where it was left to where it started, and beyond
+    // twice: from the location at separation to the start, and beyond it
     let free = solution.sub_impacts.len() == 1 && departs > 2.0 * reach;
 
     // relative to the rigid-body motion of the beam, as elsewhere
@@ -261,11 +261,11 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let restitution = ratio.map(|ratio| (1.0 + ratio) * relative - 1.0);
     let known = match restitution.filter(|_| free && bound.is_finite()) {
         Some(_) => Known::new(pose.scene, Some(relative * SOLVER), Ok(relative * bound)),
-        None => Known::nothing("no part: what the ends of the beam send back is not bounded"),
+        None => Known::nothing("no part: the effect of waves from the ends of the beam is not bounded"),
     };
     let uncertainty = known.uncertainty.whole();
     let evidence = format!(
-        "one contact, S = {}; {}; faster ones are back within it from an end (z = {}), which changes the restitution by \
+        "one contact, S = {}; {}; faster waves return from an end within it (z = {}), which changes the restitution by \
          {} at most",
         small(groups.s),
         beam.first_return(duration_s, pose.tolerance).text(duration_s),
@@ -301,7 +301,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     Ok(Ok((Choice { answer, impact: None }, uncertainty)))
 }
 
-/// A structure that has no ends to begin with.
+/// An infinite structure.
 pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInput> {
     scene.require_infinite_model()?;
     let (_, solution) = scene.solve_infinite()?;
@@ -309,7 +309,7 @@ pub(super) fn of_infinite_structure(scene: &Scene) -> Result<Choice, InvalidInpu
 }
 
 impl Scene {
-    /// Refuses a model that structures without ends do not have.
+    /// Rejects models that do not apply to infinite structures.
     pub(crate) fn require_infinite_model(&self) -> Result<(), InvalidInput> {
         if matches!(self.model, Model::Auto | Model::InfiniteBeam) {
             return Ok(());
@@ -318,7 +318,7 @@ impl Scene {
         Err(InvalidInput::new("model", value, "auto or infinite-beam for a structure without ends"))
     }
 
-    /// The solution for a structure without ends, as an answer.
+    /// The solution for an infinite structure as an answer.
     pub(crate) fn infinite_answer(&self, solution: &infinite::Solution) -> Answer {
         let restitution = solution.rebound_ratio();
         // relative to the change of speed
@@ -331,7 +331,7 @@ impl Scene {
         let told =
             solution.s.map_or_else(|| format!("{} contact", self.contact.law_name()), |s| format!("S = {}", small(s)));
         let reason = format!("the structure is an {kind}: {told}");
-        // no mode is left out
+        // there are no truncated modes
         let known = Known::new(self, uncertainty, Ok(0.0)).of(restitution);
         Answer {
             outcome: solution.outcome.as_str(),

@@ -1,4 +1,4 @@
-//! What one scene leaves for the next: the modes of its beam, the tables of its solvers.
+//! Cache from scene to scene: the modes of beams and the tables of solvers.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -8,12 +8,12 @@ use vibroimpact_sim::modal::{Solver, Structure};
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, KnownModes};
 
-/// Modes in the tables that are kept, in all; about 5 kB each.
+/// Largest total number of modes in cached tables; about 5 kB each.
 const MOST_MODES: usize = 2000;
 
-/// Modes and tables of the scenes answered last, for [`Scene::answer_with`](crate::Scene::answer_with). Scenes of one
-/// beam share its modes, and impacts at one place of it the tables of the solver, which cost about as much as an impact.
-/// No result depends on what is kept, to the last bit.
+/// Cached modes and tables of the last scenes, for [`Scene::answer_with`](crate::Scene::answer_with). Scenes with the same beam
+/// share its modes. Impacts at the same location share the tables of the solver, which cost about as much as an impact. Results do
+/// not depend on the cache, to the last bit.
 ///
 /// ```
 /// use vibroimpact::{Scene, model::Kept};
@@ -35,11 +35,11 @@ const MOST_MODES: usize = 2000;
 pub struct Kept {
     pub(crate) modes: KnownModes,
     solvers: VecDeque<(Structure, Solver)>,
-    /// Whether locations of impact hardly ever come again.
+    /// Whether locations of impact hardly ever recur.
     passing: bool,
 }
 
-/// Solvers that are kept where locations hardly ever come again: a group of draws for indices has two locations.
+/// Number of cached solvers if locations hardly ever recur: a group of draws for indices has two locations.
 const PASSING: usize = 2;
 
 impl fmt::Debug for Kept {
@@ -49,17 +49,18 @@ impl fmt::Debug for Kept {
 }
 
 impl Kept {
-    /// For scenes of one beam whose locations hardly ever come again: few tables are kept, and turned from location to location.
+    /// A cache for scenes of one beam whose locations hardly ever recur: few tables are stored, and converted from location to
+    /// location.
     pub(crate) fn passing() -> Kept {
         Kept { passing: true, ..Kept::default() }
     }
 
-    /// Forgets all that is kept.
+    /// Empties the cache.
     pub(crate) fn clear(&mut self) {
         *self = Kept { passing: self.passing, ..Kept::default() };
     }
 
-    /// A solver for a structure, with the tables that it has from before.
+    /// A solver for a structure, with its cached tables.
     pub(crate) fn solver(&mut self, structure: &Structure) -> Result<&Solver, InvalidInput> {
         let known = self.solvers.iter().position(|(kept, _)| kept == structure);
         let last = match known.and_then(|place| self.solvers.remove(place)) {
@@ -79,7 +80,7 @@ impl Kept {
         };
         let mut modes = last.0.modes.len();
         self.solvers.push_front(last);
-        // those used last, as far as there is room
+        // the most recently used ones, up to the limit
         let fit = self.solvers.iter().skip(1).take_while(|(structure, _)| {
             modes += structure.modes.len();
             modes <= MOST_MODES

@@ -1,28 +1,29 @@
 //! The possible change of a restitution by the truncated modes, estimated from impacts with other numbers of modes.
 //!
-//! Two numbers of modes may agree by accident; the more impacts are compared, the rarer that is. With `d_1` the last
-//! change and `d_2` the one before,
+//! Two numbers of modes may agree by accident, which is rarer the more impacts are compared. With `d_1` the last change and `d_2`
+//! the one before,
 //!
 //! ```text
 //! u = max( 2 d_1, d_2, e_r, d_s ) + d_c,      e_r = 10 E_r / E max(1, R^(-1/2)).
 //! ```
 //!
-//! `E_r/E` is the share of the striker's energy that the remainder modes hold after the impact. They answer slow forces as
-//! the truncated modes do; if they vibrate, the force was too fast for that. This share is known from one impact alone, and
-//! detects most accidents. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
-//! remainder modes; the modes within its spectrum are then more by a factor of up to `R^(-1/2)`. `d_s`, for lists, is the
-//! change with a single remainder mode in place of several, because the extrapolation of a list is an assumption. `d_c` is the change if the static compliance, which all of them share, is
-//! greater by its uncertainty; it is zero if that has a closed form.
+//! `E_r/E` is the share of the striker's energy that the remainder modes have after the impact. They respond to slow forces like
+//! the truncated modes; if they vibrate, the force was too fast for them. This share is known from one impact alone, and detects
+//! most accidental agreements. A contact much shorter than the period of the last mode, `R(N) < 1` (`guess.rs`), hardly moves the
+//! remainder modes; the number of modes within its spectrum is then larger by a factor of up to `R^(-1/2)`. `d_s`, for lists, is
+//! the change with a single remainder mode in place of several, because the extrapolation of a list is an assumption. `d_c` is the
+//! change if the static compliance, which all numbers of modes share, is larger by its uncertainty; it is zero if the compliance
+//! has a closed form.
 //!
-//! Where a list of modes ends before that, its last remainder modes answer forces for which they are not made, and their energy
-//! is part of the motion. With the last three changes,
+//! If a list of modes ends before the restitution has converged, its last remainder modes are used beyond their range, and their
+//! energy is part of the motion. With the last three changes,
 //!
 //! ```text
 //! u = max( 4 d_1, 4 d_2, 4 d_3, d_s ) + d_c,
 //! ```
 //!
-//! and `e_r` counts only if `d_1` is the largest, or `R < 0.1`: changes that grow, or between numbers of modes that are all
-//! far too small, tell nothing of their limit.
+//! and `e_r` counts only if `d_1` is the largest, or `R < 0.1`: changes that grow, or that occur between numbers of modes which are
+//! all far too small, contain no information about their limit.
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
@@ -34,19 +35,19 @@ const CAUTION: f64 = 2.0;
 const OF_ENERGY: f64 = 10.0;
 /// Weight of the largest difference between the speeds of flight of two impacts.
 const FLIGHTS: f64 = 0.5;
-/// Weight of changes at the end of a list, where no further number of modes can tell whether two agree by accident.
+/// Weight of changes at the end of a list, where no further number of modes can show whether two agree by accident.
 const CAUTION_AT_THE_END: f64 = 4.0;
-/// `R` from which on changes at the end of a list tell of their limit.
+/// `R` from which on changes at the end of a list are informative.
 const RESOLVED: f64 = 0.1;
 /// Weight of the change before the last.
 const EARLIER: f64 = 0.5;
 
-/// What differs between two solutions.
+/// Differences between two solutions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Change {
-    /// In the restitution; 1 where only one of them has any.
+    /// Of the restitution; 1 if only one of them has a restitution.
     pub restitution: f64,
-    /// In the speed of a flight between two contacts, as a share of the speed of impact.
+    /// Of the speed of a flight between two contacts, as a share of the speed of impact.
     pub flights: f64,
 }
 
@@ -66,18 +67,18 @@ impl Change {
         self.restitution.max(FLIGHTS * self.flights)
     }
 
-    /// What truncated modes may change after this change from fewer modes.
+    /// Possible change by the truncated modes, from this change from fewer modes.
     pub fn left_out(self, before: Option<Change>) -> f64 {
         CAUTION * self.size().max(EARLIER * before.unwrap_or_default().size())
     }
 }
 
-/// How many times more a contact moves that hardly moves the remainder modes.
+/// Factor for a contact that is so short that it hardly moves the remainder modes.
 pub(super) fn too_short(resolution: f64) -> f64 {
     if resolution < 1.0 { resolution.max(f64::MIN_POSITIVE).powf(-0.5) } else { 1.0 }
 }
 
-/// What truncated modes may change at the end of a list, from its changes, the latest first.
+/// Possible change by the truncated modes at the end of a list, from its changes, the latest first.
 pub(super) fn at_the_end(changes: &[f64], energy: f64, resolution: f64) -> f64 {
     let Some((latest, before)) = changes.split_first() else { return 1.0 };
     let before = before.iter().take(2).copied().fold(0.0, f64::max);
@@ -97,17 +98,17 @@ fn flights(solution: &Solution, momentum_n_s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// How far the flights of one impact are from the nearest of another, at most.
+/// Largest difference between the flights of one impact and the nearest ones of another.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     let nearest = |x: &f64, of: &[f64]| of.iter().map(|y| (x - y).abs()).fold(f64::INFINITY, f64::min);
     let directed = |of: &[f64], to: &[f64]| of.iter().map(|x| nearest(x, to)).fold(0.0, f64::max);
     if a.is_empty() && b.is_empty() { 0.0 } else { directed(a, b).max(directed(b, a)) }
 }
 
-/// What the energy that the last modes of a structure, its remainder modes, hold after the impact tells of them.
+/// The estimate from the energy of the remainder modes, the last modes of a structure, after the impact.
 pub(super) fn energy_of_remainder(structure: &Structure, remainder: usize, after: &Solution, striker: &Striker) -> f64 {
     let from = structure.modes.len() - remainder;
-    // in units of the striker's speed, so that no square leaves the range of numbers
+    // in units of the striker's speed, so that no square overflows or underflows
     let unit = striker.speed_m_s * striker.mass_kg.sqrt();
     let motion = structure.modes.iter().zip(&after.amplitude).zip(&after.rate).skip(from);
     let energy: f64 =
@@ -115,7 +116,7 @@ pub(super) fn energy_of_remainder(structure: &Structure, remainder: usize, after
     if energy.is_finite() { OF_ENERGY * energy } else { 0.0 }
 }
 
-/// The structure with a single mode in the place of its remainder modes, of the same first two moments
+/// The structure with a single mode in place of its remainder modes, with the same first two moments
 /// `sum phi^2 / omega^(2j)`.
 pub(super) fn with_one_remainder_mode(structure: &Structure, remainder: usize) -> Structure {
     let (kept, tail) = structure.modes.split_at(structure.modes.len() - remainder);
@@ -130,7 +131,7 @@ pub(super) fn with_one_remainder_mode(structure: &Structure, remainder: usize) -
     Structure { modes }
 }
 
-/// The structure with remainder modes whose static compliance is greater by so much (m/N).
+/// The structure with remainder modes whose static compliance is larger by this amount (m/N).
 pub(super) fn with_softer_remainder(structure: &Structure, remainder: usize, by_m_n: f64) -> Structure {
     let mut modes = structure.modes.clone();
     let from = modes.len() - remainder;
@@ -152,7 +153,7 @@ mod tests {
     fn impacts_are_as_far_apart_as_their_flights() {
         assert_eq!(distance(&[], &[]), 0.0);
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.5]), 0.0);
-        // a third contact that changes nothing in the end
+        // a third contact that does not change the result
         assert_eq!(distance(&[1.0, 1.5], &[1.0, 1.25, 1.5]), 0.25);
         assert_eq!(distance(&[1.0], &[]), f64::INFINITY);
     }

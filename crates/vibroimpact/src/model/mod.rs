@@ -1,14 +1,14 @@
-//! The choice of the model: a scene and an accuracy in, the cheapest model that reaches it out.
+//! The choice of the model: the cheapest model that reaches the requested accuracy for a scene.
 //!
-//! | tier | what it assumes | chosen where |
+//! | model | assumption | chosen if |
 //! |---|---|---|
-//! | [`Model::Rigid`] | the location cannot move | a bound on the energy that the structure can take up says so |
-//! | [`Model::InfiniteBeam`] | no wave comes back from an end | the contact ends first, and the striker is never caught again |
-//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | everywhere else; raised until the restitution has converged |
-//! | [`Model::Emoc`] | no motion in time | asked for, or the tolerance is as wide as the law's validated error |
+//! | [`Model::Rigid`] | the location cannot move | a bound on the energy that the structure can take up proves it |
+//! | [`Model::InfiniteBeam`] | no wave returns from an end | the contact ends earlier, and the beam never reaches the striker again |
+//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | all other cases; the number of modes is raised until the restitution has converged |
+//! | [`Model::Emoc`] | no motion in time | it is requested, or the tolerance is as wide as the law's validated error |
 //!
-//! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] many scenes of one beam, faster), [`Scene::plan`] says what would be done, [`Scene::compare`] sets every tier
-//! beside the others. All of it is deterministic.
+//! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] is faster for many scenes of one beam), [`Scene::plan`] shows the
+//! choice in advance, [`Scene::compare`] compares all models. All of it is deterministic.
 
 mod attached;
 mod choice;
@@ -53,10 +53,10 @@ use crate::scene::BeamTheory;
 pub(crate) use crate::scene::chooses_modes;
 pub use crate::scene::{Model, Modes};
 
-/// The restitution is wanted this well where the program chooses the modes and the scene states no tolerance.
+/// Requested accuracy of the restitution if the program chooses the modes and the scene states no tolerance.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 
-/// What [`Scene::answer`] found.
+/// The result of [`Scene::answer`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Answer {
     /// The model used; never `auto`.
@@ -65,7 +65,7 @@ pub struct Answer {
     pub theory: Option<BeamTheory>,
     /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
-    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    /// The reason why it stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "crate::stop_word::word")]
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
@@ -82,23 +82,23 @@ pub struct Answer {
     pub sub_impact_count: Option<usize>,
     /// Number of modes retained.
     pub modes: usize,
-    /// Number of remainder modes integrated beside them, which represent all others; 0 where those were left out.
+    /// Number of additional remainder modes, which represent all others; 0 if there are none.
     pub remainder_modes: usize,
-    /// Static compliance of the truncated modes, with which the remainder modes answer (m/N); 0 without them.
+    /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
     /// Whether the tolerance was reached, by the theory used (for stated modes: whether the solver's part of the uncertainty is within ten
     /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
     pub settled: bool,
-    /// If it was not: largest less smallest restitution over the last numbers of modes tried.
+    /// If it was not: difference of the largest and smallest restitution over the last numbers of modes tried.
     pub spread: Option<f64>,
-    /// Why this model, and what shows that it holds.
+    /// The reason for this model, and the evidence that it holds.
     pub reason: String,
-    /// What the answer cost.
+    /// The cost of the answer.
     pub cost: Cost,
 }
 
 impl Answer {
-    /// A rebound without anything resolved, to be filled in.
+    /// A template of an answer: a rebound without resolved contacts.
     fn new(model: Model, tolerance: f64, known: uncertainty::Known, reason: String) -> Answer {
         Answer {
             model,
@@ -122,7 +122,7 @@ impl Answer {
     }
 }
 
-/// Deterministic counts of the work, summed over every solve, those that were not kept included.
+/// Deterministic counts of the work, summed over all solutions, including those that were discarded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Cost {
     /// Impacts solved.
@@ -131,7 +131,7 @@ pub struct Cost {
     pub modes_computed: u64,
     /// Steps accepted in contact.
     pub contact_steps: u64,
-    /// Steps tried in contact and taken back.
+    /// Rejected steps in contact.
     pub rejected_steps: u64,
     /// Newton iterations.
     pub newton_iterations: u64,
@@ -139,14 +139,14 @@ pub struct Cost {
     pub law_evaluations: u64,
     /// Steps of the search for the next contact.
     pub flight_steps: u64,
-    /// Steps of all kinds times modes: what the time of the modal solver is roughly proportional to.
+    /// Steps of all kinds times modes, to which the time of the modal solver is roughly proportional.
     pub mode_steps: u64,
     /// Panels of the integral equation of the infinite beam.
     pub panels: u64,
 }
 
 impl Cost {
-    /// Adds a solve with so many modes.
+    /// Adds a solution with this many modes.
     pub(crate) fn add(&mut self, counts: &Counts, modes: usize) {
         self.solves += 1;
         self.contact_steps += counts.contact_steps;

@@ -1,14 +1,14 @@
-//! What would be modelled and why, before anything costly is solved.
+//! The choice of the model and its cost, before anything costly is solved.
 //!
-//! The cost of an impact depends on its contact history: on the number of contacts and on the fastest mode that matters. No
-//! closed form gives this history. So the modal tier is tried once, at a loose tolerance and with few modes: with `s` the
-//! steps of this pilot impact and `N` the number of modes expected to do, the mode-steps of the answer lie between
+//! The cost of an impact depends on its contact history: on the number of contacts and on the fastest relevant mode. This history
+//! has no closed form. The modal model is therefore tried once, at a loose tolerance and with few modes. With `s` the steps of
+//! this pilot impact and `N` the expected number of modes, the mode-steps of the answer lie between
 //!
 //! ```text
 //! low s N tau^-q   and   high s N tau^-q,
 //! ```
 //!
-//! `tau` the tolerance, for 95 of 100 scenes; the constants are the quantiles that `cargo xtask study-auto` finds and states.
+//! for 95 of 100 scenes, where `tau` is the tolerance. The constants are quantiles from `cargo xtask study-auto`.
 
 use serde::Serialize;
 use vibroimpact_sim::modal::Settings;
@@ -23,16 +23,16 @@ use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
 
-/// The pilot impact: which part of the modes expected to do it takes and how many at least, and the solver's tolerance.
+/// The pilot impact: its share of the expected number of modes, its smallest number of modes, and the solver's tolerance.
 const PILOT_PART: usize = 2;
 const PILOT_FEWEST: usize = 6;
 const PILOT_TOLERANCE: f64 = 1e-4;
-/// Mode-steps in terms of `s N`, at least and at most, and the power `q`: where the pilot finds one contact, where it finds
-/// several (each may ask for more modes), and for modes as they are stated.
+/// Smallest and largest mode-steps in terms of `s N`, and the power `q`: if the pilot finds one contact, if it finds several (each
+/// of which may need more modes), and for stated modes.
 const ONE_CONTACT: ([f64; 2], f64) = ([0.9, 32.0], 0.06);
 const SEVERAL: ([f64; 2], f64) = ([1.1, 350.0], 0.06);
 const STATED: ([f64; 2], f64) = ([4.2, 11.0], 0.0);
-/// Rough time of a mode-step on a computer of the 2020s, of a mode (its share of the tables), and besides (s).
+/// Rough time (s) of a mode-step on a computer of the 2020s, of a mode (its share of the tables), and of the rest.
 const MODE_STEP_S: f64 = 2e-8;
 const MODE_S: f64 = 8e-6;
 const SOLVE_S: f64 = 6e-5;
@@ -40,43 +40,43 @@ const SOLVE_S: f64 = 6e-5;
 const INFINITE_S: f64 = 1e-4;
 const FORMULA_S: f64 = 3e-5;
 
-/// Tries a tier.
+/// Tries a model.
 type Certify = fn(&mut Pose, &mut Cost) -> Tried;
 
-/// What [`Scene::plan`] expects.
+/// The result of [`Scene::plan`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// The model that would be used.
     pub model: Model,
     /// Requested accuracy of the restitution.
     pub tolerance: f64,
-    /// Duration of the first contact, were the location immovable (s); null for infinite structures.
+    /// Duration of the first contact if the location were immovable (s); null for infinite structures.
     pub contact_duration_s: Option<f64>,
-    /// Each tier, the cheapest first.
+    /// Each model, the cheapest first.
     pub tiers: Vec<Estimate>,
 }
 
-/// What is expected of one tier.
+/// Expectations for one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
-    /// The tier.
+    /// The model.
     pub model: Model,
     /// Whether it reaches the tolerance.
     pub applies: bool,
-    /// Why, or why not.
+    /// The reason.
     pub reason: String,
     /// Expected error of the restitution; null where nothing is known.
     pub expected_error: Option<f64>,
     /// Numbers of modes with which it would begin.
     pub modes: Vec<usize>,
-    /// Steps times modes, at least and at most; for the modal tier, 95 of 100 scenes lie between.
+    /// Smallest and largest number of steps times modes; for the modal model, 95 of 100 scenes lie between them.
     pub mode_steps: [u64; 2],
-    /// Rough time that goes with them (s).
+    /// The corresponding rough times (s).
     pub time_s: [f64; 2],
 }
 
 impl Estimate {
-    /// Of a tier that was cheap enough to be tried.
+    /// For a model that was cheap enough to be tried.
     fn tried(model: Model, tried: Result<Choice, String>, time_s: f64) -> Estimate {
         let (applies, reason, expected_error) = match tried {
             Ok(choice) => (true, choice.answer.reason, choice.answer.restitution_uncertainty),
@@ -85,7 +85,7 @@ impl Estimate {
         Estimate { model, applies, reason, expected_error, modes: Vec::new(), mode_steps: [0; 2], time_s: [time_s; 2] }
     }
 
-    /// Of modal solves that begin with these numbers of modes, by the steps of a pilot impact.
+    /// For modal solutions that begin with these numbers of modes, from the steps of a pilot impact.
     fn of_solves(modes: Vec<usize>, steps: u64, tolerance: f64, range: ([f64; 2], f64), reason: String) -> Estimate {
         let most = modes.iter().copied().max().unwrap_or(0).max(1);
         let (factors, power) = range;
@@ -102,7 +102,7 @@ impl Estimate {
         }
     }
 
-    /// Of an impact in the modes as they are stated.
+    /// For an impact with stated modes.
     fn of_stated(impact: &Impact) -> Result<Estimate, InvalidInput> {
         let (count, tolerance) = (impact.kept_modes(), impact.settings.tolerance);
         let steps = Impact { settings: pilot(), ..impact.clone() }.solve()?.counts.steps();
@@ -111,9 +111,8 @@ impl Estimate {
 }
 
 impl Scene {
-    /// Says which model [`Scene::answer`] would use and what each would cost. Closed forms, and the infinite beam, are
-    /// evaluated; no modal impact is solved but a loose one that tells the cost, and two by which the theory of bending is
-    /// chosen, where it is open.
+    /// Shows which model [`Scene::answer`] would use, and the cost of each. Closed forms and the infinite beam are evaluated. Only one
+    /// modal impact is solved, at a loose tolerance, to estimate the cost, and two more if the theory of bending has to be chosen.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -167,7 +166,7 @@ impl Scene {
         Ok(Plan { model, tolerance: pose.tolerance, contact_duration_s, tiers })
     }
 
-    /// The plan where there is nothing to choose.
+    /// The plan if there is no choice.
     fn plan_of_modes(&self, why: &str) -> Result<Plan, InvalidInput> {
         if !matches!(self.model, Model::Auto | Model::Modal) {
             return Err(refused(self.model, format!("auto or modal: {why}")));
@@ -185,7 +184,7 @@ fn pilot() -> Settings {
     Settings { tolerance: PILOT_TOLERANCE, estimate_uncertainty: false, ..Settings::default() }
 }
 
-/// Refuses a tier that was requested and cannot be had, as [`Scene::answer`] does.
+/// Rejects a model that was requested and is not available, as [`Scene::answer`] does.
 fn forced_tier_applies(model: Model, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
     if model != Model::Modal {
         forced_tier(model, pose, cost)?.map_err(|reason| refused(model, reason))?;

@@ -1,4 +1,4 @@
-//! The scene in the terms of every tier: striker, law, the scales of the contact, the modes as far as they are needed.
+//! The scene as input of all models: striker, law, the scales of the contact, and the modes that are needed.
 
 use contact_models::{ContactLaw, Law, Memory};
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
@@ -11,15 +11,15 @@ use crate::scene::{self, COMPLETE, InvalidInput, Location, Place, Scene, chooses
 /// Tolerances that can be requested where the program chooses the modes.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-10..=0.5;
 
-/// More modes than this are not tried.
+/// Largest number of modes that is tried.
 pub(super) const MOST_MODES: usize = 1500;
-/// A mode that takes up less than this share of the tolerance in the striker's energy is not excited.
+/// A mode that takes up less than this share of the tolerance of the striker's energy counts as not excited.
 const UNEXCITED: f64 = 1e-6;
 
 /// Modes of a beam are computed in multiples of this.
 const SIZES: usize = 16;
 
-/// A scene, ready for any tier.
+/// A scene, ready for any model.
 pub(super) struct Pose<'a> {
     pub scene: &'a Scene,
     pub striker: Striker,
@@ -31,7 +31,7 @@ pub(super) struct Pose<'a> {
     pub kept: &'a mut Kept,
 }
 
-/// The first contact, if the structure stood still: scales, and for elastic laws bounds.
+/// The first contact on an immovable structure: scales, and bounds for elastic laws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Wall {
     /// Greatest compression (m).
@@ -47,7 +47,7 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// From the work that takes up the striker's energy: for `F ~ xi^n` it is `F xi / (1 + n)`.
+    /// From the work that equals the striker's energy: for `F ~ xi^n` it is `F xi / (1 + n)`.
     fn new(law: &Law, striker: &Striker) -> Wall {
         let energy = 0.5 * striker.mass_kg * striker.speed_m_s.powi(2);
         let branch = law.touch(&Memory::default(), striker.speed_m_s.max(0.0));
@@ -77,25 +77,25 @@ impl Wall {
     }
 }
 
-/// Where modes come from.
+/// Source of the modes.
 pub(super) enum Source<'a> {
     /// A beam: as many modes as are requested.
     Beam { beam: &'a scene::Beam, location_m: f64, whole_m_n: f64, modes: Vec<Mode> },
-    /// A string or plate, likewise.
+    /// A string or plate: as many modes as are requested.
     Computed {
         structure: &'a scene::Structure,
         place: Place<'a>,
         whole_m_n: f64,
-        /// By how much the static compliance may be off.
+        /// Uncertainty of the static compliance.
         uncertain_m_n: f64,
         modes: Vec<Mode>,
     },
-    /// A structure given by its modes, and perhaps its whole static compliance.
+    /// A structure given by its modes and, optionally, its whole static compliance.
     Listed { modes: Vec<Mode>, whole_m_n: Option<f64> },
 }
 
 impl<'a> Pose<'a> {
-    /// Poses a scene that is not infinite.
+    /// Converts a scene with a finite structure.
     pub fn new(scene: &'a Scene, kept: &'a mut Kept) -> Result<Pose<'a>, InvalidInput> {
         scene.require_yield_strength()?;
         let striker = scene.posed_striker()?;
@@ -154,9 +154,9 @@ impl<'a> Pose<'a> {
         self.striker.speed_m_s > 0.0
     }
 
-    /// Those of the first `count` modes that a force at the location excites and, as far as they are wanted and known,
-    /// remainder modes for the modes beyond `count`; how many of these there are. A slow mode that is hardly excited is
-    /// left out altogether: it stands still during the contact, and its static compliance is none of the remainder's.
+    /// Those of the first `count` modes that a force at the location excites and, if requested and known, remainder modes for the
+    /// modes beyond `count`, with their number. A slow mode that is hardly excited is omitted: it does not move during the contact,
+    /// and its static compliance is not part of the remainder modes.
     pub fn structure(&mut self, count: usize, cost: &mut Cost) -> Result<(Structure, usize), InvalidInput> {
         let least = UNEXCITED * self.tolerance / (4.0 * self.striker.mass_kg);
         let scene = self.scene;
@@ -173,7 +173,7 @@ impl<'a> Pose<'a> {
         Ok((Structure { modes }, remainder.len()))
     }
 
-    /// Whether the modes listed are all that the structure has: they make up its static compliance.
+    /// Whether the listed modes are all modes of the structure: they make up its static compliance.
     pub fn is_complete(&self) -> bool {
         match &self.source {
             Source::Listed { modes, whole_m_n: Some(whole_m_n) } => {
@@ -189,7 +189,7 @@ impl<'a> Pose<'a> {
         match &mut self.source {
             Source::Beam { beam, location_m, modes, .. } => {
                 if modes.len() < count {
-                    // in few sizes, so that scenes of one beam ask for the same
+                    // in few sizes, so that scenes of one beam can share them
                     let size = count.next_multiple_of(SIZES);
                     *modes = self.kept.modes.first(beam, size)?.seen_from(*location_m)?;
                     cost.modes_computed += size as u64;
@@ -198,7 +198,7 @@ impl<'a> Pose<'a> {
             }
             Source::Computed { structure, place, modes, .. } => {
                 if modes.len() < count {
-                    // twice as many as before: those of a plate are found together, at a cost that grows as the cube
+                    // twice as many as before: the modes of a plate are computed together, at a cost that grows as the cube of their number
                     let size = count.max(2 * modes.len()).next_multiple_of(SIZES);
                     let size = size.min(structure.most_modes().max(count));
                     *modes = structure.modes_with(*place, Some(size), &mut self.kept.modes)?;
@@ -212,7 +212,7 @@ impl<'a> Pose<'a> {
 }
 
 impl Source<'_> {
-    /// How many modes there are at most.
+    /// Largest number of modes.
     pub fn most(&self) -> usize {
         match self {
             Source::Beam { .. } => MOST_MODES,
@@ -221,7 +221,7 @@ impl Source<'_> {
         }
     }
 
-    /// By how much the static compliance of a structure whose modes are computed may be off (m/N).
+    /// Uncertainty of the static compliance of a structure whose modes are computed (m/N).
     pub fn uncertain_m_n(&self) -> f64 {
         match self {
             Source::Computed { uncertain_m_n, .. } => *uncertain_m_n,

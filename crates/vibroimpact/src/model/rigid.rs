@@ -1,18 +1,18 @@
-//! A location that cannot move: the restitution of the law at a wall, and a bound on what the structure may change.
+//! An immovable location: the restitution of the law at a wall, and a bound on the effect of the structure.
 //!
-//! The structure at rest takes up energy `E = sum 1/2 phi_k^2 J_k^2` with `J_k = |int F exp(i omega_k t) dt|` (damping
-//! aside). For a force of one hump `J_k <= 2 F_max/omega_k`, and the elastic energy of the contact never exceeds that of
-//! the striker, so that `F_max` is at most the force at a wall. Twice that `J_k`, for a force that is not quite one hump,
-//! gives with the static compliance `G = sum phi_k^2/omega_k^2`, without any mode,
+//! A structure at rest takes up the energy `E = sum 1/2 phi_k^2 J_k^2` with `J_k = |int F exp(i omega_k t) dt|` (without
+//! damping). For a force with a single maximum `J_k <= 2 F_max/omega_k`. The elastic energy of the contact never exceeds that of
+//! the striker, so `F_max` is at most the force at a wall. Twice this `J_k`, to allow for further maxima, gives with the static
+//! compliance `G = sum phi_k^2/omega_k^2`, without computing any mode,
 //!
 //! ```text
 //! E / (m v^2 / 2) <= epsilon = 16 G F_wall^2 / (m v^2) (1 + 64 zeta).
 //! ```
 //!
-//! The last factor covers what modes of damping ratio `zeta` dissipate during the contact. The contact only ever pushes the
-//! striker away; so after the first separation its speed is at least `sqrt(1 - epsilon) v`, further contacts can only
-//! add to it, and `e` lies between that and 1. Laws that dissipate have no such bound; for them `epsilon` itself has
-//! to be a thousand times below the tolerance.
+//! The last factor covers the dissipation of modes with the damping ratio `zeta` during the contact. The contact force only pushes
+//! the striker away. After the first separation its speed is therefore at least `sqrt(1 - epsilon) v`, further contacts can only
+//! increase it, and `e` lies between `sqrt(1 - epsilon)` and 1. Dissipative laws have no such bound; for them `epsilon` itself
+//! has to be a thousand times below the tolerance.
 
 use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
@@ -21,12 +21,12 @@ use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
 
-/// How far below the tolerance `epsilon` has to be for a law that dissipates.
+/// Factor by which `epsilon` has to be below the tolerance for a dissipative law.
 const MARGIN: f64 = 1e-3;
 /// A rigid-body motion that moves the location by less than this share of the striker's inverse mass does not move it.
 const STILL: f64 = 1e-12;
 
-/// How far the restitution can be from that at a wall; `Err` says why no bound is known.
+/// Bound on the difference of the restitution from that at a wall; `Err` states why no bound is known.
 pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, String>, InvalidInput> {
     let rigid_bodies = match &pose.source {
         Source::Beam { beam, .. } => {
@@ -65,7 +65,7 @@ pub(super) fn bound(pose: &mut Pose, cost: &mut Cost) -> Result<Result<f64, Stri
     })
 }
 
-/// The wall, if the bound says that it reaches the tolerance.
+/// The wall, if the bound proves that it reaches the tolerance.
 pub(super) fn certified(pose: &mut Pose, cost: &mut Cost) -> Tried {
     if !pose.approaches() {
         return Ok(Err("the striker does not approach".to_owned()));
@@ -101,15 +101,15 @@ fn wall(pose: &Pose, bound: Option<f64>, cost: &mut Cost) -> Result<Choice, Inva
         }
         Some(bound) => {
             format!(
-                "rigid: asked for, although the compliance of the location may change the restitution by up to {}",
+                "rigid: requested, although the compliance of the location may change the restitution by up to {}",
                 small(bound)
             )
         }
-        None => "rigid: asked for; how much the structure changes is not bounded".to_owned(),
+        None => "rigid: requested; the effect of the structure is not bounded".to_owned(),
     };
     let known = match bound {
         Some(bound) => Known::new(pose.scene, Some(CLOSED_FORM), Ok(bound)),
-        None => Known::nothing("no part: how much the structure changes is not bounded"),
+        None => Known::nothing("no part: the effect of the structure is not bounded"),
     };
     let answer = Answer {
         restitution: Some(restitution),

@@ -1,19 +1,19 @@
-//! Modes, as many as the restitution needs to converge.
+//! Convergence in the number of modes.
 //!
-//! The number of modes begins at a guess (`guess.rs`). One impact is enough to see that its modes are too few: its remainder
-//! modes then hold too much energy (`left_out.rs`), and the number is raised by a factor of about 1.4. If they hold little, the
-//! same impact with fewer modes, or the one solved before, tells what the last modes have changed.
+//! The number of modes begins at a guess (`guess.rs`). One impact is enough to show that its modes are too few: its remainder
+//! modes then have too much energy (`left_out.rs`), and the number is raised by a factor of about 1.4. If their energy is small,
+//! the same impact with fewer modes, or the one solved before, shows the effect of the last modes.
 //!
-//! Restitutions alone may agree by accident while the histories of two impacts do not, and then differ again at the next number;
-//! so the striker's speed in every flight between two contacts is compared as well, and after more than one contact a third
-//! number of modes is asked.
+//! Restitutions may agree by accident while the histories of two impacts do not, and then differ again at the next number. The
+//! striker's speed in every flight between two contacts is therefore compared as well, and after more than one contact a third
+//! number of modes is required.
 //!
 //! Every contact amplifies earlier errors, the solver's among them, and a solver that is too coarse for an impact may find the
 //! same wrong history with every number of modes. If there are several contacts, the solver's tolerance is therefore tightened
 //! with every further number: its errors are part of the differences, and restitutions agree when both have become small.
 //!
-//! Only a difference between two *different* numbers of modes says anything of the truncated modes. Where a list of modes
-//! has come to its end, the same modes with a tighter tolerance tell of the solver alone.
+//! Only a difference between two *different* numbers of modes contains information about the truncated modes. At the end of a
+//! list of modes, the same modes with a tighter tolerance show the error of the solver alone.
 
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::{Outcome, Settings, Solution, Structure};
@@ -30,23 +30,22 @@ use super::{Answer, Cost, Model};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
 
-/// The last number of modes that there are counts if it is this many times the one before; what a smaller step changes
-/// says little about the rest.
+/// The largest number of modes counts if it is this many times the one before; the change by a smaller step contains little
+/// information about the rest.
 const LEAST_RAISE: f64 = 1.25;
-/// Only changes from at least this share of the number of modes tell what further ones would change.
+/// Only changes from at least this share of the number of modes are used to estimate the effect of further ones.
 const NEAR: f64 = 0.5;
-/// Tolerance of the solver with the first numbers of modes, as a share of the requested tolerance; and its range. Below it,
-/// rounding is all that steps can show.
+/// Tolerance of the solver with the first numbers of modes, as a share of the requested tolerance, and its range. Below it,
+/// differences are dominated by rounding.
 const SOLVER_SHARE: f64 = 0.1;
 const SOLVER_RANGE: (f64, f64) = (1e-11, 1e-3);
-/// Where the number is raised and there are several contacts: as a share of the tolerance with the number before.
+/// Tolerance with the next number of modes, if there are several contacts, as a share of that with the number before.
 const TIGHTER: f64 = 1.0 / 30.0;
-/// The solver's own part: this share of its tolerance, and of the change that a tolerance thirty times as wide was part
-/// of.
+/// The solver's part: this share of its tolerance, and of the change between runs whose tolerances differ by a factor of thirty.
 const SOLVER_FLOOR: f64 = 0.5;
 const SOLVER_CHANGE: f64 = 0.1;
-/// Beyond this many modes the number is raised only while changes fall: the last is to be smaller than this share of the
-/// one two steps before.
+/// Beyond this many modes the number is raised only while changes decrease: the last must be smaller than this share of the one
+/// two steps before.
 const PATIENCE: usize = 400;
 const FALLING: f64 = 0.5;
 /// Two impacts may agree by accident, and small changes may add up. What is stated of the truncated modes is therefore so many
@@ -56,35 +55,35 @@ const LUCK: f64 = 4.0;
 /// Number of the last results that make up the spread if they do not converge.
 const SPREAD: usize = 4;
 
-/// The solver's settings for a requested tolerance, tightened so many times.
+/// The solver's settings for a requested tolerance, after this many tightenings.
 fn settings(tolerance: f64, tightened: usize) -> Settings {
     let share = (0..tightened).fold(SOLVER_SHARE * tolerance, |share, _| TIGHTER * share);
     let tolerance = share.clamp(SOLVER_RANGE.0, SOLVER_RANGE.1);
     Settings { tolerance, estimate_uncertainty: false, ..Settings::default() }
 }
 
-/// One number of modes and what came of it.
+/// One number of modes and its result.
 struct Rung {
-    /// From the lowest; those not excited among them.
+    /// Number of modes from the lowest, including those that are not excited.
     count: usize,
     structure: Structure,
     remainder_modes: usize,
     settings: Settings,
     solution: Solution,
-    /// How fast the last mode is against the contact, `R(N)` (`guess.rs`).
+    /// Frequency of the last mode relative to the contact, `R(N)` (`guess.rs`).
     resolution: f64,
-    /// What the energy of the remainder modes says that they may be off.
+    /// Possible error of the remainder modes, from their energy.
     energy: f64,
-    /// What no other number of modes shows; found once all else has converged.
+    /// Errors that are common to all numbers of modes; computed once everything else has converged.
     tail: Option<Tail>,
 }
 
-/// What the remainder modes of one number of modes share with those of all others.
+/// Errors that the remainder modes of all numbers of modes have in common.
 #[derive(Clone, Copy, Default)]
 struct Tail {
-    /// What their assumed shape may change.
+    /// Possible change by their assumed shape.
     shape: f64,
-    /// What a static compliance that is off may change.
+    /// Possible change by the uncertainty of the static compliance.
     compliance: f64,
 }
 
@@ -97,7 +96,7 @@ impl Rung {
         Ok(Rung { count, structure, remainder_modes, settings, solution, resolution, energy, tail: None })
     }
 
-    /// What other remainder modes would change.
+    /// Change with other remainder modes.
     fn find_tail(&mut self, pose: &mut Pose, cost: &mut Cost) -> Result<(), InvalidInput> {
         let listed = matches!(pose.source, Source::Listed { .. });
         let wanted = pose.scene.residual_compliance != Some(false);
@@ -108,7 +107,7 @@ impl Rung {
         };
         let mut tail = Tail::default();
         if listed && self.remainder_modes > 1 {
-            // of a list the shape of the tail is assumed: another one tells what that matters
+            // for a list the shape of the tail is an assumption, whose effect another shape shows
             tail.shape = changed(with_one_remainder_mode(&self.structure, self.remainder_modes))?;
         }
         if uncertain_m_n > 0.0 {
@@ -144,7 +143,7 @@ struct Rungs {
     earlier: Vec<Rung>,
     last: Rung,
     momentum_n_s: f64,
-    /// The number of modes, if there is one, that leaves nothing of the static compliance out.
+    /// The number of modes, if there is one, that makes up the whole static compliance.
     complete: Option<usize>,
 }
 
@@ -158,7 +157,7 @@ impl Rungs {
         std::iter::once(&self.last).chain(self.earlier.iter().rev())
     }
 
-    /// Those, the latest first, each of which has about as many modes as the one before.
+    /// The latest ones, latest first, with similar numbers of modes.
     fn near(&self) -> impl Iterator<Item = &Rung> {
         let mut last = self.last.count;
         self.all().take_while(move |rung| {
@@ -184,13 +183,13 @@ impl Rungs {
         self.changes().map(|(change, _)| change.size()).collect()
     }
 
-    /// Whether changes fall as the number of modes rises, as far as there are enough to tell.
+    /// Whether changes decrease as the number of modes rises, if there are enough of them.
     fn falls(&self) -> bool {
         let sizes = self.sizes();
         sizes.len() < 3 || sizes[0] < FALLING * sizes[2]
     }
 
-    /// Estimated change by the truncated modes, as far as it is known.
+    /// Estimated change by the truncated modes, if it is known.
     fn left_out(&self) -> f64 {
         let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
         let mut changes = self.changes().map(|(change, _)| change);
@@ -207,7 +206,7 @@ impl Rungs {
         at_the_end(&self.sizes(), self.last.energy, self.last.resolution).max(shape) + compliance
     }
 
-    /// What the solver may be off with the last number of modes.
+    /// Possible error of the solver with the last number of modes.
     fn solver(&self) -> f64 {
         let wider = self.earlier.iter().rev().find(|rung| rung.count == self.last.count);
         let change = match wider {
@@ -225,7 +224,7 @@ impl Rungs {
         counts.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
     }
 
-    /// Largest less smallest of the last restitutions, and how many they are.
+    /// Difference of the largest and smallest of the last restitutions, and their number.
     fn spread(&self) -> Option<(f64, usize)> {
         let values: Vec<f64> = self.near().take(SPREAD).filter_map(|rung| rung.solution.restitution).collect();
         let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
@@ -245,7 +244,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
     loop {
         let count = rungs.last.count;
         let ends = LEAST_RAISE * count as f64 > most as f64;
-        // the energy of one impact tells that its modes are too few; otherwise a change has to
+        // the energy of one impact shows that its modes are too few; otherwise a change has to
         let may_settle = rungs.last.energy <= tolerance && rungs.last.solution.restitution.is_some();
         if (may_settle || ends) && rungs.near().count() < 2 && !rungs.is_complete() {
             rungs.earlier.push(Rung::new(pose, fewer(count), settings(tolerance, tightened), cost)?);
@@ -255,7 +254,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
         }
         let (solver, left_out) = (rungs.solver(), rungs.left_out());
         let both = rungs.near().take(2).all(|rung| rung.solution.restitution.is_some());
-        // after several contacts, two impacts may agree and lack the same further contact: ask a third
+        // after several contacts, two impacts may agree although both miss the same contact: a third one is required
         let several = rungs.last.has_several_contacts() && rungs.near().count() < 3;
         let settled = solver + left_out <= tolerance && both && !several && !rungs.earlier.is_empty();
         let limit = matches!(rungs.last.solution.outcome, Outcome::Stopped(_));
@@ -270,7 +269,7 @@ pub(super) fn settle(pose: &mut Pose, cost: &mut Cost) -> Result<Choice, Invalid
             tightened += usize::from(rungs.last.has_several_contacts());
             if LEAST_RAISE * raised as f64 > most as f64 { most } else { raised }
         } else if listed && tighter && (several || !both || 4.0 * solver > left_out.min(tolerance)) {
-            // the list is at its end, and the solver's error may be part of what changed
+            // the list is at its end, and the solver's error may be part of the change
             tightened += 1;
             if !rungs.is_complete() {
                 rungs.push(Rung::new(pose, fewer(most), settings(tolerance, tightened), cost)?);
@@ -304,7 +303,7 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
     Ok(Choice::modal(pose.tolerance, impact, solution, Conclusion { known, settled, spread, reason }))
 }
 
-/// Which numbers of modes were tried, and what came of it.
+/// The numbers of modes that were tried, and the result, in words.
 fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Option<(f64, usize)>) -> String {
     let counts = rungs.counts();
     let reached = rungs.last.count;
@@ -317,7 +316,7 @@ fn reason(pose: &Pose, rungs: &Rungs, settled: bool, exhausted: bool, spread: Op
             small(change.restitution),
             small(change.flights)
         ),
-        None => "what further modes would change is not known".to_owned(),
+        None => "the effect of further modes is not known".to_owned(),
     };
     match spread {
         _ if settled => format!("modal: the restitution has converged with {counts} modes; {changed}"),
@@ -344,7 +343,7 @@ fn lightly_damped(pose: &Pose) -> &'static str {
     }
 }
 
-/// What is known of a restitution, and how the modes were chosen.
+/// The answer: restitution, uncertainty, and choice of the modes.
 pub(super) struct Conclusion {
     pub known: Known,
     pub settled: bool,

@@ -1,15 +1,14 @@
-//! Modes as they are stated, and what those left out would change.
+//! Stated modes, and the effect of the truncated ones.
 //!
-//! The impact is solved with the modes stated, and the solver's own estimate tells how exactly. How far these modes are
-//! from the whole structure is judged apart: the same impact with more modes and remainder modes for all others,
-//! for two numbers of modes,
+//! The impact is solved with the stated modes, and the solver estimates its error. The effect of the truncated modes is estimated
+//! separately, from the same impact with more modes and remainder modes for all others, for two numbers of modes,
 //!
 //! ```text
 //! u = |e - e_M| + 3 |e_M - e_(M/1.4)| + d_c,
 //! ```
 //!
-//! `d_c` what changes where the static compliance is greater by as much as it may be off, `M` as many as a loose tolerance
-//! is expected to need, but not so many that this would cost more than the impact.
+//! where `d_c` is the change if the static compliance is larger by its uncertainty, and `M` is the number that a loose tolerance is
+//! expected to need, but not so large that this would cost more than the impact.
 
 use vibroimpact_sim::modal::{Settings, Solution};
 
@@ -24,15 +23,15 @@ use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes, modal_only};
 
-/// The comparison begins with the modes that this tolerance is expected to need.
+/// The comparison begins with the expected number of modes for this tolerance.
 const LOOSE: f64 = 3e-3;
 /// Weight of the only change that there is.
 const CAUTION: f64 = 3.0;
-/// The solver's tolerance in it, and how many times as many modes cost as much as the impact, which is solved twice and
-/// far more tightly.
+/// The solver's tolerance in the comparison, and the factor of the number of modes at which it costs as much as the impact itself,
+/// which is solved twice and far more accurately.
 const SOLVER: f64 = 1e-6;
 const RICHER: usize = 2;
-/// Where a single number of modes has to do, they resolve so many times more than those from which they are raised.
+/// Factor of the number of modes if the comparison has a single number.
 const SETTLED: f64 = 2.0;
 
 /// The modes as they are stated, or all that a list has.
@@ -71,7 +70,7 @@ fn solve(impact: &Impact, kept: &mut Kept, cost: &mut Cost) -> Result<Solution, 
     Ok(solution)
 }
 
-/// What the truncated modes would change; `Err` inside says why that is not known.
+/// Effect of the truncated modes; the inner `Err` states why it is not known.
 fn left_out(
     scene: &Scene,
     kept: &mut Kept,
@@ -93,7 +92,7 @@ fn left_out(
     };
     let wanted = needed(scene, LOOSE, kept, cost)?.unwrap_or(count).clamp(count, RICHER * count.max(1)).min(most);
     let (fewer, more) = match &scene.start {
-        // the motion before the impact may need every mode stated
+        // the motion before the impact may need all stated modes
         Some(_) if count < most => (count, ((count as f64 * RAISE).ceil() as usize).min(most)),
         _ => (fewer(wanted), wanted),
     };
@@ -141,7 +140,7 @@ fn posed(scene: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
     scene.impact_of(scene.modes.count(), kept)
 }
 
-/// The number of modes that a tolerance is expected to need, where it can be told.
+/// The expected number of modes for a tolerance, if it is known.
 pub(super) fn needed(
     scene: &Scene,
     tolerance: f64,
@@ -161,7 +160,7 @@ pub(super) fn needed(
     Ok(Some(resolving(&mut Pose::new(&chosen, kept)?, SETTLED, cost)?))
 }
 
-/// The scene with so many modes in place of `count`, and remainder modes for the others.
+/// The scene with this many modes in place of `count`, and remainder modes for the others.
 fn with_modes(scene: &Scene, count: usize, modes: usize) -> Scene {
     let mut other = scene.clone();
     match &mut other.structure {

@@ -1,11 +1,11 @@
-//! Choice, plan and comparison as a person reads them.
+//! Choice, plan and comparison as text.
 
 use std::fmt::Write;
 
 use super::{Answer, Comparison, Plan};
 use crate::text::{counted, filled, quantity, restitution, stopped};
 
-/// A number in passing: two significant digits.
+/// A number with two significant digits.
 pub(crate) fn small(value: f64) -> String {
     crate::text::significant(value, 2)
 }
@@ -18,7 +18,7 @@ fn wrapped(text: &str, indent: usize) -> String {
     lines.join(&format!("\n{}", " ".repeat(indent)))
 }
 
-/// How near the estimate of the error is to the tolerance.
+/// Comparison of the estimated error with the tolerance.
 fn against_tolerance(answer: &Answer) -> String {
     let wanted = small(answer.tolerance);
     match (answer.uncertainty.of_model(), answer.settled) {
@@ -33,20 +33,20 @@ fn against_tolerance(answer: &Answer) -> String {
             let spread = answer.spread.map_or(String::new(), |s| format!(", spread {}", small(s)));
             format!("requested {wanted}, known within {}; NOT CONVERGED{spread}", small(u))
         }
-        (None, _) => format!("requested {wanted}, known to no stated accuracy"),
+        (None, _) => format!("requested {wanted}; the reached accuracy is not known"),
     }
 }
 
-/// What each part of the uncertainty is.
+/// Description of each part of the uncertainty.
 fn meaning(part: &str) -> &'static str {
     match part {
-        "solver" => "how exactly the equations of this model are solved",
-        "modes left out" => "what the structure with all its modes would change",
-        _ => "what the other theory of bending, or 2 % of the shear coefficient, would change",
+        "solver" => "error in solving the equations of this model",
+        "modes left out" => "change by all further modes of the structure",
+        _ => "change by the other theory of bending, or by 2 % of the shear coefficient",
     }
 }
 
-/// The parts of the uncertainty, and what is not known.
+/// The parts of the uncertainty, and those that are not known.
 fn parts(answer: &Answer) -> String {
     let mut text = String::new();
     for (name, part) in answer.uncertainty.parts() {
@@ -61,7 +61,7 @@ fn parts(answer: &Answer) -> String {
     if text.is_empty() { text } else { format!("  uncertainty\n{text}") }
 }
 
-/// What was done, and how far the estimate of the error is from the tolerance.
+/// Description of the computation, and comparison of the estimated error with the tolerance.
 pub fn answer_text(answer: &Answer) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "  {:<22}{}", "model", wrapped(&answer.reason, 24));
@@ -163,7 +163,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
         "\n  Differences are from {}, whose uncertainty is the smallest{}.",
         comparison.best.as_str(),
         if comparison.best_leaves_modes_out() {
-            " as far as it is known; what its truncated modes would change is not known"
+            " as far as it is known; the effect of its truncated modes is not known"
         } else {
             ""
         }

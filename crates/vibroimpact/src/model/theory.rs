@@ -1,17 +1,16 @@
-//! How far the theory by which a beam bends can be trusted, and which theory an impact needs.
+//! Uncertainty of the theory of bending, and choice of the theory for an impact.
 //!
-//! Where a beam can be solved by Euler-Bernoulli's theory and by Timoshenko's, the impact is solved by both, and by
-//! Timoshenko's with the shear coefficient 2 % smaller and larger, as far apart as the coefficients in use. With `e_v` the
-//! four restitutions, one of them `e` by the theory that answers,
+//! If a beam can be solved by Euler-Bernoulli's and by Timoshenko's theory, the impact is solved by both, and by Timoshenko's with
+//! a shear coefficient 2 % smaller and larger, which covers the usual coefficients. With the four restitutions `e_v`, one of
+//! which is `e` by the theory of the answer,
 //!
 //! ```text
 //! u = max_v |e_v - e|.
 //! ```
 //!
-//! All four have remainder modes, and twice the modes that the tolerance is expected to need or as many as the answer took,
-//! but not many more than are stated; they are solved once and loosely, so that this costs no more than a few times the impact itself.
-//! Where a scene
-//! leaves the theory open, the cheaper one answers if the two differ by less than half the tolerance.
+//! All four have remainder modes, and twice the expected number of modes for the tolerance or the number of the answer, but not
+//! many more than are stated. They are solved once at a loose tolerance, so that this costs no more than a few times the impact
+//! itself. If a scene does not state the theory, the cheaper one is used if the two differ by less than half the tolerance.
 
 use vibroimpact_sim::modal::Settings;
 
@@ -23,13 +22,13 @@ use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure, chooses_modes};
 
-/// As many modes as this tolerance needs are enough, and no more than that one is requested.
+/// Tolerance that determines the number of modes, if the requested one is tighter.
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];
 /// Tolerance of the solver.
 const SOLVER: f64 = 1e-6;
-/// So many times the modes expected to be needed, and at most so many times those stated.
+/// Factor of the expected number of modes, and largest factor of the stated number.
 const RICHER: usize = 2;
-/// The cheaper theory answers where the difference is below this share of the tolerance: it is one part of the whole.
+/// The cheaper theory is used if the difference is below this share of the tolerance, of which it is one part.
 const SHARE: f64 = 0.5;
 
 /// Restitutions of one impact by both theories.
@@ -41,10 +40,10 @@ struct Theories {
 }
 
 impl Theories {
-    /// Of a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. `Err`
-    /// inside says why it is not known.
+    /// For a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. The inner `Err`
+    /// states why it is not known.
     fn of(scene: &Scene, answer: Option<&Answer>, cost: &mut Cost) -> Result<Result<Theories, String>, InvalidInput> {
-        let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is no beam".to_owned())) };
+        let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is not a beam".to_owned())) };
         let in_structure = |fault: InvalidInput| fault.within("structure");
         let timoshenko = Beam { theory: Some(BeamTheory::Timoshenko), ..beam.clone() };
         let mut beams = vec![timoshenko.clone()];
@@ -78,10 +77,10 @@ impl Theories {
     }
 }
 
-/// The restitution with as many modes as the tolerance is expected to need, at least so many, and remainder modes.
+/// The restitution with the expected number of modes for the tolerance, with a lower limit, and remainder modes.
 fn restitution(scene: &Scene, least: usize, cost: &mut Cost) -> Result<Option<f64>, InvalidInput> {
     let tolerance = scene.tolerance.unwrap_or(DEFAULT_TOLERANCE).clamp(TOLERANCES[0], TOLERANCES[1]);
-    // modes of another beam than the one that is kept for the next scene
+    // the modes of this beam must not replace those that are cached for the next scene
     let kept = &mut Kept::default();
     let count = match (needed(scene, tolerance, kept, cost)?, scene.modes.count()) {
         (Some(needed), Some(stated)) => needed.clamp(stated, RICHER * stated.max(1)),
@@ -104,7 +103,7 @@ fn has_both(scene: &Scene) -> Result<bool, InvalidInput> {
 }
 
 impl Scene {
-    /// The scene with the cheapest theory of bending that the tolerance allows, and why, where the choice is open.
+    /// The scene with the cheapest theory of bending that the tolerance allows, and the reason, if the scene does not state one.
     pub(crate) fn with_theory(&self, cost: &mut Cost) -> Result<Option<(Scene, String)>, InvalidInput> {
         let Structure::Beam(beam) = &self.structure else { return Ok(None) };
         let open = matches!(beam.theory, None | Some(BeamTheory::Auto));
@@ -145,7 +144,7 @@ impl Scene {
         }
     }
 
-    /// What another theory of bending would change in an answer to this scene, as a part of its uncertainty.
+    /// The change of an answer by another theory of bending, as a part of its uncertainty.
     pub(super) fn judge_theory(&self, answer: Answer, cost: &mut Cost) -> Result<Answer, InvalidInput> {
         let (Some(theory), true) = (answer.theory, answer.restitution.is_some() && has_both(self)?) else {
             return Ok(answer);

@@ -1,26 +1,24 @@
-//! How well a restitution is known, part by part.
+//! The uncertainty of a restitution, part by part.
 
 use serde::Serialize;
 
 use crate::scene::{Scene, Structure};
 
-/// The solver's part where the restitution has a closed form: rounding is what is left, of some thousand operations. The
-/// closed form of every law agrees this well with its integration step by step (`tests/restitution.rs` of
-/// `contact-models`).
+/// The solver's part if the restitution has a closed form: the rounding of some thousand operations. The closed form of every law
+/// agrees with its numerical integration to this accuracy (`tests/restitution.rs` of `contact-models`).
 pub(super) const CLOSED_FORM: f64 = 5e-12;
 
-/// What stands between a restitution and its true value, in parts that add up. A part is null where it cannot be known;
-/// [`Answer::not_known`](super::Answer::not_known) then says why.
+/// The uncertainty of a restitution in parts that add up. A part is null if it cannot be known;
+/// [`Answer::not_known`](super::Answer::not_known) then states the reason.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Uncertainty {
-    /// How exactly the equations of the model are solved. For modes: against the exact motion of the modes that were
-    /// integrated.
+    /// Error in solving the equations of the model. For modes: compared with the exact motion of the retained modes.
     pub solver: Option<f64>,
-    /// What the truncated modes would change: the model against the same structure with all its modes. For the models
-    /// that put something else in the place of modes (`rigid`, `infinite-beam`, `emoc`): what that changes.
+    /// Truncation error: the difference between the model and the same structure with all its modes. For models without modes
+    /// (`rigid`, `infinite-beam`, `emoc`): the error of their simplification.
     pub modes_left_out: Option<f64>,
-    /// How far the theory by which a beam has these modes may be off: what Euler-Bernoulli's and Timoshenko's theory differ
-    /// by, or what 2 % of the shear coefficient change if that is more.
+    /// Uncertainty of the theory of bending: the difference between Euler-Bernoulli's and Timoshenko's theory, or the change by 2 % of
+    /// the shear coefficient if that is larger.
     pub beam_theory: Option<f64>,
 }
 
@@ -31,8 +29,7 @@ impl Uncertainty {
         (!known.is_empty()).then(|| known.iter().sum::<f64>().min(f64::MAX))
     }
 
-    /// What stands between the restitution and its limit by the same theory: the sum of the parts that are known but that
-    /// of the theory.
+    /// Difference of the restitution from its limit by the same theory: the sum of the known parts without that of the theory.
     pub fn of_model(&self) -> Option<f64> {
         Uncertainty { beam_theory: None, ..*self }.whole()
     }
@@ -51,8 +48,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// What is known where an impact on the structure of `scene` has been solved so exactly; `modes_left_out` may say
-    /// why it is not known.
+    /// The uncertainty of an impact on the structure of `scene` with this solver error; `modes_left_out` may state why it is not known.
     pub fn new(scene: &Scene, solver: Option<f64>, modes_left_out: Result<f64, String>) -> Known {
         let mut not_known = Vec::new();
         if solver.is_none() {
@@ -64,18 +60,18 @@ impl Known {
         Known { uncertainty: Uncertainty { solver, modes_left_out, beam_theory: None }, not_known }
     }
 
-    /// Nothing, for one reason.
+    /// Unknown uncertainty, with one reason for all parts.
     pub fn nothing(why: &str) -> Known {
         Known { uncertainty: Uncertainty::default(), not_known: vec![why.to_owned()] }
     }
 
-    /// The same if there is a restitution that it could be of.
+    /// The same if there is a restitution.
     pub fn of(self, restitution: Option<f64>) -> Known {
         if restitution.is_some() { self } else { Known::default() }
     }
 }
 
-/// Why the theory of a structure is not compared with another.
+/// The reason why the theory of a structure is not compared with another.
 fn why_not_judged(structure: &Structure) -> &'static str {
     match structure {
         Structure::Modal(_) | Structure::ModesFile(_) => {
@@ -84,13 +80,13 @@ fn why_not_judged(structure: &Structure) -> &'static str {
         Structure::InfinitePlate(_) | Structure::Plate(_) => {
             "thin-plate theory leaves out shear and rotary inertia, which slow waves shorter than some ten thicknesses"
         }
-        Structure::TautString(_) => "a string has no shear, and turns without inertia",
+        Structure::TautString(_) => "the theory of strings has neither shear nor rotary inertia",
         Structure::Beam(beam) if beam.axial_force_n != 0.0 || beam.foundation_n_m2 != 0.0 => {
             "with axial force or foundation only Euler-Bernoulli's theory can be solved, which leaves out shear and rotary \
              inertia"
         }
         Structure::Beam(beam) if beam.theory_variants().is_ok_and(|variants| !variants.is_empty()) => {
-            "not compared with another here, which takes further impacts"
+            "not estimated here, since this takes further impacts"
         }
         Structure::Beam(_) => {
             "Euler-Bernoulli theory leaves out shear and rotary inertia; with poissons_ratio in every segment Timoshenko's \

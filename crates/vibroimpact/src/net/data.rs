@@ -28,7 +28,7 @@ pub struct Datum {
 /// Reads a CSV file with the columns `mass_kg`, `location_m` and `restitution`, in any order and among others.
 ///
 /// # Errors
-/// A file that cannot be read, a column that is missing, or a cell that is no finite number (with its line).
+/// A file that cannot be read, a column that is missing, or a cell that is not a finite number (with its line).
 pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
     Ok(parse(&read_bytes(path)?)?)
 }
@@ -36,7 +36,7 @@ pub fn read(path: &Path) -> Result<Vec<Datum>, SceneError> {
 /// Reads the same table from the bytes of a file.
 ///
 /// # Errors
-/// As [`read`], the file aside.
+/// As [`read`], except for the file.
 ///
 /// ```
 /// let table = vibroimpact::net::parse(b"restitution,mass_kg,location_m\n0.5,0.1,0.3\n")?;
@@ -62,7 +62,7 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Datum>, InvalidInput> {
 }
 
 impl Scene {
-    /// The impacts of a table on the scene's beam, as the law takes them. Striker, location and modes of the scene
+    /// Input of the law for the impacts of a table on the scene's beam. Striker, location and modes of the scene
     /// itself are not used: the table's masses and locations and `modes` take their place.
     ///
     /// # Errors

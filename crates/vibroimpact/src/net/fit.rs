@@ -5,10 +5,10 @@ use fitting::{Fit, FitError, Outcome, Parameter, Problem, Settings};
 use invalid_input::InvalidInput;
 use serde::Serialize;
 
-/// Where the parameters are sought; a fit may leave it.
+/// Range of the starting points; a fit may leave it.
 const SEARCH: (f64, f64) = (1e-3, 1e3);
-/// A parameter beyond these is not known: the law has reached the limit that it has there, and the sum of squares
-/// changes no more.
+/// A parameter outside these limits is not determined: the law has reached its limit, and the sum of squares does not change any
+/// more.
 const DETERMINED: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Starting points. The sum of squares has several minima, because `ebar` treats small and large `Z` alike.
 const STARTS: usize = 24;
@@ -16,14 +16,14 @@ const STARTS: usize = 24;
 /// Impacts and the restitution that each was observed to have.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Observations {
-    /// The impacts as the law takes them.
+    /// Inputs of the law.
     pub impacts: Vec<Impact>,
-    /// Their net restitutions; as many as impacts (what is longer is cut).
+    /// Their net restitutions, one for each impact; further ones are ignored.
     pub restitution: Vec<f64>,
 }
 
 impl Observations {
-    /// How many of them differ in what the law sees, counted up to `most`: impacts that were repeated count once.
+    /// Number of different inputs of the law, up to `most`; repeated impacts count once.
     pub fn distinct(&self, most: usize) -> usize {
         let mut seen: Vec<&Impact> = Vec::new();
         for impact in self.impacts.iter().take(self.count()) {
@@ -34,12 +34,12 @@ impl Observations {
         seen.len()
     }
 
-    /// How many.
+    /// Number of observations.
     pub fn count(&self) -> usize {
         self.impacts.len().min(self.restitution.len())
     }
 
-    /// `mu_0`, `alpha_0`, `alpha_1` as the search takes them: positive, first tried at 1.
+    /// `mu_0`, `alpha_0`, `alpha_1` as parameters of the search: positive, starting at 1.
     pub fn parameters() -> Vec<Parameter> {
         ["mu0", "alpha0", "alpha1"].map(|name| Parameter::positive(name, 1.0, SEARCH)).into()
     }
@@ -49,8 +49,7 @@ impl Observations {
         Settings { starts: STARTS, ..Settings::default() }
     }
 
-    /// Writes the law's restitution less the observed one for each impact. NaN for parameters that the law does not
-    /// take.
+    /// Writes the difference of the law's and the observed restitution for each impact. NaN for invalid parameters.
     pub fn residuals(&self, parameters: &[f64], residuals: &mut [f64]) {
         let law = law(parameters);
         for ((r, impact), observed) in residuals.iter_mut().zip(&self.impacts).zip(&self.restitution) {
@@ -58,7 +57,7 @@ impl Observations {
         }
     }
 
-    /// Writes the derivatives of the residuals in the three parameters, row by row.
+    /// Writes the derivatives of the residuals with respect to the three parameters, row by row.
     pub fn jacobian(&self, parameters: &[f64], rows: &mut [f64]) {
         let law = law(parameters);
         for (row, impact) in rows.chunks_exact_mut(3).zip(&self.impacts) {
@@ -96,7 +95,7 @@ pub fn law(parameters: &[f64]) -> Parameters {
 /// Probability with which the intervals of [`FitSummary`] hold their parameter.
 const LEVEL: f64 = 0.95;
 
-/// What `vibroimpact fit` prints.
+/// The object that `vibroimpact fit` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FitSummary {
     /// Moderated mass ratio coefficient (Eq. 7.4).
@@ -105,7 +104,7 @@ pub struct FitSummary {
     pub alpha0: f64,
     /// Slow response coefficient (Eq. 7.7).
     pub alpha1: f64,
-    /// Root of the mean square of law less observation.
+    /// Root mean square difference of law and observation.
     pub rms: f64,
     /// Largest difference.
     pub max_error: f64,
@@ -115,8 +114,8 @@ pub struct FitSummary {
     pub modes: usize,
     /// 95 % intervals of the three; null where the observations do not determine them.
     pub intervals: Option<[[f64; 2]; 3]>,
-    /// Whether the search ended at a minimum that all three parameters have a part in, rather than at its limit or far
-    /// out where the sum of squares no longer changes.
+    /// Whether the search ended at a minimum that depends on all three parameters, and not at its limit or where the sum of squares
+    /// no longer changes.
     pub converged: bool,
     /// The names of the parameters that ended below 1e-6 or above 1e6, where the law no longer depends on them: the
     /// observations do not determine them, and their values mean "very small" or "very large".
@@ -124,10 +123,10 @@ pub struct FitSummary {
 }
 
 impl FitSummary {
-    /// Fits the parameters to the observations and sums up.
+    /// Fits the parameters to the observations and summarises the result.
     ///
     /// # Errors
-    /// Fewer than three different impacts, or such that the law is not finite.
+    /// Fewer than three different impacts, or impacts for which the law is not finite.
     pub fn new(observations: &Observations, modes: usize) -> Result<FitSummary, InvalidInput> {
         let lines = observations.count();
         let needed = Observations::parameters().len();

@@ -1,9 +1,9 @@
 //! Net restitution without integration in time: the law of energy minimisation under outward constraints
 //! ([`emoc`], thesis chapters 6 to 8) for a scene, and its three parameters from data.
 //!
-//! Modes of the structure enter with their shapes at the point of impact alone. Rigid-body modes are no vibration:
-//! as in Eq. 8.9 they join the striker in one effective mass, `1/m_eff = 1/m + sum phi_rigid^2`, so that the
-//! restitution is that of the rigid-body motions, as it is in a resolved impact.
+//! Modes of the structure enter only with their shapes at the point of impact. Rigid-body modes are not vibrations. As in Eq. 8.9
+//! they are combined with the striker into one effective mass, `1/m_eff = 1/m + sum phi_rigid^2`, so that the restitution is that
+//! of the rigid-body motions, as in a resolved impact.
 
 mod data;
 mod fit;
@@ -20,10 +20,10 @@ use crate::model::Kept;
 use crate::scene::require_positive;
 use crate::scene::{InvalidInput, Scene, as_json};
 
-/// Modes in the law where neither the caller nor the scene states a number (thesis 7.2).
+/// Number of modes in the law if neither the caller nor the scene states it (thesis 7.2).
 const LAW_MODES: usize = 50;
 
-/// What `vibroimpact emoc` prints: the restitution and the dimensionless numbers that it follows from.
+/// The object that `vibroimpact emoc` prints: the restitution and the dimensionless numbers behind it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NetRebound {
     /// Net restitution.
@@ -52,7 +52,7 @@ pub struct NetRebound {
 
 impl Scene {
     /// The net restitution by the three-parameter law, with the first `modes` modes (for `None` the scene's own
-    /// number, or 50 where the scene leaves it open).
+    /// number, or 50 if the scene does not state it).
     ///
     /// # Errors
     /// A value out of range in the scene or in the parameters, or more modes than a modal structure lists.
@@ -81,7 +81,7 @@ impl Scene {
             None => self.structure.modes(self.place(), self.modes.count())?,
         };
         require_vibration(&modes)?;
-        // the law has no use for contact, speed and frequencies, but a scene with a fault in them is refused all the same
+        // the law does not use contact, speed and frequencies, but a scene with an error in them is rejected nevertheless
         let resolved = self.impact_of(self.modes.count().or(Some(modes.len())), &mut Kept::default())?;
         Solver::new(&resolved.structure).map_err(in_scene)?;
         let impact = impact_on(&modes, resolved.striker.mass_kg).map_err(|fault| match fault.field.first() {
@@ -115,18 +115,18 @@ fn require_vibration(modes: &[Mode]) -> Result<(), InvalidInput> {
     Err(InvalidInput::new("modes", modes.len().to_string(), allowed))
 }
 
-/// Shapes of the modes that are no rigid-body motion.
+/// Shapes of the modes that are not rigid-body motions.
 fn vibrating(modes: &[Mode]) -> Vec<f64> {
     modes.iter().filter(|mode| mode.omega_rad_s > 0.0).map(|mode| mode.shape).collect()
 }
 
-/// The restitution by the law of an impact that is posed in modes already.
+/// The restitution by the law for an impact whose modes are known.
 pub(crate) fn restitution(parameters: &Parameters, posed: &crate::Impact) -> Result<f64, InvalidInput> {
     let modes = &posed.structure.modes[..posed.kept_modes()];
     Ok(parameters.rebound(&impact_on(modes, posed.striker.mass_kg)?)?.restitution)
 }
 
-/// The numbers that the law takes: a striker of mass `mass_kg` on a structure seen from the point of impact.
+/// Input of the law: a striker of mass `mass_kg` on a structure with its shapes at the point of impact.
 fn impact_on(modes: &[Mode], mass_kg: f64) -> Result<Impact, InvalidInput> {
     // an immovable floor is the limit in which the rigid-body motions alone have mass
     if mass_kg != f64::INFINITY {

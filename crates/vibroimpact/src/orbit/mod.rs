@@ -29,7 +29,7 @@ impl AssemblyScene {
         self.orbit_until(settings, &|| false)
     }
 
-    /// As [`AssemblyScene::orbit`]; `stop` is asked now and then whether to end the search with what it has come to.
+    /// As [`AssemblyScene::orbit`]; `stop` is called from time to time, and ends the search with its best result so far.
     ///
     /// # Errors
     /// As [`AssemblyScene::orbit`].
@@ -54,10 +54,10 @@ impl AssemblyScene {
         })
     }
 
-    /// Follows the branch of periodic motions over a field. `tell` is given each value and says whether to go on.
+    /// Follows the branch of periodic motions over a field. `tell` is called with each value and returns whether to continue.
     ///
     /// # Errors
-    /// As [`AssemblyScene::orbit`]; a field that the scene does not have, or that is no number.
+    /// As [`AssemblyScene::orbit`]; a field that the scene does not have, or that is not a number.
     pub fn orbit_branch(
         &self,
         over: &Over,
@@ -129,10 +129,10 @@ impl OrbitSummary {
 }
 
 impl BranchSummary {
-    /// The orbits as a table: a row each, the largest multiplier and the motion of every side.
+    /// The orbits as a table, one per row, with the largest multiplier and the motion of every side.
     ///
     /// # Errors
-    /// Never for numbers; the writer's own.
+    /// Errors of the writer, which numbers cannot cause.
     pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut table = csv::Writer::from_writer(Vec::new());
         let points = self.orbits.first().map_or(&[][..], |first| &first.orbit.points);

@@ -1,4 +1,4 @@
-//! The picture of a branch: frequency response or bifurcation diagram, stable and unstable parts apart.
+//! The figure of a branch: frequency response or bifurcation diagram, with stable and unstable parts.
 
 use super::summary::{BranchOrbit, BranchSummary};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
@@ -46,7 +46,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
     Figure::new(title).row([amplitude]).row([range]).row([size])
 }
 
-/// Stretches of orbits that are all stable or all unstable; neighbours share an orbit, so that no gap is drawn.
+/// Sections of a branch that are entirely stable or unstable; neighbours share an orbit, so that no gap is drawn.
 fn parts(orbits: &[BranchOrbit]) -> Vec<(&[BranchOrbit], bool)> {
     let mut parts = Vec::new();
     let mut from = 0;

@@ -1,4 +1,4 @@
-//! What is told of periodic motions and their branches.
+//! Results of periodic motions and their branches.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ pub struct OrbitSummary {
     pub forcing_periods: u32,
     /// The moment of the loads' period at which `floquet_multipliers` compare states (s).
     pub phase_s: f64,
-    /// By how much the motion misses itself after a period, relative to its size.
+    /// Distance of the motion from its repetition after a period, relative to its size.
     pub closure: f64,
     /// Floquet multipliers, real and imaginary part, the largest first.
     pub floquet_multipliers: Vec<[f64; 2]>,
@@ -40,20 +40,20 @@ pub struct PointMotion {
     pub displacement_min_m: f64,
 }
 
-/// What the search for a periodic motion came to.
+/// The result of the search for a periodic motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Found {
     /// `found`, `not found`, `interrupted` or `stopped`.
     pub outcome: &'static str,
-    /// The motion, where it was found.
+    /// The motion, if it was found.
     #[serde(flatten)]
     pub orbit: Option<OrbitSummary>,
-    /// How near Newton's method came where it was not, relative to the size of the motion.
+    /// Smallest distance from a periodic motion if it was not found, relative to the size of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_closure: Option<f64>,
 }
 
-/// The outcome of a search that was stopped from outside.
+/// The outcome of an interrupted search.
 pub(super) const INTERRUPTED: &str = "interrupted";
 
 /// An orbit of a branch.
@@ -73,7 +73,7 @@ pub struct SpecialPoint {
     pub kind: &'static str,
     /// The field's value.
     pub value: f64,
-    /// By how much that may be off.
+    /// Its uncertainty.
     pub uncertainty: f64,
     /// Number, from 0, of the orbit that follows it.
     pub before_orbit: usize,
@@ -88,11 +88,11 @@ pub struct BranchSummary {
     pub complete: bool,
     /// The orbits in order.
     pub orbits: Vec<BranchOrbit>,
-    /// What was found between them.
+    /// Special points between them.
     pub special_points: Vec<SpecialPoint>,
 }
 
-/// Over which field a branch is followed.
+/// The field over which a branch is followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Over<'a> {
     /// The field's path, as in a sweep.

@@ -1,23 +1,22 @@
-//! Periodic motions as a person reads them in a terminal.
+//! Periodic motions as text for the terminal.
 
 use std::fmt::Write;
 
 use super::summary::{BranchSummary, Found, INTERRUPTED, OrbitSummary};
 use crate::text::quantity;
 
-/// A periodic motion, or why there is none.
+/// A periodic motion, or the reason why there is none.
 pub fn text(found: &Found) -> String {
     match (&found.orbit, found.nearest_closure) {
         (Some(orbit), _) => orbit_text(orbit),
         (None, Some(closure)) if found.outcome == INTERRUPTED => format!(
-            "  outcome               interrupted: the nearest motion so far misses itself by {closure:.1e} of its size after a \
-             period.\n"
+            "  outcome               interrupted: the best motion so far repeats itself only to {closure:.1e} of its size.\n"
         ),
         (None, None) if found.outcome == INTERRUPTED => {
             "  outcome               interrupted before the search began: during the transient.\n".to_owned()
         }
         (None, Some(closure)) => format!(
-            "  outcome               not found: the motion misses itself by {closure:.1e} of its size after a period.\n  \
+            "  outcome               not found: the motion repeats itself only to {closure:.1e} of its size.\n  \
              A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n"
         ),
         (None, None) => "  outcome               stopped: a run over one period did not reach its end.\n".to_owned(),
@@ -59,11 +58,12 @@ fn orbit_text(orbit: &OrbitSummary) -> String {
 }
 
 impl BranchSummary {
-    /// The branch in a few lines: how far it goes, where it is stable, what was found on it.
+    /// The branch in a few lines: its extent, its stability, and its special points.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let (Some(first), Some(last)) = (self.orbits.first(), self.orbits.last()) else {
-            return "  no periodic motion was found to begin with; a longer --transient may lead to one\n".to_owned();
+            return "  no periodic motion was found at the first value; a longer --transient may lead to one\n"
+                .to_owned();
         };
         let stable = self.orbits.iter().filter(|point| point.orbit.stable).count();
         let end = if self.complete { "" } else { "; it could not be followed further" };

@@ -1,5 +1,4 @@
-//! The motion of beam and ball as a picture that moves: an SVG document with animations of its own, which a browser plays
-//! without a script.
+//! The motion of beam and ball as an animated SVG document, which a browser plays without a script.
 
 use std::fmt::Write;
 
@@ -20,13 +19,13 @@ const BALL: f64 = 22.0;
 const FORCE: [f64; 2] = [345.0, 80.0];
 /// Equal intervals of the force, beside every step in contact.
 const INTERVALS: usize = 200;
-/// How long the motion is shown (s).
+/// Duration of the animation (s).
 const SHOWN_S: f64 = 10.0;
 
-/// Beam or string with the ball that strikes it at the location `location_m`, above the contact force, in slow motion and again
-/// and again. The deflection is enlarged, by a factor that is told; both bodies by the same.
+/// Beam or string with the ball that strikes it at the location `location_m`, above the contact force, as a repeated animation in
+/// slow motion. The displacements of both bodies are enlarged by the same stated factor.
 ///
-/// The text in the picture is the title, the scales, and nothing of the user's beside it.
+/// The text of the document consists of the title and the scales only.
 pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Deflection, history: &History<L>) -> String {
     let Deflection { location_m: places, time_s, structure_m, striker_m, .. } = deflection;
     let length_m = places.last().copied().unwrap_or(1.0);
@@ -47,7 +46,7 @@ pub fn animation<L: ContactLaw>(title: &str, location_m: f64, deflection: &Defle
         .collect();
     let balls: Vec<String> =
         striker_m.iter().map(|u| format!("{:.1}", (y(*u) - BALL - 2.0).max(-2.0 * BALL))).collect();
-    // a contact is shorter than what passes between two pictures, and is drawn step by step
+    // a contact is shorter than the interval between two frames, and is drawn step by step
     let force: Vec<(f64, f64)> =
         history.times(until_s, INTERVALS).into_iter().map(|t| (t, history.at(t).force_n)).collect();
     let peak_n = size(&mut force.iter().map(|(_, f)| *f));

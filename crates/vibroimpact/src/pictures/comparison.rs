@@ -1,12 +1,11 @@
-//! Results of several models beside each other.
+//! Comparison of the results of several models.
 
 use crate::model::{Answer, Comparison};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use crate::text::restitution as with_uncertainty;
 
-/// The restitution of each model with its uncertainty, and what it cost. A value that is not finite (no result, no
-/// uncertainty known, no cost measured) is left out; lists that are too short count as such values. Without any cost
-/// there is no axis for it.
+/// The restitution of each model with its uncertainty and its cost. A value that is not finite (no result, unknown uncertainty, no
+/// measured cost) is omitted, and so are values missing from a shorter list. Without any cost there is no axis for it.
 ///
 /// ```
 /// use vibroimpact::pictures::comparison;
@@ -38,7 +37,7 @@ pub fn comparison(
         true => with_uncertainty(restitution[i], error(i)),
         false => String::new(),
     });
-    // all of the range that a restitution usually has, and of what lies outside
+    // the usual range of a restitution, and values outside it
     let found = || restitution.iter().copied().filter(|e| e.is_finite());
     let range = (found().fold(0.0, f64::min), found().fold(1.0, f64::max));
     let ticks = || line.iter().zip(names).map(|(&y, name)| (y, name.as_ref().to_owned()));
@@ -61,7 +60,7 @@ pub fn comparison(
     Figure::new(title).row([results, costs])
 }
 
-/// A bar about a value as a line with gaps. It ends where the range does, and has a cap at an end that lies within it.
+/// A bar about a value as a line with gaps. It is cut off at the range, and has a cap at an end that lies within it.
 fn bar(value: f64, half: f64, level: f64, (low, high): (f64, f64)) -> Vec<(f64, f64)> {
     const CAP: f64 = 0.07;
     let gap = (f64::NAN, f64::NAN);
@@ -74,14 +73,14 @@ fn bar(value: f64, half: f64, level: f64, (low, high): (f64, f64)) -> Vec<(f64, 
     points
 }
 
-/// The models that answer a scene, the one chosen marked.
+/// The models that can solve a scene, with the chosen one marked.
 pub fn of_comparison(title: &str, comparison: &Comparison) -> Figure {
     let answers: Vec<_> = comparison.tiers.iter().filter_map(|tier| tier.answer.as_ref()).collect();
     let names: Vec<String> = answers
         .iter()
         .map(|answer| {
             let chosen = if answer.model == comparison.chosen.model { " (chosen)" } else { "" };
-            // a row without a point says why
+            // a row without a point states the reason
             let outcome = match answer.restitution {
                 Some(_) => String::new(),
                 None => format!(": {}", answer.outcome),
@@ -97,9 +96,9 @@ pub fn of_comparison(title: &str, comparison: &Comparison) -> Figure {
     self::comparison(title, &names, &restitution, &uncertainty, &[])
 }
 
-/// An answer of a model that does not resolve the motion in time: the restitution and how well it is known.
+/// An answer of a model that does not resolve the motion in time: the restitution with its uncertainty.
 pub fn of_answer(title: &str, answer: &Answer) -> Figure {
-    let title = format!("{title}\n{}: the net result, without a course in time", answer.model.as_str());
+    let title = format!("{title}\n{}: the net result, without motion in time", answer.model.as_str());
     let value = |number: Option<f64>| [number.unwrap_or(f64::NAN)];
     comparison(
         &title,

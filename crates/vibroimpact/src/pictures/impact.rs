@@ -15,13 +15,12 @@ const INTERVALS: usize = 1000;
 const ENERGY_POINTS: f64 = 1200.0;
 /// Contacts drawn over their own duration.
 const OVERLAID: usize = 6;
-/// Modes whose energy lies this far below the largest are not worth a decade of the axis.
+/// Modes with an energy below this share of the largest are not shown.
 const LEAST_MODAL_ENERGY: f64 = 1e-6;
 
-/// Where the bodies were, how fast they went, the force, where the energy was; below, each contact over its own duration,
-/// and the energy left in each mode. Grey stripes are the times in contact; numbers are those of the contacts in the
-/// summary. All of it until `until_s`. The velocities are the striker's, unless it is a stop, and the structure's at the
-/// contact.
+/// Displacements, velocities, force and energies until `until_s`; below, each contact over its own duration, and the final energy
+/// of each mode. Grey stripes are the times in contact; numbers are those of the contacts in the summary. The velocities are
+/// those of the striker, unless it is a stop, and of the structure at the contact.
 ///
 /// ```
 /// use vibroimpact::simulate::Simulation;
@@ -77,7 +76,7 @@ pub fn impact(title: &str, resolved: &Resolved, until_s: f64) -> Figure {
     }
 }
 
-/// What the two bodies are called: a dropped rod is the structure, and the floor its striker.
+/// Names of the two bodies: a dropped rod is the structure, and the floor its striker.
 fn names(impact: &Impact) -> [&'static str; 2] {
     if impact.striker.mass_kg.is_finite() { ["structure", "striker"] } else { ["structure", "stop"] }
 }
@@ -109,7 +108,7 @@ fn peak(contact: &Contact, samples: &[Sample]) -> Peak {
     Peak { time: highest.map_or(contact.start_s, |s| s.time_s), force: contact.peak_force_n }
 }
 
-/// Energy of the striker, which a stop has none of, and of the structure (J).
+/// Energy of the striker (zero for a stop) and of the structure (J).
 fn energies_j(resolved: &Resolved, time_s: f64) -> [f64; 2] {
     let Resolved { impact, history, .. } = resolved;
     let mass_kg = impact.striker.mass_kg;
@@ -118,7 +117,7 @@ fn energies_j(resolved: &Resolved, time_s: f64) -> [f64; 2] {
     [striker_j, history.modal_energies_j(time_s).iter().sum()]
 }
 
-/// Where the energy was: striker, structure, and the rest, which the contact stores or has lost together with damping.
+/// Energies of striker and structure, and the rest, which the contact stores or contact and damping have dissipated.
 fn shares(resolved: &Resolved, until_s: f64) -> Panel {
     let Resolved { impact, summary, history } = resolved;
     let mut time: Vec<f64> = Vec::new();
@@ -150,7 +149,7 @@ fn shares(resolved: &Resolved, until_s: f64) -> Panel {
     ))
 }
 
-/// The force of the first contacts, each from its touch on.
+/// The force of the first contacts, each from its beginning.
 fn each_contact(contacts: &[Contact], samples: &[Sample]) -> Panel {
     let heading = match contacts.len() {
         0 | 1 => "The contact".to_owned(),
@@ -183,7 +182,7 @@ mod tests {
     use super::*;
     use crate::simulate::Simulation;
 
-    /// What is drawn is what the ledger says, of every kind of scene: whichever body moves first.
+    /// The drawn energies are those of the energy balance, for every kind of scene.
     #[test]
     fn the_energies_drawn_are_those_of_the_ledger() {
         let beam = |striker: &str, start: &str| {

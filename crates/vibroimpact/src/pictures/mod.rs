@@ -1,6 +1,5 @@
-//! The pictures of the commands: an impact ([`impact`], and [`crate::infinite::picture`] for infinite structures), the
-//! modes of a structure ([`modes`]), its motion ([`animation`]), results of several models beside each other ([`comparison`],
-//! [`of_comparison`]).
+//! The figures of the commands: an impact ([`impact`], and [`crate::infinite::picture`] for infinite structures), the modes of a
+//! structure ([`modes`]), its motion ([`animation`]), and a comparison of several models ([`comparison`], [`of_comparison`]).
 //!
 //! Axes are in SI units with prefixes, whatever the scale of the impact.
 
@@ -16,7 +15,7 @@ pub use modes::modes;
 
 use crate::plot::{Axis, Colour, Marker, Panel, Series};
 
-/// Contacts are numbered in a picture up to this many; more numbers would hide what they name.
+/// Largest number of contacts that are numbered in a figure; more numbers would hide the curves.
 const NUMBERED: usize = 20;
 /// Peaks that differ by more than this ratio are drawn on a logarithmic axis.
 const WIDE_PEAKS: f64 = 100.0;
@@ -27,8 +26,8 @@ pub(crate) struct Peak {
     pub force: f64,
 }
 
-/// The contact force with every contact's peak marked, and numbered if they are few. Weak contacts after strong ones
-/// show, because the axis turns logarithmic where they would not.
+/// The contact force with every contact's peak marked, and numbered if they are few. If weak contacts would not be visible beside
+/// strong ones, the axis is logarithmic.
 pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f64], peaks: &[Peak]) -> Panel {
     let times: Vec<f64> = peaks.iter().map(|peak| peak.time).collect();
     let forces: Vec<f64> = peaks.iter().map(|peak| peak.force).collect();
@@ -41,7 +40,7 @@ pub(crate) fn force_panel(time_axis: Axis, unit: &str, time: &[f64], force: &[f6
         (false, true) => axis.limits(0.0, 1.2 * high),
         (false, false) => axis,
     };
-    // without contact there is no logarithm: the line goes down past the axis
+    // a force of zero has no logarithm, so the line leaves the figure at its lower edge
     let lowest = if axis.logarithmic { 1e-3 * low } else { f64::NEG_INFINITY };
     let force: Vec<f64> = force.iter().map(|force| force.max(lowest)).collect();
     let few = peaks.len() <= NUMBERED;

@@ -8,13 +8,13 @@ use crate::text::quantity;
 
 /// Modes whose shape along a beam or string is drawn.
 const DRAWN: usize = 30;
-/// Points along it, beside the location of impact.
+/// Points along it, in addition to the location of impact.
 const POINTS: usize = 400;
 /// Height of many shapes (px).
 const TALLEST_PX: f64 = 760.0;
 /// Largest displacement of a shape, where neighbours are 1 apart.
 const AMPLITUDE: f64 = 0.42;
-/// Modes whose shape over a plate is drawn, and so many beside each other.
+/// Modes whose shape over a plate is drawn, and number of maps in a row.
 const DRAWN_OVER_A_PLATE: usize = 12;
 const BESIDE: usize = 3;
 /// Cells along the longer side of a plate.
@@ -25,7 +25,7 @@ const HEIGHTS_PX: [f64; 2] = [40.0, 400.0];
 
 /// The shapes of the first thirty of `count` modes along a beam or string, or of the first twelve over a plate, each scaled to
 /// its largest displacement, with the location of impact; below, the mass-normalised shape at that location of all `count` modes
-/// against frequency. Of a structure that is given by its modes only the latter is known.
+/// against frequency. For a structure that is given by its modes only the latter is known.
 ///
 /// # Errors
 /// As [`Scene::mode_shapes`].
@@ -78,16 +78,16 @@ pub fn modes(scene: &Scene, count: usize) -> Result<Figure, InvalidInput> {
 
 /// Shapes along a beam or string.
 struct Line {
-    /// What it is called.
+    /// Its name.
     name: &'static str,
     length_m: f64,
     location_m: f64,
     places_m: Vec<f64>,
-    /// Per location, the shapes of all modes.
+    /// For each location, the shapes of all modes.
     shapes: Vec<Vec<f64>>,
-    /// Where the section changes.
+    /// Locations of changes of the section.
     joints_m: Vec<f64>,
-    /// Where something is fixed to it.
+    /// Locations of attachments and supports.
     fitted_m: Vec<f64>,
 }
 
@@ -131,7 +131,7 @@ fn in_scene(fault: InvalidInput) -> InvalidInput {
     fault.within("structure")
 }
 
-/// Locations at which shapes are drawn, that of the impact among them.
+/// Locations at which shapes are drawn, including that of the impact.
 fn places(length_m: f64, location_m: f64) -> Vec<f64> {
     let even = (0..=POINTS).map(|i| length_m * i as f64 / POINTS as f64);
     let mut places: Vec<f64> = even.chain([location_m]).collect();
@@ -175,7 +175,7 @@ fn along(line: &Line, frequency_hz: &[f64], count: usize) -> Panel {
     panel
 }
 
-/// A map of each shape over a plate, in its proportions as far as they fit.
+/// A map of each shape over a plate, in its proportions if they fit.
 fn over(plate: &Plate, [x_m, y_m]: [f64; 2], frequency_hz: &[f64]) -> Result<Vec<Panel>, InvalidInput> {
     let body = plate.to_plate().map_err(|fault| fault.within("structure"))?;
     let modes = body.modes(frequency_hz.len()).map_err(in_scene)?;

@@ -3,7 +3,7 @@
 use super::text::{fixed, width_px};
 use crate::text::superscript;
 
-/// What an axis shows.
+/// Description of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Name of the quantity, without its unit.
@@ -12,7 +12,7 @@ pub struct Axis {
     pub unit: String,
     /// Whether the axis is logarithmic; values that are not positive are then left out.
     pub logarithmic: bool,
-    /// Whether only whole numbers mean something on this axis.
+    /// Whether only whole numbers are meaningful on this axis.
     pub integers: bool,
     /// Whether tick labels and the axis label are drawn; false where a panel below repeats them.
     pub labelled: bool,
@@ -71,7 +71,7 @@ impl Axis {
         self
     }
 
-    /// Puts ticks at given places with given texts.
+    /// Sets ticks at given places with given texts.
     #[must_use]
     pub fn ticks_at(mut self, ticks: impl IntoIterator<Item = (f64, String)>) -> Axis {
         self.named_ticks = ticks.into_iter().collect();
@@ -89,14 +89,14 @@ pub(super) fn drawable(value: f64, logarithmic: bool) -> bool {
     value.abs() < 1e300 && (!logarithmic || value > 1e-300)
 }
 
-/// An axis with its limits settled, in the axis's own measure (the logarithm, if logarithmic).
+/// An axis with its final limits, in the measure of the axis (the logarithm, if logarithmic).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scale {
     low: f64,
     high: f64,
     logarithmic: bool,
     integers: bool,
-    /// Whether the unit takes the power of ten as an SI prefix.
+    /// Whether the power of ten becomes an SI prefix of the unit.
     prefixed: bool,
 }
 
@@ -146,7 +146,7 @@ impl Scale {
         (measure - self.low) / (self.high - self.low)
     }
 
-    /// Ticks for a horizontal axis of this length, as many as stand beside each other.
+    /// Ticks for a horizontal axis of this length, as many as fit beside each other.
     pub(super) fn ticks_along(&self, length_px: f64, size_px: f64) -> (Vec<Tick>, i32) {
         let room = |count: usize| {
             let (ticks, exponent) = self.ticks(count);
@@ -169,7 +169,7 @@ impl Scale {
             return self.linear_ticks(count);
         }
         let ticks = self.log_ticks(count);
-        // a piece of a decade too short for two of its own ticks takes those of a linear axis
+        // a part of a decade too short for two logarithmic ticks has those of a linear axis
         if count < 2 || ticks.iter().filter(|tick| !tick.1.is_empty()).count() > 1 {
             return (ticks, 0);
         }
@@ -220,7 +220,7 @@ impl Scale {
                     2 | 5 => few && count >= 3,
                     _ => false,
                 };
-                // between decades that are themselves skipped, small ticks would only blur
+                // small ticks are omitted if decades are skipped
                 let drawn = labelled || digit == 1 || stride == 1;
                 if place >= self.low - 1e-9 && place <= self.high + 1e-9 && drawn {
                     ticks.push((place, if labelled { log_label(decade, digit, plain) } else { String::new() }));
@@ -239,12 +239,12 @@ fn log_label(decade: i32, digit: i32, plain: bool) -> String {
     }
 }
 
-/// Units that take an SI prefix at their front.
+/// Units that can have an SI prefix.
 const PREFIXABLE: [&str; 11] = ["s", "m", "N", "J", "W", "Pa", "Hz", "m/s", "N/m", "m/N", "N s"];
 /// SI prefixes of the powers of a thousand from 10^-18.
 const PREFIXES: [&str; 13] = ["a", "f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P", "E"];
 
-/// The prefix that stands for a power of ten before a unit, if it can.
+/// The prefix of a unit for a power of ten, if there is one.
 fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
     let place = usize::try_from(exponent.div_euclid(3) + 6).ok()?;
     PREFIXES.get(place).copied().filter(|_| exponent % 3 == 0 && PREFIXABLE.contains(&unit))

@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::io;
 
-/// The backend knows whole numbers only: it draws at ten times the size, and the view box
+/// The backend has whole numbers only: it draws at ten times the size, and the view box
 /// scales the picture back.
 const FINE: f64 = 10.0;
 
@@ -60,7 +60,7 @@ pub(super) struct Lettering {
     pub upright: bool,
 }
 
-/// Something to draw on.
+/// A drawing area.
 pub(super) struct Canvas<'a> {
     area: DrawingArea<SVGBackend<'a>, Shift>,
 }
@@ -132,7 +132,7 @@ impl<'a> Canvas<'a> {
         self.path(&corners, pen)
     }
 
-    /// A sign at a point.
+    /// A marker at a point.
     pub fn marker(&self, (x, y): Point, marker: Marker, colour: RGBColor) -> io::Result<()> {
         let pen = Pen::new(colour, 1.1);
         let arm = 2.6;

@@ -7,7 +7,7 @@ use plotters::style::RGBColor;
 pub enum Colour {
     /// First choice.
     Blue,
-    /// Second choice; stands for red.
+    /// Second choice; used as red.
     Vermilion,
     /// Third choice.
     Green,
@@ -17,7 +17,7 @@ pub enum Colour {
     Purple,
     /// Sixth choice.
     Sky,
-    /// For data beside which the others are read.
+    /// For data with which the others are compared.
     Black,
     /// For guides.
     Grey,

@@ -47,7 +47,7 @@ pub struct Panel {
     pub y: Axis,
     /// Height of the rectangle between the axes (px).
     pub height_px: f64,
-    /// What is drawn, the first at the bottom.
+    /// The series, the first at the bottom.
     pub series: Vec<Series>,
     /// A map under the series.
     pub heat: Option<HeatMap>,
@@ -73,7 +73,7 @@ impl Panel {
         self
     }
 
-    /// Adds a series on top of those there are.
+    /// Adds a series on top of the others.
     #[must_use]
     pub fn with(mut self, series: Series) -> Panel {
         self.series.push(series);
@@ -87,7 +87,7 @@ impl Panel {
         self
     }
 
-    /// The map whose scale of colours stands beside the panel.
+    /// The map whose scale of colours is drawn beside the panel.
     pub(super) fn scale(&self) -> Option<&HeatMap> {
         self.heat.as_ref().filter(|heat| heat.value.labelled)
     }

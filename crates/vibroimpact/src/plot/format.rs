@@ -27,7 +27,7 @@ impl Format {
         "a file name that ends in .svg (this program was built without its feature png)"
     };
 
-    /// The format that the ending of a file name asks for, in capitals or not; `None` if it is no picture's.
+    /// The format for the ending of a file name, in capitals or not; `None` if it is not that of a picture.
     ///
     /// ```
     /// use vibroimpact::plot::Format;
@@ -57,8 +57,8 @@ impl Figure {
         }
     }
 
-    /// Writes the picture to a file, as SVG or PNG by the ending of its name. The file appears whole or not at all;
-    /// folders on the way are created.
+    /// Writes the picture to a file, as SVG or PNG by the ending of its name. The file appears complete or not at all; missing folders
+    /// are created.
     ///
     /// # Errors
     /// Another ending, or a place that cannot be written.

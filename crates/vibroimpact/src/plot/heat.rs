@@ -14,14 +14,14 @@ pub(super) const STRIP_PX: f64 = 74.0;
 /// A value on a grid, shown as colour with a scale beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    /// Abscissas of the cells' centres, rising.
+    /// Abscissas of the cells' centres, ascending.
     pub x: Vec<f64>,
-    /// Ordinates of the cells' centres, rising.
+    /// Ordinates of the cells' centres, ascending.
     pub y: Vec<f64>,
     /// Values, one row of cells per ordinate; missing or not finite ones stay grey.
     pub rows: Vec<Vec<f64>>,
-    /// What the colour stands for, with unit and limits; limits symmetric about zero give colours that part there. An axis
-    /// without labels leaves the scale of colours out.
+    /// The quantity of the colour, with unit and limits; limits symmetric about zero give a diverging colour map. With an axis without
+    /// labels no scale of colours is drawn.
     pub value: Axis,
 }
 
@@ -38,7 +38,7 @@ impl HeatMap {
         Scale::new(&self.value, extent, 0.0, true)
     }
 
-    /// Viridis; where the limits lie symmetrically about zero, blue for what is below and red for what is above.
+    /// Viridis; with limits symmetric about zero, blue for negative and red for positive values.
     fn shade(&self, fraction: f64) -> RGBColor {
         match self.value.limits {
             Some((low, high)) if low == -high && !self.value.logarithmic => blue_red(fraction),
@@ -46,7 +46,7 @@ impl HeatMap {
         }
     }
 
-    /// Draws the cells; `logarithmic` tells which of the two axes are, `place` maps a pair of values to the picture.
+    /// Draws the cells; `logarithmic` states which of the two axes are logarithmic, `place` maps a pair of values to the picture.
     pub(super) fn draw(
         &self,
         canvas: &Canvas,
@@ -81,7 +81,7 @@ impl HeatMap {
     pub(super) fn draw_scale(&self, canvas: &Canvas, panel: &Rectangle, text: Lettering) -> io::Result<()> {
         let scale = self.scale();
         let bar = Rectangle { left: panel.right + 12.0, right: panel.right + 24.0, ..*panel };
-        // values with names are shades of their own
+        // values with names have separate colours
         let shades = if self.value.named_ticks.is_empty() { 64 } else { self.value.named_ticks.len() };
         for k in 0..shades {
             let at = |k: usize| bar.bottom - bar.height() * k as f64 / shades as f64;
@@ -103,7 +103,7 @@ impl HeatMap {
     }
 }
 
-/// Edges of cells around centres: half way between neighbours, as the axis measures it.
+/// Edges of cells around centres: half way between neighbours, in the measure of the axis.
 pub(super) fn edges(centres: &[f64], logarithmic: bool) -> Vec<f64> {
     if logarithmic && centres.iter().all(|&centre| super::axis::drawable(centre, true)) {
         let measures: Vec<f64> = centres.iter().map(|centre| centre.log10()).collect();

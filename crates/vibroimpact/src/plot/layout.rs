@@ -1,4 +1,4 @@
-//! Where everything stands: margins, panels, legends.
+//! Layout of a figure: margins, panels, legends.
 
 use super::axis::{Axis, Scale, Tick, drawable, full_label, named_or};
 use super::canvas::{Canvas, Lettering, Pen, Rectangle, picture};
@@ -17,7 +17,7 @@ const LEGEND_LINE_PX: f64 = 17.0;
 const TITLE_PX: f64 = 14.0;
 const TITLE_LINE_PX: f64 = 18.0;
 
-/// A panel with everything known but its place.
+/// A panel without its position.
 struct Plan<'a> {
     panel: &'a Panel,
     x: Scale,
@@ -136,7 +136,7 @@ pub(super) fn draw(figure: &Figure) -> io::Result<String> {
     }
     let mut placed = Vec::new();
     for row in &rows {
-        // rows with as many panels share their margins, so that panels stand under each other
+        // rows with the same number of panels share their margins, so that panels are aligned
         let alike = || rows.iter().filter(|r| r.len() == row.len());
         let margin = |side: &dyn Fn(&Plan) -> f64, column: usize| alike().map(|r| side(&r[column])).fold(0.0, f64::max);
         let lefts: Vec<f64> = (0..row.len()).map(|c| margin(&|p| p.left_px, c)).collect();

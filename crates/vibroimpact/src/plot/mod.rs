@@ -2,8 +2,8 @@
 //!
 //! A [`Figure`] is rows of [`Panel`]s; a panel has two [`Axis`] descriptions and either series
 //! (lines, markers, steps, stems, bands, error bars) or a [`HeatMap`]. Axis limits, ticks,
-//! margins and legends are worked out from the data; the same figure always gives the same
-//! bytes. Values that are not finite are left out and interrupt a line. Colours are those of
+//! margins and legends are computed from the data; the same figure always gives the same
+//! bytes. Values that are not finite are omitted and interrupt a line. Colours are those of
 //! Okabe and Ito (2008), which can be distinguished with any colour vision; maps use viridis, or
 //! blue to red where their limits lie about zero.
 //!

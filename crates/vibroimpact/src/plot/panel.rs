@@ -13,7 +13,7 @@ use std::io;
 pub(super) const INK: RGBColor = RGBColor(40, 40, 40);
 pub(super) const TICK_PX: f64 = 11.0;
 
-/// Lettering of tick labels, from which the other kinds are made.
+/// Text style of tick labels, from which the other styles are derived.
 pub(super) const SMALL: Lettering =
     Lettering { size_px: TICK_PX, colour: INK, horizontal: HPos::Center, vertical: VPos::Top, upright: false };
 
@@ -42,7 +42,7 @@ pub(super) fn draw(canvas: &Canvas, panel: &Panel, x: &Scale, y: &Scale, r: &Rec
     if let Some(heat) = &panel.heat {
         heat.draw(canvas, r, [panel.x.logarithmic, panel.y.logarithmic], place)?;
     }
-    // what cannot be drawn becomes None and interrupts a line
+    // values that cannot be drawn become None and interrupt a line
     let at = |u: f64, v: f64| {
         let drawn = drawable(u, panel.x.logarithmic) && drawable(v, panel.y.logarithmic);
         drawn.then(|| place(u, v))
@@ -119,7 +119,7 @@ fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, 
         }
         Mark::Spans => {
             for (&from, &to) in series.x.iter().zip(&series.spread) {
-                // what begins at nothing on a logarithmic axis comes from beyond its low end
+                // zero on a logarithmic axis lies beyond its lower end
                 let begin = at(from, 1.0).or_else(|| (from <= 0.0).then_some((r.left, r.top)));
                 draw_span(canvas, r, colour, begin.zip(at(to, 1.0)))?;
             }
@@ -150,7 +150,7 @@ fn draw_series(canvas: &Canvas, series: &Series, colour: Colour, r: &Rectangle, 
         }
         Mark::VerticalRule => match pairs().next() {
             Some((u, _)) if drawable(u, false) => {
-                // any drawable ordinate serves to find the abscissa
+                // any drawable ordinate can be used to find the abscissa
                 let x = at(u, 1.0).map_or(f64::NAN, |p| p.0);
                 if (r.left..=r.right).contains(&x) { canvas.path(&[(x, r.top), (x, r.bottom)], pen) } else { Ok(()) }
             }

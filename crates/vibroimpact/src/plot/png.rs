@@ -1,4 +1,4 @@
-//! Pictures in pixels, drawn from the SVG with a font of our own, so that text is the same on every machine.
+//! Pictures in pixels, drawn from the SVG with a built-in font, so that text is the same on every machine.
 
 use std::io;
 use std::sync::{Arc, LazyLock};
@@ -8,10 +8,10 @@ use resvg::usvg::{Options, Tree, fontdb::Database};
 
 use super::Figure;
 
-/// DejaVu Sans, whole, so that names in any script it knows can be drawn.
+/// DejaVu Sans with all its characters, so that names in many scripts can be drawn.
 const FONT: &[u8] = include_bytes!("../../fonts/DejaVuSans.ttf");
 const FAMILY: &str = "DejaVu Sans";
-/// Most pixels of one picture; beyond, memory and not patience would run out.
+/// Largest number of pixels of one picture, which limits its memory.
 const MOST_PIXELS: f64 = 2e8;
 
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
@@ -23,7 +23,7 @@ static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
 
 impl Figure {
     /// The picture as a PNG file, with `scale` pixels for one of the figure; text is set in DejaVu Sans, which the
-    /// program carries. The same figure always gives the same bytes.
+    /// program contains. The same figure always gives the same bytes.
     ///
     /// # Errors
     /// A scale that is not a finite number above 0, or that makes more than 2e8 pixels or none.

@@ -1,8 +1,8 @@
-//! What is drawn between the axes.
+//! The data series of a panel.
 
 use super::colour::Colour;
 
-/// The sign at a point.
+/// The marker at a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
     /// Open circle.
@@ -36,14 +36,14 @@ pub(super) enum Mark {
     HorizontalRule,
 }
 
-/// Data drawn in one manner.
+/// Data drawn in one style.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     /// Upper edge of a band; half length of an error bar; right end of a span.
     pub(super) spread: Vec<f64>,
-    /// What labels say.
+    /// Texts of labels.
     pub(super) texts: Vec<String>,
     pub(super) mark: Mark,
     pub(super) label: String,
@@ -170,7 +170,7 @@ impl Series {
         self
     }
 
-    /// Sets how strongly areas cover what is below them, from 0 to 1.
+    /// Sets the opacity of areas, from 0 to 1.
     #[must_use]
     pub fn opacity(mut self, opacity: f64) -> Series {
         self.opacity = if opacity.is_finite() { opacity.clamp(0.0, 1.0) } else { 1.0 };
@@ -182,7 +182,7 @@ impl Series {
         matches!(self.mark, Points(_) | LinePoints(_) | Stem(_) | ErrorBars(_) | LevelErrorBars(_))
     }
 
-    /// Everything that has to lie within the horizontal limits.
+    /// Values that have to lie within the horizontal limits.
     pub(super) fn abscissas(&self) -> impl Iterator<Item = f64> + '_ {
         let counted = self.mark != Mark::HorizontalRule;
         let values = self.x.iter().enumerate().flat_map(|(i, &x)| match self.mark {
@@ -193,7 +193,7 @@ impl Series {
         values.filter(move |_| counted)
     }
 
-    /// Everything that has to lie within the vertical limits.
+    /// Values that have to lie within the vertical limits.
     pub(super) fn ordinates(&self) -> impl Iterator<Item = f64> + '_ {
         let counted = !matches!(self.mark, Mark::VerticalRule | Mark::Spans);
         let values = self.y.iter().enumerate().flat_map(|(i, &y)| match self.mark {

@@ -1,4 +1,4 @@
-//! How wide a text is, and numbers as text.
+//! Widths of texts, and numbers as text.
 
 use crate::text::filled;
 

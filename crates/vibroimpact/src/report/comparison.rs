@@ -1,11 +1,11 @@
-//! A published number beside ours.
+//! Comparison of a published number with ours.
 
 use crate::text::{significant, superscript};
 
-/// What a publication leads us to expect.
+/// The expected value from a publication.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
-    /// A number, and how far ours may lie from it.
+    /// A number and its tolerance.
     Value {
         /// The number.
         value: f64,
@@ -26,20 +26,20 @@ pub enum Expected {
 pub enum Verdict {
     /// Our number lies within the tolerance.
     Agrees,
-    /// It does not, or one of the numbers is missing.
+    /// Our number lies outside the tolerance, or one of the numbers is missing.
     Differs,
 }
 
-/// One published statement, our number, and what follows.
+/// One published statement, our number, and the verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What is compared, with its unit.
+    /// The compared quantity with its unit.
     pub quantity: String,
-    /// Where the statement stands.
+    /// Section, table or figure of the statement.
     pub source: String,
     /// The statement as printed.
     pub stated: String,
-    /// The statement as numbers.
+    /// The statement expressed in numbers.
     pub expected: Expected,
     /// Our number.
     pub ours: f64,
@@ -52,7 +52,7 @@ impl Comparison {
         ["quantity", "where", "stated", "ours", "difference", "tolerance", "verdict"];
 
     /// A printed decimal number, such as `0.11027` or `1.7945e10`. Half a unit of its last
-    /// digit is allowed. A text that is no number never agrees.
+    /// digit is allowed. A text that is not a number never agrees.
     pub fn printed(quantity: impl Into<String>, source: &str, printed: &str, ours: f64) -> Comparison {
         let value = printed.parse().unwrap_or(f64::NAN);
         let expected = Expected::Value { value, tolerance: 0.5 * last_digit(printed) };
@@ -87,7 +87,7 @@ impl Comparison {
         self
     }
 
-    /// Ours minus the stated number; for limits, how far ours lies outside (0 inside).
+    /// Our number minus the stated one; for limits, the distance of our number from them (0 inside).
     pub fn difference(&self) -> f64 {
         match self.expected {
             Expected::Value { value, .. } => self.ours - value,
@@ -100,7 +100,7 @@ impl Comparison {
     /// Whether our number lies within the tolerance. A number that is not finite never does.
     pub fn verdict(&self) -> Verdict {
         let allowed = match self.expected {
-            // the last bits of the comparison's own subtraction are not at stake
+            // rounding of this subtraction must not decide the verdict
             Expected::Value { value, tolerance } => tolerance + 4.0 * f64::EPSILON * value.abs(),
             Expected::Range { .. } => 0.0,
         };
@@ -138,7 +138,7 @@ fn last_digit(printed: &str) -> f64 {
     exponent.parse::<i32>().map_or(f64::NAN, |e| 10f64.powi(e - decimals as i32))
 }
 
-/// `1.7945e10` as people write it.
+/// `1.7945e10` in typographic form.
 fn pretty(printed: &str) -> String {
     match printed.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => {

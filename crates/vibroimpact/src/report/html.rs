@@ -1,4 +1,4 @@
-//! From Markdown to a page that needs no other file.
+//! Converts Markdown into a page that needs no other file.
 
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd};
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ pub(super) fn page(title: &str, markdown: &str, figures: &BTreeMap<String, Strin
             inside_figure = false;
             None
         }
-        // the picture carries its own title
+        // the figure has its own title
         _ if inside_figure => None,
         Event::Html(raw) | Event::InlineHtml(raw) => Some(Event::Text(raw)),
         other => Some(other),

@@ -30,7 +30,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A document in the making.
+/// A document that is being written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     title: String,
@@ -40,7 +40,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// A document with a title and nothing else.
+    /// An empty document with a title.
     pub fn new(title: impl Into<String>) -> Report {
         Report { title: title.into(), body: String::new(), figures: BTreeMap::new() }
     }
@@ -50,7 +50,7 @@ impl Report {
         self.body += &format!("\n## {}\n", one_line(text));
     }
 
-    /// Adds Markdown. Raw HTML in it shows up as text.
+    /// Adds Markdown. Raw HTML in it is shown as text.
     pub fn text(&mut self, markdown: &str) {
         self.body += &format!("\n{}\n", markdown.trim_end());
     }
@@ -61,7 +61,7 @@ impl Report {
         self.text(&lines.join("\n"));
     }
 
-    /// Adds text as it stands, in a fixed font. Nothing in it counts as Markdown.
+    /// Adds literal text in a fixed font. Markdown in it is not interpreted.
     pub fn code(&mut self, text: &str) {
         // a fence longer than any run of backticks in the text cannot be closed by it
         let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
@@ -90,7 +90,7 @@ impl Report {
         }
     }
 
-    /// Adds a table of published numbers beside ours, and how many agree.
+    /// Adds a table that compares published numbers with ours, and the number of those that agree.
     pub fn comparisons(&mut self, comparisons: &[Comparison]) {
         let agree = comparisons.iter().filter(|c| c.verdict() == Verdict::Agrees).count();
         self.text(&format!("{agree} of {} statements agree within their tolerance.", comparisons.len()));
@@ -132,8 +132,7 @@ impl Report {
     }
 }
 
-/// Writes a file beside its place and moves it there, so that it is never seen half written.
-/// Folders on the way are created.
+/// Writes a file under a temporary name and then renames it, so that it is never incomplete. Missing folders are created.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
@@ -142,12 +141,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     name.push(".part");
     let part = path.with_file_name(name);
     fs::write(&part, bytes).and_then(|()| fs::rename(&part, path)).inspect_err(|_| {
-        // what is left of an attempt is of no use; that it could not be removed is less than why it failed
+        // the temporary file is useless; that it could not be removed is less important than the first error
         let _ = fs::remove_file(&part);
     })
 }
 
-/// Text from outside as Markdown that shows it as it stands, in one line.
+/// External text as Markdown that shows it literally, in one line.
 ///
 /// ```
 /// assert_eq!(vibroimpact::report::literal("*a*\n[b](c)"), "\\*a\\* \\[b\\]\\(c\\)");

@@ -16,14 +16,14 @@ use crate::trust::Check;
 /// Under the picture of an impact.
 const PICTURE_CAPTION: &str =
     "Grey stripes are the times in contact; numbers are those of the contacts in the table below.";
-/// Contacts in the table; the rest are counted.
+/// Largest number of contacts in the table; the others are counted.
 const LISTED: usize = 200;
 
-/// The report on an impact on a modal structure: the result with its uncertainty, what was modelled and why (one
-/// sentence an item, in Markdown), pictures, contacts, energy, the scene, and how to repeat it.
+/// The report on an impact on a modal structure: the result with its uncertainty, the model with its reasons (one sentence for
+/// each item, in Markdown), figures, contacts, energy, the scene, and how to repeat it.
 ///
 /// # Errors
-/// Those of the figure.
+/// Errors of the figure.
 pub fn of_impact(
     headline: &str,
     scene: &Scene,
@@ -61,15 +61,15 @@ pub fn of_impact(
     report.heading("Energy");
     report.table(&["where", "energy", "share"], &energy(impact, summary));
     report.text(
-        "The last row is what the others leave of the energy before the impact: a measure of the computation's \
-         accuracy.",
+        "The last row is the energy before the impact minus all other rows, a measure of the accuracy of the \
+        computation.",
     );
     trusted(&mut report, trust);
     ended(&mut report, Some(scene), "vibroimpact simulate scene.json");
     Ok(report)
 }
 
-/// What the theories behind a result can bear.
+/// Limits of the theories behind a result.
 fn trusted(report: &mut Report, trust: &[Check]) {
     if trust.is_empty() {
         return;
@@ -82,7 +82,7 @@ fn trusted(report: &mut Report, trust: &[Check]) {
     report.table(&["check", "range of the theory", "what shows it"], &rows);
 }
 
-/// The report on an impact on an infinite beam or plate; without a scene it was posed by `S` alone.
+/// The report on an impact on an infinite beam or plate; without a scene it was stated by `S` alone.
 ///
 /// # Errors
 /// Those of the figure.
@@ -180,8 +180,8 @@ pub fn of_net_impact(
     Ok(report)
 }
 
-/// What a scene with a modal structure makes the solver compute, one sentence (Markdown) an item. `reason` is that of
-/// the choice of the model, [`Answer::reason`](crate::model::Answer::reason).
+/// Description of the model of a scene with a modal structure, one sentence (Markdown) for each item. `reason` is that of the
+/// choice of the model, [`Answer::reason`](crate::model::Answer::reason).
 pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     let modes = &impact.structure.modes[..impact.kept_modes()];
     let hertz = |omega_rad_s: f64| quantity(omega_rad_s / std::f64::consts::TAU, "Hz");
@@ -224,7 +224,7 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
     let residual = match impact.remainder_modes {
         0 => "The truncated modes are left out altogether.".to_owned(),
         count => format!(
-            "{count} remainder modes answer for the modes beyond those kept, with their static compliance of {}, so that \
+            "{count} remainder modes represent the truncated modes, with their static compliance of {}, so that \
              the result converges in the number of modes.",
             quantity(impact.residual_compliance_m_n(), "m/N")
         ),
@@ -236,8 +236,8 @@ pub fn modelled(scene: &Scene, impact: &Impact, reason: &str) -> Vec<String> {
         residual,
         format!("{}; the contact law is {}.", striker(scene, impact), scene.contact.law_name()),
         format!(
-            "Modes move exactly, and only the contact force is approximated; the accuracy aimed at in the restitution \
-             is {}.",
+            "The motion of the modes is exact, and only the contact force is approximated. The requested accuracy of the \
+             restitution is {}.",
             significant(impact.settings.tolerance, 2)
         ),
     ]
@@ -277,7 +277,7 @@ fn result(impact: &Impact, summary: &Summary) -> Vec<Vec<String>> {
         Some(rod) => {
             rows.push(row("velocity of the rod's centre", quantity(rod.centre_velocity_m_s, "m/s")));
             rows.push(row("angular velocity of the rod", quantity(rod.angular_velocity_rad_s, "rad/s")));
-            rows.push(row("velocity of the end that struck, vibration aside", quantity(rod.end_velocity_m_s, "m/s")));
+            rows.push(row("velocity of the end that struck, without vibration", quantity(rod.end_velocity_m_s, "m/s")));
         }
         None if impact.striker.mass_kg.is_infinite() => {}
         None => rows.push(row("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s"))),

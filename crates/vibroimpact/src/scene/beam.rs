@@ -88,7 +88,7 @@ impl Beam {
         }
     }
 
-    /// Segments and ends in the terms of [`beam_modes`], by Euler-Bernoulli's theory and without what is fixed to them;
+    /// Segments and ends as input of [`beam_modes`], by Euler-Bernoulli's theory and without attachments and supports;
     /// [`to_system`](Self::to_system) has all.
     ///
     /// # Errors
@@ -101,8 +101,8 @@ impl Beam {
             match segment.thickness() {
                 Some((field, thickness)) if length_m < 2.0 * thickness => {
                     let allowed = format!(
-                        "at most half the length of the whole beam, {} m: what is shorter than twice its thickness bends \
-                         as no beam does; flexural_rigidity_n_m2 and mass_per_length_kg_m take it as it is",
+                        "at most half the length of the whole beam, {} m, since beam theory does not hold for shorter \
+                        beams; flexural_rigidity_n_m2 and mass_per_length_kg_m are accepted for any length",
                         number(length_m)
                     );
                     Err(within(InvalidInput::new(field, number(thickness), allowed)))
@@ -121,10 +121,10 @@ impl Beam {
         })
     }
 
-    /// The beam with all that the scene says of it, by the theory that [`solved_by`](Self::solved_by) tells.
+    /// The complete beam of the scene, by the theory of [`solved_by`](Self::solved_by).
     ///
     /// # Errors
-    /// As [`to_beam`](Self::to_beam), and a segment that lacks what Timoshenko's theory needs where that is requested.
+    /// As [`to_beam`](Self::to_beam), and a segment without the data of Timoshenko's theory if that is requested.
     pub fn to_system(&self) -> Result<beam_modes::BeamSystem, InvalidInput> {
         let beam = self.to_beam()?;
         let theory = self.solved_by()?;
@@ -155,7 +155,7 @@ impl Beam {
         })
     }
 
-    /// What this beam has beyond the slender, uniformly damped one of the thesis, if anything.
+    /// Properties of this beam that the slender, uniformly damped beam of the thesis does not have, if any.
     pub(crate) fn beyond_slender(&self) -> Result<Option<&'static str>, InvalidInput> {
         Ok(match self.solved_by()? {
             BeamTheory::Timoshenko => Some("shear and rotary inertia"),
@@ -183,7 +183,7 @@ impl Beam {
         }
     }
 
-    /// The first `count` modes, to be seen from any location.
+    /// The first `count` modes, with shapes at any location.
     pub(crate) fn modes(&self, count: usize) -> Result<BeamModes, InvalidInput> {
         require_count(count)?;
         let modes = || {
@@ -210,7 +210,7 @@ impl BeamModes {
         self.modes.participation_kg0_5()
     }
 
-    /// The modes as a striker at a location on the beam meets them.
+    /// The modes with their shapes at a location on the beam.
     pub(crate) fn seen_from(&self, location_m: f64) -> Result<Vec<modal::Mode>, InvalidInput> {
         let shapes = self.modes.shapes_at(location_m).map_err(|fault| match fault.field.first() {
             Some("x_m") => fault.under("location_m"),

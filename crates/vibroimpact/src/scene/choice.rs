@@ -1,4 +1,4 @@
-//! What a scene leaves to the program: the model, and the number of modes.
+//! The choices that a scene may leave to the program: the model, and the number of modes.
 
 use std::borrow::Cow;
 

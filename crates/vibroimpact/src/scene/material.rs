@@ -199,7 +199,7 @@ fn replace(value: &mut Value, holder: Holder) -> Result<(), InvalidInput> {
 fn put_numbers(map: &mut Map<String, Value>, field: &str, takes: &[&str], prefix: &str) -> Result<(), InvalidInput> {
     let Some(named) = map.remove(field).filter(|named| !named.is_null()) else { return Ok(()) };
     if let Some(other) = IN_ITS_PLACE.iter().find(|other| map.get(**other).is_some_and(|value| !value.is_null())) {
-        return Err(InvalidInput::new(field, quote(&named), format!("left out beside {other}")));
+        return Err(InvalidInput::new(field, quote(&named), format!("left out in the presence of {other}")));
     }
     let names = MATERIALS.map(|material| material.name);
     let material = MATERIALS.iter().find(|material| named == material.name).ok_or_else(|| {
@@ -270,7 +270,7 @@ mod tests {
         );
         assert_eq!(
             told(json!({ "striker": { "material": "steel", "mass_kg": 1 } })),
-            "striker.material = \"steel\" must be left out beside mass_kg"
+            "striker.material = \"steel\" must be left out in the presence of mass_kg"
         );
         assert!(
             told(json!({ "contact": { "material": 7 } })).starts_with("contact.material = 7 is not allowed: one of")

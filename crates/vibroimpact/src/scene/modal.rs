@@ -95,7 +95,11 @@ impl Modal {
 
     fn seen_from(&self, location: Option<&str>) -> Result<Seen<'_>, InvalidInput> {
         let left_out = |field: &str, value: String| {
-            Err(InvalidInput::new(["structure", field], value, "left out beside points, each of which has its own"))
+            Err(InvalidInput::new(
+                ["structure", field],
+                value,
+                "left out in the presence of points, each of which has its own",
+            ))
         };
         match (location, self.points.is_empty()) {
             (None, true) => Ok(Seen {

@@ -72,7 +72,11 @@ fn parse(bytes: &[u8]) -> Result<Modal, InvalidInput> {
         (None, Some(place)) => (place, "frequency_hz", TAU),
         (None, None) => return Err(InvalidInput::missing("column omega_rad_s", NEEDED)),
         (Some(_), Some(_)) => {
-            return Err(InvalidInput::new("column frequency_hz", "1 column", "left out beside omega_rad_s"));
+            return Err(InvalidInput::new(
+                "column frequency_hz",
+                "1 column",
+                "left out in the presence of omega_rad_s",
+            ));
         }
     };
     let (damping, mass) = (column("damping_ratio")?, column("modal_mass_kg")?);

@@ -162,10 +162,11 @@ impl Segment {
             if let Some(value) = value {
                 let allowed = match section {
                     Section::Direct => {
-                        "left out beside flexural_rigidity_n_m2: shear is given by shear_rigidity_n and rotary_inertia_kg_m"
+                        "left out in the presence of flexural_rigidity_n_m2: shear is given by shear_rigidity_n and \
+                         rotary_inertia_kg_m"
                     }
                     _ => {
-                        "left out beside a section: shear is given by poissons_ratio and, optionally, shear_coefficient"
+                        "left out in the presence of a section: shear is given by poissons_ratio and, optionally, shear_coefficient"
                     }
                 };
                 return Err(InvalidInput::new(field, number(value), allowed));

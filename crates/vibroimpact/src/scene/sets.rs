@@ -18,7 +18,7 @@ pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Re
         return Err(InvalidInput::missing(*field, format!("give {}", ways())));
     }
     if let Some(&(field, value)) = here.iter().find(|(name, _)| !set.contains(name)) {
-        let allowed = format!("left out beside {}; give {}", set.join(" and "), ways());
+        let allowed = format!("left out in the presence of {}; give {}", set.join(" and "), ways());
         return Err(InvalidInput::new(field, number(value), allowed));
     }
     Ok(nearest)

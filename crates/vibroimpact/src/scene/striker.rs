@@ -59,11 +59,12 @@ impl Striker {
         match (mass_kg, density_kg_m3, sphere) {
             (Some(mass), Some(_), Some(sphere)) => {
                 let sphere = number(sphere);
-                let allowed = format!("left out beside density_kg_m3 and radius_m, whose sphere has {sphere} kg");
+                let allowed =
+                    format!("left out in the presence of density_kg_m3 and radius_m, whose sphere has {sphere} kg");
                 Err(InvalidInput::new("mass_kg", number(mass), allowed))
             }
             (Some(_), Some(density), None) => {
-                let allowed = "left out beside mass_kg, or given with radius_m in place of mass_kg";
+                let allowed = "left out in the presence of mass_kg, or given with radius_m in place of mass_kg";
                 Err(InvalidInput::new("density_kg_m3", number(density), allowed))
             }
             (Some(mass), None, _) | (None, _, Some(mass)) => Ok(mass),
@@ -75,12 +76,12 @@ impl Striker {
     }
 
     fn stop_mass_kg(&self) -> Result<f64, InvalidInput> {
-        let left_out = "left out beside immovable: a stop has no mass";
+        let left_out = "left out in the presence of immovable: a stop has no mass";
         match (self.mass_kg, self.density_kg_m3) {
             (Some(mass), _) => Err(InvalidInput::new("mass_kg", number(mass), left_out)),
             (_, Some(density)) => Err(InvalidInput::new("density_kg_m3", number(density), left_out)),
             _ if self.speed_m_s != 0.0 => {
-                let allowed = "0 for an immovable striker; start tells how the structure comes to it";
+                let allowed = "0 for an immovable striker; start states the motion of the structure";
                 Err(InvalidInput::new("speed_m_s", number(self.speed_m_s), allowed))
             }
             _ => Ok(f64::INFINITY),

@@ -67,7 +67,7 @@ impl<T> Neighbours<T> {
             }
         }
         let why = fault.map_or_else(String::new, |fault| format!(": {fault}"));
-        Err(named(&number(value), format!("a field that can change by a little{why}")))
+        Err(named(&number(value), format!("a field that can vary continuously{why}")))
     }
 
     /// What errors of modes make of it, each of the same size and of either sign; the size takes the place of a field.

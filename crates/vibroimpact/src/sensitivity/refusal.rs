@@ -18,14 +18,15 @@ pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> 
         NoDerivative::Together { contact, time_s } => {
             (format!("{}, which begins with a jump beside another at {} s", name(contact), seconds(time_s)), CONTACTS)
         }
-        NoDerivative::Fork { contact, time_s } => {
-            (format!("{}, whose law takes either of two courses at {} s", name(contact), seconds(time_s)), CONTACTS)
-        }
+        NoDerivative::Fork { contact, time_s } => (
+            format!("{}, whose law may follow either of two branches at {} s", name(contact), seconds(time_s)),
+            CONTACTS,
+        ),
         NoDerivative::Break { time_s } => (
             format!("an event just where a load breaks, at {} s", seconds(time_s)),
             "breaks of loads apart from events of contacts",
         ),
-        _ => ("a run whose derivatives are no finite numbers".to_owned(), "a run with finite derivatives"),
+        _ => ("a run whose derivatives are not finite".to_owned(), "a run with finite derivatives"),
     };
     InvalidInput::new("scene", value, format!("{allowed}; there is no derivative otherwise"))
 }

@@ -31,7 +31,7 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
         let part = 1e-2 * LINEAR / largest;
         let _ = writeln!(
             text,
-            "One per cent is far beyond where the derivatives hold: a change of {} of the first field already changes the\n\
+            "One per cent is far outside the range of the derivatives: a change of {} of the first field already changes the\n\
              restitution by {LINEAR}.",
             crate::model::small(part)
         );
@@ -72,9 +72,10 @@ fn table(found: &Table, output: &str) -> Result<String, InvalidInput> {
             row.derivative.value
         );
     }
-    text += "\nDerivatives are per SI unit of the field; \"by 1 % more\" is what one per cent more of it changes.\n";
+    text += "\nDerivatives are per SI unit of the field; \"by 1 % more\" is the change of the output if the field grows by one \
+             per cent.\n";
     if !found.left_out.is_empty() {
-        let _ = writeln!(text, "Left out, since they cannot change by a little: {}.", found.left_out.join(", "));
+        let _ = writeln!(text, "Left out, since they cannot vary continuously: {}.", found.left_out.join(", "));
     }
     Ok(text)
 }
@@ -94,7 +95,7 @@ fn cautions(graze: f64, contacts: usize, rows: &[Row]) -> String {
                  small changes.\n";
     }
     if rows.iter().any(|row| row.derivative.uncertainty.is_none()) {
-        text += "No digit is certain where ± is ?: a coarser solution took another course.\n";
+        text += "No digit is certain where ± is ?: a coarser solution has another sequence of contacts.\n";
     }
     text
 }

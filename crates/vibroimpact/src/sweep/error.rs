@@ -18,7 +18,7 @@ pub enum SweepError {
     #[error("{0}")]
     Refused(String),
     /// The program was asked to stop; what was finished is kept.
-    #[error("stopped with {done} of {points} points done; the same command goes on from there")]
+    #[error("stopped with {done} of {points} points done; the same command continues from there")]
     Stopped {
         /// Points whose rows are in the folder.
         done: u64,

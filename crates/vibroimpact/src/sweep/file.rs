@@ -185,7 +185,7 @@ pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
     let name = tree.get("scene_file").and_then(Value::as_str).map(str::to_owned);
     if let (Some(name), Some(map)) = (name, tree.as_object_mut()) {
         if let Some(scene) = map.get("scene") {
-            return Err(InvalidInput::new("scene", quote(scene), "left out beside scene_file").into());
+            return Err(InvalidInput::new("scene", quote(scene), "left out in the presence of scene_file").into());
         }
         let file = folder.join(name);
         let mut scene = read_tree(&file, A_SCENE).map_err(|found| in_file(&file, found))?;
@@ -259,13 +259,13 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         return Err(InvalidInput::missing("vary", "give vary, random or uncertain: something must change"));
     }
     if uncertain.is_some() && random.is_some() {
-        let allowed = "left out beside uncertain, which makes all draws";
+        let allowed = "left out in the presence of uncertain, which makes all draws";
         return Err(InvalidInput::new("random", "{...}", allowed));
     }
     if let Some(error) =
         canonical.pointer("/sampling/sampling_error").filter(|_| told.is_adaptive() && !axes.is_empty())
     {
-        let allowed = "left out beside vary: every point of a grid has the same draws";
+        let allowed = "left out in the presence of vary: every point of a grid has the same draws";
         return Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed));
     }
     Ok(Contents { description: file.description, scene, axes, random, uncertain, told, canonical })

@@ -84,7 +84,9 @@ impl Folder {
             same_sweep(path, found, &record)?;
         } else if let Some(name) = WRITTEN.into_iter().find(|name| path.join(name).symlink_metadata().is_ok()) {
             let folder = path.display();
-            let text = format!("{folder} holds {name}, but no {RECORD}: not of a sweep; choose another folder");
+            let text = format!(
+                "{folder} holds {name}, but no {RECORD}, so it is not the folder of a sweep; choose another folder"
+            );
             return Err(SweepError::Refused(text));
         }
         fs::create_dir_all(path).map_err(SweepError::io(path))?;
@@ -137,7 +139,8 @@ impl Folder {
         {
             return Ok(());
         }
-        let text = format!("{} is not as this program left it; remove the folder to begin anew", file.display());
+        let text =
+            format!("{} was changed after this program wrote it; remove the folder to begin anew", file.display());
         Err(SweepError::Refused(text))
     }
 

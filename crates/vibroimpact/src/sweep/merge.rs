@@ -118,7 +118,7 @@ fn copy(sweep: &Sweep, folder: &mut Folder, path: &Path, part: &Finished, first:
     next(&mut Vec::new())?;
     // before the last rows go in, the whole part must be as its sweep left it
     if sum.finalize() != part.progress.crc32 {
-        return Err(damaged("its checksum is not the one noted"));
+        return Err(damaged("its checksum differs from the recorded one"));
     }
     folder.append(chunks, &piece)
 }

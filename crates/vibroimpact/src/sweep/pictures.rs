@@ -24,7 +24,8 @@ const MOST_DOTS: u64 = 4000;
 const BAND: RangeInclusive<f64> = 0.05..=0.95;
 
 /// Under curves that are not drawn as lines.
-const UNRESOLVED: &str = " Points that jump to and fro are not joined, and have bars for bands: finer steps would show what lies between them.";
+const UNRESOLVED: &str = " Points that alternate irregularly are not joined, and have bars for bands: finer \
+                          steps would show what lies between them.";
 /// A curve that turns round at more than this share of its points is not resolved by them.
 const TURNING: f64 = 0.25;
 /// Fewer points say nothing about that.

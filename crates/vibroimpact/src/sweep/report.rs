@@ -16,12 +16,12 @@ const VALUES_TOLD: usize = 12;
 
 pub(super) fn report(sweep: &Sweep, tally: &Tally, figures: Vec<(String, Figure, String)>) -> io::Result<Report> {
     let mut report = Report::new(sweep.description.as_deref().unwrap_or("A sweep"));
-    report.heading("What came out");
+    report.heading("Results");
     report.text(&format!("```text\n{}```", tally.text()));
     for (name, figure, caption) in figures {
         report.figure(&name, &figure, &caption)?;
     }
-    report.heading("What was varied");
+    report.heading("Varied fields");
     report.table(&["field", "values", "number"], &varied(sweep));
     if let Some(random) = &sweep.random {
         report.text(&format!("Seed of the random draws: {}.", random.seed));

@@ -31,7 +31,7 @@ pub(super) fn waves(course: &Course, section: Option<&Section>) -> Vec<Check> {
     if let Some(omega) = course.fastest_rad_s(MATTERS) {
         let half_m = section.half_wavelength_m(omega);
         let says = format!(
-            "the fastest mode that matters, at {}, has half a wavelength of {}, {} times the thickness; {} holds from {} on",
+            "the fastest relevant mode, at {}, has a half wavelength of {}, {} times the thickness; {} holds from {} on",
             quantity(omega / TAU, "Hz"),
             quantity(half_m, "m"),
             small(half_m / section.thickness_m),
@@ -43,7 +43,7 @@ pub(super) fn waves(course: &Course, section: Option<&Section>) -> Vec<Check> {
     let omega = section.frequency_rad_s(limits[0]);
     if let Some(share) = course.share_beyond(omega) {
         let says = format!(
-            "{} % of the contact force's spectrum lies beyond {}, up to where {} holds",
+            "{} % of the contact force's spectrum lies above {}, the limit of {}",
             small(100.0 * share),
             quantity(omega / TAU, "Hz"),
             section.theory()

@@ -100,7 +100,7 @@ fn faults_of_the_sweep_file_name_their_field() {
     refused(|file| drop(file.as_object_mut().unwrap().remove("scene")), "scene is missing");
     refused(|file| *file = json!({ "scene": scene() }), "vary is missing: give vary, random or uncertain");
     refused(|file| *file = json!([1]), "is not allowed: a sweep is an object");
-    refused(|file| file["scene_file"] = json!("a.json"), "left out beside scene_file");
+    refused(|file| file["scene_file"] = json!("a.json"), "left out in the presence of scene_file");
 }
 
 #[test]

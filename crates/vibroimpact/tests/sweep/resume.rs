@@ -58,14 +58,14 @@ fn a_torn_line_is_dropped() {
     fs::write(bench.path("torn/results.csv"), &all[..half + 17]).unwrap();
     let output = bench.run(&["sweep", "sweep.json", "--out", "torn"]);
     assert!(output.status.success());
-    assert!(String::from_utf8(output.stderr).unwrap().contains("300 of 600 points are there; going on"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("300 of 600 points are done; continuing"));
     assert_same(&bench.path("whole"), &bench.path("torn"));
 
     // but what was noted as safe must be there as it was
     fs::write(bench.path("torn/progress.json"), progress.to_string()).unwrap();
     fs::write(bench.path("torn/results.csv"), &all[..half - 1]).unwrap();
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "torn"]);
-    assert!(told.contains("is not as this program left it"), "{told}");
+    assert!(told.contains("was changed after this program wrote it"), "{told}");
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn a_finished_sweep_is_not_computed_again() {
     bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
     let before = files(&bench.path("out"));
     let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
-    assert!(printed.contains("nothing; all was there"), "{printed}");
+    assert!(printed.contains("nothing; all points were done"), "{printed}");
     assert_eq!(before, files(&bench.path("out")));
 }
 
@@ -105,7 +105,7 @@ fn results_of_something_else_are_left_alone() {
     let bench = Bench::new(&super::sweep());
     fs::create_dir(bench.path("out")).unwrap();
     fs::File::create(bench.path("out/results.csv")).unwrap().write_all(b"mine").unwrap();
-    assert!(bench.refuses(&["sweep", "sweep.json", "--out", "out"]).contains("not of a sweep"));
+    assert!(bench.refuses(&["sweep", "sweep.json", "--out", "out"]).contains("not the folder of a sweep"));
     assert_eq!(files(&bench.path("out")), [("results.csv".to_owned(), b"mine".to_vec())]);
 }
 
@@ -132,7 +132,7 @@ fn a_signal_stops_it_in_good_order() {
     let output = child.wait_with_output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("points done; the same command goes on from there"), "{told}");
+    assert!(told.contains("points done; the same command continues from there"), "{told}");
     bench.succeeds(&arguments);
     assert_eq!(bench.rows("out").len(), 12_000);
 }

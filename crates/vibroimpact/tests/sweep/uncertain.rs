@@ -209,14 +209,14 @@ fn faults_name_field_value_and_what_is_allowed() {
             sweep["vary"] = json!([{ "field": "striker.speed_m_s", "values": [1, 2] }]);
             sweep["sampling"]["sampling_error"] = json!(0.1);
         },
-        "sampling.sampling_error = 0.1 must be left out beside vary",
+        "sampling.sampling_error = 0.1 must be left out in the presence of vary",
     );
     refused(
         &|sweep| {
             let speeds = json!([{ "field": "striker.speed_m_s", "from": 1, "to": 2 }]);
             sweep["random"] = json!({ "seed": 1, "draws": 2, "fields": speeds });
         },
-        "random = {...} must be left out beside uncertain",
+        "random = {...} must be left out in the presence of uncertain",
     );
 }
 
@@ -246,7 +246,7 @@ fn predictability_maps_the_width_under_a_blur() {
         let width = 2.0 * 1.644_854 * 4.0 * mass * phi / (1.0 + z).powi(2) * 0.01;
         assert!((at(9) / width - 1.0).abs() < 0.05, "{row:?}, {width}");
     }
-    assert!(String::from_utf8_lossy(&map(&options).stdout).contains("nothing; all was there"));
+    assert!(String::from_utf8_lossy(&map(&options).stdout).contains("nothing; all points were done"));
 
     let refused = |options: &[&str], message: &str| {
         fs::remove_dir_all(bench.path("out")).unwrap_or_default();

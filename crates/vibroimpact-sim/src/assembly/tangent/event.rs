@@ -1,4 +1,4 @@
-//! An event: by how much later it comes after a change, and how the law's transition there changes.
+//! Derivatives of an event: of its time, and of the law's transition.
 
 use super::panel::Moved;
 use super::walk::{
@@ -10,10 +10,10 @@ use crate::assembly::stencil::Stencil;
 use contact_models::{After, Branch, ContactLaw, Memory};
 use std::array;
 
-/// Two events stay together if their times shift by the same to this part.
+/// Two simultaneous events stay together if their times shift equally within this relative difference.
 const TOGETHER: f64 = 1e-6;
 
-/// By how much later an event function with this rate of change falls to zero when it changes.
+/// Shift of the zero of an event function with this rate, for a change of the function.
 pub(super) fn later(changes: f64, slope: f64) -> Option<f64> {
     if changes == 0.0 {
         return Some(0.0);
@@ -30,8 +30,8 @@ impl Walk<'_> {
         [link.sum(&slide.amplitude) + by_loads, link.sum(&slide.rate) + self.loads.bend(c, time_s)]
     }
 
-    /// By how much later than the event that ended the panel another event at the same time comes after a change. A contact
-    /// whose force jumps at first touch then has no tangent here.
+    /// Shift of another event at the same time relative to the event that ended the panel. If they shift differently, a contact
+    /// whose force jumps at first touch has no tangent here.
     pub fn apart(
         &self,
         c: usize,
@@ -67,8 +67,8 @@ impl Walk<'_> {
         self.tangents.iter().enumerate().map(of).collect()
     }
 
-    /// Change of an event function at the end of an unchanged panel, and its rate of change with the length. `None` if the
-    /// law has no such boundary nearby.
+    /// Derivative of an event function at the end of a panel of unchanged length, and its rate. `None` if the law has no such
+    /// boundary at a neighbouring value.
     pub fn event_function(
         &self,
         d: usize,
@@ -102,7 +102,7 @@ impl Walk<'_> {
         Some((changes, along(speed)))
     }
 
-    /// The law's own transition.
+    /// Derivatives of the law's transition.
     pub fn transition(
         &mut self,
         (c, event): (usize, Event),
@@ -112,7 +112,7 @@ impl Walk<'_> {
     ) -> Result<(), NoDerivative> {
         let law = self.posed.laws[c];
         let followed = self.contacts[c];
-        // the numbers that the law makes, of those that it is given: its own, and two of the motion
+        // the law computes its new numbers from its own numbers and two of the motion
         const GIVEN: usize = NUMBERS + 2;
         type Given = [f64; GIVEN];
         let join = |own: Numbers, motion: [f64; 2]| -> Given {
@@ -152,7 +152,7 @@ impl Walk<'_> {
             After::Continue(branch) => Some(branch.stage),
             After::Release(_) => None,
         };
-        // a law that takes another course nearby has no derivative here
+        // there is no derivative if the law follows another branch at a neighbouring value
         let difference = |found: [After; 4], stencil: &Stencil<4>| -> Result<Numbers, NoDerivative> {
             if found.iter().any(|found| kind(found) != kind(&after)) {
                 return Err(NoDerivative::Fork { contact: c, time_s: at_s });
@@ -160,7 +160,7 @@ impl Walk<'_> {
             let found = found.each_ref().map(numbers_of);
             Ok(array::from_fn(|which| stencil.slope(found.map(|numbers| numbers[which]))))
         };
-        // how these numbers change with a number given
+        // derivatives of these numbers with respect to a given number
         let by_given = |i: usize| {
             let stencil = Stencil::central(LAW_STEP * sizes[i]);
             let found = stencil.offsets.map(|offset| {

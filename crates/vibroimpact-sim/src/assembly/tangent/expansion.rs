@@ -1,4 +1,4 @@
-//! All modes on one length of panels, with responses weighed as the changes need them.
+//! All modes on panels of one length, with the weighted responses for the derivatives.
 
 use super::panel::add;
 use crate::assembly::change::Change;
@@ -10,7 +10,7 @@ use crate::panel::legendre::{Nodal, Q};
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
-/// Free motion and responses of all modes on one length of panels, with what the changes weigh them by.
+/// Free motion and responses of all modes on panels of one length, with their weights in the derivatives.
 pub(super) struct Expansion {
     pub rotation: Rotation,
     pub forced: Forced,
@@ -44,8 +44,7 @@ impl Expansion {
     }
 }
 
-/// Expansions of panels whose length comes again, by that length and the contacts that are closed: for one system and the
-/// same changes.
+/// Cached expansions of panels by length and closed contacts, for one system and the same parameters.
 #[derive(Default)]
 pub(crate) struct Expansions(HashMap<(u64, Vec<usize>), Rc<Expansion>>);
 

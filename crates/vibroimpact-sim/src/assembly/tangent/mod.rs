@@ -1,6 +1,6 @@
-//! The tangent of a motion: how all of it changes with a parameter, to first order.
+//! The tangent of a motion: its derivative with respect to a parameter.
 //!
-//! The recorded panels are gone through once more. On each of them three things are differentiated.
+//! The recorded panels are processed once more. On each of them three things are differentiated.
 //!
 //! # A mode
 //! With `L a = a'' + 2 beta a' + omega^2 a = f`, `beta = zeta omega`, and `t` the time since the start of the panel,
@@ -10,7 +10,7 @@
 //! L (t a') = t f' + 2 f - 2 beta a' - 2 omega^2 a
 //! ```
 //!
-//! so that what a change of frequency and damping does to a mode is its own motion times the time. The change `da` obeys
+//! so that a change of frequency and damping adds to a mode its own motion times the time. The change `da` obeys
 //! `L da = df - d(omega^2) a - 2 d(beta) a'`, and with `c_1 = omega dzeta/(1 - zeta^2)`, `c_2 = domega/omega - zeta
 //! dzeta/(1 - zeta^2)`
 //!
@@ -18,25 +18,25 @@
 //! da = y - c_1 t a + c_2 t a',      L y = df + c_1 t f - c_2 (t f' + 2 f)
 //! ```
 //!
-//! where `y` is the motion of the same mode under other forces, for which the propagators and responses of the panel
-//! serve. Next to critical damping, `zeta = 1`, `c_1` and `c_2` would magnify what the panel misses of `t f`. Such a mode
-//! keeps what `domega` alone makes of them, and adds the derivatives of its free motion and of its responses by `zeta`, which
-//! have a closed form of their own ([`ByDamping`](crate::panel::by_damping::ByDamping)).
+//! where `y` is the motion of the same mode under other forces, computed with the propagators and responses of the panel. Near
+//! critical damping, `zeta = 1`, `c_1` and `c_2` would magnify the panel's error of `t f`. For such a mode they contain only the
+//! part by `domega`, and the derivatives of its free motion and of its responses with respect to `zeta` are added, which have a
+//! closed form ([`ByDamping`](crate::panel::by_damping::ByDamping)).
 //!
 //! # The forces
 //! `F = law(xi, xi')` at the nodes becomes linear: `(1 - F_xi R - F_rate D R) dF = F_xi dr + F_rate D dr + F_theta`, with
 //! Newton's matrix of the panel and `dr` the change of the overlap under unchanged forces.
 //!
 //! # The loads
-//! Modes are carried relative to their steady motion under the loads, which is known in closed form and with it its change.
-//! What is carried moves freely, so that all of the above holds for it. A break of a load lies at a fixed time: the panel
-//! before it is shorter by as much as its start is later.
+//! Modes are computed relative to their steady motion under the loads. The steady motion has a closed form, and so has its
+//! derivative. The relative motion is free, so that all of the above holds for it. A break of a load lies at a fixed time: the
+//! panel before it becomes shorter by the shift of its start.
 //!
 //! # The events
-//! A panel that ends at an event changes its length by `dh = -dG/G'`, so that the event function `G` stays zero, and what
-//! follows begins at the shifted time: every change is that at the event, wherever it has moved. Touches so stay
-//! touches, and forces begin and end as `t^(3/2)` does after the change as before it. Where `G' = 0`, at a graze, there is
-//! no derivative.
+//! A panel that ends at an event changes its length by `dh = -dG/G'`, so that the event function `G` stays zero, and the next
+//! panel begins at the shifted time: derivatives are taken at the event, not at a fixed time. A touch therefore remains a touch,
+//! and a force that begins and ends as `t^(3/2)` still does so after the change. At a grazing contact `G' = 0`, and there is no
+//! derivative.
 
 mod event;
 mod expansion;
@@ -58,17 +58,17 @@ use panel::{Moved, Passage, Solved, add};
 use walk::Walk;
 pub(crate) use walk::{IntervalChange, Tangent};
 
-/// All tangents of a record, and how the events met.
+/// All tangents of a record.
 pub(crate) struct Tangents {
     pub tangents: Vec<Tangent>,
     /// The motion itself at the end.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
-    /// The slowest touch, in parts of the fastest: the derivatives do not exist where it is zero.
+    /// Speed of the slowest touch divided by that of the fastest: the derivatives do not exist if it is zero.
     pub nearest_graze: f64,
 }
 
-/// What fixes where a panel ends.
+/// The condition that determines the end of a panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Ending {
     /// Its length.
@@ -81,20 +81,20 @@ enum Ending {
     Run,
 }
 
-/// Where a panel ends.
+/// The end of a panel.
 struct Arrival<'a> {
     length_s: f64,
     ending: Ending,
-    /// What is carried of the modes there.
+    /// The relative modal state there.
     state: [&'a [f64]; 2],
-    /// How the time of the end changes, where that is what fixes it.
+    /// Derivative of the time of the end, if the panel ends at a given time.
     end_s: Option<&'a [f64]>,
-    /// What follows.
+    /// The next stretch.
     next: &'a Stretch,
 }
 
-/// The tangents of a recorded motion. A record that ends at a fixed time ends with a stretch of no length, and `end_s` has how
-/// that time changes with each parameter.
+/// The tangents of a recorded motion. A record that ends at a fixed time ends with a stretch of zero length, and `end_s` has the
+/// derivatives of that time with respect to each parameter.
 pub(crate) fn tangents(
     posed: &Posed,
     system: &System,
@@ -104,7 +104,7 @@ pub(crate) fn tangents(
 ) -> Result<Tangents, NoDerivative> {
     let mut walk = Walk::new(posed, system, changes, expansions);
     for (i, stretch) in stretches.iter().enumerate() {
-        // events that begin the record are met on a panel of no length
+        // events at the start of the record are treated on a panel of zero length
         if i == 0 && !stretch.events.is_empty() {
             walk.begin(stretch)?;
         }
@@ -145,7 +145,7 @@ impl Walk<'_> {
     /// From the start of a stretch to that of the next one; `end_s` has the changes of that time if the record ends there.
     fn advance(&mut self, stretch: &Stretch, next: &Stretch, end_s: Option<&[f64]>) -> Result<(), NoDerivative> {
         let h = stretch.length_s;
-        // what is carried jumps at a break
+        // the relative motion jumps at a break
         let mut after = None;
         let (mut end_a, mut end_b) = (next.amplitude.clone(), next.rate.clone());
         while next.start_s >= after.as_ref().unwrap_or(&self.loads).next_break_s() {
@@ -157,7 +157,7 @@ impl Walk<'_> {
         }
         let state = [end_a.as_slice(), &end_b];
         let ending = match (ending(next), end_s) {
-            // an event just at a break has no place of its own
+            // the time of an event at a break cannot shift separately
             (Ending::Event(..), _) if after.is_some() => return Err(NoDerivative::Break { time_s: next.start_s }),
             (Ending::Length, _) if after.is_some() => Ending::Break,
             (Ending::Length, Some(_)) => Ending::Run,
@@ -208,7 +208,7 @@ impl Walk<'_> {
         self.loads = after;
     }
 
-    /// The end of a panel: how far it moves, what is booked, and the events there.
+    /// The end of a panel: its shift, the statistics, and the events there.
     fn arrive(
         &mut self,
         end: &Arrival,
@@ -309,7 +309,7 @@ impl Walk<'_> {
         solved.iter().map(of).collect()
     }
 
-    /// From what is carried to the whole motion at the end of the record.
+    /// From the relative to the total motion at the end of the record.
     fn end(&mut self, last: &Stretch) -> (Vec<f64>, Vec<f64>) {
         let (time_s, loads) = (last.start_s, &self.loads);
         let (mut amplitude, mut rate) = (last.amplitude.clone(), last.rate.clone());
@@ -330,7 +330,7 @@ impl Walk<'_> {
     }
 }
 
-/// What fixes where the panel before a stretch ends, loads apart: the first event at its start.
+/// The condition that ends the panel before a stretch, apart from loads: the first event at its start.
 fn ending(next: &Stretch) -> Ending {
     match next.events.first() {
         Some((_, Event::Touch { overlaps: true })) | None => Ending::Length,

@@ -1,4 +1,4 @@
-//! One panel: the change of the modes and of the forces while no event moves.
+//! Derivatives of the modes and of the forces on one panel, without shifts of events.
 
 use super::expansion::Expansion;
 use super::walk::{LAW_STEP, Walk, shifted, size_of};
@@ -11,7 +11,7 @@ use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
 
-/// The step of a branch's anchor in parts of the compression beyond it, and the least in parts of its size.
+/// Step of a branch's anchor relative to the compression beyond it, and the smallest step relative to its size.
 const ANCHOR_STEP: f64 = 0.01;
 const LEAST_LAW_STEP: f64 = 1e-9;
 
@@ -30,14 +30,14 @@ pub(super) struct Solved {
     pub compression: Nodal,
     pub rate: Nodal,
     pub law: [Force; Q],
-    /// What a unit of weight would make of all modes by the end of the panel: by `F`, `t F` and `t F' + 2 F`.
+    /// State of all modes at the end of the panel for unit weights: under `F`, `t F` and `t F' + 2 F`.
     pub driven: [Motion; 3],
 }
 
 /// Amplitudes and rates of all modes.
 pub(super) type Motion = [Vec<f64>; 2];
 
-/// A panel of the record, from one stretch to the next, with what all changes need of it.
+/// A panel of the record, from one stretch to the next, with the data for all derivatives.
 pub(super) struct Passage<'a> {
     pub from: &'a Stretch,
     /// Amplitudes and rates at its end.
@@ -48,7 +48,7 @@ pub(super) struct Passage<'a> {
     pub bends: [Vec<f64>; 2],
 }
 
-/// What one change does on one panel.
+/// Derivatives with respect to one parameter on one panel.
 pub(super) struct Moved {
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
@@ -57,7 +57,7 @@ pub(super) struct Moved {
     pub overlap: Vec<Nodal>,
 }
 
-/// What a contact sees of a change by free motion: at the start and at the nodes, and what is multiplied by the time.
+/// Derivative of the overlap of a contact by free motion: at the start and at the nodes, and the part multiplied by the time.
 #[derive(Default)]
 pub(super) struct Seen {
     pub start: f64,
@@ -120,7 +120,7 @@ impl Walk<'_> {
         stretch.forces.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Acceleration of what is carried of all modes in a state, under these forces at a place of their panel.
+    /// Acceleration of the relative motion of all modes in a state, under these forces at a point of the panel.
     pub fn acceleration(&self, time_s: f64, [a, b]: [&[f64]; 2], solved: &[Solved], place: f64) -> Vec<f64> {
         let system = self.system;
         let mut bend: Vec<f64> =
@@ -262,7 +262,7 @@ impl Walk<'_> {
         Moved { amplitude, rate, force, overlap }
     }
 
-    /// How free motion from `y` and from the state moves what a contact sees of the change: in one pass over the modes.
+    /// Derivative of the overlap of a contact by free motion from `y` and from the state, in one pass over the modes.
     fn seen(&self, d: usize, c: usize, forced: &Forced, y: [&[f64]; 2], [a, b, bend]: [&[f64]; 3]) -> Seen {
         let change = &self.changes[d];
         let mut seen = Seen::default();
@@ -304,7 +304,7 @@ impl Walk<'_> {
         for (which, by) in self.tangents[d].contacts[c].branch.iter().enumerate().filter(|(_, by)| **by != 0.0) {
             let size = size_of(&own.branch, which, &self.contacts[c]);
             for i in 0..Q {
-                // a law may have a corner where it is anchored, which no neighbour passes
+                // a law may have a kink at its anchor, which the neighbouring values must not cross
                 let apart = if which == 0 { (own.compression[i] - own.branch.anchor_m).abs() } else { size };
                 let step = (ANCHOR_STEP * apart).clamp(LEAST_LAW_STEP * size, LAW_STEP * size);
                 let stencil = Stencil::central(step);
@@ -315,8 +315,8 @@ impl Walk<'_> {
         found
     }
 
-    /// What a panel longer by a second would change at its end. The nodes move along with the end: forces there are those
-    /// of the law, of which the polynomial's own slope may miss a little.
+    /// Derivative of the state at the end of a panel with respect to its length. The nodes move with the end, and the forces there
+    /// are those of the law, which are more accurate than the slope of the polynomial.
     pub fn slide(&self, passage: &Passage) -> Moved {
         let Passage { from, to, expansion, solved, bends } = passage;
         let (h, n) = (from.length_s, solved.len());

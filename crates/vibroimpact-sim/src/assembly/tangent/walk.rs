@@ -1,4 +1,4 @@
-//! What is carried from panel to panel: the motion of the contacts, and how it changes.
+//! The state that is passed from panel to panel: the motion of the contacts, and its derivatives.
 
 use super::expansion::Expansions;
 use crate::assembly::change::Change;
@@ -10,10 +10,10 @@ use crate::assembly::system::{Span, System};
 use contact_models::{Branch, Internal, Memory};
 use std::array;
 
-/// Step, relative to the size of a variable, with which a law's own functions are differenced.
+/// Step of finite differences of a law's functions, relative to the size of a variable.
 pub(super) const LAW_STEP: f64 = 1e-6;
 
-/// How an interval of contact changes.
+/// Derivatives of an interval of contact.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct IntervalChange {
     pub contact: usize,
@@ -26,10 +26,10 @@ pub(crate) struct IntervalChange {
     pub separation_speed_m_s: f64,
 }
 
-/// The change of a motion with one parameter.
+/// Derivatives of a motion with respect to one parameter.
 #[derive(Clone)]
 pub(crate) struct Tangent {
-    /// Of the modes when the record ends, in the order of [`System`], and of that time; before, of what is carried of them.
+    /// Of the modes in the order of [`System`], and of the time at the end of the record; before the end, of the relative motion.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
     pub time_s: f64,
@@ -37,7 +37,7 @@ pub(crate) struct Tangent {
     pub(super) contacts: Vec<Carried>,
 }
 
-/// What a contact carries from panel to panel: the change of ...
+/// State of a contact from panel to panel: the derivative of ...
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carried {
     /// ... its overlap beyond that of the modes (m),
@@ -48,7 +48,7 @@ pub(super) struct Carried {
     pub memory: Numbers,
 }
 
-/// The numbers that fix a branch or a memory: the compression at which it began or touches (m), and the internal variables.
+/// The numbers that determine a branch or a memory: the compression at which it began or touches (m), and the internal variables.
 pub(super) type Numbers = [f64; NUMBERS];
 pub(super) const NUMBERS: usize = 1 + Internal::MOST;
 
@@ -71,7 +71,7 @@ pub(super) struct Followed {
     pub rate: f64,
     /// Sizes of overlap and rate so far.
     pub sizes: [f64; 2],
-    /// Which interval is under way, its largest force and compression.
+    /// The present interval, its largest force and compression.
     pub interval: usize,
     pub peaks: [f64; 2],
 }
@@ -147,7 +147,7 @@ impl<'a> Walk<'a> {
         array::from_fn(|i| sum(psi, state[i]) + link.sum(change[i]) + beyond[i])
     }
 
-    /// The part of it that is not seen of the modes as they are carried.
+    /// The part that does not come from the relative motion of the modes.
     pub fn beyond(&self, d: usize, c: usize, time_s: f64) -> [f64; 2] {
         let mut found = [self.tangents[d].contacts[c].reference, 0.0];
         if !self.loads.is_empty() {
@@ -163,7 +163,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The size that a number of a branch is differenced by.
+/// The step of finite differences for a number of a branch.
 pub(super) fn size_of(branch: &Branch, which: usize, followed: &Followed) -> f64 {
     match (numbers(branch.anchor_m, branch.internal)[which], which) {
         (0.0, 0) => followed.sizes[0],

@@ -1,7 +1,7 @@
 //! One contact, from touch to release.
 //!
-//! Time `theta` counts from touch. What was before is the free motion [`FreeMotion`]; what the contact itself has done
-//! is known through impulses by their age. A panel is solved, judged and taken, as it is or up to an event.
+//! The time `theta` is measured from touch. The past before it enters as the free motion [`FreeMotion`], and the past of the
+//! contact itself as impulses with their ages. A panel is solved, checked and accepted, as a whole or up to an event.
 
 use super::equations::{Fault, Nodal, solve};
 use super::event::{Event, first};
@@ -18,7 +18,7 @@ use crate::infinite::problem::Settings;
 use crate::infinite::rule::{Kind, dot, series, series_slope};
 use contact_models::{After, Branch, Memory};
 
-/// Changes of branch at one time, after which the law is taken to be one that never stops changing.
+/// Number of changes of branch at one time after which the law counts as inconsistent.
 const MOST_AT_ONCE: usize = 16;
 /// A contact is followed for this many of its natural times.
 const LONGEST: f64 = 300.0;
@@ -34,7 +34,7 @@ pub(super) struct Touch {
     pub memory: Memory,
 }
 
-/// How the march through a contact ended.
+/// How the integration of a contact ended.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Ending {
     /// The surfaces part, leaving this memory.
@@ -42,17 +42,17 @@ pub(super) enum Ending {
     Stopped(StopReason),
 }
 
-/// A panel on trial.
+/// A trial panel.
 struct Trial {
     kind: Kind,
     h: f64,
     nodal: Nodal,
     f_series: Vec<f64>,
-    /// Impulse that the polynomial of the force does not resolve, over what is allowed.
+    /// Impulse that the polynomial of the force does not resolve, relative to the allowed one.
     unresolved: f64,
 }
 
-/// The march through one contact.
+/// The integration of one contact.
 pub(super) struct Contact<'a> {
     kernel: &'a Kernel,
     law: &'a Scaled<'a>,
@@ -112,7 +112,7 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// Marches until the contact ends, or the run does.
+    /// Integrates until the contact or the run ends.
     pub fn run(&mut self, budget: usize) -> Ending {
         let (natural, relaxation) = self.natural_times();
         let shortest = SHORTEST * natural;
@@ -173,7 +173,7 @@ impl<'a> Contact<'a> {
         Ending::Stopped(StopReason::Steps)
     }
 
-    /// Whether a law pulls, which no contact does.
+    /// Whether a law gives a tensile force, which is not allowed.
     fn pulls(&self, force: &[f64]) -> bool {
         force.iter().any(|f| *f < -1e-6 * self.peak_force)
     }
@@ -195,7 +195,7 @@ impl<'a> Contact<'a> {
         (h, if relaxation.is_finite() { relaxation.abs() } else { 0.0 })
     }
 
-    /// What the equations of a panel from now know: compression and rate at its nodes and end but for its own force.
+    /// Known terms of the equations of the next panel: compression and rate at its nodes and end without its own force.
     fn known(&self, kind: Kind, h: f64) -> [Vec<f64>; 2] {
         let tables = self.kernel.tables;
         let elapsed = &tables.rule(kind).elapsed;
@@ -263,12 +263,12 @@ impl<'a> Contact<'a> {
         first(self.kernel.tables, trial.kind, &margins, x, rate, &noise)
     }
 
-    /// Takes a panel that ends where the boundary is met, from a guess of its length. Returns whether there is one that
-    /// is resolved.
+    /// Accepts a panel that ends where the boundary is met, from a guess of its length. Returns whether there is one that is
+    /// resolved.
     fn land(&mut self, event: Event, guess: f64) -> bool {
         let margins = self.law.margins(&self.branch);
         let Some(margin) = margins.get(event.which) else { return false };
-        // slope of the margin in the elapsed fraction, of a panel as long as the one on trial
+        // slope of the event function in the elapsed fraction of the trial panel
         let mut slope = event.slope * event.fraction / guess;
         let (mut length, mut last): (f64, Option<(f64, f64)>) = (guess, None);
         for _ in 0..20 {
@@ -303,7 +303,7 @@ impl<'a> Contact<'a> {
         false
     }
 
-    /// Takes a panel into the record.
+    /// Adds a panel to the record.
     fn take(&mut self, trial: Trial) {
         let Trial { kind, h, mut nodal, f_series, .. } = trial;
         let tables = self.kernel.tables;

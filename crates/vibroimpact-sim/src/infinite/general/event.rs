@@ -1,4 +1,4 @@
-//! Where a panel leaves the branch of the law on which it was solved.
+//! Event location: where a panel leaves the branch of the law on which it was solved.
 
 use super::law::Margin;
 use crate::infinite::panel::{elapsed, root};
@@ -11,12 +11,12 @@ pub(super) struct Event {
     pub which: usize,
     /// Elapsed fraction of the panel; 0 if the panel is beyond the boundary from its start.
     pub fraction: f64,
-    /// Slope of the margin there in the elapsed fraction.
+    /// Slope of the event function there in the elapsed fraction.
     pub slope: f64,
 }
 
-/// The first boundary that the motion on a panel meets. `noise` is the rounding of each margin: a branch may begin on a
-/// boundary, which is met when the margin falls below zero.
+/// The first boundary that the motion on a panel meets. `noise` is the rounding of each event function: a branch may begin on a
+/// boundary, which is met when the event function falls below zero.
 pub(super) fn first(
     tables: &Tables,
     kind: Kind,
@@ -40,10 +40,10 @@ pub(super) fn first(
     found
 }
 
-/// The panel variable at which a margin falls below zero. The polynomial is sampled more densely than its nodes, and at
-/// its least values in between.
+/// The panel variable at which an event function falls below zero. The polynomial is sampled more densely than its nodes, and at
+/// its minima in between.
 fn crossing(tables: &Tables, kind: Kind, polynomial: &[f64], noise: f64) -> Option<f64> {
-    // the sum of all coefficients bounds what the polynomial may do besides its mean
+    // the sum of all coefficients bounds the deviation of the polynomial from its mean
     let wander: f64 = polynomial[1..].iter().map(|c| c.abs()).sum();
     if polynomial[0] > wander {
         return None;

@@ -1,7 +1,7 @@
 //! Free flight between contacts.
 //!
-//! The compression less the level of the next touch is convex (see [`super::past`]) and not positive at release. Hence
-//! there is at most one next contact; Newton's method from beyond it falls on it without a miss.
+//! The compression minus that of the next touch is convex (see [`super::past`]) and not positive at release. Hence there is at
+//! most one next contact, and Newton's method from a later time converges to it monotonically.
 
 use super::past::FreeMotion;
 

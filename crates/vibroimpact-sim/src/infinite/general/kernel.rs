@@ -35,7 +35,7 @@ pub(in crate::infinite) struct Kernel {
     weights: [Weights; 3],
 }
 
-/// The equations of a panel: compression and rate at the nodes and the end are what is known less these times the
+/// The equations of a panel: compression and rate at the nodes and the end are the known terms minus these matrices times the
 /// nodal forces.
 pub(super) struct Matrices {
     pub compression: Vec<f64>,
@@ -67,7 +67,7 @@ impl Kernel {
         })
     }
 
-    /// The part of the rate that answers at once: a force moves the point at this speed.
+    /// The instantaneous part of the response: the velocity of the point under a unit force.
     pub fn instant(&self) -> f64 {
         self.terms.iter().filter(|term| term.1 == 0.0).map(|term| term.0).sum()
     }

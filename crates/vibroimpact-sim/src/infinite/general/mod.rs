@@ -1,4 +1,4 @@
-//! Any law of contact on any structure whose impulse response is a sum of powers of time.
+//! Any contact law on any structure whose impulse response is a sum of powers of time.
 //!
 //! # Mathematics
 //!
@@ -12,22 +12,22 @@
 //! ```
 //!
 //! where `kappa(0)` is the sum of the `c_k` with `p_k = 0`, and `kappa'` is singular at zero but integrable. Equation (2)
-//! is used as it stands and not as a derivative of (1), so that the rate is as accurate as the compression.
+//! is solved directly and not derived from (1), so that the rate is as accurate as the compression.
 //!
 //! # Method
 //!
 //! On a panel the force is a polynomial in a variable in which it is smooth (see [`super::rule`]); both integrals of it
-//! are exact, and (3) at the Gauss nodes gives the nodal forces by Newton's method. A panel is taken if the impulse that
-//! its last two Legendre coefficients carry is below the tolerance. As an impulse shrinks with the panel, laws whose
-//! exponents make no smooth force at touch are met by short first panels.
+//! are exact, and (3) at the Gauss nodes gives the nodal forces by Newton's method. A panel is accepted if the impulse of its last
+//! two Legendre coefficients is below the tolerance. If the exponent of a law makes the force at touch nonsmooth, the first panels
+//! are short, since the impulse decreases with the length.
 //!
-//! A branch of the law ends where one of its margins, `a x + b x' - level`, falls below zero: each margin is a polynomial
-//! on the panel, searched for its first crossing and for minima between samples. The panel that ends there is found by
-//! secants; the march goes on along the branch that the law names, on a panel that is again smooth in `sqrt(t)`.
+//! A branch of the law ends where one of its event functions, `a x + b x' - level`, falls below zero. Each event function is a
+//! polynomial on the panel, which is searched for its first zero and for minima between samples. The panel that ends there is
+//! found by secants. Integration continues on the branch that the law returns, with a panel that is again smooth in `sqrt(t)`.
 //!
 //! *Past*: impulses by age, as in [`super::history`]. *Flight*: [`flight`].
 //!
-//! Whether a contact that lasts will ever end is known for Hertz contact alone ([`super::sustained`]). Here the run stops.
+//! Only for Hertz contact is it known whether a sustained contact ever ends ([`super::sustained`]). Here the run stops.
 
 mod contact;
 mod equations;

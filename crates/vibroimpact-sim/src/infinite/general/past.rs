@@ -1,4 +1,4 @@
-//! What forces of the past do later: panels as impulses, and the free motion that follows from impulses.
+//! Later effects of past forces: panels as impulses, and the free motion after impulses.
 
 use super::kernel::Kernel;
 use crate::infinite::history::{History, Impulse};
@@ -64,7 +64,7 @@ pub(in crate::infinite) struct FreeMotion {
 impl FreeMotion {
     pub fn new(kernel: &Kernel, history: &History) -> FreeMotion {
         let terms: Arc<[(f64, f64)]> = kernel.terms.iter().copied().filter(|term| term.1 > 0.0).collect();
-        // a structure that keeps still after an impulse bends nothing
+        // a term with power 0 does not contribute
         let impulses = if terms.is_empty() { Vec::new() } else { history.impulses().collect() };
         FreeMotion { terms, impulses }
     }

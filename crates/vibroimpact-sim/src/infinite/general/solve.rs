@@ -16,12 +16,12 @@ use invalid_input::InvalidInput;
 /// Closing speeds below this part of that of the impact are rounding.
 const SLOWEST: f64 = 1e-14;
 
-/// Solves the impact of a striker on a structure without ends, by any law of contact. The solution is in the units of
+/// Solves the impact of a striker on an infinite structure with any contact law. The solution is in the units of
 /// [`Receptance::scale`]; its [`s`](Solution::s) is `None`, as a law other than Hertz's has no such number.
 ///
 /// Hertz contact with a beam or a plate is solved by [`solve`](crate::infinite::solve()) in a fraction of the time, and
-/// that solver also knows when contact is sustained. Here a contact that lasts is followed for 300 of its natural times and
-/// up to [`horizon`](Settings::horizon), and the run then stops ([`StopReason::ContactLasts`]).
+/// that solver also detects sustained contact. Here a contact that lasts is computed for 300 of its natural times and up to
+/// [`horizon`](Settings::horizon), and the run then stops ([`StopReason::ContactLasts`]).
 ///
 /// # Errors
 /// [`InvalidInput`] if a setting, mass or speed is out of range.
