@@ -2,8 +2,8 @@
 //!
 //! `S_j(u)` is the least sum of squares with the coordinate `u_j` held at `u`. For normal errors of unit variance the
 //! interval `S_j(u) <= S + z^2` holds the parameter with the probability of `|normal| <= z`, to a higher order than the
-//! covariance does and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u` for a linear model, so
-//! that a secant finds the ends in few steps.
+//! covariance does and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u` for a linear model,
+//! so that a secant finds the ends in few steps.
 
 use crate::gradient_method;
 use crate::objective::{HUGE, Objective};

@@ -30,8 +30,8 @@ pub struct Deflection {
 }
 
 impl Resolved {
-    /// The deflection at equal intervals of the length and, until `until_s`, at equal intervals of time. `scene` is the one that was
-    /// solved, [`crate::simulate::Simulation::scene`]. `None` for a structure that is neither a beam nor a string.
+    /// The deflection at equal intervals of the length and, until `until_s`, at equal intervals of time. `scene` is the one that
+    /// was solved, [`crate::simulate::Simulation::scene`]. `None` for a structure that is neither a beam nor a string.
     ///
     /// # Errors
     /// Errors of the scene, which the scene of this result cannot have.

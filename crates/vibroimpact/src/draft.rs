@@ -43,8 +43,8 @@ impl Draft {
         Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
     }
 
-    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages refer to the stream as `name`. Tables
-    /// that the scene names are read from the current folder.
+    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages refer to the stream as `name`.
+    /// Tables that the scene names are read from the current folder.
     ///
     /// # Errors
     /// As [`Draft::read`].

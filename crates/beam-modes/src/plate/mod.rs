@@ -18,7 +18,8 @@ use ritz::Ritz;
 
 /// Largest number of modes that may be requested.
 const MOST: usize = 20_000;
-/// Polynomials that resolve so many modes are taken for fewer, too: they cost little, and low modes with singular corners need them.
+/// Polynomials that resolve so many modes are taken for fewer, too: they cost little, and low modes with singular corners need
+/// them.
 const AMPLE: usize = 120;
 
 impl Plate {

@@ -67,8 +67,8 @@ impl<'a> Seen<'a> {
         fault.without("structure").within(["bodies", self.name])
     }
 
-    /// Shapes of the modes at a location (kg^-1/2). An error of the location has the field `location_m` or `location`, any other error
-    /// its whole path.
+    /// Shapes of the modes at a location (kg^-1/2). An error of the location has the field `location_m` or `location`, any other
+    /// error its whole path.
     pub fn shape(&mut self, place: Place) -> Result<Vec<f64>, InvalidInput> {
         let listed = self.modes_at(place)?.into_iter().map(|mode| mode.shape);
         let point = self.places_m.iter().position(|there| place.location_m == Some((*there).into()));

@@ -17,8 +17,8 @@ pub const MOST_INTERVALS: usize = 1_000_000;
 pub struct Wanted<'a> {
     /// Intervals of contact that are kept in memory, the first of all contacts together; the rest are counted.
     pub intervals: usize,
-    /// Whether to find the time up to which the times of the events are certain. This takes a second run, and needs all intervals in
-    /// memory.
+    /// Whether to find the time up to which the times of the events are certain. This takes a second run, and needs all intervals
+    /// in memory.
     pub reliability: bool,
     /// Whether samples of the motion are kept, for histories and pictures.
     pub course: bool,
@@ -47,9 +47,9 @@ pub struct Simulation {
     pub posed: Posed,
     /// The result.
     pub run: Run,
-    /// Time up to which touches and releases are certain (s): up to it a second run with a tolerance 32 times as large finds each of
-    /// them within that tolerance times the time since the start. `None` if it was not requested, if not all intervals were kept, or
-    /// if the run was interrupted.
+    /// Time up to which touches and releases are certain (s): up to it a second run with a tolerance 32 times as large finds each
+    /// of them within that tolerance times the time since the start. `None` if it was not requested, if not all intervals were
+    /// kept, or if the run was interrupted.
     pub reliable_until_s: Option<f64>,
     /// Intervals of contact, contact by contact, as many as were requested.
     pub intervals: Vec<Vec<Interval>>,

@@ -112,8 +112,8 @@ impl Products {
         Ok(())
     }
 
-    /// Writes the requested files and returns lines about them for the text; empty if the result is JSON. All files are completed in
-    /// memory before the first one is written.
+    /// Writes the requested files and returns lines about them for the text; empty if the result is JSON. All files are completed
+    /// in memory before the first one is written.
     pub fn write(
         &self,
         figure: impl FnOnce() -> Figure,

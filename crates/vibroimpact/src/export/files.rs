@@ -51,9 +51,9 @@ impl Files {
         Ok(Files(vec![("result.json", result.into_bytes()), ("impact.svg", figure.svg()?.into_bytes())]))
     }
 
-    /// Writes the files into a folder, which is created if it is missing. Each file appears complete or not at all, and none appears
-    /// before all have been written under temporary names. Files of an earlier result are replaced, and those that this result does
-    /// not have are removed.
+    /// Writes the files into a folder, which is created if it is missing. Each file appears complete or not at all, and none
+    /// appears before all have been written under temporary names. Files of an earlier result are replaced, and those that this
+    /// result does not have are removed.
     ///
     /// # Errors
     /// A folder or file that cannot be written.

@@ -65,8 +65,8 @@ impl ForceRecord {
         read().map_err(|fault| fault.in_place(file))
     }
 
-    /// The offset `d` (s) for which the computed output, `signal(t - d)`, is closest to the record: the best of many shifts, improved
-    /// by the Gauss-Newton method.
+    /// The offset `d` (s) for which the computed output, `signal(t - d)`, is closest to the record: the best of many shifts,
+    /// improved by the Gauss-Newton method.
     pub(super) fn offset_s(&self, signal: &Signal) -> f64 {
         let (first, last) = (self.time_s[0], self.time_s[self.time_s.len() - 1]);
         let stride = self.time_s.len().div_ceil(COARSE_SAMPLES);

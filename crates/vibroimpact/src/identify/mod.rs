@@ -10,8 +10,8 @@
 //! ```
 //!
 //! Where no standard deviations are stated, each measured quantity has one, which is estimated with the parameters: fits and
-//! estimates `s_q^2 = S_q / f_q` alternate until they agree. The degrees of freedom `f_q` of a quantity are the number of its values
-//! minus their leverage, Eq. (4).
+//! estimates `s_q^2 = S_q / f_q` alternate until they agree. The degrees of freedom `f_q` of a quantity are the number of its
+//! values minus their leverage, Eq. (4).
 //!
 //! **Force histories.** A gauge whose clock has the offset `d` and whose response has the time constant `T` records
 //!
@@ -25,7 +25,8 @@
 //! **One model.** The number of modes is chosen once, at the starting values, as the largest number that a row of the table needs.
 //! It is then fixed, because `S` would jump if the number depended on the parameters.
 //!
-//! **Many minima.** Where contacts split or join, predictions jump, and `S` has many minima. The search ranks quasi-random points by
+//! **Many minima.** Where contacts split or join, predictions jump, and `S` has many minima. The search ranks quasi-random points
+//! by
 //! `sum ln(1 + r_i^2)`, in which rows that jump count little (Cauchy's likelihood). It continues from the best points with the
 //! same sum, and ends with Eq. (1).
 //!

@@ -29,8 +29,8 @@ pub struct Identification {
     pub lack_of_fit: Vec<LackOfFit>,
     /// Number of modes, chosen once; null for all that are listed.
     pub modes: Option<usize>,
-    /// Rows whose number of contacts changes within the steps of the derivative: they are near grazing, and the sum of squares is not
-    /// smooth there.
+    /// Rows whose number of contacts changes within the steps of the derivative: they are near grazing, and the sum of squares is
+    /// not smooth there.
     pub grazing_lines: Vec<u64>,
     /// Starting points of the searches, and their ends.
     pub starts: Vec<StartFound>,

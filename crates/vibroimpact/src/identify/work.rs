@@ -211,8 +211,8 @@ impl<'a> Work<'a> {
         Some((found.starts, found.parameters))
     }
 
-    /// Fits from the end of the robust search and from the present parameters, and estimates the noise if it is not stated. Returns the
-    /// starts, and whether the search converged.
+    /// Fits from the end of the robust search and from the present parameters, and estimates the noise if it is not stated. Returns
+    /// the starts, and whether the search converged.
     pub fn search(&mut self, starts: usize) -> Result<(Vec<Start>, bool), InvalidInput> {
         let (told, scouted) = if starts > 1 { self.scout(starts) } else { None }.unzip();
         let mut begin = vec![self.parameters.clone()];

@@ -7,8 +7,8 @@ use crate::impact::Impact;
 use crate::scene::{InvalidInput, MOST_MODES, Scene, Structure, chooses_modes, modal_only};
 
 impl Scene {
-    /// Chooses the model and solves the scene. The answer states the restitution, its uncertainty, the reason for the model, and the
-    /// cost.
+    /// Chooses the model and solves the scene. The answer states the restitution, its uncertainty, the reason for the model, and
+    /// the cost.
     ///
     /// # Errors
     /// A value out of range, too few or too many fields, or a `model` that is not available for the structure or the law.
@@ -46,8 +46,8 @@ impl Scene {
         Ok(Choice { answer: Answer { cost, ..answer }, ..choice })
     }
 
-    /// As [`Scene::answer`], with cached data of earlier scenes: the same answer to the last bit in less time. The uncertainty of the
-    /// theory of bending is not estimated, since that takes further impacts.
+    /// As [`Scene::answer`], with cached data of earlier scenes: the same answer to the last bit in less time. The uncertainty of
+    /// the theory of bending is not estimated, since that takes further impacts.
     ///
     /// # Errors
     /// As [`Scene::answer`].
@@ -100,8 +100,8 @@ impl Scene {
 }
 
 impl Scene {
-    /// The scene with the program's choices stated: the theory of bending and, in place of a tolerance for the whole restitution, as
-    /// many modes as the restitution needs to converge, with remainder modes for the others.
+    /// The scene with the program's choices stated: the theory of bending and, in place of a tolerance for the whole restitution,
+    /// as many modes as the restitution needs to converge, with remainder modes for the others.
     pub(crate) fn settled(&self) -> Result<Scene, InvalidInput> {
         if !chooses_modes(self) {
             return Ok(Scene { model: Model::Auto, ..self.clone() });

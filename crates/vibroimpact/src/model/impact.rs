@@ -8,8 +8,8 @@ use crate::impact::Impact;
 use crate::scene::{InvalidInput, Scene, Structure, chooses_modes};
 
 impl Scene {
-    /// The structure as input of the solver: its modes at the point of impact and, if the scene requests them, a few remainder modes
-    /// for all others. See [`Scene::impact`] for `"modes": "auto"`.
+    /// The structure as input of the solver: its modes at the point of impact and, if the scene requests them, a few remainder
+    /// modes for all others. See [`Scene::impact`] for `"modes": "auto"`.
     ///
     /// # Errors
     /// A value out of range, or too few or too many fields.
@@ -25,8 +25,8 @@ impl Scene {
     }
 
     /// The whole scene as input of the modal solver. If the program chooses the modes, their number is the one that the restitution
-    /// needs to converge, which takes a few solutions. [`Scene::choose`](crate::Scene::choose) states the accuracy of the convergence,
-    /// and whether another model is sufficient.
+    /// needs to converge, which takes a few solutions. [`Scene::choose`](crate::Scene::choose) states the accuracy of the
+    /// convergence, and whether another model is sufficient.
     ///
     /// # Errors
     /// As [`Scene::structure`].

@@ -86,8 +86,8 @@ pub struct Answer {
     pub remainder_modes: usize,
     /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
-    /// Whether the tolerance was reached, by the theory used (for stated modes: whether the solver's part of the uncertainty is within ten
-    /// times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
+    /// Whether the tolerance was reached, by the theory used (for stated modes: whether the solver's part of the uncertainty is
+    /// within ten times the tolerance, or within [`DEFAULT_TOLERANCE`] where the scene states none).
     pub settled: bool,
     /// If it was not: difference of the largest and smallest restitution over the last numbers of modes tried.
     pub spread: Option<f64>,

@@ -111,8 +111,9 @@ impl Estimate {
 }
 
 impl Scene {
-    /// Shows which model [`Scene::answer`] would use, and the cost of each. Closed forms and the infinite beam are evaluated. Only one
-    /// modal impact is solved, at a loose tolerance, to estimate the cost, and two more if the theory of bending has to be chosen.
+    /// Shows which model [`Scene::answer`] would use, and the cost of each. Closed forms and the infinite beam are evaluated. Only
+    /// one modal impact is solved, at a loose tolerance, to estimate the cost, and two more if the theory of bending has to be
+    /// chosen.
     ///
     /// # Errors
     /// As [`Scene::answer`].

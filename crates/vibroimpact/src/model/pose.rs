@@ -198,7 +198,8 @@ impl<'a> Pose<'a> {
             }
             Source::Computed { structure, place, modes, .. } => {
                 if modes.len() < count {
-                    // twice as many as before: the modes of a plate are computed together, at a cost that grows as the cube of their number
+                    // twice as many as before: the modes of a plate are computed together, at a cost that grows as the cube of
+                    // their number
                     let size = count.max(2 * modes.len()).next_multiple_of(SIZES);
                     let size = size.min(structure.most_modes().max(count));
                     *modes = structure.modes_with(*place, Some(size), &mut self.kept.modes)?;

@@ -40,8 +40,8 @@ struct Theories {
 }
 
 impl Theories {
-    /// For a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. The inner `Err`
-    /// states why it is not known.
+    /// For a scene whose beam can be solved by both; for an answer with its number of modes, and other coefficients. The inner
+    /// `Err` states why it is not known.
     fn of(scene: &Scene, answer: Option<&Answer>, cost: &mut Cost) -> Result<Result<Theories, String>, InvalidInput> {
         let Structure::Beam(beam) = &scene.structure else { return Ok(Err("the structure is not a beam".to_owned())) };
         let in_structure = |fault: InvalidInput| fault.within("structure");

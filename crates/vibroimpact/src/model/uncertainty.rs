@@ -17,8 +17,8 @@ pub struct Uncertainty {
     /// Truncation error: the difference between the model and the same structure with all its modes. For models without modes
     /// (`rigid`, `infinite-beam`, `emoc`): the error of their simplification.
     pub modes_left_out: Option<f64>,
-    /// Uncertainty of the theory of bending: the difference between Euler-Bernoulli's and Timoshenko's theory, or the change by 2 % of
-    /// the shear coefficient if that is larger.
+    /// Uncertainty of the theory of bending: the difference between Euler-Bernoulli's and Timoshenko's theory, or the change by 2 %
+    /// of the shear coefficient if that is larger.
     pub beam_theory: Option<f64>,
 }
 
@@ -48,7 +48,8 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// The uncertainty of an impact on the structure of `scene` with this solver error; `modes_left_out` may state why it is not known.
+    /// The uncertainty of an impact on the structure of `scene` with this solver error; `modes_left_out` may state why it is not
+    /// known.
     pub fn new(scene: &Scene, solver: Option<f64>, modes_left_out: Result<f64, String>) -> Known {
         let mut not_known = Vec::new();
         if solver.is_none() {

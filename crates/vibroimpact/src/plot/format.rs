@@ -57,8 +57,8 @@ impl Figure {
         }
     }
 
-    /// Writes the picture to a file, as SVG or PNG by the ending of its name. The file appears complete or not at all; missing folders
-    /// are created.
+    /// Writes the picture to a file, as SVG or PNG by the ending of its name. The file appears complete or not at all; missing
+    /// folders are created.
     ///
     /// # Errors
     /// Another ending, or a place that cannot be written.

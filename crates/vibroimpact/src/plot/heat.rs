@@ -20,8 +20,8 @@ pub struct HeatMap {
     pub y: Vec<f64>,
     /// Values, one row of cells per ordinate; missing or not finite ones stay grey.
     pub rows: Vec<Vec<f64>>,
-    /// The quantity of the colour, with unit and limits; limits symmetric about zero give a diverging colour map. With an axis without
-    /// labels no scale of colours is drawn.
+    /// The quantity of the colour, with unit and limits; limits symmetric about zero give a diverging colour map. With an axis
+    /// without labels no scale of colours is drawn.
     pub value: Axis,
 }
 
