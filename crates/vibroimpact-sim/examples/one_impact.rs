@@ -2,19 +2,15 @@
 //!
 //! `cargo run --release -p vibroimpact-sim --example one_impact`
 
+mod ball_on_beam;
+
+use ball_on_beam::ball_on_beam;
 use contact_models::Hertz;
 use vibroimpact_sim::infinite;
-use vibroimpact_sim::modal::{Mode, Settings, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Settings, Solver};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // a pinned beam of 1 kg and 1 m, struck at 0.4 m
-    let mode = |k: f64| Mode {
-        omega_rad_s: 165.0 * k * k,
-        damping_ratio: 0.02,
-        shape: 2f64.sqrt() * (0.4 * std::f64::consts::PI * k).sin(),
-    };
-    let structure = Structure { modes: [1.0, 2.0, 3.0].map(mode).to_vec() };
-    let ball = Striker { mass_kg: 0.11, speed_m_s: 1.0 };
+    let (structure, ball) = ball_on_beam();
     let solution = Solver::new(&structure)?.solve(&ball, &Hertz::new(1.8e10)?, None, &Settings::default())?;
     for contact in &solution.sub_impacts {
         println!(

@@ -2,12 +2,15 @@
 //!
 //! `cargo run --release -p vibroimpact-sim --example own_law`
 
+#[path = "../ball_on_beam/mod.rs"]
+mod ball_on_beam;
 mod hardening;
 
+use ball_on_beam::ball_on_beam;
 use contact_models::check_contract;
 use hardening::Hardening;
 use vibroimpact_sim::assembly::{Assembly, Body, BodyMode, Contact, Interval, Observer, Point, Settings, run};
-use vibroimpact_sim::modal::{self, Mode, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{self, Solver};
 
 /// Prints each contact when it is over.
 struct Printed;
@@ -25,14 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let law = law.validated()?;
     check_contract(&law, 1e-4, 1.0)?;
 
-    // a pinned beam of 1 kg and 1 m, struck at 0.4 m
-    let mode = |k: f64| Mode {
-        omega_rad_s: 165.0 * k * k,
-        damping_ratio: 0.02,
-        shape: 2f64.sqrt() * (0.4 * std::f64::consts::PI * k).sin(),
-    };
-    let structure = Structure { modes: [1.0, 2.0, 3.0].map(mode).to_vec() };
-    let ball = Striker { mass_kg: 0.11, speed_m_s: 1.0 };
+    let (structure, ball) = ball_on_beam();
     let (solution, history) = Solver::new(&structure)?.record(&ball, &law, None, &modal::Settings::default())?;
     let lasting_m = history.at(solution.end_s).compression_m;
     println!("restitution {:?}, indentation {:.3} um", solution.restitution, 1e6 * lasting_m);

@@ -206,13 +206,15 @@ fn falls_to(b: &[f64; POINTS], level: f64) -> f64 {
 const NEAR: f64 = 1e-9;
 
 /// Coefficients of `(s + t)^Q` and of one power less.
-static BINOMIALS: LazyLock<[f64; POINTS]> = LazyLock::new(binomials);
-static BINOMIALS_BELOW: LazyLock<Nodal> = LazyLock::new(binomials);
+const BINOMIALS: [f64; POINTS] = binomials();
+const BINOMIALS_BELOW: Nodal = binomials();
 
-fn binomials<const N: usize>() -> [f64; N] {
+const fn binomials<const N: usize>() -> [f64; N] {
     let mut row = [1.0; N];
-    for i in 1..N {
+    let mut i = 1;
+    while i < N {
         row[i] = row[i - 1] * (N - i) as f64 / i as f64;
+        i += 1;
     }
     row
 }

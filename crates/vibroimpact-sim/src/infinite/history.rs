@@ -52,6 +52,12 @@ impl History {
         }
     }
 
+    /// Moves the time origin forward through a flight, and condenses what then lies far enough back.
+    pub fn rest(&mut self, time: f64) {
+        self.advance(time);
+        self.condense();
+    }
+
     /// Adds a piece of contact that took place between the ages `oldest` and `youngest`.
     pub fn push(&mut self, impulses: Vec<Impulse>, youngest: f64, oldest: f64) {
         if !impulses.is_empty() {

@@ -6,7 +6,7 @@ use super::general::flight::Departure as GeneralDeparture;
 use super::panel::elapsed as elapsed_at;
 use super::panel::variable;
 use super::piece::Piece;
-use super::problem::Structure;
+use super::problem::{Settings, Structure};
 use super::rule::{Kind, Tables, gauss, series};
 use super::units::Units;
 use crate::StopReason;
@@ -123,6 +123,9 @@ impl State {
         }
     }
 }
+
+/// Largest time (units of `T`), beyond which powers of the time would overflow.
+const LATEST: f64 = 1e120;
 
 /// Largest relative difference of the times of contacts that count as the same in two solutions.
 const SAME: f64 = 0.5;
@@ -242,6 +245,27 @@ impl Solution {
     pub(super) fn push_general(&mut self, contact: SubImpact, pieces: Vec<Piece>, peak_force: f64, body_travel: f64) {
         self.sub_impacts.push(contact);
         self.records.push(Record { units: Units::OF_IMPACT, pieces, peak_force: Some(peak_force), body_travel });
+    }
+
+    /// After a flight, which begins where the solution is known so far: the time until the next contact and its closing speed,
+    /// if there is one and it is to be followed. `rounding` says that its closing speed is none but rounding.
+    pub(super) fn go_on(
+        &mut self,
+        next: Option<(f64, f64)>,
+        rounding: bool,
+        settings: &Settings,
+    ) -> Option<(f64, f64)> {
+        let Some((time, _)) = next else {
+            self.known_until = f64::INFINITY;
+            return None;
+        };
+        let touch = self.known_until + time;
+        let lost = (rounding || touch > LATEST).then_some(StopReason::DigitsExhausted);
+        let limit = (self.sub_impacts.len() >= settings.max_sub_impacts).then_some(StopReason::SubImpacts);
+        let Some(reason) = limit.or(lost) else { return next };
+        self.known_until = touch;
+        self.outcome = Outcome::Stopped(reason);
+        None
     }
 
     /// Largest force of every contact (units of `F`).

@@ -8,9 +8,6 @@ use super::units::Touch;
 use crate::StopReason;
 use invalid_input::InvalidInput;
 
-/// Largest time (units of `T`), beyond which powers of the time would overflow.
-pub(super) const LATEST: f64 = 1e120;
-
 /// Solves the impact for one value of `S` (within [`S_RANGE`]).
 ///
 /// # Errors
@@ -70,20 +67,9 @@ pub(super) fn run(structure: Structure, s: f64, settings: &Settings) -> Solution
         body_travel = solution.body_travel_at_end();
         let next = departure.next_contact();
         solution.flights.push(Flight { start: end, body_travel, course: Course::Hertz(departure) });
-        let Some((time, closing)) = next else {
-            solution.known_until = f64::INFINITY;
-            return solution;
-        };
-        let late = (end + time > LATEST).then_some(StopReason::DigitsExhausted);
-        let limit = (solution.sub_impacts.len() >= settings.max_sub_impacts).then_some(StopReason::SubImpacts);
-        if let Some(reason) = limit.or(late) {
-            solution.known_until = end + time;
-            solution.outcome = Outcome::Stopped(reason);
-            return solution;
-        }
+        let Some((time, closing)) = solution.go_on(next, false, settings) else { return solution };
         body_travel += body * time;
-        history.advance(time);
-        history.condense();
+        history.rest(time);
         touch = Touch { s, time: end + time, closing, body };
     }
 }
@@ -108,8 +94,7 @@ pub(super) fn nth_minimum(s: f64, n: usize, settings: &Settings) -> Option<f64> 
         }
         let (time, closing) = departure.next_contact()?;
         history = march.history;
-        history.advance(time);
-        history.condense();
+        history.rest(time);
         touch = Touch { s, time: touch.time + duration + time, closing, body: departure.body };
     }
     None

@@ -144,9 +144,11 @@ impl Course<'_> {
     }
 }
 
+/// The largest number that the solver works with.
+pub(super) const LARGEST: f64 = 1e30;
+
 /// Checks that a number is in the range of the solver.
 pub(super) fn require_finite(field: impl Into<invalid_input::Path>, value: f64) -> Result<(), InvalidInput> {
-    const LARGEST: f64 = 1e30;
     if value.abs() <= LARGEST {
         Ok(())
     } else {

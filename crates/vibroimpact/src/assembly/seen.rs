@@ -5,7 +5,7 @@ use vibroimpact_sim::assembly::BodyMode;
 use vibroimpact_sim::modal::Mode;
 
 use super::body::{Body, Elastic, Elastics, Mass};
-use super::load::require_finite;
+use super::load::{LARGEST, require_finite};
 use super::rod::Rod;
 use crate::scene::json::number;
 use crate::scene::{InvalidInput, KnownModes, Location, Place, Structure, fields};
@@ -197,7 +197,6 @@ fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
 
 /// A rigid mass within the range of the solver.
 fn check_mass(mass: &Mass) -> Result<(), InvalidInput> {
-    const LARGEST: f64 = 1e30;
     if !(LARGEST.recip()..=LARGEST).contains(&mass.mass_kg) {
         return Err(InvalidInput::new("mass_kg", number(mass.mass_kg), "a number from 1e-30 to 1e30"));
     }

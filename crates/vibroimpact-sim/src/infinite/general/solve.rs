@@ -8,7 +8,7 @@ use crate::infinite::history::History;
 use crate::infinite::problem::Settings;
 use crate::infinite::receptance::{Receptance, Scale};
 use crate::infinite::solution::{Course, Flight, Outcome, Solution, SubImpact};
-use crate::infinite::solve::{LATEST, finer};
+use crate::infinite::solve::finer;
 use crate::modal::Striker;
 use contact_models::{ContactLaw, Memory};
 use invalid_input::InvalidInput;
@@ -101,21 +101,11 @@ fn run(receptance: &Receptance, law: &Scaled<'_>, settings: &Settings) -> Soluti
             solution.outcome = Outcome::Stopped(StopReason::DigitsExhausted);
             return solution;
         }
-        let Some((time, closing)) = next else {
-            solution.known_until = f64::INFINITY;
-            return solution;
-        };
-        let lost = end + time > LATEST || closing.is_nan() || closing < SLOWEST;
-        let limit = (solution.sub_impacts.len() >= settings.max_sub_impacts).then_some(StopReason::SubImpacts);
-        if let Some(reason) = limit.or(lost.then_some(StopReason::DigitsExhausted)) {
-            solution.known_until = end + time;
-            solution.outcome = Outcome::Stopped(reason);
-            return solution;
-        }
+        let rounding = next.is_some_and(|(_, closing)| closing.is_nan() || closing < SLOWEST);
+        let Some((time, closing)) = solution.go_on(next, rounding, settings) else { return solution };
         body_travel += body * time;
         history = past;
-        history.advance(time);
-        history.condense();
+        history.rest(time);
         touch = Touch { time: end + time, closing, body, memory };
     }
 }
