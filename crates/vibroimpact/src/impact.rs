@@ -1,6 +1,6 @@
 //! Converts a scene into the input of the solver.
 
-use contact_models::Law;
+use contact_models::{Hertz, Law};
 use invalid_input::Path;
 use vibroimpact_sim::modal::{History, Mode, Posing, Settings, Solution, Solver, Start, Striker, Structure};
 
@@ -137,7 +137,6 @@ impl Scene {
 
     /// The impact with the first `count` modes, or all that are listed.
     pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
-        self.require_yield_strength()?;
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {
@@ -145,15 +144,25 @@ impl Scene {
         }
         let (structure, remainder_modes) = self.structure_of(count, kept)?;
         let start = self.start(&structure.modes, remainder_modes)?;
-        let striker = self.posed_striker()?;
-        let law = self.contact.law(&self.striker)?;
+        let (striker, law) = self.striker_and_law()?;
         Ok(Impact { structure, remainder_modes, striker, law, start, settings })
     }
 
-    /// The striker as input of the solvers.
-    pub(crate) fn posed_striker(&self) -> Result<Striker, InvalidInput> {
+    /// The striker and the law of contact as input of the solvers.
+    pub(crate) fn striker_and_law(&self) -> Result<(Striker, Law), InvalidInput> {
         let mass_kg = self.striker.mass_kg().map_err(|fault| fault.within("striker"))?;
-        Ok(Striker { mass_kg, speed_m_s: self.striker.speed_m_s })
+        let striker = Striker { mass_kg, speed_m_s: self.striker.speed_m_s };
+        Ok((striker, self.law(&self.striker, None)?))
+    }
+
+    /// The law of contact for this striker; Hertz's law with these parameters where the scene says nothing of its stiffness.
+    fn law(&self, striker: &scene::Striker, hertz: Option<Hertz>) -> Result<Law, InvalidInput> {
+        // trust compares the stresses of the contact with it
+        self.require_yield_strength()?;
+        match (&self.contact, hertz) {
+            (Contact::Hertz(stiffness), Some(hertz)) if *stiffness == HertzStiffness::default() => Ok(hertz.into()),
+            (contact, _) => contact.law(striker),
+        }
     }
 
     /// The fall of a rod as input of the solver.
@@ -177,15 +186,13 @@ impl Scene {
             Some("speed_m_s") => fault.within("striker"),
             _ => fault.within("structure"),
         })?;
-        let law = match &self.contact {
-            Contact::Hertz(stiffness) if *stiffness == HertzStiffness::default() => drop.law.into(),
-            contact => contact.law(&scene::Striker {
-                mass_kg: Some(described.rigid_body_mass_kg()),
-                radius_m: Some(0.5 * rod.diameter_m),
-                speed_m_s,
-                ..scene::Striker::default()
-            })?,
+        let end = scene::Striker {
+            mass_kg: Some(described.rigid_body_mass_kg()),
+            radius_m: Some(0.5 * rod.diameter_m),
+            speed_m_s,
+            ..scene::Striker::default()
         };
+        let law = self.law(&end, Some(drop.law))?;
         let vibroimpact_sim::dropped_rod::Drop { structure, remainder_modes, start, surface, .. } = drop;
         Ok(Impact { structure, remainder_modes, striker: surface, law, start: Some(start), settings })
     }

@@ -87,7 +87,6 @@ impl Scene {
             Some(value) => Err(InvalidInput::new(field, value, "left out: an infinite structure does not have it")),
             None => Ok(()),
         };
-        self.require_yield_strength()?;
         left_out("location_m".into(), self.location_m.map(|place| place.to_string()))?;
         left_out("location".into(), self.location.as_ref().map(|name| format!("{name:?}")))?;
         left_out("start".into(), self.start.as_ref().map(|_| "{...}".to_owned()))?;
@@ -95,9 +94,8 @@ impl Scene {
         left_out("modes".into(), self.modes.count().map(|modes| modes.to_string()))?;
         left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("tolerance".into(), self.tolerance.map(number))?;
-        let striker = self.posed_striker()?;
+        let (striker, law) = self.striker_and_law()?;
         let Striker { mass_kg, speed_m_s } = striker;
-        let law = self.contact.law(&self.striker)?;
         // of Hertz contact the stiffness is a part of the impact; otherwise it does not enter
         let stiffness_n_m1_5 = if let Law::Hertz(law) = &law { law.stiffness_n_m1_5 } else { 1.0 };
         let impact = match &self.structure {
