@@ -129,7 +129,15 @@ fn law(from: &mut Unstructured) -> Result<Law> {
     let law = match from.int_in_range(0..=8u8)? {
         0 => Hertz::new(k).map(Law::from),
         1 => Viscous::new(k, number(from)?).map(Law::from),
-        2 => Hysteretic::new(k, number(from)?, number(from)?, number(from)?, number(from)?).map(Law::from),
+        2 => Hysteretic {
+            stiffness_n_m1_5: k,
+            theta_m: number(from)?,
+            beta: number(from)?,
+            k_bar: number(from)?,
+            epsilon_m: number(from)?,
+        }
+        .validated()
+        .map(Law::from),
         3 => LinearSpring::new(k).map(Law::from),
         4 => KelvinVoigt::new(k, number(from)?).map(Law::from),
         5 => HuntCrossley::new(k, number(from)?, number(from)?).map(Law::from),

@@ -255,7 +255,7 @@ impl LawOfContact {
             Of::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m)?.into(),
             Of::Viscous { stiffness_n_m1_5, damping_s_m } => Viscous::new(stiffness_n_m1_5, damping_s_m)?.into(),
             Of::Hysteretic { stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m } => {
-                Hysteretic::new(stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m)?.into()
+                Hysteretic { stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m }.validated()?.into()
             }
             Of::KelvinVoigt { stiffness_n_m, damping_n_s_m } => KelvinVoigt::new(stiffness_n_m, damping_n_s_m)?.into(),
             Of::HuntCrossley { stiffness_n_m_n, exponent, damping_s_m } => {

@@ -1,7 +1,7 @@
 //! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps, plates
 //! by Ritz's method.
 
-use beam_modes::{Beam, BeamSystem, Edge, End, Plate, Segment, ShearSection};
+use beam_modes::{Beam, BeamSystem, Edge, End, Plate, PlateTheory, Segment, ShearSection};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -43,7 +43,16 @@ fn modes(c: &mut Criterion) {
         ("one line of symmetry", [clamped, free, free, free]),
         ("two lines of symmetry", [free, free, free, free]),
     ] {
-        let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, edges);
+        let plate = Plate {
+            length_m: 0.4,
+            width_m: 0.3,
+            thickness_m: 0.005,
+            youngs_modulus_pa: 2e11,
+            poissons_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            edges,
+            theory: PlateTheory::Kirchhoff,
+        };
         let name = format!("plate {symmetry}, 400 modes");
         c.bench_function(&name, |b| b.iter(|| black_box(&plate).modes(black_box(400))));
     }

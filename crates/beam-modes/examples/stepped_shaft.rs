@@ -3,11 +3,19 @@
 //!
 //! `cargo run --release -p beam-modes --example stepped_shaft`
 
-use beam_modes::{Beam, End, InvalidInput, Segment, fem};
+use beam_modes::{Beam, End, InvalidInput, RectangularSegment, Segment, fem};
 
 fn main() -> Result<(), InvalidInput> {
     let side_m = 0.0113;
-    let segment = |length_m, thickness_m| Segment::rectangular(length_m, 2e11, 7800.0, side_m, thickness_m);
+    let segment = |length_m, thickness_m| {
+        Segment::from(RectangularSegment {
+            length_m,
+            youngs_modulus_pa: 2e11,
+            density_kg_m3: 7800.0,
+            width_m: side_m,
+            thickness_m,
+        })
+    };
     let beam =
         Beam { segments: vec![segment(0.5, side_m), segment(0.5, 0.5 * side_m)], ends: [End::Clamped, End::Free] };
     let modes = beam.modes(8)?;

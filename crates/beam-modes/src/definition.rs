@@ -13,23 +13,41 @@ pub struct Segment {
     pub mass_per_length_kg_m: f64,
 }
 
-impl Segment {
-    /// A segment of rectangular section; `thickness_m` is measured in the plane of bending.
-    ///
-    /// ```
-    /// let steel = beam_modes::Segment::rectangular(1.0, 2e11, 7800.0, 0.0254, 0.00549);
-    /// assert!((steel.flexural_rigidity_n_m2 - 2e11 * 0.0254 * 0.00549f64.powi(3) / 12.0).abs() < 1e-9);
-    /// ```
-    ///
-    /// The values are checked when the beam is used.
-    pub fn rectangular(
-        length_m: f64,
-        youngs_modulus_pa: f64,
-        density_kg_m3: f64,
-        width_m: f64,
-        thickness_m: f64,
-    ) -> Self {
-        Self {
+/// A uniform stretch of rectangular section, by its measures and its material. It becomes a [`Segment`], whose values are
+/// checked when the beam is used.
+///
+/// ```
+/// use beam_modes::{RectangularSegment, Segment};
+/// let ruler = RectangularSegment {
+///     length_m: 1.0,
+///     youngs_modulus_pa: 2e11,
+///     density_kg_m3: 7800.0,
+///     width_m: 0.0254,
+///     thickness_m: 0.00549,
+/// };
+/// let steel = Segment::from(ruler);
+/// assert!((steel.flexural_rigidity_n_m2 - 2e11 * 0.0254 * 0.00549f64.powi(3) / 12.0).abs() < 1e-9);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RectangularSegment {
+    /// Length, m.
+    pub length_m: f64,
+    /// Young's modulus, Pa.
+    pub youngs_modulus_pa: f64,
+    /// Density, kg/m^3.
+    pub density_kg_m3: f64,
+    /// Width, across the plane of bending, m.
+    pub width_m: f64,
+    /// Thickness, in the plane of bending, m.
+    pub thickness_m: f64,
+}
+
+impl From<RectangularSegment> for Segment {
+    fn from(stretch: RectangularSegment) -> Segment {
+        let RectangularSegment { length_m, youngs_modulus_pa, density_kg_m3, width_m, thickness_m } = stretch;
+        Segment {
             length_m,
             flexural_rigidity_n_m2: youngs_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
             mass_per_length_kg_m: density_kg_m3 * width_m * thickness_m,
@@ -131,15 +149,21 @@ pub struct Support {
 /// force and foundation are those of Euler-Bernoulli's theory.
 ///
 /// ```
-/// use beam_modes::{Attachment, Beam, BeamSystem, End, Segment, ShearSection};
+/// use beam_modes::{Attachment, Beam, BeamSystem, End, RectangularSegment, ShearSection};
 /// // 1 m of steel, 50 mm square, pinned at both ends: shear and rotary inertia take a quarter of the tenth frequency
 /// let side: f64 = 0.05;
-/// let segment = Segment::rectangular(1.0, 2e11, 7800.0, side, side);
+/// let segment = RectangularSegment {
+///     length_m: 1.0,
+///     youngs_modulus_pa: 2e11,
+///     density_kg_m3: 7800.0,
+///     width_m: side,
+///     thickness_m: side,
+/// };
 /// let shear = ShearSection {
 ///     shear_rigidity_n: 0.85 * 2e11 / 2.6 * side.powi(2),
 ///     rotary_inertia_kg_m: 7800.0 * side.powi(4) / 12.0,
 /// };
-/// let slender = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
+/// let slender = Beam { segments: vec![segment.into()], ends: [End::Pinned, End::Pinned] };
 /// let mut thick = BeamSystem { shear: Some(vec![shear]), ..BeamSystem::from(slender.clone()) };
 /// let ratio = thick.modes(10)?.omega_rad_s()[9] / slender.modes(10)?.omega_rad_s()[9];
 /// assert!((0.75..0.76).contains(&ratio));

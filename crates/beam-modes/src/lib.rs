@@ -57,10 +57,16 @@
 //!
 //! # Example
 //! ```
-//! use beam_modes::{Beam, End, Segment};
-//! let thick = Segment::rectangular(0.5, 2e11, 7800.0, 0.0113, 0.0113);
-//! let slim = Segment::rectangular(0.5, 2e11, 7800.0, 0.0113, 0.0060);
-//! let beam = Beam { segments: vec![thick, slim], ends: [End::Clamped, End::Free] };
+//! use beam_modes::{Beam, End, RectangularSegment};
+//! let thick = RectangularSegment {
+//!     length_m: 0.5,
+//!     youngs_modulus_pa: 2e11,
+//!     density_kg_m3: 7800.0,
+//!     width_m: 0.0113,
+//!     thickness_m: 0.0113,
+//! };
+//! let slim = RectangularSegment { thickness_m: 0.0060, ..thick };
+//! let beam = Beam { segments: vec![thick.into(), slim.into()], ends: [End::Clamped, End::Free] };
 //! let modes = beam.modes(40)?;
 //! let (omega, phi) = (modes.omega_rad_s(), modes.shapes_at(0.75)?);
 //! // what forty modes leave out of the static compliance
@@ -100,7 +106,7 @@ mod uniform;
 mod waves;
 
 pub use axial::RodEnd;
-pub use definition::{Attachment, Beam, BeamSystem, End, Segment, ShearSection, Support};
+pub use definition::{Attachment, Beam, BeamSystem, End, RectangularSegment, Segment, ShearSection, Support};
 pub use invalid_input::InvalidInput;
 pub use modes::Modes;
 pub use plate::{Edge, Plate, PlateModes, PlateTheory};

@@ -1,6 +1,8 @@
 //! Participation of the modes in a uniform acceleration: against quadrature, against the mass, against statics.
 
-use beam_modes::{Attachment, Beam, BeamSystem, Edge, End, Modes, Plate, Rod, RodEnd, RodSegment, Segment, TautString};
+use beam_modes::{
+    Attachment, Beam, BeamSystem, Edge, End, Modes, Plate, PlateTheory, Rod, RodEnd, RodSegment, Segment, TautString,
+};
 
 fn stepped(ends: [End; 2]) -> Beam {
     let segment = |length_m, flexural_rigidity_n_m2, mass_per_length_kg_m| Segment {
@@ -104,14 +106,32 @@ fn strings_and_plates_sag_under_their_weight() {
     // square plates under q = rho h g: the centre by Timoshenko and Woinowsky-Krieger, tables 8 and 35, in q a^4/D
     let rigidity = 2e11 * 0.01f64.powi(3) / (12.0 * (1.0 - 0.09));
     for (edges, expected) in [([Edge::Pinned; 4], 0.00406235), ([Edge::Clamped; 4], 0.00126532)] {
-        let plate = Plate::thin(1.0, 1.0, 0.01, 2e11, 0.3, 7800.0, edges);
+        let plate = Plate {
+            length_m: 1.0,
+            width_m: 1.0,
+            thickness_m: 0.01,
+            youngs_modulus_pa: 2e11,
+            poissons_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            edges,
+            theory: PlateTheory::Kirchhoff,
+        };
         let modes = plate.modes(150).unwrap();
         let found = sag(modes.omega_rad_s(), &modes.shapes_at(0.5, 0.5).unwrap(), &modes.participation_kg0_5());
         let coefficient = found * rigidity / (7800.0 * 0.01 * 9.81);
         assert!((coefficient / expected - 1.0).abs() < 2e-4, "{edges:?}: {coefficient} {expected}");
     }
     // of a free plate the mass belongs to its translation alone
-    let free = Plate::thin(1.0, 0.7, 0.01, 2e11, 0.3, 7800.0, [Edge::Free; 4]);
+    let free = Plate {
+        length_m: 1.0,
+        width_m: 0.7,
+        thickness_m: 0.01,
+        youngs_modulus_pa: 2e11,
+        poissons_ratio: 0.3,
+        density_kg_m3: 7800.0,
+        edges: [Edge::Free; 4],
+        theory: PlateTheory::Kirchhoff,
+    };
     let participation = free.modes(40).unwrap().participation_kg0_5();
     let rigid: f64 = participation[..3].iter().map(|p| p * p).sum();
     assert!((rigid / (7800.0 * 0.007) - 1.0).abs() < 1e-10, "{rigid}");

@@ -9,8 +9,29 @@ use Edge::{Clamped as C, Free as F, Pinned as P};
 fn unit(width_m: f64, poissons_ratio: f64, edges: [Edge; 4]) -> Plate {
     let thickness_m: f64 = 0.01;
     let youngs_modulus_pa = 12.0 * (1.0 - poissons_ratio * poissons_ratio) / thickness_m.powi(3);
-    Plate::thin(1.0, width_m, thickness_m, youngs_modulus_pa, poissons_ratio, 1.0 / thickness_m, edges)
+    Plate {
+        length_m: 1.0,
+        width_m,
+        thickness_m,
+        youngs_modulus_pa,
+        poissons_ratio,
+        density_kg_m3: 1.0 / thickness_m,
+        edges,
+        theory: PlateTheory::Kirchhoff,
+    }
 }
+
+/// Of steel, pinned all round.
+const STEEL: Plate = Plate {
+    length_m: 0.4,
+    width_m: 0.3,
+    thickness_m: 0.005,
+    youngs_modulus_pa: 2e11,
+    poissons_ratio: 0.3,
+    density_kg_m3: 7800.0,
+    edges: [P; 4],
+    theory: PlateTheory::Kirchhoff,
+};
 
 fn frequencies(plate: &Plate, count: usize) -> Vec<f64> {
     plate.modes(count).unwrap().omega_rad_s().to_vec()
@@ -119,7 +140,7 @@ fn a_narrow_strip_is_a_beam() {
 
 #[test]
 fn a_pinned_plate_is_navier_s() {
-    let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, [P; 4]);
+    let plate = STEEL;
     let modes = plate.modes(500).unwrap();
     // the gallery's plate before it was posed by its geometry
     assert!((modes.omega_rad_s()[0] - 1312.81534266).abs() < 1e-6);
@@ -173,7 +194,7 @@ fn static_deflection_and_modes_belong_together() {
 
 #[test]
 fn mindlin_s_plate_is_slower_and_tends_to_kirchhoff_s() {
-    let thin = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, [P; 4]);
+    let thin = STEEL;
     let kappa = Plate::shear_coefficient(0.3);
     let thick = Plate { theory: PlateTheory::Mindlin { shear_coefficient: kappa }, ..thin };
     let (a, b) = (thin.modes(200).unwrap(), thick.modes(200).unwrap());
@@ -290,7 +311,16 @@ fn deflection_in_the_middle_of_a_free_edge() {
     let extrapolated = |few: f64, many: f64| many + (many - few) * 900.0 / (1764.0 - 900.0);
     for (edges, few, many) in [([F; 4], 4.915359656e-6, 4.917244909e-6), ([C, F, F, F], 1.154900386e-4, 1.154919335e-4)]
     {
-        let plate = Plate::thin(0.3, 0.2, 0.004, 7e10, 0.33, 2700.0, edges);
+        let plate = Plate {
+            length_m: 0.3,
+            width_m: 0.2,
+            thickness_m: 0.004,
+            youngs_modulus_pa: 7e10,
+            poissons_ratio: 0.33,
+            density_kg_m3: 2700.0,
+            edges,
+            theory: PlateTheory::Kirchhoff,
+        };
         let (found, expected) = (plate.static_compliance(0.3, 0.1).unwrap(), extrapolated(few, many));
         assert!((found / expected - 1.0).abs() < 5e-6, "{edges:?}: {found:e} {expected:e}");
     }

@@ -1,13 +1,21 @@
 //! Stepped beams against published and multiple-precision figures, and under stress.
 
 mod common;
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use common::{ENDS, defect, rows, segment, thick};
 use std::f64::consts::TAU;
 
 #[test]
 fn koplow_free_free() {
-    let part = |length: f64, thickness: f64| Segment::rectangular(length, 71.7e9, 2830.0, 0.0254, thickness);
+    let part = |length: f64, thickness: f64| {
+        Segment::from(RectangularSegment {
+            length_m: length,
+            youngs_modulus_pa: 71.7e9,
+            density_kg_m3: 2830.0,
+            width_m: 0.0254,
+            thickness_m: thickness,
+        })
+    };
     let beam = Beam { segments: vec![part(0.254, 0.01905), part(0.140, 0.00549)], ends: [End::Free, End::Free] };
     let modes = beam.modes(7).unwrap();
     for row in rows(include_str!("data/stepped_free_free_beam_koplow2006.csv")) {
@@ -25,7 +33,13 @@ fn mabie_rogers_taper() {
         // E = rho = h1 = b1 = L = 1
         let steps = (0..80).map(|i| {
             let to_tip = 1.0 - (f64::from(i) + 0.5) / 80.0;
-            Segment::rectangular(1.0 / 80.0, 1.0, 1.0, 1.0 + (ratio - 1.0) * to_tip, 1.0 + 3.0 * to_tip)
+            Segment::from(RectangularSegment {
+                length_m: 1.0 / 80.0,
+                youngs_modulus_pa: 1.0,
+                density_kg_m3: 1.0,
+                width_m: 1.0 + (ratio - 1.0) * to_tip,
+                thickness_m: 1.0 + 3.0 * to_tip,
+            })
         });
         let beam = Beam { segments: steps.collect(), ends: [End::Clamped, End::Free] };
         let ours = beam.modes(5).unwrap().omega_rad_s()[mode - 1] * 12f64.sqrt();

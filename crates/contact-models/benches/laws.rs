@@ -12,7 +12,7 @@ fn laws() -> Result<Vec<Law>, InvalidInput> {
     Ok(vec![
         Hertz::new(k)?.into(),
         Viscous::with_restitution(k, 0.95, 1.0)?.into(),
-        Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8)?.into(),
+        Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }.validated()?.into(),
         HuntCrossley::new(k, 1.5, 0.2)?.into(),
         KelvinVoigt::new(1e8, 200.0)?.into(),
         Flores::new(k, 0.8)?.into(),

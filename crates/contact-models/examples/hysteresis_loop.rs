@@ -17,7 +17,7 @@ fn main() -> io::Result<()> {
 }
 
 fn loops() -> Result<Vec<TracePoint>, InvalidInput> {
-    let law = Hysteretic::new(1.0, 1.6, 1.4, 4.0, 1e-4)?;
+    let law = Hysteretic { stiffness_n_m1_5: 1.0, theta_m: 1.6, beta: 1.4, k_bar: 4.0, epsilon_m: 1e-4 }.validated()?;
     let motion = |t: f64| {
         let (slow, fast) = (2.0 * PI * t, 8.0 * PI * t);
         (slow.sin() + 0.5 * fast.sin(), 2.0 * PI * slow.cos() + 4.0 * PI * fast.cos())

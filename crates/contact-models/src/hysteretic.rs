@@ -54,25 +54,11 @@ pub struct Hysteretic {
 }
 
 impl Hysteretic {
-    /// The law from `k_H` (N/m^1.5), `theta_m`, `beta`, `K` and `eps` (m).
+    /// The law itself if its parameters are in range.
     ///
     /// # Errors
     /// A stiffness, `theta_m` or `K` that is not positive (`K` at most 1000), a negative `beta`
     /// or `eps`, or `beta > 1 + theta_m`, with which the force would pull.
-    pub fn new(
-        stiffness_n_m1_5: f64,
-        theta_m: f64,
-        beta: f64,
-        k_bar: f64,
-        epsilon_m: f64,
-    ) -> Result<Hysteretic, InvalidInput> {
-        Hysteretic { stiffness_n_m1_5, theta_m, beta, k_bar, epsilon_m }.validated()
-    }
-
-    /// The law itself if its parameters are in range.
-    ///
-    /// # Errors
-    /// As [`Hysteretic::new`].
     pub fn validated(self) -> Result<Hysteretic, InvalidInput> {
         require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         require_positive("theta_m", self.theta_m)?;

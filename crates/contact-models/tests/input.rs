@@ -6,6 +6,9 @@ use contact_models::{effective_modulus_pa, effective_radius_m, trace};
 
 const BAD: [f64; 6] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e31, 1e-320];
 
+const HYSTERETIC: Hysteretic =
+    Hysteretic { stiffness_n_m1_5: 1.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 0.0 };
+
 fn field<T: std::fmt::Debug>(result: Result<T, InvalidInput>) -> String {
     result.unwrap_err().field.to_string()
 }
@@ -16,9 +19,9 @@ fn parameters_of_every_law() {
         assert_eq!(field(Hertz::new(bad)), "stiffness_n_m1_5");
         assert_eq!(field(LinearSpring::new(bad)), "stiffness_n_m");
         assert_eq!(field(Viscous::new(bad, 0.1)), "stiffness_n_m1_5");
-        assert_eq!(field(Hysteretic::new(bad, 1.6, 1.4, 0.4, 0.0)), "stiffness_n_m1_5");
-        assert_eq!(field(Hysteretic::new(1.0, bad, 1.4, 0.4, 0.0)), "theta_m");
-        assert_eq!(field(Hysteretic::new(1.0, 1.6, 1.4, bad, 0.0)), "k_bar");
+        assert_eq!(field(Hysteretic { stiffness_n_m1_5: bad, ..HYSTERETIC }.validated()), "stiffness_n_m1_5");
+        assert_eq!(field(Hysteretic { theta_m: bad, ..HYSTERETIC }.validated()), "theta_m");
+        assert_eq!(field(Hysteretic { k_bar: bad, ..HYSTERETIC }.validated()), "k_bar");
         assert_eq!(field(KelvinVoigt::new(bad, 1.0)), "stiffness_n_m");
         assert_eq!(field(KelvinVoigt::new(1.0, bad)), "damping_n_s_m");
         assert_eq!(field(HuntCrossley::new(bad, 1.5, 0.1)), "stiffness_n_m_n");
@@ -45,10 +48,10 @@ fn parameters_of_every_law() {
     for bad in [f64::NAN, f64::INFINITY, -0.1] {
         assert_eq!(field(Viscous::new(1.0, bad)), "damping_s_m");
         assert_eq!(field(HuntCrossley::new(1.0, 1.5, bad)), "damping_s_m");
-        assert_eq!(field(Hysteretic::new(1.0, 1.6, bad, 0.4, 0.0)), "beta");
-        assert_eq!(field(Hysteretic::new(1.0, 1.6, 1.4, 0.4, bad)), "epsilon_m");
+        assert_eq!(field(Hysteretic { beta: bad, ..HYSTERETIC }.validated()), "beta");
+        assert_eq!(field(Hysteretic { epsilon_m: bad, ..HYSTERETIC }.validated()), "epsilon_m");
     }
-    assert_eq!(field(Hysteretic::new(1.0, 1.6, 2.7, 0.4, 0.0)), "beta");
+    assert_eq!(field(Hysteretic { beta: 2.7, ..HYSTERETIC }.validated()), "beta");
     // the ends of the range of exponents
     for (exponent, power, felt) in [(0.99, false, false), (1.0, true, false), (1.99, true, false), (2.0, true, true)] {
         assert_eq!((Power::new(1.0, exponent).is_ok(), Felt::new(1.0, exponent, 1.0).is_ok()), (power, felt));
@@ -86,7 +89,16 @@ fn extremes_stay_finite() {
                     Hertz::new(a).unwrap().into(),
                     LinearSpring::new(a).unwrap().into(),
                     Viscous::new(a, b).unwrap().into(),
-                    Hysteretic::new(a, b, b.min(1.0), c.min(1000.0), c).unwrap().into(),
+                    Hysteretic {
+                        stiffness_n_m1_5: a,
+                        theta_m: b,
+                        beta: b.min(1.0),
+                        k_bar: c.min(1000.0),
+                        epsilon_m: c,
+                    }
+                    .validated()
+                    .unwrap()
+                    .into(),
                     KelvinVoigt::new(a, b).unwrap().into(),
                     HuntCrossley::new(a, 6.0, b).unwrap().into(),
                     Power::new(a, 6.0).unwrap().into(),

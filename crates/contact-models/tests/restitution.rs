@@ -19,8 +19,20 @@ fn cases() -> Vec<(Law, f64)> {
         (Hertz::new(K_H).unwrap().into(), t),
         (Viscous::new(K_H, 0.08).unwrap().into(), t),
         (Viscous::new(K_H, 3.0).unwrap().into(), 2.0 * t),
-        (Hysteretic::new(K_H / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(), t),
-        (Hysteretic::new(K_H / 4.0, 1.6, 1.4, 4.0, 1e-7).unwrap().into(), t),
+        (
+            Hysteretic { stiffness_n_m1_5: K_H / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
+                .validated()
+                .unwrap()
+                .into(),
+            t,
+        ),
+        (
+            Hysteretic { stiffness_n_m1_5: K_H / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 4.0, epsilon_m: 1e-7 }
+                .validated()
+                .unwrap()
+                .into(),
+            t,
+        ),
         (LinearSpring::new(1e8).unwrap().into(), 3.0 / omega),
         (KelvinVoigt::with_restitution(1e8, 0.7, BALL_MASS_KG).unwrap().into(), 3.0 / omega),
         (KelvinVoigt::with_restitution(1e8, 0.1, BALL_MASS_KG).unwrap().into(), 3.0 / omega),

@@ -26,7 +26,11 @@ fn viscous_restitution_at_the_wall() {
 #[test]
 fn hysteretic_restitution_at_the_wall() {
     let restitution = |eps: f64, speed: f64| {
-        let law = Law::from(Hysteretic::new(K_H / 4.0, 1.6, 1.4, 0.4, eps).unwrap());
+        let law = Law::from(
+            Hysteretic { stiffness_n_m1_5: K_H / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: eps }
+                .validated()
+                .unwrap(),
+        );
         law.wall_restitution(BALL_MASS_KG, speed).unwrap()
     };
     let limit = ((1.2 / 2.5 + 2.8 / 2.9_f64) / 1.6).sqrt();
@@ -41,7 +45,7 @@ fn hysteretic_restitution_at_the_wall() {
 #[test]
 fn hysteresis_loops_satisfy_the_differential_equation() {
     let (theta_m, beta, k_bar, eps) = (1.6, 1.4, 4.0, 1e-4);
-    let law = Hysteretic::new(1.0, theta_m, beta, k_bar, eps).unwrap();
+    let law = Hysteretic { stiffness_n_m1_5: 1.0, theta_m, beta, k_bar, epsilon_m: eps }.validated().unwrap();
     let motion = |t: f64| {
         let (slow, fast) = (2.0 * PI * t, 8.0 * PI * t);
         (slow.sin() + 0.5 * fast.sin(), 2.0 * PI * slow.cos() + 4.0 * PI * fast.cos())
@@ -80,7 +84,8 @@ fn hysteresis_loops_satisfy_the_differential_equation() {
 /// they take, while complete contacts lose energy.
 #[test]
 fn minor_loops_of_the_hysteretic_law() {
-    let law = Hysteretic::new(1.0, 1.6, 1.4, 4.0, 0.0).unwrap();
+    let law =
+        Hysteretic { stiffness_n_m1_5: 1.0, theta_m: 1.6, beta: 1.4, k_bar: 4.0, epsilon_m: 0.0 }.validated().unwrap();
     // from each of these compressions to the next in unit time, along half a cosine
     let turns = [-0.1, 1.0, 0.5, 0.55, 0.5, -0.1];
     let motion = |t: f64| {

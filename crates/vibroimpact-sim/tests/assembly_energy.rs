@@ -1,6 +1,6 @@
 //! The energy ledger of assemblies: each part against another way to find it.
 
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring, Viscous};
 use gauss_quad::GaussLegendre;
 use std::f64::consts::PI;
@@ -39,7 +39,13 @@ fn mass(body: usize, mass_kg: f64) -> Point {
 
 /// A clamped-free beam seen from some places.
 fn cantilever(n: usize, damping_ratio: f64, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
-    let segment = Segment::rectangular(1.0, 2e11, 7800.0, 0.02, 0.01);
+    let segment = Segment::from(RectangularSegment {
+        length_m: 1.0,
+        youngs_modulus_pa: 2e11,
+        density_kg_m3: 7800.0,
+        width_m: 0.02,
+        thickness_m: 0.01,
+    });
     let beam = Beam { segments: vec![segment], ends: [End::Clamped, End::Free] };
     let modes = beam.modes(n).unwrap();
     let of = |omega: &f64| BodyMode { omega_rad_s: *omega, damping_ratio };
@@ -247,7 +253,10 @@ fn a_contact_loses_what_a_wall_does_not_give_back() {
         Hertz::new(1e9).unwrap().into(),
         Viscous::with_restitution(1e9, 0.8, speed_m_s).unwrap().into(),
         KelvinVoigt::new(1e6, 40.0).unwrap().into(),
-        Hysteretic::new(2.5e8, 2.5, 0.5, 4.0, 0.0).unwrap().into(),
+        Hysteretic { stiffness_n_m1_5: 2.5e8, theta_m: 2.5, beta: 0.5, k_bar: 4.0, epsilon_m: 0.0 }
+            .validated()
+            .unwrap()
+            .into(),
     ];
     for law in laws {
         let restitution = law.wall_restitution(mass_kg, speed_m_s).unwrap();

@@ -2,7 +2,7 @@
 
 mod common;
 
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring, Viscous};
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, Contact, Force, Interval, Load, Observer, Outcome, Point, Reason, Run, Settings, Solver,
@@ -33,7 +33,13 @@ fn weight(body: usize, mass_kg: f64) -> Load {
 
 /// A ball that falls on the middle of a clamped beam.
 fn dropped(law: Law, damping_ratio: f64, n: usize) -> Assembly<Law> {
-    let segment = Segment::rectangular(0.5, 2e11, 7800.0, 0.03, 0.01);
+    let segment = Segment::from(RectangularSegment {
+        length_m: 0.5,
+        youngs_modulus_pa: 2e11,
+        density_kg_m3: 7800.0,
+        width_m: 0.03,
+        thickness_m: 0.01,
+    });
     let beam = Beam { segments: vec![segment], ends: [End::Clamped, End::Clamped] };
     let modes = beam.modes(n).unwrap();
     let of = |omega: &f64| BodyMode { omega_rad_s: *omega, damping_ratio };

@@ -2,7 +2,7 @@
 
 mod common;
 
-use beam_modes::{Beam, End, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use common::{Intervals, dormand_prince};
 use contact_models::{ContactLaw, Hertz, Law, LinearSpring, Memory};
 use std::f64::consts::PI;
@@ -218,7 +218,13 @@ fn contacts_without_force_cost_nothing_and_end_no_interval() {
 
 /// A clamped-free beam seen from some places.
 fn cantilever(n: usize, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
-    let segment = Segment::rectangular(1.0, 2e11, 7800.0, 0.02, 0.01);
+    let segment = Segment::from(RectangularSegment {
+        length_m: 1.0,
+        youngs_modulus_pa: 2e11,
+        density_kg_m3: 7800.0,
+        width_m: 0.02,
+        thickness_m: 0.01,
+    });
     let beam = Beam { segments: vec![segment], ends: [End::Clamped, End::Free] };
     let modes = beam.modes(n).unwrap();
     let of = |omega: &f64| BodyMode { omega_rad_s: *omega, damping_ratio: 0.01 };

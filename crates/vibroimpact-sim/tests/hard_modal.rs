@@ -236,7 +236,11 @@ fn hysteresis_with_tiny_loops() {
                     Mode { omega_rad_s: 3e5, damping_ratio: 0.0, shape },
                 ],
             };
-            let law = Law::from(Hysteretic::new(1e9, 1.6, 1.4, 0.4, epsilon_m).unwrap());
+            let law = Law::from(
+                Hysteretic { stiffness_n_m1_5: 1e9, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m }
+                    .validated()
+                    .unwrap(),
+            );
             let solution = run(&structure, &ball(), &law);
             assert_eq!(solution.outcome, Outcome::Rebound, "{epsilon_m:e} {shape}");
             let kept = energy_kept(&structure, &ball(), &solution);
@@ -280,7 +284,14 @@ fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
     let striker = Striker { mass_kg: 2e-3, speed_m_s: 2.0 };
     let laws = [
         (Law::from(Hertz::new(1.7e13).unwrap()), 1e-12),
-        (Law::from(Hysteretic::new(4e12, 1.5, 1.5, 0.4, 1e-9).unwrap()), 1e-10),
+        (
+            Law::from(
+                Hysteretic { stiffness_n_m1_5: 4e12, theta_m: 1.5, beta: 1.5, k_bar: 0.4, epsilon_m: 1e-9 }
+                    .validated()
+                    .unwrap(),
+            ),
+            1e-10,
+        ),
     ];
     for (law, floor) in laws {
         let solve = |amplitude: f64| {
@@ -333,7 +344,11 @@ fn surfaces_that_part_at_once() {
 fn a_compression_beyond_the_law() {
     let structure = Structure::default();
     let striker = Striker { mass_kg: 5e19, speed_m_s: 1e26 };
-    let law = Law::from(Hysteretic::new(1e-10, 1.6, 1.4, 0.4, 1.8e-4).unwrap());
+    let law = Law::from(
+        Hysteretic { stiffness_n_m1_5: 1e-10, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 1.8e-4 }
+            .validated()
+            .unwrap(),
+    );
     let solution = run(&structure, &striker, &law);
     assert_eq!((solution.outcome, solution.restitution), (Outcome::Stopped(StopReason::LawRange), None));
     assert!(energy_kept(&structure, &striker, &solution) < 1.0 + 1e-9, "{solution:?}");

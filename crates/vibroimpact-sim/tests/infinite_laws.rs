@@ -84,7 +84,13 @@ fn laws() -> Vec<(Law, f64)> {
         (HuntCrossley::new(2e8, 1.5, 0.3).unwrap().into(), 3e-6),
         (HuntCrossley::new(3e7, 1.3, 2.0).unwrap().into(), 3e-6),
         (Viscous::new(2e8, 0.08).unwrap().into(), 3e-6),
-        (Hysteretic::new(2e8, 0.9, 0.1, 100.0, 1e-9).unwrap().into(), 5e-6),
+        (
+            Hysteretic { stiffness_n_m1_5: 2e8, theta_m: 0.9, beta: 0.1, k_bar: 100.0, epsilon_m: 1e-9 }
+                .validated()
+                .unwrap()
+                .into(),
+            5e-6,
+        ),
         (Felt::new(1e9, 2.3, 1e-4).unwrap().into(), 5e-6),
         (Thornton::new(1e11, 0.01, 5e8).unwrap().into(), 3e-5),
     ]

@@ -1,7 +1,8 @@
 //! The spectral solution against independent methods and closed forms.
 
 use std::f64::consts::PI;
-use vibroimpact_sim::infinite::{FirstContact, Impact, Material, Settings, Solution, Structure, solve};
+use vibroimpact_sim::infinite::{BeamSection, FirstContact, Impact, Material, Settings, Solution, Structure, solve};
+use vibroimpact_sim::modal::Striker;
 
 fn once() -> Settings {
     Settings { estimate_uncertainty: false, ..Settings::default() }
@@ -243,8 +244,10 @@ fn physical_parameters() {
     let steel = Material::STEEL;
     let a = Impact::sphere_on_beam(steel, 0.02, 0.03, 0.01, 1.0).unwrap();
     let mass = 4.0 / 3.0 * PI * 1e-6 * 7800.0;
-    let b = Impact::on_beam(200e9 * 0.02 * 2.7e-5 / 12.0, 7800.0 * 6e-4, steel.hertz_stiffness(0.01), mass, 1.0);
-    let b = b.unwrap();
+    let beam =
+        BeamSection { flexural_rigidity_n_m2: 200e9 * 0.02 * 2.7e-5 / 12.0, mass_per_length_kg_m: 7800.0 * 6e-4 };
+    let sphere = Striker { mass_kg: mass, speed_m_s: 1.0 };
+    let b = Impact::on_beam(beam, sphere, steel.hertz_stiffness(0.01)).unwrap();
     assert!((a.impulse_response / b.impulse_response - 1.0).abs() < 1e-14);
     assert!((a.groups().unwrap().s / b.groups().unwrap().s - 1.0).abs() < 1e-13);
     let plate = Impact::sphere_on_plate(steel, 0.005, 0.01, 1.0).unwrap();

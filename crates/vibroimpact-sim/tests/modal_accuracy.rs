@@ -33,7 +33,10 @@ fn a_second_method_agrees_for_every_law_with_remainder_modes() {
     let laws: [Law; 11] = [
         hertz(),
         Viscous::new(1.7945e10, 0.08).unwrap().into(),
-        Hysteretic::new(1.7945e10 / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(),
+        Hysteretic { stiffness_n_m1_5: 1.7945e10 / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
+            .validated()
+            .unwrap()
+            .into(),
         LinearSpring::new(1e7).unwrap().into(),
         KelvinVoigt::new(1e7, 200.0).unwrap().into(),
         HuntCrossley::new(1.7945e10, 1.5, 0.3).unwrap().into(),
@@ -194,7 +197,10 @@ fn a_history_shows_the_force_of_the_law() {
         Viscous::new(1.7945e10, 0.08).unwrap().into(),
         LinearSpring::new(1e7).unwrap().into(),
         KelvinVoigt::new(1e7, 200.0).unwrap().into(),
-        Hysteretic::new(1.7945e10 / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(),
+        Hysteretic { stiffness_n_m1_5: 1.7945e10 / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
+            .validated()
+            .unwrap()
+            .into(),
         Law::from(Thornton::new(1.1e11, 0.015, 1e9).unwrap()),
     ];
     for structure in [pinned(25, 0.02, 0.4), pinned_with_remainder(25, 0.02, 0.4)] {

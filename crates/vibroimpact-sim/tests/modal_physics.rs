@@ -68,7 +68,10 @@ fn without_modes_the_restitution_is_the_laws_own() {
     let laws: [Law; 7] = [
         hertz(),
         Viscous::new(1.7945e10, 0.08).unwrap().into(),
-        Hysteretic::new(1.7945e10 / 4.0, 1.6, 1.4, 0.4, 5e-8).unwrap().into(),
+        Hysteretic { stiffness_n_m1_5: 1.7945e10 / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
+            .validated()
+            .unwrap()
+            .into(),
         LinearSpring::new(1e6).unwrap().into(),
         KelvinVoigt::with_restitution(1e6, 0.7, 0.11027).unwrap().into(),
         HuntCrossley::with_restitution(1e9, 1.5, 0.6, 1.0).unwrap().into(),

@@ -1,7 +1,7 @@
 //! What remainder modes bring: the restitution of the thesis's beam with few modes against the converged one.
 
 mod common;
-use beam_modes::{Beam, BeamSystem, End, PointMode, Segment, ShearSection, remainder_modes};
+use beam_modes::{Beam, BeamSystem, End, PointMode, RectangularSegment, Segment, ShearSection, remainder_modes};
 use common::{GOLDEN, pinned, settings, solve};
 use contact_models::{Body, Hertz, Law};
 use std::f64::consts::PI;
@@ -52,7 +52,15 @@ fn square(segments: &[(f64, f64)], shear_coefficient: f64, ends: [End; 2], x: f6
         shear_rigidity_n: shear_coefficient * modulus / (2.0 * (1.0 + nu)) * side.powi(2),
         rotary_inertia_kg_m: density * side.powi(4) / 12.0,
     };
-    let segment = |&(length, side): &(f64, f64)| Segment::rectangular(length, modulus, density, side, side);
+    let segment = |&(length, side): &(f64, f64)| {
+        Segment::from(RectangularSegment {
+            length_m: length,
+            youngs_modulus_pa: modulus,
+            density_kg_m3: density,
+            width_m: side,
+            thickness_m: side,
+        })
+    };
     let beam = BeamSystem {
         shear: Some(segments.iter().map(section).collect()),
         ..BeamSystem::from(Beam { segments: segments.iter().map(segment).collect(), ends })

@@ -108,7 +108,7 @@ fn any_law() -> impl Strategy<Value = Law> {
         2 => decades(6.0, 10.0).prop_map(|k| Law::from(Hertz::new(k).unwrap())),
         1 => (stiffness(), decades(0.0, 2.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
         1 => (decades(6.0, 10.0), decades(-3.0, 0.0)).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
-        1 => decades(6.0, 10.0).prop_map(|k| Hysteretic::new(k, 1.6, 1.4, 0.4, 1e-7).unwrap().into()),
+        1 => decades(6.0, 10.0).prop_map(|k| Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 1e-7 }.validated().unwrap().into()),
         1 => (decades(9.0, 11.0), decades(8.0, 9.5)).prop_map(|(e, y)| Thornton::new(e, 0.01, y).unwrap().into()),
     ]
 }

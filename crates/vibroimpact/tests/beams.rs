@@ -2,7 +2,7 @@
 //! foundation, damping.
 
 use serde_json::{Value, json};
-use vibroimpact::scene::{Beam, BeamTheory, End, Segment, Structure, TheoryVariant};
+use vibroimpact::scene::{Beam, BeamTheory, End, RectangularSegment, Segment, Structure, TheoryVariant};
 use vibroimpact::{InvalidInput, Scene};
 
 const COWPER: f64 = 10.0 * 1.3 / (12.0 + 11.0 * 0.3);
@@ -106,7 +106,16 @@ fn sections_give_shear_and_rotary_inertia() {
         beam.to_system().unwrap().shear.unwrap()[0]
     };
     let (b, h) = (0.02f64, 0.03f64);
-    let bar = Segment { poissons_ratio: Some(nu), ..Segment::rectangular(1.0, 2e11, 7800.0, b, h) };
+    let bar = Segment {
+        poissons_ratio: Some(nu),
+        ..Segment::from(RectangularSegment {
+            length_m: 1.0,
+            youngs_modulus_pa: 2e11,
+            density_kg_m3: 7800.0,
+            width_m: b,
+            thickness_m: h,
+        })
+    };
     let rectangle = by(bar);
     assert!((rectangle.shear_rigidity_n / (5.0 * 1.3 / 7.5 * shear_modulus * b * h) - 1.0).abs() < 1e-14);
     assert!((rectangle.rotary_inertia_kg_m / (7800.0 * b * h.powi(3) / 12.0) - 1.0).abs() < 1e-14);

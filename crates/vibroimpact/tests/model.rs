@@ -8,7 +8,7 @@ use vibroimpact::Scene;
 use vibroimpact::beam_modes::{Beam, End, Segment};
 use vibroimpact::contact_models::Hertz;
 use vibroimpact::model::{Answer, Kept, Model, Modes, Reflection, VALIDATED, reflection_bound};
-use vibroimpact::vibroimpact_sim::infinite;
+use vibroimpact::vibroimpact_sim::infinite::{self, BeamSection};
 use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
 
 /// The pinned beam of chapter 3 with its ball; the number of modes left to the program.
@@ -287,7 +287,9 @@ fn the_fields_of_the_choice_are_written_back() {
 /// A striker of mass 1 at speed 1 on a beam with `EI = m' = 1`: stiffness for this `S`, and the damped infinite beam.
 fn infinite_beam(s: f64, damping_ratio: f64) -> (f64, infinite::Solution, f64) {
     let stiffness = (s * (2.0 * PI).powi(5)).sqrt();
-    let mut impact = infinite::Impact::on_beam(1.0, 1.0, stiffness, 1.0, 1.0).unwrap();
+    let beam = BeamSection { flexural_rigidity_n_m2: 1.0, mass_per_length_kg_m: 1.0 };
+    let striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
+    let mut impact = infinite::Impact::on_beam(beam, striker, stiffness).unwrap();
     impact.impulse_response /= (1.0 + damping_ratio).sqrt();
     let groups = impact.groups().unwrap();
     let solution = infinite::solve(infinite::Structure::Beam, groups.s, &infinite::Settings::default()).unwrap();

@@ -273,10 +273,18 @@ fn restitution_of_list(list: &[(f64, f64)], place: [f64; 2], radius_m: f64, comp
 /// restitution is within what is stated.
 #[test]
 fn an_inexact_static_compliance_is_part_of_it() {
-    use beam_modes::{Edge, Plate};
+    use beam_modes::{Edge, Plate, PlateTheory};
     let ([x, y], count) = ([0.294, 0.194], 60);
-    let plate =
-        Plate::thin(0.3, 0.2, 0.004, 7e10, 0.33, 2700.0, [Edge::Free, Edge::Clamped, Edge::Free, Edge::Clamped]);
+    let plate = Plate {
+        length_m: 0.3,
+        width_m: 0.2,
+        thickness_m: 0.004,
+        youngs_modulus_pa: 7e10,
+        poissons_ratio: 0.33,
+        density_kg_m3: 2700.0,
+        edges: [Edge::Free, Edge::Clamped, Edge::Free, Edge::Clamped],
+        theory: PlateTheory::Kirchhoff,
+    };
     let (whole, off) = plate.static_compliance_with_uncertainty(x, y).unwrap();
     assert!(off > 1e-4 * whole);
     let modes = plate.modes(count).unwrap();

@@ -39,7 +39,16 @@ fn beams_rods_and_plates() {
 
     let plate = Plate {
         theory: PlateTheory::Mindlin { shear_coefficient: 0.86 },
-        ..Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, [Edge::Pinned; 4])
+        ..Plate {
+            length_m: 0.4,
+            width_m: 0.3,
+            thickness_m: 0.005,
+            youngs_modulus_pa: 2e11,
+            poissons_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            edges: [Edge::Pinned; 4],
+            theory: PlateTheory::Kirchhoff,
+        }
     };
     let written = serde_json::to_value(plate).unwrap();
     assert_eq!(written["theory"], json!({ "mindlin": { "shear_coefficient": 0.86 } }));

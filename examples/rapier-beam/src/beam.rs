@@ -1,6 +1,6 @@
 //! The bar and the ball, their bounces with every contact resolved, and the EMOC law fitted to a few of them.
 
-use beam_modes::{Beam, End, Modes, Segment};
+use beam_modes::{Beam, End, Modes, RectangularSegment, Segment};
 use contact_models::{Body, Hertz};
 use emoc::{Impact, Parameters, Site};
 use fitting::{Parameter, Problem};
@@ -50,7 +50,13 @@ impl Ball {
 
 impl Bar {
     pub fn new(damping_ratio: f64) -> Result<Bar, Box<dyn Error>> {
-        let segment = Segment::rectangular(LENGTH_M, MODULUS_PA, DENSITY_KG_M3, 0.02, THICKNESS_M);
+        let segment = Segment::from(RectangularSegment {
+            length_m: LENGTH_M,
+            youngs_modulus_pa: MODULUS_PA,
+            density_kg_m3: DENSITY_KG_M3,
+            width_m: 0.02,
+            thickness_m: THICKNESS_M,
+        });
         let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
         Ok(Bar { modes: beam.modes(MODES)?, beam, damping_ratio })
     }

@@ -108,7 +108,7 @@ fn laws(hertz: &Law) -> Result<Vec<Law>, Failure> {
     let k = hertz.stiffness_n_m1_5;
     Ok(vec![
         Viscous::with_restitution(k, 0.95, 1.0)?.into(),
-        Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8)?.into(),
+        Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }.validated()?.into(),
         HuntCrossley::new(k, 1.5, 0.2)?.into(),
         Thornton::new(1.1e11, 0.015, 2e9)?.into(),
     ])

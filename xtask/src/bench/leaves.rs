@@ -53,7 +53,7 @@ pub fn laws() -> Result<Vec<Problem>, Failure> {
         Viscous::with_restitution(k, 0.95, 1.0)?.into(),
         HuntCrossley::with_restitution(k, 1.5, 0.8, 1.0)?.into(),
         KelvinVoigt::with_restitution(1e8, 0.7, mass_kg)?.into(),
-        Hysteretic::new(k, 1.6, 1.4, 4.0, 1e-20)?.into(),
+        Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 4.0, epsilon_m: 1e-20 }.validated()?.into(),
     ];
     // the last: loading and unloading in closed form, without regularisation
     let exact = vec![0.95, 0.8, 0.7, ((1.2 / 2.5 + 2.8 / 6.5) / 1.6f64).sqrt()];

@@ -44,7 +44,13 @@ pub(super) struct Beam {
 /// A segment of length `length_m` whose width is the side of the square section and whose thickness is a fraction of that side.
 pub(super) fn segment(material: &Material, length_m: f64, side_m: f64, thickness_fraction: f64) -> beam_modes::Segment {
     let thickness_m = thickness_fraction * side_m;
-    beam_modes::Segment::rectangular(length_m, material.youngs_modulus_pa, material.density_kg_m3, side_m, thickness_m)
+    beam_modes::Segment::from(beam_modes::RectangularSegment {
+        length_m,
+        youngs_modulus_pa: material.youngs_modulus_pa,
+        density_kg_m3: material.density_kg_m3,
+        width_m: side_m,
+        thickness_m,
+    })
 }
 
 impl Beam {

@@ -175,8 +175,18 @@ fn law(random: &mut Rng, extreme: bool) -> Law {
     let k = if extreme { decades(random, -10.0, 25.0) } else { decades(random, 2.0, 14.0) };
     let found: Result<Law, InvalidInput> = match random.u32(0..14) {
         0 => Viscous::new(k, decades(random, -4.0, 2.0)).map(Law::from),
-        1 => Hysteretic::new(k, 1.6, 1.4, 0.4, decades(random, -10.0, -3.0)).map(Law::from),
-        2 => Hysteretic::new(k, 1.6, 1.4, 0.4, 0.0).map(Law::from),
+        1 => Hysteretic {
+            stiffness_n_m1_5: k,
+            theta_m: 1.6,
+            beta: 1.4,
+            k_bar: 0.4,
+            epsilon_m: decades(random, -10.0, -3.0),
+        }
+        .validated()
+        .map(Law::from),
+        2 => Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 0.0 }
+            .validated()
+            .map(Law::from),
         3 => LinearSpring::new(k).map(Law::from),
         4 => KelvinVoigt::new(k, decades(random, -3.0, 5.0)).map(Law::from),
         5 => HuntCrossley::new(k, 1.0 + 2.0 * random.f64(), decades(random, -3.0, 2.0)).map(Law::from),

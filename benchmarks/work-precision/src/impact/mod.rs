@@ -13,7 +13,7 @@ pub use reference::{Reference, reference};
 pub use system::{Equations, Phase};
 
 use crate::measure::{Effort, Found, Row};
-use beam_modes::{Beam, End, PointMode, Segment};
+use beam_modes::{Beam, End, PointMode, RectangularSegment, Segment};
 use contact_models::{Body, Hertz, Hysteretic, Law, Viscous};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Striker, Structure};
@@ -87,7 +87,15 @@ fn ball(diameter_m: f64) -> Result<(Striker, f64), String> {
 /// Steel beam of unit length; `thickness` of its halves as fractions of the thesis's side.
 fn steel(ends: [End; 2], thickness: &[f64]) -> Beam {
     let length = 1.0 / thickness.len() as f64;
-    let segment = |part: &f64| Segment::rectangular(length, YOUNGS_MODULUS_PA, DENSITY_KG_M3, SIDE_M, part * SIDE_M);
+    let segment = |part: &f64| {
+        Segment::from(RectangularSegment {
+            length_m: length,
+            youngs_modulus_pa: YOUNGS_MODULUS_PA,
+            density_kg_m3: DENSITY_KG_M3,
+            width_m: SIDE_M,
+            thickness_m: part * SIDE_M,
+        })
+    };
     Beam { segments: thickness.iter().map(segment).collect(), ends }
 }
 
@@ -115,7 +123,12 @@ pub fn library() -> Result<Vec<Impact>, String> {
     let hertz = |k: f64| Hertz::new(k).map(Law::from).map_err(text);
     let viscous = |k: f64| Viscous::new(k, 0.08).map(Law::from).map_err(text);
     // the stiffness of the first loading is that of Hertz
-    let hysteretic = |k: f64| Hysteretic::new(k / 4.0, 1.6, 1.4, 0.4, 5e-8).map(Law::from).map_err(text);
+    let hysteretic = |k: f64| {
+        Hysteretic { stiffness_n_m1_5: k / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
+            .validated()
+            .map(Law::from)
+            .map_err(text)
+    };
 
     let pinned = steel([End::Pinned, End::Pinned], &[1.0]);
     let cantilever = [End::Clamped, End::Free];

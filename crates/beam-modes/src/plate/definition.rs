@@ -39,9 +39,18 @@ pub enum PlateTheory {
 /// `x` runs along `length_m`, `y` along `width_m`, both from a corner.
 ///
 /// ```
-/// use beam_modes::{Edge, Plate};
+/// use beam_modes::{Edge, Plate, PlateTheory};
 ///
-/// let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, [Edge::Clamped, Edge::Free, Edge::Free, Edge::Free]);
+/// let plate = Plate {
+///     length_m: 0.4,
+///     width_m: 0.3,
+///     thickness_m: 0.005,
+///     youngs_modulus_pa: 2e11,
+///     poissons_ratio: 0.3,
+///     density_kg_m3: 7800.0,
+///     edges: [Edge::Clamped, Edge::Free, Edge::Free, Edge::Free],
+///     theory: PlateTheory::Kirchhoff,
+/// };
 /// let modes = plate.modes(10)?;
 /// // 3.4711 sqrt(D/(rho h))/a^2 for a square; the wider plate is stiffer across
 /// assert!(modes.omega_rad_s()[0] > 100.0 && modes.rigid_body_count() == 0);
@@ -73,20 +82,6 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// A thin plate: length, width, thickness (m), Young's modulus (Pa), Poisson's ratio, density (kg/m^3), edges.
-    pub fn thin(
-        length_m: f64,
-        width_m: f64,
-        thickness_m: f64,
-        youngs_modulus_pa: f64,
-        poissons_ratio: f64,
-        density_kg_m3: f64,
-        edges: [Edge; 4],
-    ) -> Plate {
-        let theory = PlateTheory::Kirchhoff;
-        Plate { length_m, width_m, thickness_m, youngs_modulus_pa, poissons_ratio, density_kg_m3, edges, theory }
-    }
-
     /// The shear coefficient of a plate that follows elasticity best at long and at short waves, `5/(6 - nu)`
     /// (N. G. Stephen, *J. Sound Vib.* 202 (1997) 539).
     pub fn shear_coefficient(poissons_ratio: f64) -> f64 {

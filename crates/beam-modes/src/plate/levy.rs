@@ -78,12 +78,21 @@ pub(super) fn deflection([a, b]: [f64; 2], edges: [Edge; 2], nu: f64, [x, y]: [f
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Plate, navier};
+    use super::super::{Plate, PlateTheory, navier};
     use super::*;
 
     #[test]
     fn a_plate_pinned_all_round_is_navier_s() {
-        let plate = Plate::thin(1.0, 0.7, 0.01, 2e11, 0.3, 7800.0, [Edge::Pinned; 4]);
+        let plate = Plate {
+            length_m: 1.0,
+            width_m: 0.7,
+            thickness_m: 0.01,
+            youngs_modulus_pa: 2e11,
+            poissons_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            edges: [Edge::Pinned; 4],
+            theory: PlateTheory::Kirchhoff,
+        };
         for [x, y] in [[0.5, 0.35], [0.3, 0.1], [0.9, 0.69], [0.5, 0.699]] {
             let levy = deflection([1.0, 0.7], [Edge::Pinned; 2], 0.3, [x, y]) / plate.flexural_rigidity_n_m();
             let navier = navier::static_compliance(&plate, x, y / 0.7);

@@ -147,13 +147,23 @@ impl Plate {
 mod tests {
     use super::*;
 
+    const STEEL: Plate = Plate {
+        length_m: 0.4,
+        width_m: 0.3,
+        thickness_m: 0.005,
+        youngs_modulus_pa: 2e11,
+        poissons_ratio: 0.3,
+        density_kg_m3: 7800.0,
+        edges: [Edge::Pinned; 4],
+        theory: PlateTheory::Kirchhoff,
+    };
     const PLACES: [[f64; 2]; 6] = [[0.5, 0.5], [0.3, 0.2], [0.9, 0.9], [0.97, 0.5], [0.05, 0.98], [0.99, 0.99]];
 
     /// Between clamped edges what Ritz's method misses is taken from the plate pinned all round; Levy's series knows better.
     #[test]
     fn the_error_between_clamped_edges_is_stated() {
         for (b, edges) in [(0.3, [Edge::Clamped; 2]), (0.9, [Edge::Clamped, Edge::Pinned])] {
-            let plate = Plate::thin(0.4, b, 0.005, 2e11, 0.3, 7800.0, [Edge::Pinned, Edge::Pinned, edges[0], edges[1]]);
+            let plate = Plate { width_m: b, edges: [Edge::Pinned, Edge::Pinned, edges[0], edges[1]], ..STEEL };
             for [x, y] in PLACES {
                 let exact = levy::deflection([0.4, b], edges, 0.3, [0.4 * x, b * y]) / plate.flexural_rigidity_n_m();
                 let (found, off) = plate.static_compliance_with_uncertainty(0.4 * x, b * y).unwrap();
@@ -167,7 +177,7 @@ mod tests {
     fn the_error_near_free_edges_is_stated() {
         let (clamped, free, pinned) = (Edge::Clamped, Edge::Free, Edge::Pinned);
         for edges in [[clamped, free, free, free], [clamped, free, free, pinned]] {
-            let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, edges);
+            let plate = Plate { edges, ..STEEL };
             for [x, y] in PLACES {
                 let (finer, _) = plate.extrapolated([36, 54, 80], x, y).unwrap();
                 let (found, off) = plate.extrapolated(Ritz::STATIC_DEGREES, x, y).unwrap();

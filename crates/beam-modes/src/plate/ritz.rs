@@ -200,13 +200,22 @@ fn unresolved() -> InvalidInput {
 
 #[cfg(test)]
 mod tests {
-    use super::super::navier;
+    use super::super::{PlateTheory, navier};
     use super::*;
 
     /// Pinned all round, where the frequencies have a closed form: none is missing, and what is stated of each bounds its error.
     #[test]
     fn frequencies_are_navier_s_within_what_is_stated() {
-        let plate = Plate::thin(0.4, 0.3, 0.005, 2e11, 0.3, 7800.0, [Edge::Pinned; 4]);
+        let plate = Plate {
+            length_m: 0.4,
+            width_m: 0.3,
+            thickness_m: 0.005,
+            youngs_modulus_pa: 2e11,
+            poissons_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            edges: [Edge::Pinned; 4],
+            theory: PlateTheory::Kirchhoff,
+        };
         let count = 300;
         let exact = navier::modes(&plate, count);
         let found = Ritz::new(&plate, Ritz::degrees(&plate, count).unwrap()).modes(count).unwrap();

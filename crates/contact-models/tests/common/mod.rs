@@ -100,7 +100,10 @@ pub fn laws() -> impl Strategy<Value = Law> {
         (k.clone(), 0.0..2.0).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
         (k.clone(), 0.2..3.0, 0.0..1.0, 0.05..8.0, prop_oneof![Just(0.0), 1e-6..0.1]).prop_map(
             |(k, theta_m, share, k_bar, eps)| {
-                Hysteretic::new(k, theta_m, share * (1.0 + theta_m), k_bar, eps).unwrap().into()
+                Hysteretic { stiffness_n_m1_5: k, theta_m, beta: share * (1.0 + theta_m), k_bar, epsilon_m: eps }
+                    .validated()
+                    .unwrap()
+                    .into()
             }
         ),
         (k.clone(), 0.01..3.0).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),

@@ -1,6 +1,7 @@
 //! Physical parameters and the groups that make the problem nondimensional (thesis 2.2).
 
 use super::problem::Structure;
+use crate::modal::Striker;
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
@@ -29,6 +30,24 @@ pub struct Material {
     pub poissons_ratio: f64,
     /// Density (kg/m^3).
     pub density_kg_m3: f64,
+}
+
+/// What an infinite beam opposes to an impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamSection {
+    /// Flexural rigidity `E I` (N m^2).
+    pub flexural_rigidity_n_m2: f64,
+    /// Mass per length `rho A` (kg/m).
+    pub mass_per_length_kg_m: f64,
+}
+
+/// What a thin infinite plate opposes to an impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlateSection {
+    /// Flexural rigidity `E h^3 / (12 (1 - nu^2))` (N m).
+    pub flexural_rigidity_n_m: f64,
+    /// Mass per area `rho h` (kg/m^2).
+    pub mass_per_area_kg_m2: f64,
 }
 
 /// `S` and the units in which the nondimensional solution is to be read (Eqs. 2.8 to 2.13).
@@ -68,20 +87,21 @@ impl Material {
     pub fn hertz_stiffness(&self, radius_m: f64) -> f64 {
         2.0 * self.youngs_modulus_pa * radius_m.sqrt() / (3.0 * (1.0 - self.poissons_ratio.powi(2)))
     }
+
+    /// A sphere of the material, moving at this speed.
+    fn sphere(&self, radius_m: f64, speed_m_s: f64) -> Striker {
+        Striker { mass_kg: 4.0 / 3.0 * PI * radius_m.powi(3) * self.density_kg_m3, speed_m_s }
+    }
 }
 
 impl Impact {
-    /// On a beam of given flexural rigidity `EI` (N m^2) and mass per length (kg/m).
+    /// Of a striker on a beam, with this Hertz stiffness (N/m^1.5) of their contact.
     ///
     /// # Errors
     /// [`InvalidInput`] unless all are finite and positive.
-    pub fn on_beam(
-        flexural_rigidity_n_m2: f64,
-        mass_per_length_kg_m: f64,
-        stiffness_n_m1_5: f64,
-        mass_kg: f64,
-        speed_m_s: f64,
-    ) -> Result<Impact, InvalidInput> {
+    pub fn on_beam(beam: BeamSection, striker: Striker, stiffness_n_m1_5: f64) -> Result<Impact, InvalidInput> {
+        let BeamSection { flexural_rigidity_n_m2, mass_per_length_kg_m } = beam;
+        let Striker { mass_kg, speed_m_s } = striker;
         InvalidInput::require_positive("flexural_rigidity_n_m2", flexural_rigidity_n_m2)?;
         InvalidInput::require_positive("mass_per_length_kg_m", mass_per_length_kg_m)?;
         let impulse_response =
@@ -113,27 +133,21 @@ impl Impact {
         InvalidInput::require_positive("width_m", width_m)?;
         InvalidInput::require_positive("thickness_m", thickness_m)?;
         InvalidInput::require_positive("radius_m", radius_m)?;
-        Impact::on_beam(
-            material.youngs_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
-            material.density_kg_m3 * width_m * thickness_m,
-            material.hertz_stiffness(radius_m),
-            4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,
-            speed_m_s,
-        )
+        let beam = BeamSection {
+            flexural_rigidity_n_m2: material.youngs_modulus_pa * width_m * thickness_m.powi(3) / 12.0,
+            mass_per_length_kg_m: material.density_kg_m3 * width_m * thickness_m,
+        };
+        Impact::on_beam(beam, material.sphere(radius_m, speed_m_s), material.hertz_stiffness(radius_m))
     }
 
-    /// On a thin plate of given flexural rigidity `E h^3 / (12 (1 - nu^2))` (N m) and mass per area (kg/m^2). Its
-    /// impulse response is `1 / (8 sqrt(rigidity * mass per area))` (Zener 1941).
+    /// Of a striker on a thin plate, with this Hertz stiffness (N/m^1.5) of their contact. The impulse response is
+    /// `1 / (8 sqrt(rigidity * mass per area))` (Zener 1941).
     ///
     /// # Errors
     /// [`InvalidInput`] unless all are finite and positive.
-    pub fn on_plate(
-        flexural_rigidity_n_m: f64,
-        mass_per_area_kg_m2: f64,
-        stiffness_n_m1_5: f64,
-        mass_kg: f64,
-        speed_m_s: f64,
-    ) -> Result<Impact, InvalidInput> {
+    pub fn on_plate(plate: PlateSection, striker: Striker, stiffness_n_m1_5: f64) -> Result<Impact, InvalidInput> {
+        let PlateSection { flexural_rigidity_n_m, mass_per_area_kg_m2 } = plate;
+        let Striker { mass_kg, speed_m_s } = striker;
         InvalidInput::require_positive("flexural_rigidity_n_m", flexural_rigidity_n_m)?;
         InvalidInput::require_positive("mass_per_area_kg_m2", mass_per_area_kg_m2)?;
         let impulse_response = 0.125 / (flexural_rigidity_n_m * mass_per_area_kg_m2).sqrt();
@@ -153,13 +167,12 @@ impl Impact {
         material.check()?;
         InvalidInput::require_positive("thickness_m", thickness_m)?;
         InvalidInput::require_positive("radius_m", radius_m)?;
-        Impact::on_plate(
-            material.youngs_modulus_pa * thickness_m.powi(3) / (12.0 * (1.0 - material.poissons_ratio.powi(2))),
-            material.density_kg_m3 * thickness_m,
-            material.hertz_stiffness(radius_m),
-            4.0 / 3.0 * PI * radius_m.powi(3) * material.density_kg_m3,
-            speed_m_s,
-        )
+        let plate = PlateSection {
+            flexural_rigidity_n_m: material.youngs_modulus_pa * thickness_m.powi(3)
+                / (12.0 * (1.0 - material.poissons_ratio.powi(2))),
+            mass_per_area_kg_m2: material.density_kg_m3 * thickness_m,
+        };
+        Impact::on_plate(plate, material.sphere(radius_m, speed_m_s), material.hertz_stiffness(radius_m))
     }
 
     fn checked(self) -> Result<Impact, InvalidInput> {

@@ -72,7 +72,7 @@ mod units;
 
 pub use asymptotic::{Attached, attached, displacement_eq_2_47};
 pub use general::solve_law;
-pub use groups::{Groups, Impact, Material};
+pub use groups::{BeamSection, Groups, Impact, Material, PlateSection};
 pub use problem::{S_RANGE, Settings, Structure};
 pub use receptance::{Receptance, Scale, Term};
 pub use semi_analytical::FirstContact;

@@ -1,6 +1,6 @@
 //! Impulse response of the struck point, and the units in which an impact is solved.
 
-use super::groups::{Groups, Impact};
+use super::groups::{BeamSection, Groups, Impact, PlateSection};
 use super::problem::Structure;
 use crate::modal::Striker;
 use invalid_input::{InvalidInput, Step};
@@ -9,6 +9,9 @@ use invalid_input::{InvalidInput, Step};
 const POWERS: std::ops::RangeInclusive<f64> = 0.1..=0.9;
 /// Most terms of an impulse response.
 const MOST_TERMS: usize = 8;
+
+/// An impulse response is that of any striker and contact.
+const UNIT: Striker = Striker { mass_kg: 1.0, speed_m_s: 1.0 };
 
 /// One term `coefficient t^power` of an impulse response.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,7 +91,8 @@ impl Receptance {
     /// # Errors
     /// [`InvalidInput`] unless both are finite and positive.
     pub fn beam(flexural_rigidity_n_m2: f64, mass_per_length_kg_m: f64) -> Result<Receptance, InvalidInput> {
-        Impact::on_beam(flexural_rigidity_n_m2, mass_per_length_kg_m, 1.0, 1.0, 1.0).map(|impact| impact.receptance())
+        let beam = BeamSection { flexural_rigidity_n_m2, mass_per_length_kg_m };
+        Impact::on_beam(beam, UNIT, 1.0).map(|impact| impact.receptance())
     }
 
     /// Of a thin infinite plate of flexural rigidity `E h^3 / (12 (1 - nu^2))` (N m) and mass per area (kg/m^2).
@@ -96,7 +100,8 @@ impl Receptance {
     /// # Errors
     /// [`InvalidInput`] unless both are finite and positive.
     pub fn plate(flexural_rigidity_n_m: f64, mass_per_area_kg_m2: f64) -> Result<Receptance, InvalidInput> {
-        Impact::on_plate(flexural_rigidity_n_m, mass_per_area_kg_m2, 1.0, 1.0, 1.0).map(|impact| impact.receptance())
+        let plate = PlateSection { flexural_rigidity_n_m, mass_per_area_kg_m2 };
+        Impact::on_plate(plate, UNIT, 1.0).map(|impact| impact.receptance())
     }
 
     /// Its terms.

@@ -3,7 +3,7 @@
 
 pub mod random;
 
-use beam_modes::{Beam, End, PointMode, Segment};
+use beam_modes::{Beam, End, PointMode, RectangularSegment, Segment};
 use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory, boundaries};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
@@ -43,8 +43,16 @@ pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
 
 /// The same with two remainder modes for all that are higher.
 pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure {
-    let beam =
-        Beam { segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)], ends: [End::Pinned; 2] };
+    let beam = Beam {
+        segments: vec![Segment::from(RectangularSegment {
+            length_m: 1.0,
+            youngs_modulus_pa: 2e11,
+            density_kg_m3: 7800.0,
+            width_m: 0.011323,
+            thickness_m: 0.011323,
+        })],
+        ends: [End::Pinned; 2],
+    };
     let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape };
     let mut structure = pinned(n, damping_ratio, b);
     structure.modes.extend(beam.remainder(b, n, 2).unwrap().into_iter().map(damped));

@@ -35,8 +35,16 @@ pub fn any_law() -> impl Strategy<Value = Law> {
     prop_oneof![
         stiffness().prop_map(|k| Hertz::new(k).unwrap().into()),
         (stiffness(), decades(-4.0, 2.0)).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
-        (stiffness(), decades(-10.0, -3.0))
-            .prop_map(|(k, epsilon)| Hysteretic::new(k, 1.6, 1.4, 0.4, epsilon).unwrap().into()),
+        (stiffness(), decades(-10.0, -3.0)).prop_map(|(k, epsilon)| Hysteretic {
+            stiffness_n_m1_5: k,
+            theta_m: 1.6,
+            beta: 1.4,
+            k_bar: 0.4,
+            epsilon_m: epsilon
+        }
+        .validated()
+        .unwrap()
+        .into()),
         stiffness().prop_map(|k| LinearSpring::new(k).unwrap().into()),
         (stiffness(), 1.0..5.0).prop_map(|(k, n)| Power::new(k, n).unwrap().into()),
         (stiffness(), 2.0..5.0, decades(-6.0, -1.0)).prop_map(|(k, p, a)| Felt::new(k, p, a).unwrap().into()),
@@ -93,7 +101,7 @@ pub fn ordinary_law() -> impl Strategy<Value = Law> {
     prop_oneof![
         3 => conservative_law(),
         1 => (stiffness(), decades(-3.0, -0.5)).prop_map(|(k, c)| Viscous::new(k, c).unwrap().into()),
-        1 => stiffness().prop_map(|k| Hysteretic::new(k, 1.6, 1.4, 0.4, 5e-8).unwrap().into()),
+        1 => stiffness().prop_map(|k| Hysteretic { stiffness_n_m1_5: k, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }.validated().unwrap().into()),
         1 => (decades(5.0, 8.0), decades(0.0, 3.0)).prop_map(|(k, c)| KelvinVoigt::new(k, c).unwrap().into()),
         1 => (stiffness(), decades(-3.0, -0.5)).prop_map(|(k, d)| HuntCrossley::new(k, 1.5, d).unwrap().into()),
         1 => (decades(10.0, 11.3), decades(-2.5, -1.5), decades(8.0, 10.0))

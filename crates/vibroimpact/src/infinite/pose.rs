@@ -1,8 +1,9 @@
 //! From a scene to the terms of [`vibroimpact_sim::infinite`].
 
+use beam_modes::Segment;
 use contact_models::Law;
 use invalid_input::{InvalidInput, Path};
-use vibroimpact_sim::infinite::{self, Receptance, Scale, Solution};
+use vibroimpact_sim::infinite::{self, BeamSection, PlateSection, Receptance, Scale, Solution};
 use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
@@ -95,7 +96,6 @@ impl Scene {
         left_out("residual_compliance".into(), self.residual_compliance.filter(|on| *on).map(|on| on.to_string()))?;
         left_out("tolerance".into(), self.tolerance.map(number))?;
         let (striker, law) = self.striker_and_law()?;
-        let Striker { mass_kg, speed_m_s } = striker;
         // of Hertz contact the stiffness is a part of the impact; otherwise it does not enter
         let stiffness_n_m1_5 = if let Law::Hertz(law) = &law { law.stiffness_n_m1_5 } else { 1.0 };
         let impact = match &self.structure {
@@ -103,13 +103,17 @@ impl Scene {
                 let section = beam.section().map_err(|fault| fault.within("structure"))?;
                 // checked even though the impact itself does without
                 beam.shear().map_err(|fault| fault.within("structure"))?;
-                let (rigidity, mass_per_length) = (section.flexural_rigidity_n_m2, section.mass_per_length_kg_m);
-                infinite::Impact::on_beam(rigidity, mass_per_length, stiffness_n_m1_5, mass_kg, speed_m_s)
+                let Segment { flexural_rigidity_n_m2, mass_per_length_kg_m, .. } = section;
+                let beam = BeamSection { flexural_rigidity_n_m2, mass_per_length_kg_m };
+                infinite::Impact::on_beam(beam, striker, stiffness_n_m1_5)
             }
             Structure::InfinitePlate(plate) => {
                 plate.check().map_err(|fault| fault.within("structure"))?;
-                let (rigidity, mass_per_area) = (plate.flexural_rigidity_n_m(), plate.mass_per_area_kg_m2());
-                infinite::Impact::on_plate(rigidity, mass_per_area, stiffness_n_m1_5, mass_kg, speed_m_s)
+                let plate = PlateSection {
+                    flexural_rigidity_n_m: plate.flexural_rigidity_n_m(),
+                    mass_per_area_kg_m2: plate.mass_per_area_kg_m2(),
+                };
+                infinite::Impact::on_plate(plate, striker, stiffness_n_m1_5)
             }
             _ => {
                 return Err(InvalidInput::new(

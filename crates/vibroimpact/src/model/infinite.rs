@@ -25,7 +25,7 @@
 //! impulse. If the striker is then out of reach, it stays so.
 
 use contact_models::Law;
-use vibroimpact_sim::infinite::{self, Outcome};
+use vibroimpact_sim::infinite::{self, BeamSection, Outcome};
 use vibroimpact_sim::modal::Mode;
 
 use super::choice::{Choice, Tried};
@@ -82,8 +82,7 @@ pub fn reflection_bound(end: Reflection, z: f64, damping_ratio: f64) -> f64 {
 
 /// A uniform beam with the location of impact.
 struct Uniform {
-    rigidity: f64,
-    mass_per_length: f64,
+    section: BeamSection,
     distances: [f64; 2],
     ends: [End; 2],
     damping_ratio: f64,
@@ -111,8 +110,10 @@ impl Uniform {
             return Ok(Err("the beam is not uniform".to_owned()));
         }
         Ok(Ok(Uniform {
-            rigidity: first.flexural_rigidity_n_m2,
-            mass_per_length: first.mass_per_length_kg_m,
+            section: BeamSection {
+                flexural_rigidity_n_m2: first.flexural_rigidity_n_m2,
+                mass_per_length_kg_m: first.mass_per_length_kg_m,
+            },
             distances: [*location_m, built.length_m() - location_m],
             ends: beam.ends,
             damping_ratio: beam.damping_ratio,
@@ -121,7 +122,7 @@ impl Uniform {
 
     /// `sqrt(EI/m')` (m^2/s).
     fn spread(&self) -> f64 {
-        (self.rigidity / self.mass_per_length).sqrt()
+        (self.section.flexural_rigidity_n_m2 / self.section.mass_per_length_kg_m).sqrt()
     }
 
     fn impact(&self, pose: &Pose) -> Result<infinite::Impact, InvalidInput> {
@@ -129,8 +130,7 @@ impl Uniform {
             Law::Hertz(law) => law.stiffness_n_m1_5,
             _ => f64::NAN,
         };
-        let (mass, speed) = (pose.striker.mass_kg, pose.striker.speed_m_s);
-        let undamped = infinite::Impact::on_beam(self.rigidity, self.mass_per_length, stiffness, mass, speed)?;
+        let undamped = infinite::Impact::on_beam(self.section, pose.striker, stiffness)?;
         Ok(infinite::Impact {
             impulse_response: undamped.impulse_response / (1.0 + self.damping_ratio).sqrt(),
             ..undamped
@@ -250,7 +250,7 @@ fn solve(pose: &mut Pose, beam: &Uniform, cost: &mut Cost) -> Result<Solved, Inv
     let rigid: f64 = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).map(|mode| mode.shape.powi(2)).sum();
     let ratio = solution.rebound_ratio();
     let impulse = mass * speed * (1.0 + ratio.unwrap_or(0.0));
-    let beam_mass = beam.mass_per_length * (beam.distances[0] + beam.distances[1]);
+    let beam_mass = beam.section.mass_per_length_kg_m * (beam.distances[0] + beam.distances[1]);
     let reach = reach(modes, impulse, beam_mass);
     let departs = ratio.unwrap_or(0.0) * speed * (beam.undisturbed_s() - duration_s);
     // twice: from the location at separation to the start, and beyond it

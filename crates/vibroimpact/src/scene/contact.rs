@@ -212,7 +212,9 @@ impl Contact {
             }
             Contact::Hysteretic { stiffness, theta_m, beta, k_bar, epsilon_m } => {
                 let share = if stiffness.is_given() { 1.0 } else { 1.0 + theta_m + beta };
-                Hysteretic::new(stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m).map(Law::from)
+                Hysteretic { stiffness_n_m1_5: stiffness.of(striker)? / share, theta_m, beta, k_bar, epsilon_m }
+                    .validated()
+                    .map(Law::from)
             }
             Contact::LinearSpring { stiffness_n_m } => LinearSpring::new(stiffness_n_m).map(Law::from),
             Contact::Power { stiffness_n_m_n, exponent } => Power::new(stiffness_n_m_n, exponent).map(Law::from),

@@ -9,10 +9,18 @@
 //!
 //! ```
 //! use vibroimpact::model::Modes;
-//! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, Scene, Segment, Striker};
+//! use vibroimpact::scene::{Beam, Contact, End, HertzStiffness, RectangularSegment, Scene, Striker};
 //!
+//! let side_m = 0.011323;
+//! let segment = RectangularSegment {
+//!     length_m: 1.0,
+//!     youngs_modulus_pa: 2e11,
+//!     density_kg_m3: 7800.0,
+//!     width_m: side_m,
+//!     thickness_m: side_m,
+//! };
 //! let beam = Beam {
-//!     segments: vec![Segment::rectangular(1.0, 2e11, 7800.0, 0.011323, 0.011323)],
+//!     segments: vec![segment.into()],
 //!     damping_ratio: 0.02,
 //!     ..Beam::new([End::Pinned, End::Pinned])
 //! };
@@ -64,6 +72,7 @@ pub(crate) mod told;
 pub(crate) mod toml;
 
 pub use beam::{Beam, End};
+pub use beam_modes::RectangularSegment;
 pub use beam_theory::BeamTheory;
 pub use choice::{Model, Modes};
 pub use contact::Contact;

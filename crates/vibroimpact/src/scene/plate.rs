@@ -13,9 +13,20 @@ pub const CONVERGED_FREQUENCY: f64 = 1e-5;
 /// A uniform rectangular plate, [`beam_modes::Plate`].
 ///
 /// ```
-/// use vibroimpact::scene::{Edge, Plate};
+/// use vibroimpact::scene::{Edge, Plate, PlateTheory};
 ///
-/// let plate = Plate { damping_ratio: 0.01, ..Plate::new([0.4, 0.3], 0.005, 2e11, 0.3, 7800.0, [Edge::Pinned; 4]) };
+/// let plate = Plate {
+///     length_m: 0.4,
+///     width_m: 0.3,
+///     thickness_m: 0.005,
+///     youngs_modulus_pa: 2e11,
+///     poissons_ratio: 0.3,
+///     density_kg_m3: 7800.0,
+///     edges: [Edge::Pinned; 4],
+///     theory: PlateTheory::Kirchhoff,
+///     shear_coefficient: None,
+///     damping_ratio: 0.01,
+/// };
 /// assert!((plate.to_plate()?.modes(1)?.omega_rad_s()[0] - 1312.8).abs() < 0.1);
 /// # Ok::<(), vibroimpact::InvalidInput>(())
 /// ```
@@ -74,30 +85,6 @@ pub enum PlateTheory {
 invalid_input::names!(PlateTheory, "theory", { Kirchhoff: "kirchhoff", Mindlin: "mindlin" });
 
 impl Plate {
-    /// An undamped thin plate: length and width, thickness (m), Young's modulus (Pa), Poisson's ratio, density (kg/m^3),
-    /// edges.
-    pub fn new(
-        [length_m, width_m]: [f64; 2],
-        thickness_m: f64,
-        youngs_modulus_pa: f64,
-        poissons_ratio: f64,
-        density_kg_m3: f64,
-        edges: [Edge; 4],
-    ) -> Plate {
-        Plate {
-            length_m,
-            width_m,
-            thickness_m,
-            youngs_modulus_pa,
-            poissons_ratio,
-            density_kg_m3,
-            edges,
-            theory: PlateTheory::Kirchhoff,
-            shear_coefficient: None,
-            damping_ratio: 0.0,
-        }
-    }
-
     /// The plate in the terms of [`beam_modes`].
     ///
     /// # Errors
@@ -119,16 +106,17 @@ impl Plate {
             let allowed = "left out, or beside \"theory\": \"mindlin\"";
             return Err(InvalidInput::new("shear_coefficient", value.to_string(), allowed));
         }
-        let thin = beam_modes::Plate::thin(
-            self.length_m,
-            self.width_m,
-            self.thickness_m,
-            self.youngs_modulus_pa,
-            self.poissons_ratio,
-            self.density_kg_m3,
+        let Plate { length_m, width_m, thickness_m, youngs_modulus_pa, poissons_ratio, density_kg_m3, .. } = *self;
+        let plate = beam_modes::Plate {
+            length_m,
+            width_m,
+            thickness_m,
+            youngs_modulus_pa,
+            poissons_ratio,
+            density_kg_m3,
             edges,
-        );
-        let plate = beam_modes::Plate { theory, ..thin };
+            theory,
+        };
         plate.checked()?;
         Ok(plate)
     }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use beam_modes::RectangularSegment;
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -70,15 +71,10 @@ enum Section {
     Circle(f64),
 }
 
-impl Segment {
-    /// A piece of rectangular section: length, material, width and thickness (in the direction of the impact) in SI units.
-    pub fn rectangular(
-        length_m: f64,
-        youngs_modulus_pa: f64,
-        density_kg_m3: f64,
-        width_m: f64,
-        thickness_m: f64,
-    ) -> Segment {
+impl From<RectangularSegment> for Segment {
+    /// A piece of rectangular section.
+    fn from(piece: RectangularSegment) -> Segment {
+        let RectangularSegment { length_m, youngs_modulus_pa, density_kg_m3, width_m, thickness_m } = piece;
         Segment {
             length_m,
             youngs_modulus_pa: Some(youngs_modulus_pa),
@@ -88,7 +84,9 @@ impl Segment {
             ..Segment::default()
         }
     }
+}
 
+impl Segment {
     /// A piece of circular section: length, material and diameter in SI units.
     pub fn circular(length_m: f64, youngs_modulus_pa: f64, density_kg_m3: f64, diameter_m: f64) -> Segment {
         Segment {
@@ -134,9 +132,14 @@ impl Segment {
                 flexural_rigidity_n_m2: self.flexural_rigidity_n_m2.unwrap_or_default(),
                 mass_per_length_kg_m: self.mass_per_length_kg_m.unwrap_or_default(),
             },
-            Section::Rectangle([width, thickness]) => {
-                beam_modes::Segment::rectangular(length_m, modulus, density, width, thickness)
+            Section::Rectangle([width, thickness]) => RectangularSegment {
+                length_m,
+                youngs_modulus_pa: modulus,
+                density_kg_m3: density,
+                width_m: width,
+                thickness_m: thickness,
             }
+            .into(),
             Section::Circle(diameter) => beam_modes::Segment {
                 length_m,
                 flexural_rigidity_n_m2: modulus * PI * diameter.powi(4) / 64.0,

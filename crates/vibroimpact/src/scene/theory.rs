@@ -59,8 +59,15 @@ impl Beam {
     /// Euler-Bernoulli's.
     ///
     /// ```
-    /// use vibroimpact::scene::{Beam, BeamTheory, End, Segment, TheoryVariant};
-    /// let segment = Segment { poissons_ratio: Some(0.3), ..Segment::rectangular(1.0, 2e11, 7800.0, 0.0113, 0.0113) };
+    /// use vibroimpact::scene::{Beam, BeamTheory, End, RectangularSegment, Segment, TheoryVariant};
+    /// let square = RectangularSegment {
+    ///     length_m: 1.0,
+    ///     youngs_modulus_pa: 2e11,
+    ///     density_kg_m3: 7800.0,
+    ///     width_m: 0.0113,
+    ///     thickness_m: 0.0113,
+    /// };
+    /// let segment = Segment { poissons_ratio: Some(0.3), ..square.into() };
     /// let beam = Beam { segments: vec![segment], ..Beam::new([End::Pinned, End::Pinned]) };
     /// assert_eq!(beam.solved_by()?, BeamTheory::Timoshenko);
     /// let variants = beam.theory_variants()?;

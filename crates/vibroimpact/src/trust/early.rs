@@ -20,7 +20,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use beam_modes::{Segment, ShearSection};
+use beam_modes::{RectangularSegment, Segment, ShearSection};
 use vibroimpact_sim::infinite::Solution;
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Structure};
 
@@ -134,7 +134,13 @@ mod tests {
     }
 
     fn bending() -> Segment {
-        Segment::rectangular(1.0, 2e11, 7800.0, 0.02, 0.02)
+        Segment::from(RectangularSegment {
+            length_m: 1.0,
+            youngs_modulus_pa: 2e11,
+            density_kg_m3: 7800.0,
+            width_m: 0.02,
+            thickness_m: 0.02,
+        })
     }
 
     fn thick() -> ShearSection {

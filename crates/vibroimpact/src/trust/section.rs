@@ -157,13 +157,19 @@ fn nearest(here: f64, places: impl IntoIterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use beam_modes::{Beam, BeamSystem, End, Segment, ShearSection};
+    use beam_modes::{Beam, BeamSystem, End, RectangularSegment, Segment, ShearSection};
 
     /// Modes of pinned beams are sines, whatever the theory: mode `n` has `n` half waves.
     #[test]
     fn modes_of_pinned_beams_have_whole_half_waves() {
         let (h, modulus, density, length_m): (f64, f64, f64, f64) = (0.02, 2e11, 7800.0, 1.3);
-        let segment = Segment::rectangular(length_m, modulus, density, h, h);
+        let segment = Segment::from(RectangularSegment {
+            length_m,
+            youngs_modulus_pa: modulus,
+            density_kg_m3: density,
+            width_m: h,
+            thickness_m: h,
+        });
         let shear = [0.85 * modulus / 2.6 * h * h, density * h.powi(4) / 12.0];
         let slender = BeamSystem::from(Beam { segments: vec![segment], ends: [End::Pinned; 2] });
         let sections = ShearSection { shear_rigidity_n: shear[0], rotary_inertia_kg_m: shear[1] };

@@ -34,7 +34,14 @@ struct LoopRow {
 fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     study.section("Hysteresis loops under a prescribed motion (Fig. 3.2)");
     let p = &case.parameters.prescribed_loop;
-    let law = Hysteretic::new(p.stiffness_n_m1_5.unwrap_or(1.0), p.theta_m, p.beta, p.k_bar, p.epsilon_m)?;
+    let law = Hysteretic {
+        stiffness_n_m1_5: p.stiffness_n_m1_5.unwrap_or(1.0),
+        theta_m: p.theta_m,
+        beta: p.beta,
+        k_bar: p.k_bar,
+        epsilon_m: p.epsilon_m,
+    }
+    .validated()?;
     let motion = |t: f64| {
         let (slow, fast) = (2.0 * PI * t, 8.0 * PI * t);
         (slow.sin() + 0.5 * fast.sin(), 2.0 * PI * (slow.cos() + 2.0 * fast.cos()))

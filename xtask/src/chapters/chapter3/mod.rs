@@ -138,7 +138,15 @@ impl Case {
     fn hysteretic(&self) -> Result<Law, Failure> {
         let h = &self.parameters.hysteretic;
         let stiffness = self.ball.stiffness_n_m1_5 / (1.0 + h.theta_m + h.beta);
-        Ok(Hysteretic::new(stiffness, h.theta_m, h.beta, h.k_bar, h.epsilon_m)?.into())
+        Ok(Hysteretic {
+            stiffness_n_m1_5: stiffness,
+            theta_m: h.theta_m,
+            beta: h.beta,
+            k_bar: h.k_bar,
+            epsilon_m: h.epsilon_m,
+        }
+        .validated()?
+        .into())
     }
 
     /// The location that is not a simple fraction of the length.
