@@ -6,6 +6,7 @@
 
 use crate::definition::{Beam, End};
 use crate::location::require_on;
+use crate::point_mode::{PointMode, point_modes};
 use faer::linalg::solvers::{Llt, SelfAdjointEigen};
 use faer::{Mat, Side};
 use invalid_input::InvalidInput;
@@ -190,6 +191,14 @@ impl ModelModes {
     /// [`InvalidInput`] for a location off the beam.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         (0..self.nodal.len()).map(|k| self.shape(k, x_m)).collect()
+    }
+
+    /// All modes as a force at `x_m` meets them.
+    ///
+    /// # Errors
+    /// As for [`shapes_at`](Self::shapes_at).
+    pub fn seen_from(&self, x_m: f64) -> Result<Vec<PointMode>, InvalidInput> {
+        Ok(point_modes(&self.omega_rad_s, self.shapes_at(x_m)?))
     }
 }
 

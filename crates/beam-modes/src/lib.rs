@@ -91,6 +91,7 @@ mod node;
 mod piece;
 mod plane;
 mod plate;
+mod point_mode;
 mod quadrature;
 mod remainder;
 mod rigid;
@@ -110,9 +111,9 @@ pub use definition::{Attachment, Beam, BeamSystem, End, RectangularSegment, Segm
 pub use invalid_input::InvalidInput;
 pub use modes::Modes;
 pub use plate::{Edge, Plate, PlateModes, PlateTheory};
+pub use point_mode::PointMode;
 pub use remainder::{
-    MOST_REMAINDER_MODES, PointMode, PointsMode, enough_for_remainder, remainder_at_points, remainder_from_trend,
-    remainder_modes,
+    MOST_REMAINDER_MODES, PointsMode, enough_for_remainder, remainder_at_points, remainder_from_trend, remainder_modes,
 };
 pub use rod::{Rod, RodSegment};
 pub use string::{TautString, TautStringModes};

@@ -2,6 +2,7 @@
 
 use crate::location::require_on;
 use crate::piece::Piece;
+use crate::point_mode::{PointMode, point_modes};
 use crate::span::{RESOLVABLE, Span, Units, locate};
 use invalid_input::InvalidInput;
 
@@ -129,6 +130,14 @@ impl Modes {
         let (span, x) = self.place(x_m)?;
         let unit = self.unit(0);
         Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].displacement(x)).collect())
+    }
+
+    /// All modes as a force at `x_m` meets them.
+    ///
+    /// # Errors
+    /// As for [`shapes_at`](Self::shapes_at).
+    pub fn seen_from(&self, x_m: f64) -> Result<Vec<PointMode>, InvalidInput> {
+        Ok(point_modes(&self.omega_rad_s, self.shapes_at(x_m)?))
     }
 
     /// Participation `int m phi_k dx` of every mode in a uniform acceleration, kg^(1/2): the modal force of the weight

@@ -2,6 +2,7 @@
 
 use crate::location::require_on;
 use crate::modes::require_count;
+use crate::point_mode::{PointMode, point_modes};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
@@ -135,6 +136,14 @@ impl TautStringModes {
         let share = require_on("x_m", x_m, self.string.length_m)? / self.string.length_m;
         let size = (2.0 / (self.string.mass_per_length_kg_m * self.string.length_m)).sqrt();
         Ok((1..=self.omega_rad_s.len()).map(|n| size * sine_of(n, share)).collect())
+    }
+
+    /// All modes as a force at `x_m` meets them.
+    ///
+    /// # Errors
+    /// As for [`shapes_at`](Self::shapes_at).
+    pub fn seen_from(&self, x_m: f64) -> Result<Vec<PointMode>, InvalidInput> {
+        Ok(point_modes(&self.omega_rad_s, self.shapes_at(x_m)?))
     }
 
     /// Participation `int m phi dx` of every mode in a uniform acceleration, kg^(1/2), as that of a beam: `sqrt(8 m L)/(n

@@ -130,23 +130,18 @@ impl DroppedRod {
             beam.modes(2 + enough_for_remainder(self.bending_modes))?,
             rod.modes(1 + enough_for_remainder(self.axial_modes))?,
         ];
-        let (mut tail, mut rest_m_n) = (Vec::new(), 0.0);
+        let (mut elastic, mut tail, mut rest_m_n) = (Vec::new(), Vec::new(), 0.0);
         for (((kept, rigid, direction), whole), family) in families.into_iter().zip(whole).zip(&found) {
             rest_m_n += whole * direction * direction;
-            let shapes = family.shapes_at(0.0)?;
-            for (k, (omega, shape)) in family.omega_rad_s().iter().zip(shapes).skip(rigid).enumerate() {
-                let (omega_rad_s, shape) = (*omega, shape * direction);
-                rest_m_n -= (shape / omega_rad_s).powi(2);
-                if k < kept {
-                    modes.push(Mode { omega_rad_s, damping_ratio: self.damping_ratio, shape });
-                } else {
-                    tail.push(PointMode { omega_rad_s, shape });
-                }
+            for (k, mode) in family.seen_from(0.0)?.into_iter().skip(rigid).enumerate() {
+                let mode = PointMode { shape: mode.shape * direction, ..mode };
+                rest_m_n -= (mode.shape / mode.omega_rad_s).powi(2);
+                (if k < kept { &mut elastic } else { &mut tail }).push(mode);
             }
         }
         let remainder = remainder_modes(&tail, rest_m_n.max(0.0), MOST_REMAINDER_MODES)?;
-        let damping_ratio = self.damping_ratio;
-        modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
+        let remainder_count = remainder.len();
+        modes.extend(Structure::from_modes(elastic.into_iter().chain(remainder), self.damping_ratio).modes);
         let mut start = Start::at_rest(modes.len());
         start.rate[0] = speed_m_s * root;
         let end = Body {
@@ -157,7 +152,7 @@ impl DroppedRod {
         let law = Hertz::from_bodies(&end, &Body::rigid(f64::INFINITY))?;
         Ok(Drop {
             structure: Structure { modes },
-            remainder_modes: remainder.len(),
+            remainder_modes: remainder_count,
             surface: Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 },
             start,
             law,

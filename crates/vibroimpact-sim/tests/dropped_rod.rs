@@ -1,10 +1,10 @@
 //! Dropped rods against counts, masses and wave solutions that are known exactly.
 
-use beam_modes::{PointMode, Rod, RodEnd, RodSegment, remainder_modes};
+use beam_modes::{Rod, RodEnd, RodSegment, remainder_modes};
 use contact_models::{Hertz, LinearSpring};
 use std::f64::consts::{FRAC_PI_2, PI};
 use vibroimpact_sim::dropped_rod::DroppedRod;
-use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
 fn rod(length_m: f64, inclination_rad: f64) -> DroppedRod {
     DroppedRod {
@@ -91,23 +91,18 @@ fn the_sdnl111_benchmark_is_met() {
         let rod = Rod { segments: vec![segment], ends };
         let found = rod.modes(2 * modes_each).unwrap();
         rest += rod.static_compliance(0.0).unwrap();
-        for (k, (omega, shape)) in found.omega_rad_s().iter().zip(found.shapes_at(0.0).unwrap()).enumerate() {
-            if *omega > 0.0 {
-                rest -= (shape / omega).powi(2);
+        for (k, mode) in found.seen_from(0.0).unwrap().into_iter().enumerate() {
+            if mode.omega_rad_s > 0.0 {
+                rest -= (mode.shape / mode.omega_rad_s).powi(2);
             }
-            if k < modes_each {
-                modes.push(Mode { omega_rad_s: *omega, damping_ratio: 0.0, shape });
-            } else {
-                tail.push(PointMode { omega_rad_s: *omega, shape });
-            }
+            (if k < modes_each { &mut modes } else { &mut tail }).push(mode);
         }
     }
-    let remainder = remainder_modes(&tail, rest.max(0.0), 4).unwrap();
-    modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: 0.0, shape: m.shape }));
+    modes.extend(remainder_modes(&tail, rest.max(0.0), 4).unwrap());
     let mut start = Start::at_rest(modes.len());
     start.rate[0] = 1.0 / modes[0].shape;
     let first_shapes: Vec<f64> = modes[..modes_each].iter().map(|mode| mode.shape).collect();
-    let structure = Structure { modes };
+    let structure = Structure::from_modes(modes, 0.0);
     let none = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let law = LinearSpring::new(1e12).unwrap();
     let settings = Settings { tolerance: 1e-6, ..Settings::default() };

@@ -5,7 +5,7 @@ use beam_modes::{Beam, BeamSystem, End, PointMode, RectangularSegment, Segment, 
 use common::{GOLDEN, pinned, settings, solve};
 use contact_models::{Body, Hertz, Law};
 use std::f64::consts::PI;
-use vibroimpact_sim::modal::{Mode, Solution, Solver, Striker, Structure};
+use vibroimpact_sim::modal::{Solution, Solver, Striker, Structure};
 
 const DAMPING: f64 = 0.02;
 
@@ -21,9 +21,9 @@ fn with_remainder(n: usize, count: usize) -> Structure {
     let rigidity = 2e11 * 0.011323f64.powi(4) / 12.0;
     let whole = (GOLDEN * (1.0 - GOLDEN)).powi(2) / (3.0 * rigidity);
     let rest = whole - all.modes.iter().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum::<f64>();
+    let remainder = remainder_modes(&tail, rest.max(0.0), count).unwrap();
     let mut structure = pinned(n, DAMPING, GOLDEN);
-    let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: DAMPING, shape: m.shape };
-    structure.modes.extend(remainder_modes(&tail, rest.max(0.0), count).unwrap().into_iter().map(damped));
+    structure.modes.extend(Structure::from_modes(remainder, DAMPING).modes);
     structure
 }
 
@@ -65,12 +65,8 @@ fn square(segments: &[(f64, f64)], shear_coefficient: f64, ends: [End; 2], x: f6
         shear: Some(segments.iter().map(section).collect()),
         ..BeamSystem::from(Beam { segments: segments.iter().map(segment).collect(), ends })
     };
-    let kept = beam.modes(n).unwrap();
-    let shapes = kept.shapes_at(x).unwrap();
-    let known = kept.omega_rad_s().iter().zip(shapes).map(|(&omega_rad_s, shape)| PointMode { omega_rad_s, shape });
-    let all = known.chain(beam.remainder(x, n, 4).unwrap());
-    let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: DAMPING, shape: m.shape };
-    Structure { modes: all.map(damped).collect() }
+    let kept = beam.modes(n).unwrap().seen_from(x).unwrap();
+    Structure::from_modes(kept.into_iter().chain(beam.remainder(x, n, 4).unwrap()), DAMPING)
 }
 
 /// The beam of chapter 3 with Cowper's coefficient.

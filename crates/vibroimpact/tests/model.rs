@@ -9,7 +9,7 @@ use vibroimpact::beam_modes::{Beam, End, Segment};
 use vibroimpact::contact_models::Hertz;
 use vibroimpact::model::{Answer, Kept, Model, Modes, Reflection, VALIDATED, reflection_bound};
 use vibroimpact::vibroimpact_sim::infinite::{self, BeamSection};
-use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
+use vibroimpact::vibroimpact_sim::modal::{Settings, Solution, Solver, Striker, Structure};
 
 /// The pinned beam of chapter 3 with its ball; the number of modes left to the program.
 fn chapter3() -> Value {
@@ -302,20 +302,12 @@ fn finite_beam(ends: [End; 2], length: f64, place: f64, stiffness: f64, damping_
         segments: vec![Segment { length_m: length, flexural_rigidity_n_m2: 1.0, mass_per_length_kg_m: 1.0 }],
         ends,
     };
-    let modes = beam.modes(count).unwrap();
-    let shapes = modes.shapes_at(place).unwrap();
-    let modes: Vec<Mode> = modes
-        .omega_rad_s()
-        .iter()
-        .zip(shapes)
-        .map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape })
-        .collect();
+    let mut modes = beam.modes(count).unwrap().seen_from(place).unwrap();
     // in the middle, every second mode does not move
-    let mut modes: Vec<Mode> = modes.into_iter().filter(|mode| mode.shape.abs() > 1e-9).collect();
-    let remainder = beam.remainder(place, count, 2).unwrap().into_iter();
-    modes.extend(remainder.map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
+    modes.retain(|mode| mode.shape.abs() > 1e-9);
+    modes.extend(beam.remainder(place, count, 2).unwrap());
     let settings = Settings { tolerance: 1e-9, estimate_uncertainty: false, max_sub_impacts: 4, ..Settings::default() };
-    Solver::new(&Structure { modes })
+    Solver::new(&Structure::from_modes(modes, damping_ratio))
         .unwrap()
         .solve(&Striker { mass_kg: 1.0, speed_m_s: 1.0 }, &Hertz::new(stiffness).unwrap(), None, &settings)
         .unwrap()

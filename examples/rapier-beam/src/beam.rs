@@ -63,15 +63,9 @@ impl Bar {
 
     /// The bar as the solver sees it from a location.
     pub fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
-        let shapes = self.modes.shapes_at(x_m)?;
-        let damping_ratio = self.damping_ratio;
-        let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape };
-        let mut modes: Vec<Mode> = self.modes.omega_rad_s().iter().zip(shapes).map(mode).collect();
         // two remainder modes for all others
-        for m in self.beam.remainder(x_m, MODES, 2)? {
-            modes.push(Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape });
-        }
-        Ok(Structure { modes })
+        let modes = self.modes.seen_from(x_m)?.into_iter().chain(self.beam.remainder(x_m, MODES, 2)?);
+        Ok(Structure::from_modes(modes, self.damping_ratio))
     }
 
     /// Lets the ball fall from a height and resolves every contact of its first bounces. The bar rings on between

@@ -4,7 +4,7 @@ use super::Failure;
 use super::material::Material;
 use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
-use vibroimpact_sim::modal::{Mode, Structure};
+use vibroimpact_sim::modal::Structure;
 
 /// Number of remainder modes that represent the truncated modes. For an Euler-Bernoulli beam it is the program's default, for a
 /// Timoshenko beam the largest allowed number.
@@ -94,17 +94,15 @@ impl Beam {
         damping_ratio: f64,
         residual: bool,
     ) -> Result<Structure, Failure> {
-        let omega =
-            self.omega_rad_s().get(..count).ok_or_else(|| format!("{count} modes asked for, fewer computed"))?;
-        let mut modes = Vec::with_capacity(count);
-        for (k, &omega_rad_s) in omega.iter().enumerate() {
-            modes.push(Mode { omega_rad_s, damping_ratio, shape: self.modes.shape(k, location_m)? });
+        let mut modes = self.modes.seen_from(location_m)?;
+        if modes.len() < count {
+            return Err(format!("{count} modes asked for, fewer computed").into());
         }
+        modes.truncate(count);
         if residual {
             let remainder_modes = if self.model.shear.is_some() { MOST_REMAINDER_MODES } else { REMAINDER_MODES };
-            let remainder = self.model.remainder(location_m, count, remainder_modes)?;
-            modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape }));
+            modes.extend(self.model.remainder(location_m, count, remainder_modes)?);
         }
-        Ok(Structure { modes })
+        Ok(Structure::from_modes(modes, damping_ratio))
     }
 }

@@ -13,10 +13,10 @@ pub use reference::{Reference, reference};
 pub use system::{Equations, Phase};
 
 use crate::measure::{Effort, Found, Row};
-use beam_modes::{Beam, End, PointMode, RectangularSegment, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Body, Hertz, Hysteretic, Law, Viscous};
 use std::f64::consts::PI;
-use vibroimpact_sim::modal::{Mode, Striker, Structure};
+use vibroimpact_sim::modal::{Striker, Structure};
 
 /// One impact of the library.
 #[derive(Debug, Clone)]
@@ -101,19 +101,15 @@ fn steel(ends: [End; 2], thickness: &[f64]) -> Beam {
 
 /// The first modes of a beam, seen from a place.
 fn modes(beam: &Beam, modes: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
-    let found = beam.modes(modes).map_err(|e| e.to_string())?;
-    let shapes = found.shapes_at(x_m).map_err(|e| e.to_string())?;
-    let modes = found.omega_rad_s().iter().zip(shapes);
-    let modes = modes.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Ok(Structure { modes })
+    let seen = beam.modes(modes).and_then(|found| found.seen_from(x_m)).map_err(|e| e.to_string())?;
+    Ok(Structure::from_modes(seen, damping_ratio))
 }
 
 /// The same with two remainder modes for all others, damped alike, as the program integrates a beam by default.
 fn modes_and_remainder(beam: &Beam, kept: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
     let mut structure = modes(beam, kept, damping_ratio, x_m)?;
     let remainder = beam.remainder(x_m, kept, 2).map_err(|e| e.to_string())?;
-    let damped = |mode: PointMode| Mode { omega_rad_s: mode.omega_rad_s, damping_ratio, shape: mode.shape };
-    structure.modes.extend(remainder.into_iter().map(damped));
+    structure.modes.extend(Structure::from_modes(remainder, damping_ratio).modes);
     Ok(structure)
 }
 

@@ -2,6 +2,7 @@
 
 use super::definition::Plate;
 use super::line::Line;
+use crate::point_mode::{PointMode, point_modes};
 use crate::string::{sine_mean, sine_of};
 use invalid_input::InvalidInput;
 
@@ -104,6 +105,14 @@ impl PlateModes {
                 shapes.iter().map(|product| product.sum(&lines, &here)).collect()
             }
         })
+    }
+
+    /// All modes as a force at a location meets them.
+    ///
+    /// # Errors
+    /// As for [`shapes_at`](Self::shapes_at).
+    pub fn seen_from(&self, x_m: f64, y_m: f64) -> Result<Vec<PointMode>, InvalidInput> {
+        Ok(point_modes(&self.omega_rad_s, self.shapes_at(x_m, y_m)?))
     }
 
     /// Participation `int rho h phi dA` of every mode in a uniform acceleration across the plate, kg^(1/2).

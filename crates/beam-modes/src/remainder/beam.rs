@@ -1,8 +1,9 @@
 //! Remainder modes of a beam whose modes are known as far as one likes.
 
-use super::{PointMode, PointsMode, remainder_at_points, remainder_modes};
+use super::{PointsMode, remainder_at_points, remainder_modes};
 use crate::definition::{Beam, BeamSystem};
 use crate::modes::Modes;
+use crate::point_mode::PointMode;
 use invalid_input::InvalidInput;
 
 /// How many modes to compute so that what lies beyond them hardly tells in the remainder of the first `kept`: twice as
@@ -91,10 +92,8 @@ impl Modes {
         count: usize,
         static_compliance_m_n: f64,
     ) -> Result<Vec<PointMode>, InvalidInput> {
-        let shapes = self.shapes_at(x_m)?;
-        let each = self.omega_rad_s().iter().zip(&shapes);
-        let elastic: Vec<PointMode> =
-            each.map(|(&omega_rad_s, &shape)| PointMode { omega_rad_s, shape }).skip(self.rigid_body_count()).collect();
+        let all = self.seen_from(x_m)?;
+        let elastic = &all[self.rigid_body_count()..];
         let tail = elastic.get(kept.saturating_sub(self.rigid_body_count())..).unwrap_or_default();
         if tail.is_empty() {
             return Err(InvalidInput::new("kept", kept, "fewer than the modes that were computed"));

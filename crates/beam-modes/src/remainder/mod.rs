@@ -25,19 +25,9 @@ pub use beam::enough_for_remainder;
 pub use points::{PointsMode, remainder_at_points};
 pub use trend::remainder_from_trend;
 
+use crate::point_mode::PointMode;
 use invalid_input::InvalidInput;
 use quadrature::{Atom, gauss_quadrature, power_law_atoms};
-
-/// A mode as seen from one point of the structure.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct PointMode {
-    /// Natural frequency, rad/s.
-    pub omega_rad_s: f64,
-    /// Mass-normalised shape at the point, kg^(-1/2).
-    pub shape: f64,
-}
 
 /// At most as many remainder modes as this: more gain nothing against the rounding of the moments.
 pub const MOST_REMAINDER_MODES: usize = 4;

@@ -1,7 +1,8 @@
 //! Remainder modes where nothing but the residual compliance is known of the truncated modes.
 
 use super::quadrature::power_law_atoms;
-use super::{PointMode, from_atoms, require_compliance, require_count, require_mode};
+use super::{from_atoms, require_compliance, require_count, require_mode};
+use crate::point_mode::PointMode;
 use invalid_input::InvalidInput;
 
 /// How fast frequencies may grow with their number: from a little above what an infinite compliance needs to bending.

@@ -1,6 +1,7 @@
 //! The problem: a structure with its modes, a striker, and the initial motion.
 
 use crate::assembly::BodyMode;
+use beam_modes::PointMode;
 use invalid_input::InvalidInput;
 
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
@@ -40,7 +41,7 @@ impl Mode {
 }
 
 /// A linear structure, as seen from the contact. Truncated modes are best represented by remainder modes
-/// (`beam_modes::remainder_modes`), which are modes like any other.
+/// ([`beam_modes::remainder_modes`]), which are modes like any other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Structure {
     /// The modes, in any order. An empty list is a rigid, immovable structure.
@@ -48,6 +49,25 @@ pub struct Structure {
 }
 
 impl Structure {
+    /// The structure of these modes, all with one damping ratio: natural modes and, for the truncated ones, remainder modes.
+    ///
+    /// ```
+    /// use beam_modes::{Beam, End, Segment};
+    /// use vibroimpact_sim::modal::Structure;
+    ///
+    /// let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 275.0, mass_per_length_kg_m: 1.0 };
+    /// let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
+    /// let kept = beam.modes(40)?.seen_from(0.4)?;
+    /// let remainder = beam.remainder(0.4, 40, 2)?;
+    /// let structure = Structure::from_modes(kept.into_iter().chain(remainder), 0.02);
+    /// assert!(structure.modes.len() == 42 && structure.modes[41].damping_ratio == 0.02);
+    /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
+    /// ```
+    pub fn from_modes(modes: impl IntoIterator<Item = PointMode>, damping_ratio: f64) -> Structure {
+        let damped = |PointMode { omega_rad_s, shape }| Mode { omega_rad_s, damping_ratio, shape };
+        Structure { modes: modes.into_iter().map(damped).collect() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), InvalidInput> {
         for (k, mode) in self.modes.iter().enumerate() {
             let fault = |field, value: f64, allowed| Err(InvalidInput::new(("modes", k, field), value, allowed));

@@ -3,7 +3,7 @@
 
 pub mod random;
 
-use beam_modes::{Beam, End, PointMode, RectangularSegment, Segment};
+use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{After, Branch, ContactLaw, Hertz, Law, Memory, boundaries};
 use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
@@ -53,19 +53,14 @@ pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure 
         })],
         ends: [End::Pinned; 2],
     };
-    let damped = |m: PointMode| Mode { omega_rad_s: m.omega_rad_s, damping_ratio, shape: m.shape };
     let mut structure = pinned(n, damping_ratio, b);
-    structure.modes.extend(beam.remainder(b, n, 2).unwrap().into_iter().map(damped));
+    structure.modes.extend(Structure::from_modes(beam.remainder(b, n, 2).unwrap(), damping_ratio).modes);
     structure
 }
 
 /// Modes of a beam at a place, all with one damping ratio.
 pub fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Structure {
-    let modes = beam.modes(count).unwrap();
-    let shapes = modes.shapes_at(x_m).unwrap();
-    let each = modes.omega_rad_s().iter().zip(&shapes);
-    let modes = each.map(|(&omega_rad_s, &shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-    Structure { modes }
+    Structure::from_modes(beam.modes(count).unwrap().seen_from(x_m).unwrap(), damping_ratio)
 }
 
 /// Hertz contact of the thesis's 3 cm ball.

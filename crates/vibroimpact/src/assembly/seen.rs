@@ -2,7 +2,7 @@
 
 use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{self, Mode};
 
 use super::body::{Body, Elastic, Elastics, Mass};
 use super::load::{LARGEST, require_finite};
@@ -114,9 +114,8 @@ impl<'a> Seen<'a> {
                 let location_m =
                     place.location_m.ok_or_else(|| InvalidInput::missing("location_m", needed))?.along()?;
                 let Some(modes) = &self.rod else { return Ok(Vec::new()) };
-                let shapes = modes.shapes_at(location_m).map_err(|fault| fault.under("location_m"))?;
-                let mode = |(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio: rod.damping_ratio, shape };
-                Ok(modes.omega_rad_s().iter().zip(shapes).map(mode).collect())
+                let seen = modes.seen_from(location_m).map_err(|fault| fault.under("location_m"))?;
+                Ok(modal::Structure::from_modes(seen, rod.damping_ratio).modes)
             }
             Elastics::Structure(structure) => {
                 let needs_count =

@@ -3,9 +3,9 @@
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{Mode, Structure};
 
-use super::damping::{require_damping, shapes_as_modes};
+use super::damping::require_damping;
 
 /// A frequency that more polynomials would change by a smaller share than this has converged.
 pub const CONVERGED_FREQUENCY: f64 = 1e-5;
@@ -142,8 +142,8 @@ impl Plate {
         modes: &beam_modes::PlateModes,
         [x_m, y_m]: [f64; 2],
     ) -> Result<Vec<Mode>, InvalidInput> {
-        let shapes = modes.shapes_at(x_m, y_m).map_err(in_structure)?;
-        Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
+        let seen = modes.seen_from(x_m, y_m).map_err(in_structure)?;
+        Ok(Structure::from_modes(seen, self.damping_ratio).modes)
     }
 
     /// Static compliance at a location, and by how much it may be off (m/N).

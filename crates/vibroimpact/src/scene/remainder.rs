@@ -5,7 +5,7 @@
 
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend, remainder_modes};
 use invalid_input::InvalidInput;
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{self, Mode};
 
 use super::beam_theory::BeamTheory;
 use super::place::MOST_MODES;
@@ -80,8 +80,7 @@ impl Structure {
         })?;
         let last = known[..kept.min(known.len())].last().or(known.first());
         let damping_ratio = last.map_or(0.0, |mode| mode.damping_ratio);
-        let mode = |mode: PointMode| Mode { omega_rad_s: mode.omega_rad_s, damping_ratio, shape: mode.shape };
-        Ok(remainder.into_iter().map(mode).collect())
+        Ok(modal::Structure::from_modes(remainder, damping_ratio).modes)
     }
 }
 

@@ -3,9 +3,9 @@
 use invalid_input::InvalidInput;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{Mode, Structure};
 
-use super::damping::{require_damping, shapes_as_modes};
+use super::damping::require_damping;
 
 /// A uniform string between two pinned ends, [`beam_modes::TautString`].
 ///
@@ -45,8 +45,8 @@ impl TautString {
     pub(super) fn modes(&self, location_m: f64, count: usize) -> Result<Vec<Mode>, InvalidInput> {
         require_damping(self.damping_ratio)?;
         let modes = self.to_taut_string().modes(count).map_err(in_structure)?;
-        let shapes = modes.shapes_at(location_m).map_err(in_structure)?;
-        Ok(shapes_as_modes(modes.omega_rad_s(), shapes, self.damping_ratio))
+        let seen = modes.seen_from(location_m).map_err(in_structure)?;
+        Ok(Structure::from_modes(seen, self.damping_ratio).modes)
     }
 
     /// Participation of the first `count` modes in a uniform acceleration (kg^1/2).

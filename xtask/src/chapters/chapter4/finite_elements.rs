@@ -8,7 +8,7 @@ use beam_modes::fem::Model;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
-use vibroimpact_sim::modal::{Mode, Solver, Structure};
+use vibroimpact_sim::modal::{Solver, Structure};
 
 #[derive(Serialize)]
 struct BothRow {
@@ -36,11 +36,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let cases: Vec<_> = balls.iter().flat_map(|ball| nodes.iter().map(move |&node| (*ball, node))).collect();
     let all = study.sweep(&cases, 2, |&(ball, location_m)| {
         let setup = case.setup(beam, ball, location_m);
-        let shapes = discrete.shapes_at(location_m)?;
-        let damping_ratio = setup.damping_ratio;
-        let pairs = discrete.omega_rad_s().iter().zip(shapes);
-        let modes = pairs.map(|(&omega_rad_s, shape)| Mode { omega_rad_s, damping_ratio, shape }).collect();
-        let solver = Solver::new(&Structure { modes })?;
+        let solver = Solver::new(&Structure::from_modes(discrete.seen_from(location_m)?, setup.damping_ratio))?;
         Ok((setup.solve()?, setup.solve_with(&solver)?))
     })?;
     let rows: Vec<BothRow> = all

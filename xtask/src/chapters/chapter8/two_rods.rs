@@ -8,7 +8,7 @@ use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_modes};
 use contact_models::LinearSpring;
 use std::f64::consts::PI;
 use vibroimpact::report::significant;
-use vibroimpact_sim::modal::{Mode, Settings, Solver, Start, Striker, Structure};
+use vibroimpact_sim::modal::{Settings, Solver, Start, Striker, Structure};
 
 const AXIAL_MODES: usize = 200;
 /// Contact stiffness over that of the shorter rod, `E A / L`.
@@ -25,29 +25,24 @@ fn restitution(parameters: &Parameters, lengths_m: [f64; 2]) -> Result<f64, Fail
     let (mut tail, mut rest_m_n) = (Vec::new(), 0.0);
     for length_m in lengths_m {
         let mass_kg = density * area_m2 * length_m;
-        modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 1.0 / mass_kg.sqrt() });
+        modes.push(PointMode { omega_rad_s: 0.0, shape: 1.0 / mass_kg.sqrt() });
         // all axial modes together yield L / (3 E A) at the end
         rest_m_n += length_m / (3.0 * modulus * area_m2);
         for k in 1..=2 * AXIAL_MODES {
             let omega_rad_s = k as f64 * PI * speed_of_sound / length_m;
-            let shape = (2.0 / mass_kg).sqrt();
-            rest_m_n -= (shape / omega_rad_s).powi(2);
-            if k <= AXIAL_MODES {
-                modes.push(Mode { omega_rad_s, damping_ratio: 0.0, shape });
-            } else {
-                tail.push(PointMode { omega_rad_s, shape });
-            }
+            let mode = PointMode { omega_rad_s, shape: (2.0 / mass_kg).sqrt() };
+            rest_m_n -= (mode.shape / mode.omega_rad_s).powi(2);
+            (if k <= AXIAL_MODES { &mut modes } else { &mut tail }).push(mode);
         }
     }
-    let remainder = remainder_modes(&tail, rest_m_n.max(0.0), MOST_REMAINDER_MODES)?;
-    modes.extend(remainder.iter().map(|m| Mode { omega_rad_s: m.omega_rad_s, damping_ratio: 0.0, shape: m.shape }));
+    modes.extend(remainder_modes(&tail, rest_m_n.max(0.0), MOST_REMAINDER_MODES)?);
     let rigid = [0, 1 + AXIAL_MODES].map(|place| (place, modes[place].shape));
     let mut start = Start::at_rest(modes.len());
     start.rate[0] = parameters.our_choice.speed_m_s / rigid[0].1;
     let law = LinearSpring::new(HARD * modulus * area_m2 / lengths_m[0])?;
     let wall = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let settings = Settings { tolerance: 1e-7, estimate_uncertainty: false, ..Settings::default() };
-    let solution = Solver::new(&Structure { modes })?.solve(&wall, &law, Some(&start), &settings)?;
+    let solution = Solver::new(&Structure::from_modes(modes, 0.0))?.solve(&wall, &law, Some(&start), &settings)?;
     let closing: f64 = rigid.iter().map(|(place, shape)| solution.rate[*place] * shape).sum();
     Ok(-closing / parameters.our_choice.speed_m_s)
 }
