@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::fields::KINDS;
 use super::rod::Rod;
-use crate::scene::json::{also_known, found, quote, read};
+use crate::scene::json::{found, quote, read};
 use crate::scene::{InvalidInput, MovingMode, SceneError, Structure};
 
 /// A body; `"kind"` tells which.
@@ -178,8 +178,8 @@ impl Elastic {
         let Beside { modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 } =
             read(&Value::Object(beside))?;
         let structure = match kind {
-            "rod" => Elastics::Rod(Rod::from_value(&own)?),
-            _ => Elastics::Structure(Structure::from_value(&own).map_err(|fault| also_known(fault, &BESIDE))?),
+            "rod" => Elastics::Rod(Rod::from_value_beside(&own, &BESIDE)?),
+            _ => Elastics::Structure(Structure::from_value_beside(&own, &BESIDE)?),
         };
         let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use super::fields::{BETWEEN, FIELDS};
 use crate::scene::fields::look_up;
-use crate::scene::json::{also_known, quote, read};
+use crate::scene::json::{quote, read};
 use crate::scene::require_positive;
 use crate::scene::{self, InvalidInput, Location, Striker};
 
@@ -141,7 +141,7 @@ impl Contact {
                 }
                 _ => fault,
             })?;
-        let law = scene::Contact::from_value(&Value::Object(law)).map_err(|fault| also_known(fault, &BESIDE))?;
+        let law = scene::Contact::from_value_beside(&Value::Object(law), &BESIDE)?;
         let between = match between.as_array().map(Vec::as_slice) {
             Some([a, b]) => {
                 let side = |i: usize, side| Side::from_value(side).map_err(|f| f.at(i).within("between"));

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::scene::json::{objects, read};
+use crate::scene::json::{objects, read_beside};
 use crate::scene::require_positive;
 use crate::scene::sets::{one_of_sets, schema_of_sets};
 
@@ -78,8 +78,8 @@ const SECTIONS: [&[&str]; 3] = [
 ];
 
 impl Rod {
-    pub(super) fn from_value(value: &Value) -> Result<Rod, InvalidInput> {
-        read(value)
+    pub(super) fn from_value_beside(value: &Value, beside: &[&str]) -> Result<Rod, InvalidInput> {
+        read_beside(value, beside)
     }
 
     /// The rod as input of [`beam_modes`].

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Unexpected;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// The scene field `"model"`, and the model that an answer came from.
@@ -81,7 +82,10 @@ impl<'de> Deserialize<'de> for Modes {
         match Written::deserialize(deserializer) {
             Ok(Written::Count(count)) => Ok(Modes::Count(count)),
             Ok(Written::Word(word)) if word == "auto" => Ok(Modes::Auto),
-            _ => Err(de::Error::custom("invalid value, expected \"auto\", or a whole number from 0 to 10000")),
+            _ => {
+                let allowed = "\"auto\", or a whole number from 0 to 10000";
+                Err(de::Error::invalid_value(Unexpected::Other("another value"), &allowed))
+            }
         }
     }
 }

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::json::{found, read, unknown_field};
+use super::json::{found, read_beside, unknown_field};
 use super::materials::{HertzStiffness, Materials, in_contact};
 use super::sets::one_of_sets;
 use super::told::did_you_mean_one_of;
@@ -128,6 +128,11 @@ pub enum Contact {
 
 impl Contact {
     pub(crate) fn from_value(value: &Value) -> Result<Contact, InvalidInput> {
+        Contact::from_value_beside(value, &[])
+    }
+
+    /// As [`Contact::from_value`], beside other fields of the same object.
+    pub(crate) fn from_value_beside(value: &Value, beside: &[&str]) -> Result<Contact, InvalidInput> {
         let fault = |field: &str, value: Option<&Value>| {
             let name = if field.is_empty() { "contact" } else { field };
             let mut allowed = fields::allowed(name).unwrap_or("a number").to_owned();
@@ -145,7 +150,7 @@ impl Contact {
         if let Some((field, value)) = entries.iter().find(|(field, value)| *field != "law" && !value.is_number()) {
             return Err(fault(field, Some(value)));
         }
-        let contact: Contact = read(value)
+        let contact: Contact = read_beside(value, beside)
             .map_err(|fault_found| if fault_found.field.is_empty() { fault("law", law) } else { fault_found })?;
         // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
         let written = serde_json::to_value(contact).unwrap_or_default();
@@ -153,7 +158,7 @@ impl Contact {
             None => Ok(contact),
             Some((field, value)) => {
                 let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
-                Err(unknown_field(field.as_str().into(), Some(value), known))
+                Err(unknown_field(field.as_str().into(), Some(value), known.chain(beside.iter().copied())))
             }
         }
     }

@@ -14,6 +14,7 @@ use serde_path_to_error::Segment;
 
 use super::error::SceneError;
 use super::fields;
+use super::from_tree::{Fault, from_tree};
 use super::material::names_beside;
 use super::told::{did_you_mean, did_you_mean_one_of, shorten};
 pub(crate) use super::told::{number, quote};
@@ -163,35 +164,43 @@ pub(crate) fn named_objects<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 
 /// Reads a `T` from a tree that must be an object; faults carry the path within `value`.
 pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
+    read_beside(value, &[])
+}
+
+/// As [`read`], of an object whose fields are read in two parts: a field that is unknown is told of those of the other part,
+/// too.
+pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -> Result<T, InvalidInput> {
     // to follow the path costs as much again as to read, and only a fault needs it
     if let Ok(Object(inner)) = Object::deserialize(value) {
         return Ok(inner);
     }
-    serde_path_to_error::deserialize(value).map(|Object(inner)| inner).map_err(|fault| {
-        let told = fault.inner().to_string();
-        let path = fault.path();
-        if let Some(key) = between(&told, "missing field `", "`") {
-            let field = Path::from(key).within(render(path));
-            let allowed = fields::allowed_at(&field).unwrap_or("a value is required");
-            return InvalidInput::missing(field, allowed);
+    from_tree(value).map(|Object(inner)| inner).map_err(|fault| {
+        let path = fault.path().clone();
+        match fault.into_inner() {
+            Fault::Missing(name) => {
+                let field = Path::from(name).within(render(&path));
+                let allowed = fields::allowed_at(&field).unwrap_or("a value is required");
+                InvalidInput::missing(field, allowed)
+            }
+            Fault::Unknown { name, known } => {
+                // the path may or may not end in the unknown name
+                let holder = render(&path);
+                let field =
+                    if holder.last() == Some(&name) { holder } else { Path::from(name.as_str()).within(holder) };
+                let found = at(value, &path).map(|inner| inner.get(&name).unwrap_or(inner));
+                let beside = if field.steps().len() == 1 { beside } else { &[] };
+                unknown_field(field, found, known.iter().chain(beside).copied())
+            }
+            Fault::NotAllowed { allowed } => {
+                let field = render(&path);
+                let found = at(value, &path);
+                let mut allowed = fields::allowed_at(&field).map_or(allowed, str::to_owned);
+                if let Some(Value::String(word)) = found {
+                    allowed += &did_you_mean_one_of(word, &allowed);
+                }
+                InvalidInput::new(field, found.map_or_else(String::new, quote), allowed)
+            }
         }
-        if let Some(key) = between(&told, "unknown field `", "`") {
-            // the path may or may not end in the unknown key
-            let holder = render(path);
-            let field = if holder.last() == Some(key) { holder } else { Path::from(key).within(holder) };
-            let known = told.split_once("expected ").map_or("", |(_, known)| known).replace('`', "");
-            let known = known.strip_prefix("one of ").unwrap_or(&known).replace(" or ", ", ");
-            let found = at(value, path).map(|inner| inner.get(key).unwrap_or(inner));
-            return unknown_field(field, found, known.split(", "));
-        }
-        let field = render(path);
-        let expected = told.split_once("expected ").map_or(told.as_str(), |(_, expected)| expected);
-        let found = at(value, path);
-        let mut allowed = fields::allowed_at(&field).unwrap_or(expected).to_owned();
-        if let Some(Value::String(word)) = found {
-            allowed += &did_you_mean_one_of(word, &allowed);
-        }
-        InvalidInput::new(field, found.map_or_else(String::new, quote), allowed)
     })
 }
 
@@ -224,17 +233,6 @@ pub(crate) fn found(field: impl Into<Path>, value: Option<&Value>, allowed: impl
 /// How the fault of a name that its object does not have begins.
 pub(crate) const UNKNOWN_FIELD: &str = "unknown field; the fields here are ";
 
-/// The fault of an object whose fields are read in two parts: an unknown field is told of those of the other part, too.
-pub(crate) fn also_known(fault: InvalidInput, beside: &[&str]) -> InvalidInput {
-    let listed = fault.allowed.strip_prefix(UNKNOWN_FIELD).filter(|_| fault.field.steps().len() == 1);
-    let Some(listed) = listed.map(|listed| listed.split(';').next().unwrap_or_default().to_owned()) else {
-        return fault;
-    };
-    let InvalidInput { field, value, .. } = fault;
-    let known = listed.split(", ").chain(beside.iter().copied());
-    InvalidInput { value, ..unknown_field(field, None, known) }
-}
-
 /// Takes the entry `tag`, which names the kind of an object, out of the object; the rest is what the kind holds.
 pub(crate) fn split_tag<'k>(
     value: &Value,
@@ -251,10 +249,6 @@ pub(crate) fn split_tag<'k>(
     let named = rest.remove(tag);
     let kind = kinds.iter().find(|kind| named.as_ref().is_some_and(|named| named == *kind));
     kind.map(|kind| (*kind, rest)).ok_or_else(|| fault(tag.into(), named.as_ref()))
-}
-
-fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
-    text.split_once(before)?.1.split_once(after).map(|(inner, _)| inner)
 }
 
 /// The path without the part that serde could not name.

@@ -46,6 +46,7 @@ mod error;
 pub(crate) mod fields;
 mod files;
 mod fittings;
+mod from_tree;
 mod infinite;
 pub(crate) mod json;
 mod known;

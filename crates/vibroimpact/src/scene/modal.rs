@@ -10,7 +10,7 @@ use vibroimpact_sim::modal::{Mode, Solver, Structure};
 
 use super::error::require_positive;
 use super::fields;
-use super::json::{named_objects, number, read};
+use super::json::{named_objects, number, read_beside};
 use super::told::did_you_mean;
 
 /// A structure given by its modes, measured or from finite elements: frequencies and damping ratios once, and shapes
@@ -72,8 +72,8 @@ struct Seen<'a> {
 }
 
 impl Modal {
-    pub(super) fn from_value(value: &Value) -> Result<Modal, InvalidInput> {
-        let modal: Modal = read(value)?;
+    pub(super) fn from_value(value: &Value, beside: &[&str]) -> Result<Modal, InvalidInput> {
+        let modal: Modal = read_beside(value, beside)?;
         if modal.omega_rad_s.is_empty() {
             let allowed =
                 "a list of at least one frequency; an immovable surface is a striker with \"immovable\": true";

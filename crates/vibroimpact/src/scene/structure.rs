@@ -10,7 +10,7 @@ use super::beam::Beam;
 use super::beam_theory::BeamTheory;
 use super::dropped_rod::DroppedRod;
 use super::infinite::{InfiniteBeam, InfinitePlate};
-use super::json::{read, split_tag};
+use super::json::{read_beside, split_tag};
 use super::known::KnownModes;
 use super::modal::Modal;
 use super::modes_file::ModesFile;
@@ -69,17 +69,22 @@ impl Structure {
     }
 
     pub(crate) fn from_value(value: &Value) -> Result<Structure, InvalidInput> {
+        Structure::from_value_beside(value, &[])
+    }
+
+    /// As [`Structure::from_value`], beside other fields of the same object.
+    pub(crate) fn from_value_beside(value: &Value, beside: &[&str]) -> Result<Structure, InvalidInput> {
         let (kind, rest) = split_tag(value, "kind", &KINDS)?;
         let rest = Value::Object(rest);
         match kind {
-            "beam" => read(&rest).map(Structure::Beam),
-            "string" => read(&rest).map(Structure::TautString),
-            "plate" => read(&rest).map(Structure::Plate),
-            "infinite-beam" => read(&rest).map(Structure::InfiniteBeam),
-            "infinite-plate" => read(&rest).map(Structure::InfinitePlate),
-            "dropped-rod" => read(&rest).map(Structure::DroppedRod),
-            "modes-file" => read(&rest).map(Structure::ModesFile),
-            _ => Modal::from_value(&rest).map(Structure::Modal),
+            "beam" => read_beside(&rest, beside).map(Structure::Beam),
+            "string" => read_beside(&rest, beside).map(Structure::TautString),
+            "plate" => read_beside(&rest, beside).map(Structure::Plate),
+            "infinite-beam" => read_beside(&rest, beside).map(Structure::InfiniteBeam),
+            "infinite-plate" => read_beside(&rest, beside).map(Structure::InfinitePlate),
+            "dropped-rod" => read_beside(&rest, beside).map(Structure::DroppedRod),
+            "modes-file" => read_beside(&rest, beside).map(Structure::ModesFile),
+            _ => Modal::from_value(&rest, beside).map(Structure::Modal),
         }
     }
 

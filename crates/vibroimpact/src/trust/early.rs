@@ -20,7 +20,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use beam_modes::{RectangularSegment, Segment, ShearSection};
+use beam_modes::{Segment, ShearSection};
 use vibroimpact_sim::infinite::Solution;
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Structure};
 
@@ -121,6 +121,7 @@ pub(super) fn response(scene: &Scene, solution: &Solution, time_unit_s: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use beam_modes::RectangularSegment;
     use vibroimpact_sim::infinite;
 
     fn scene(radius_m: f64) -> Scene {
