@@ -6,21 +6,15 @@
 //! resolved. A second table follows the bar's motion from bounce to bounce.
 
 mod beam;
+mod drops;
 mod engine;
 mod ringing;
 
 use beam::{Ball, Bar, LENGTH_M, Law};
+use drops::{BALLS, COMPARED, DROP_M, fitted};
 use std::error::Error;
 use std::fmt::Write as _;
 
-/// A light ball, one in between, and a heavy one.
-const BALLS: [Ball; 3] = [Ball { radius_m: 0.008 }, Ball { radius_m: 0.014 }, Ball { radius_m: 0.02 }];
-/// Places that the law is fitted at.
-const FITTED: usize = 30;
-/// Places from a support to the middle at which it is compared; the fit has seen none of them.
-const COMPARED: usize = 8;
-/// Height of fall (m): 3.1 m/s.
-const DROP_M: f64 = 0.5;
 /// In a row.
 const BOUNCES: usize = 4;
 
@@ -71,12 +65,6 @@ fn tables() -> Result<String, Box<dyn Error>> {
         )?;
     }
     Ok(out)
-}
-
-/// The law, fitted to all balls.
-fn fitted(bar: &Bar) -> Result<Law, Box<dyn Error>> {
-    let locations: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();
-    bar.law(&BALLS, &locations, DROP_M)
 }
 
 /// What becomes of a ball dropped at a location.

@@ -2,7 +2,7 @@
 //! bounce to bounce.
 
 use crate::beam::{Ball, Bar, Bounce, LAW_MODES, LENGTH_M, Law, ring};
-use crate::{BALLS, COMPARED, DROP_M, fitted};
+use crate::drops::{BALLS, COMPARED, DROP_M, fitted};
 use emoc::{Coefficients, Impact, MovingImpact, Site};
 use std::error::Error;
 use std::f64::consts::PI;

@@ -3,7 +3,7 @@
 //! those of balls that touch are.
 
 use super::phases::{End, Phase, follow};
-use super::{Answer, TOO_SLOW, laws, sweep};
+use super::sweep::{Answer, TOO_SLOW, laws, sweep};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use contact_models::Law;

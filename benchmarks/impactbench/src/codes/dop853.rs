@@ -2,7 +2,7 @@
 //! equations phase by phase and finds the events itself.
 
 use super::phases::{End, Phase, follow};
-use super::{Answer, TOO_SLOW, laws, sweep};
+use super::sweep::{Answer, TOO_SLOW, laws, sweep};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use contact_models::Law;

@@ -1,6 +1,6 @@
 //! Models that do not resolve the motion in time: the rigid structure, and EMOC with its default parameters.
 
-use super::{laws, sweep};
+use super::sweep::{laws, sweep};
 use crate::outcome::Outcome;
 use crate::problem::{Family, Problem};
 use emoc::{Impact, Parameters, Site};

@@ -1,6 +1,6 @@
 //! The solvers of this workspace: the assembly, the single impact on a structure, and the infinite beam.
 
-use super::{Answer, laws, sweep};
+use super::sweep::{Answer, laws, sweep};
 use crate::outcome::Outcome;
 use crate::problem::{Body, Contact, Problem};
 use crate::system::{answers, assembly as assembly_of};

@@ -1,7 +1,7 @@
 //! Semi-implicit Euler with a fixed step, as engines step, with the law of the problem as a penalty. It is not a product: it
 //! shows what a page of code can do that knows the law and does not locate its events.
 
-use super::{Answer, TOO_SLOW, laws, sweep};
+use super::sweep::{Answer, TOO_SLOW, laws, sweep};
 use crate::outcome::Outcome;
 use crate::problem::Problem;
 use crate::system::{System, answers, start};

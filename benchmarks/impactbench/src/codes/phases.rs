@@ -1,7 +1,7 @@
 //! A problem as general solvers take it: phase by phase. In a phase no contact changes, so that the equations are smooth; it
 //! ends where an event function falls below zero.
 
-use super::Answer;
+use super::sweep::Answer;
 use crate::problem::Problem;
 use crate::system::{State, System, answers, start};
 use contact_models::Law;

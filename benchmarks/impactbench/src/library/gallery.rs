@@ -1,6 +1,6 @@
 //! Problems that are scenes of the gallery in `datasets`.
 
-use super::{needs, on_structure, quantity};
+use super::pieces::{needs, on_structure, quantity};
 use crate::codes::own_assembly;
 use crate::problem::{Body, Contact, Family, LawOfContact, Load, Problem, Quantity, What};
 use contact_models::Law;

@@ -6,16 +6,16 @@
 //! which propagates modes exactly and collocates forces. For other laws it is compared with DOP853.
 
 mod gallery;
+mod pieces;
 
 use crate::codes::{dop853, own_assembly};
 use crate::problem::{Body, Contact, Family, LawOfContact, Problem, Quantity, What};
 use contact_models::Law;
+use pieces::{BALL_KG, at_ground, needs, on_structure, quantity};
 use serde::Deserialize;
 use std::time::{Duration, Instant};
 use work_precision::{impact, infinite};
 
-/// A steel ball of 30 mm.
-const BALL_KG: f64 = 0.11027;
 /// Hertz's stiffness of it on steel.
 const K_H: f64 = 1.7945e10;
 const HERTZ: LawOfContact = LawOfContact::Hertz { stiffness_n_m1_5: K_H };
@@ -38,14 +38,6 @@ pub fn problems() -> Result<Vec<Problem>, String> {
         problems.push(if problem.reference.is_empty() { referenced(problem, &quad)? } else { problem });
     }
     Ok(problems)
-}
-
-fn quantity(body: &str, what: What, scale: f64) -> Quantity {
-    Quantity { body: body.into(), shape: None, what, value: f64::NAN, uncertainty: 0.0, scale }
-}
-
-fn needs(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
 }
 
 /// Computes the reference by two methods.
@@ -94,24 +86,6 @@ struct Quad {
 fn quad() -> Result<Vec<Quad>, String> {
     let mut reader = csv::Reader::from_reader(include_str!("../../reference/quad.csv").as_bytes());
     reader.deserialize().collect::<Result<_, _>>().map_err(|error| format!("reference/quad.csv: {error}"))
-}
-
-/// A ball at an immovable ground.
-fn at_ground(name: &str, family: Family, statement: String, law: LawOfContact, speed_m_s: f64, end_s: f64) -> Problem {
-    Problem {
-        name: name.into(),
-        family,
-        statement,
-        needs: needs(&["one free mass", "immovable ground"]),
-        bodies: vec![Body::mass("ball", BALL_KG, 0.0, -speed_m_s)],
-        contacts: vec![Contact::new("ball", None, 0.0, law)],
-        gravity_m_s2: 0.0,
-        loads: vec![],
-        infinite_beam_s: None,
-        end_s,
-        quantities: vec![quantity("ball", What::VelocityMS, speed_m_s)],
-        reference: String::new(),
-    }
 }
 
 /// Laws at the ground.
@@ -198,18 +172,6 @@ fn infinite_beams() -> Result<Vec<Problem>, String> {
         })
     };
     [1e-3, 1.0, 1.5, 15.0, 1e3].into_iter().map(problem).collect()
-}
-
-/// A ball, by its mass and speed, that touches a structure at the start.
-fn on_structure(name: &str, statement: String, body: Body, ball: (f64, f64), law: LawOfContact, end_s: f64) -> Problem {
-    let (mass_kg, speed_m_s) = ball;
-    let mut problem = at_ground(name, Family::Structure, statement, law, speed_m_s, end_s);
-    problem.needs =
-        needs(&["one free mass", "a structure in its modes, or one that is equivalent", "the law of the contact"]);
-    let touching = body.at_point(&body.amplitude);
-    problem.bodies = vec![Body::mass("ball", mass_kg, touching, -speed_m_s), body];
-    problem.contacts[0].lower = Some("structure".into());
-    problem
 }
 
 /// Balls on beams and plates.

@@ -1,6 +1,8 @@
 //! The implicit solvers of `diffsol`, variable-order BDF and ESDIRK, with its own root finding and our Jacobian.
 
-use super::{Equations, Flight, Impact, Integrator, Outcome, follow};
+use super::definition::{Impact, Outcome};
+use super::drive::{Flight, Integrator, follow};
+use super::system::Equations;
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason,

@@ -3,7 +3,9 @@
 //! Events: a sign change over a step is located by taking the step anew with other lengths, which keeps the full order
 //! and spares every other step the three evaluations that dense output would cost.
 
-use super::{Equations, Flight, Impact, Integrator, Outcome, follow};
+use super::definition::{Impact, Outcome};
+use super::drive::{Flight, Integrator, follow};
+use super::system::Equations;
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use ivp::dense::StepInterpolant;
 use ivp::methods::{DOP853, Tolerance};

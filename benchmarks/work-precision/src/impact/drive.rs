@@ -1,8 +1,8 @@
 //! One impact by a general solver, phase by phase.
 
+use super::definition::{Impact, Outcome};
 use super::flight::fly;
-use super::system::Tables;
-use super::{Equations, Impact, Outcome, Phase};
+use super::system::{Equations, Phase, Tables};
 use contact_models::{After, ContactLaw, Memory};
 use std::time::Instant;
 

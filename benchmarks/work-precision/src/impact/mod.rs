@@ -1,5 +1,6 @@
 //! Impacts of a ball on a beam in its modes: the library of problems, and every solver on them.
 
+mod definition;
 mod diffsol;
 mod dop853;
 mod drive;
@@ -8,6 +9,7 @@ mod own;
 mod reference;
 mod system;
 
+pub use definition::{Impact, Outcome};
 pub use drive::{Flight, Integrator, follow};
 pub use reference::{Reference, reference};
 pub use system::{Equations, Phase};
@@ -17,55 +19,6 @@ use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Body, Hertz, Hysteretic, Law, Viscous};
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Striker, Structure};
-
-/// One impact of the library.
-#[derive(Debug, Clone)]
-pub struct Impact {
-    /// Short name.
-    pub name: &'static str,
-    /// What it is.
-    pub about: &'static str,
-    /// The beam in its modes.
-    pub structure: Structure,
-    /// The ball.
-    pub striker: Striker,
-    /// The law of contact.
-    pub law: Law,
-}
-
-/// What a solver found, in the terms of the norms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
-    /// Speed of the rebound over that of the impact.
-    pub restitution: f64,
-    /// Beginnings and ends of all contacts, in order (s).
-    pub contact_times_s: Vec<f64>,
-    /// Impulse of every contact (N s).
-    pub impulses_n_s: Vec<f64>,
-}
-
-impl Outcome {
-    /// The norms in which an outcome is compared with the reference, the chief one first.
-    pub fn errors(&self, reference: &Outcome) -> Vec<(&'static str, f64)> {
-        let end = reference.contact_times_s.last().copied().unwrap_or(1.0);
-        // where the number of contacts differs, so does the contact history: no time is right then
-        let worst = |found: &[f64], wanted: &[f64], unit: f64| {
-            if found.len() == wanted.len() {
-                found.iter().zip(wanted).map(|(a, b)| (a - b).abs() / unit).fold(0.0, f64::max)
-            } else {
-                1.0
-            }
-        };
-        let total = |outcome: &Outcome| outcome.impulses_n_s.iter().sum::<f64>();
-        let contacts = |outcome: &Outcome| outcome.contact_times_s.len().div_ceil(2) as f64;
-        vec![
-            ("restitution", (self.restitution - reference.restitution).abs()),
-            ("total impulse", (total(self) / total(reference) - 1.0).abs()),
-            ("contact times", worst(&self.contact_times_s, &reference.contact_times_s, end)),
-            ("number of sub-impacts", (contacts(self) - contacts(reference)).abs()),
-        ]
-    }
-}
 
 const SIDE_M: f64 = 0.011323;
 const YOUNGS_MODULUS_PA: f64 = 2e11;

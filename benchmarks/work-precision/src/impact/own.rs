@@ -1,6 +1,6 @@
 //! The workspace's own solver.
 
-use super::{Impact, Outcome};
+use super::definition::{Impact, Outcome};
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use vibroimpact_sim::modal::{self, Settings, Solution};
 

@@ -1,6 +1,6 @@
 //! Reference solutions in quadruple precision, from `reference/impacts.c`.
 
-use super::Outcome;
+use super::definition::Outcome;
 
 /// The file that `reference/impacts.c` wrote.
 const TABLE: &str = include_str!("../../reference/impacts.csv");

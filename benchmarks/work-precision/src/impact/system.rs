@@ -3,7 +3,7 @@
 //! The state is `[z, z', a_1 .. a_N, a_1' .. a_N']`, with `z` positive away from the structure. In a phase the contact
 //! force is a smooth function of the state; the phase ends when a margin falls below zero.
 
-use super::Impact;
+use super::definition::Impact;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
 use std::cell::Cell;
 

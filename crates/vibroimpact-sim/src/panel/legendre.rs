@@ -128,6 +128,11 @@ pub(crate) fn dot(a: &Nodal, b: &Nodal) -> f64 {
     sum
 }
 
+/// Adds a multiple of a short vector.
+pub(crate) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
+}
+
 /// A matrix, kept by columns, times a vector.
 #[inline(always)]
 pub(crate) fn apply(matrix: &Matrix, vector: &Nodal) -> Nodal {

@@ -13,10 +13,10 @@ use vibroimpact_sim::modal::Mode;
 use super::attached::largest_share;
 use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
-use super::text::small;
 use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
+use crate::text::small;
 
 /// Parameters of the law, and their accuracy for beams to which they were not fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]

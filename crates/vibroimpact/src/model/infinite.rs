@@ -30,10 +30,10 @@ use vibroimpact_sim::modal::Mode;
 
 use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
-use super::text::small;
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::scene::{End, InvalidInput, Scene};
+use crate::text::small;
 
 /// Times and distances from which [`reflection_bound`] holds.
 const LEAST_Z: f64 = 2.0;

@@ -43,7 +43,6 @@ pub use emoc::{VALIDATED, Validated, law as emoc_law};
 pub use infinite::{Reflection, reflection_bound};
 pub use kept::Kept;
 pub use plan::{Estimate, Plan};
-pub(crate) use text::small;
 pub use text::{answer_text, comparison_text, net_text, plan_text};
 pub use uncertainty::Uncertainty;
 

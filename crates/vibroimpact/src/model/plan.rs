@@ -17,11 +17,11 @@ use super::choice::{Choice, Tried};
 use super::choose::{forced_tier, refused};
 use super::guess::guess;
 use super::pose::Pose;
-use super::text::small;
 use super::{Cost, Kept, Model, emoc, infinite, rigid};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{InvalidInput, Scene, chooses_modes, modal_only};
+use crate::text::small;
 
 /// The pilot impact: its share of the expected number of modes, its smallest number of modes, and the solver's tolerance.
 const PILOT_PART: usize = 2;

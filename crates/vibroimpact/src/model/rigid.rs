@@ -16,10 +16,10 @@
 
 use super::choice::{Choice, Tried};
 use super::pose::{Pose, Source};
-use super::text::small;
 use super::uncertainty::{CLOSED_FORM, Known};
 use super::{Answer, Cost, Model};
 use crate::scene::{Contact, InvalidInput};
+use crate::text::small;
 
 /// Factor by which `epsilon` has to be below the tolerance for a dissipative law.
 const MARGIN: f64 = 1e-3;

@@ -24,11 +24,11 @@ use super::left_out::{
     Change, at_the_end, energy_of_remainder, too_short, with_one_remainder_mode, with_softer_remainder,
 };
 use super::pose::{Pose, Source};
-use super::text::small;
 use super::uncertainty::Known;
 use super::{Answer, Cost, Model};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
+use crate::text::small;
 
 /// The largest number of modes counts if it is this many times the one before; the change by a smaller step contains little
 /// information about the rest.

@@ -3,12 +3,7 @@
 use std::fmt::Write;
 
 use super::{Answer, Comparison, Plan};
-use crate::text::{counted, filled, quantity, restitution, stopped};
-
-/// A number with two significant digits.
-pub(crate) fn small(value: f64) -> String {
-    crate::text::significant(value, 2)
-}
+use crate::text::{counted, filled, quantity, restitution, small, stopped};
 
 /// Breaks a sentence into lines of at most this many characters.
 const WIDTH: usize = 96;

@@ -15,12 +15,12 @@
 use vibroimpact_sim::modal::Settings;
 
 use super::stated::needed;
-use super::text::small;
 use super::uncertainty::Uncertainty;
 use super::{Answer, Cost, DEFAULT_TOLERANCE, Kept, Model, Modes};
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
 use crate::scene::{Beam, BeamTheory, InvalidInput, Scene, Structure, chooses_modes};
+use crate::text::small;
 
 /// Tolerance that determines the number of modes, if the requested one is tighter.
 const TOLERANCES: [f64; 2] = [1e-5, 3e-3];

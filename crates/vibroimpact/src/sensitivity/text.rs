@@ -7,7 +7,7 @@ use invalid_input::InvalidInput;
 use super::bodies::BodiesSensitivity;
 use super::single::Sensitivity;
 use super::table::{Row, Table};
-use crate::text::counted;
+use crate::text::{counted, small};
 
 /// A touch slower than this part of the fastest is near a graze.
 const NEAR: f64 = 1e-2;
@@ -33,7 +33,7 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
             text,
             "One per cent is far outside the range of the derivatives: a change of {} of the first field already changes the\n\
              restitution by {LINEAR}.",
-            crate::model::small(part)
+            small(part)
         );
     }
     text += &cautions(found.nearest_graze, found.sub_impact_count, &rows);

@@ -4,13 +4,13 @@ use std::sync::atomic::AtomicBool;
 
 use invalid_input::InvalidInput;
 
-use super::Status;
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::part::Part;
 use super::row::{Row, columns};
+use super::status::{Sink, Status};
 use super::table::Kind;
-use super::threads::{self, Sink};
+use super::threads;
 
 /// Most points of a sweep that is kept in memory.
 pub const MOST_IN_MEMORY: u64 = 10_000_000;

@@ -6,11 +6,11 @@ use sha2::{Digest, Sha256};
 
 use super::error::SweepError;
 use super::evaluate;
-use super::file::{self, Contents, MAX_POINTS, canonical_text};
+use super::file::{self, Contents, canonical_text};
 use super::part::Part;
 use super::results::Results;
 use super::uncertain::Uncertain;
-use super::values::{Axis, AxisValues, Random, json_number};
+use super::values::{Axis, AxisValues, MAX_POINTS, Random, json_number};
 use crate::assembly::AnyScene;
 use crate::scene::FieldPath;
 use crate::scene::json::{self, quote};

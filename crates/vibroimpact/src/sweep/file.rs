@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use super::error::SweepError;
 use super::uncertain::{self, SamplingEntry, Told, Uncertain, UncertainEntry};
-use super::values::{Axis, AxisValues, Interval, Random, Scale};
+use super::values::{Axis, AxisValues, Interval, MAX_POINTS, Random, Scale};
 use crate::assembly;
 use crate::scene::FieldPath;
 use crate::scene::fields::{look_up, name_at};
@@ -19,8 +19,6 @@ use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_
 pub const FORMAT_VERSION: u64 = 1;
 /// What a sweep file holds, in messages.
 pub(super) const A_SWEEP: &str = "a sweep";
-/// Most points of a sweep: indices and byte counts stay exact in every format that is written.
-pub(super) const MAX_POINTS: u64 = 1_000_000_000_000;
 
 const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m";
 

@@ -15,7 +15,7 @@ use super::definition::Sweep;
 use super::error::SweepError;
 use super::part::Part;
 use super::row;
-use super::threads::Sink;
+use super::status::Sink;
 
 /// What a folder says of itself, in `sweep.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

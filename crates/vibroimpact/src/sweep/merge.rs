@@ -11,8 +11,8 @@ use super::finish;
 use super::folder::{Finished, Folder, RESULTS, look_into};
 use super::part::Part;
 use super::row;
+use super::status::Sink;
 use super::tally::Tally;
-use super::threads::Sink;
 
 /// Rows are copied in pieces of about this size.
 const PIECE: usize = 4 << 20;

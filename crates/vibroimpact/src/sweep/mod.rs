@@ -52,6 +52,7 @@ mod report;
 mod results;
 mod row;
 mod schema;
+mod status;
 pub(crate) mod table;
 mod tally;
 mod threads;
@@ -70,6 +71,7 @@ pub use merge::merge;
 pub use part::Part;
 pub use predictability::{Blur, BlurWidth, Over};
 pub use schema::schema;
+pub use status::Status;
 pub use tally::{Extremes, FailedPoint, Tally};
 pub use uncertain::{
     Distribution, Estimate, Histogram, Output, OutputDistribution, Quantile, Sampling, Sequence, SobolIndices,
@@ -78,30 +80,7 @@ pub use uncertain::{
 pub use values::{Axis, AxisValues, Interval, Random, Scale};
 
 use folder::Folder;
-use threads::Sink;
-
-/// How far a sweep, or a part of one, has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Status {
-    /// Points whose rows are in the folder.
-    pub done: u64,
-    /// Points in all.
-    pub points: u64,
-}
-
-impl Status {
-    fn of(sweep: &Sweep, part: Part, sink: &impl Sink) -> Status {
-        let chunks = part.chunks(sweep.chunks());
-        let all = sweep.first_of_chunk(chunks.start)..sweep.first_of_chunk(chunks.end);
-        let done = sweep.first_of_chunk(chunks.start + sink.chunks());
-        Status { done: done - all.start, points: all.end - all.start }
-    }
-
-    /// Whether nothing is left to compute.
-    pub fn is_complete(&self) -> bool {
-        self.done == self.points
-    }
-}
+use status::Sink;
 
 /// Computes a part of a sweep into a folder, or what is missing of it there, and says what came out. `threads` of 0
 /// stands for as many as the machine has cores. `tell` hears how far it has come, first before anything is computed,

@@ -19,9 +19,10 @@ use super::finish;
 use super::folder::Folder;
 use super::part::Part;
 use super::row;
+use super::run as run_on_threads;
+use super::status::{Sink, Status};
 use super::tally::Tally;
-use super::threads::{BETWEEN_WRITES, Sink};
-use super::{Status, run as run_on_threads};
+use super::threads::BETWEEN_WRITES;
 
 /// How long rank 0 rests when no message is there. Waiting inside MPI would take a whole core.
 const REST: Duration = Duration::from_micros(200);

@@ -6,12 +6,12 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Status;
 use super::assembly::{Assembly, Order};
 use super::definition::Sweep;
 use super::error::SweepError;
 use super::part::Part;
 use super::row;
+use super::status::{Sink, Status};
 
 /// Rows are written this often: what a sweep that is cut off has to compute again.
 pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
@@ -29,14 +29,6 @@ impl Desk {
         // no one panics while holding it
         self.assembly.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// Takes rows in order.
-pub(super) trait Sink {
-    /// How many chunks it has, from the first of the part.
-    fn chunks(&self) -> u64;
-    /// Takes the rows of the next chunks.
-    fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError>;
 }
 
 /// Computes what is missing in the sink, a folder for example, of the chunks before `until`, and puts it there in order.

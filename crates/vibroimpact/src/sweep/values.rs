@@ -9,6 +9,9 @@ use serde_json::{Number, Value};
 
 use crate::scene::FieldPath;
 
+/// Most points of a sweep: indices and byte counts stay exact in every format that is written.
+pub(super) const MAX_POINTS: u64 = 1_000_000_000_000;
+
 /// How an interval is divided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]

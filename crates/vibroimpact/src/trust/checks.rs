@@ -2,12 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::Check;
+use super::check::Check;
 use super::course::{Course, Pulse};
 use super::section::Section;
-use crate::model::small;
 use crate::scene::{Contact, InvalidInput, Scene, Structure};
-use crate::text::quantity;
+use crate::text::{quantity, small};
 
 /// Modes that take this share of the energy matter.
 const MATTERS: f64 = 0.99;

@@ -24,7 +24,7 @@ use beam_modes::{Segment, ShearSection};
 use vibroimpact_sim::infinite::Solution;
 use vibroimpact_sim::modal::{Mode, Settings, Solver, Structure};
 
-use super::Check;
+use super::check::Check;
 use crate::infinite::Posed;
 use crate::scene::{self, InvalidInput, Scene};
 use crate::text::quantity;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Check;
+use super::check::Check;
 use crate::text::filled;
 
 /// Breaks a sentence into lines of at most this many characters.

@@ -1,12 +1,11 @@
 //! All modes on panels of one length, with the weighted responses for the derivatives.
 
-use super::panel::add;
 use crate::assembly::change::Change;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tables::{Forced, with_rigid_modes};
 use crate::panel::by_damping::ByDamping;
 use crate::panel::dyadic::{Rotation, level_within, step_s};
-use crate::panel::legendre::{Nodal, Q};
+use crate::panel::legendre::{Nodal, Q, add};
 use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 

@@ -50,11 +50,11 @@ use super::load_change::LoadChange;
 use super::no_derivative::NoDerivative;
 use super::problem::Posed;
 use super::system::System;
-use crate::panel::legendre::{BASIS, Nodal, Q, derivative, evaluate};
+use crate::panel::legendre::{BASIS, Nodal, Q, add, derivative, evaluate};
 use contact_models::Force;
 use event::later;
 pub(crate) use expansion::Expansions;
-use panel::{Moved, Passage, Solved, add};
+use panel::{Moved, Passage, Solved};
 use walk::Walk;
 pub(crate) use walk::{IntervalChange, Tangent};
 

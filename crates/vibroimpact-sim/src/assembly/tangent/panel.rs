@@ -6,7 +6,7 @@ use crate::assembly::dense::Stretch;
 use crate::assembly::stencil::Stencil;
 use crate::assembly::system::Span;
 use crate::assembly::tables::Forced;
-use crate::panel::legendre::{BASIS, Nodal, Q, apply, derivative, dot, evaluate, slopes};
+use crate::panel::legendre::{BASIS, Nodal, Q, add, apply, derivative, dot, evaluate, slopes};
 use crate::panel::vector::vectorized;
 use contact_models::{Branch, ContactLaw, Force};
 use std::array;
@@ -64,10 +64,6 @@ pub(super) struct Seen {
     pub moved: Nodal,
     pub timed_start: f64,
     pub timed: Nodal,
-}
-
-pub(super) fn add(to: &mut Nodal, factor: f64, from: &Nodal) {
-    to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * from);
 }
 
 fn times(one: &Nodal, other: &Nodal) -> Nodal {

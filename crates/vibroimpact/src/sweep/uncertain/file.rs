@@ -12,8 +12,8 @@ use super::distribution::Distribution;
 use super::sobol::MOST_COORDINATES;
 use crate::scene::FieldPath;
 use crate::scene::json::{number, quote};
-use crate::sweep::file::MAX_POINTS;
 use crate::sweep::results::Results;
+use crate::sweep::values::MAX_POINTS;
 
 /// Most uncertain fields: indices take two coordinates each.
 const MOST_FIELDS: usize = MOST_COORDINATES / 2;

@@ -1,104 +1,22 @@
 //! Results as a person reads them in a terminal.
 
+mod parts;
+
 use std::fmt::Write;
 
-use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Striker};
 
 use crate::model::answer_text;
 use crate::net::{FitSummary, NetRebound};
-pub use crate::scene::told::{counted, printable, shorten};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
+pub use parts::{counted, printable, quantity, shorten, significant};
+pub(crate) use parts::{filled, restitution, small, stopped, superscript};
 
 /// Shares of the energy below this are rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Most contacts that are listed; the rest are counted.
 const LISTED: usize = 20;
-
-/// The words of a text in lines as long as `fits` allows; a word that is too long has a line of its own.
-pub(crate) fn filled(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let longer = lines.last().map(|line| format!("{line} {word}")).filter(|line| fits(line));
-        match (longer, lines.last_mut()) {
-            (Some(longer), Some(line)) => *line = longer,
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-/// A number with so many significant digits, trailing zeros left out, and a power of ten where
-/// it would otherwise grow long.
-pub fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() {
-        return "not a number".into();
-    }
-    if value == 0.0 {
-        return "0".into();
-    }
-    let digits = digits.clamp(1, 17);
-    let scientific = format!("{:.*e}", digits - 1, value);
-    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    let trim = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
-        false => text.to_string(),
-    };
-    let text = if (-4..digits.max(6) as i32).contains(&exponent) {
-        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-        trim(&format!("{value:.decimals$}"))
-    } else {
-        format!("{}×10{}", trim(mantissa), superscript(exponent))
-    };
-    text.replace('-', "\u{2212}")
-}
-
-/// A whole number in superscript digits.
-pub(crate) fn superscript(number: i32) -> String {
-    number
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            digit => char::from_u32(0x2070 + digit.to_digit(10).unwrap_or(0)).unwrap_or(digit),
-        })
-        .collect()
-}
-
-/// A number with four significant digits and its unit, with an SI prefix: `1.235 ms`.
-pub fn quantity(value: f64, unit: &str) -> String {
-    const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
-    if value == 0.0 {
-        return format!("0 {unit}");
-    }
-    // through the decimal form, so that 999.96 becomes 1.000 k
-    let scientific = format!("{value:.3e}");
-    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
-    let group = exponent.div_euclid(3);
-    match usize::try_from(group + 5).ok().and_then(|i| PREFIXES.get(i)) {
-        Some(prefix) if value.is_finite() => {
-            let decimals = usize::try_from(3 - exponent.rem_euclid(3)).unwrap_or(0);
-            format!("{:.decimals$} {prefix}{unit}", value / 1000f64.powi(group))
-        }
-        _ => format!("{scientific} {unit}"),
-    }
-}
-
-/// The restitution with as many digits as can be trusted, and its uncertainty.
-pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
-    match uncertainty {
-        Some(error) if error > 0.0 => {
-            let decimals = (-error.log10()).ceil().clamp(1.0, 12.0) as usize;
-            format!("{value:.decimals$} ± {error:.0e}")
-        }
-        _ => format!("{value:.6}"),
-    }
-}
 
 /// A line that states what strikes what.
 pub fn headline(scene: &Scene, striker: &Striker) -> String {
@@ -158,11 +76,6 @@ pub fn infinite_headline(scene: &Scene, striker: &Striker) -> String {
     let (mass, speed) = (quantity(striker.mass_kg * 1e3, "g"), quantity(striker.speed_m_s, "m/s"));
     let structure = scene.structure.kind().replace('-', " ");
     format!("{mass} striker at {speed} on an {structure}; {} contact", scene.contact.law_name())
-}
-
-/// The outcome of a computation that stopped before the impact had ended: why, and what to do.
-pub(crate) fn stopped(reason: Option<StopReason>) -> Option<String> {
-    reason.map(|reason| format!("stopped before the impact ended ({}): {}", reason.as_str(), reason.advice()))
 }
 
 /// The result of an impact.
@@ -319,31 +232,4 @@ pub fn fit(fit: &FitSummary) -> String {
         text += "  the search ended at its limit; these are the best parameters that it met\n";
     }
     text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantities_carry_si_prefixes() {
-        for (value, text) in [
-            (0.0, "0 s"),
-            (1.0, "1.000 s"),
-            (-0.0123456, "-12.35 ms"),
-            (999.96, "1.000 ks"),
-            (2.5e-16, "2.500e-16 s"),
-            (3e18, "3.000e18 s"),
-            (f64::NAN, "NaN s"),
-        ] {
-            assert_eq!(quantity(value, "s"), text);
-        }
-    }
-
-    #[test]
-    fn a_restitution_shows_the_digits_it_has() {
-        assert_eq!(restitution(0.17738912345, Some(3e-6)), "0.177389 ± 3e-6");
-        assert_eq!(restitution(0.2, Some(0.3)), "0.2 ± 3e-1");
-        assert_eq!(restitution(0.2, None), "0.200000");
-    }
 }

@@ -1,0 +1,49 @@
+//! A figure with its limits, and what it says about a theory.
+
+use serde::Serialize;
+
+/// Whether a theory bears an impact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Within the range of the theory.
+    Within,
+    /// Near its limits, or somewhat beyond.
+    Doubtful,
+    /// Outside its range.
+    Outside,
+}
+
+invalid_input::names!(Verdict, "verdict", { Within: "within", Doubtful: "doubtful", Outside: "outside" });
+
+/// One figure that tells whether a theory holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What is judged: a name of the table in [`trust`](self).
+    pub check: &'static str,
+    /// Within the theory's range, doubtful, or outside.
+    pub verdict: Verdict,
+    /// The figure, without a unit.
+    pub value: f64,
+    /// Up to here, or from here on if `outside` is smaller, the theory holds.
+    pub within: f64,
+    /// Beyond this it does not.
+    pub outside: f64,
+    /// What the figure says, in a sentence.
+    pub says: String,
+}
+
+impl Check {
+    /// `limits` are those of the theory's range and of where it ends; which way they lie tells which way is better.
+    pub(super) fn new(check: &'static str, value: f64, limits: [f64; 2], says: String) -> Check {
+        let [within, outside] = limits;
+        let rises = outside > within;
+        let beyond = |limit: f64| if rises { value > limit } else { value < limit };
+        let verdict = match (beyond(within), beyond(outside)) {
+            (false, _) => Verdict::Within,
+            (true, false) => Verdict::Doubtful,
+            (true, true) => Verdict::Outside,
+        };
+        Check { check, verdict, value, within, outside, says }
+    }
+}

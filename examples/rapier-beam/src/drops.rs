@@ -1,0 +1,18 @@
+//! The drops that both tables show, and the law that is fitted to them.
+
+use crate::beam::{Ball, Bar, LENGTH_M, Law};
+use std::error::Error;
+
+/// A light ball, one in between, and a heavy one.
+pub const BALLS: [Ball; 3] = [Ball { radius_m: 0.008 }, Ball { radius_m: 0.014 }, Ball { radius_m: 0.02 }];
+/// Places that the law is fitted at.
+const FITTED: usize = 30;
+/// Places from a support to the middle at which it is compared; the fit has seen none of them.
+pub const COMPARED: usize = 8;
+/// Height of fall (m): 3.1 m/s.
+pub const DROP_M: f64 = 0.5;
+/// The law, fitted to all balls.
+pub fn fitted(bar: &Bar) -> Result<Law, Box<dyn Error>> {
+    let locations: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();
+    bar.law(&BALLS, &locations, DROP_M)
+}
