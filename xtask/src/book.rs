@@ -5,7 +5,7 @@
 //! `# exits with 2`. Rust snippets are documentation tests of the package `book-snippets`. Formulas are fences named `math` and
 //! code between dollar signs, which GitHub and `docs/theme/math.js` typeset.
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, Options, Parser, Tag, TagEnd};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -16,7 +16,7 @@ use serde_json::json;
 use vibroimpact::assembly::AnyScene;
 use vibroimpact::sweep::Sweep;
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use crate::progress::Progress;
 
 /// Radius (m) of the ball and uncertainty of its speed. The smallest ball has one contact, the others have several.

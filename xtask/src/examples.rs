@@ -1,6 +1,6 @@
 //! Runs the example programs. Each must succeed and print something.
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@ mod book;
 mod chapters;
 mod control;
 mod examples;
+mod failure;
 mod fuzz;
 mod identification;
 mod pages;
@@ -18,8 +19,9 @@ use std::process::{Command, ExitCode};
 use std::str::FromStr;
 use std::time::Duration;
 
-use chapters::{BadInput, Failure, Part, RandomScenes};
+use chapters::{Part, RandomScenes};
 use clap::{Parser, Subcommand};
+use failure::{BadInput, Failure};
 
 /// Development tasks: checks, benchmarks, chapters of the thesis.
 #[derive(Parser)]

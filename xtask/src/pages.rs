@@ -4,7 +4,8 @@
 
 use crate::chapters::statement::Verdict;
 use crate::chapters::tally::{Row, Tally, tell};
-use crate::chapters::{Failure, Part, run_all};
+use crate::chapters::{Part, run_all};
+use crate::failure::Failure;
 use std::fs;
 use std::path::{Path, PathBuf};
 use vibroimpact::report::{Report, write_whole};

@@ -11,6 +11,7 @@ const FITTED: usize = 30;
 pub const COMPARED: usize = 8;
 /// Height of fall (m): 3.1 m/s.
 pub const DROP_M: f64 = 0.5;
+
 /// The law, fitted to all balls.
 pub fn fitted(bar: &Bar) -> Result<Law, Box<dyn Error>> {
     let locations: Vec<f64> = (1..=FITTED).map(|i| LENGTH_M * i as f64 / (FITTED + 1) as f64).collect();

@@ -6,6 +6,8 @@ use std::process::{Command, ExitCode, Stdio};
 use std::time::Instant;
 
 #[cfg(test)]
+mod circles;
+#[cfg(test)]
 mod workflows;
 
 type Failure = Box<dyn Error>;

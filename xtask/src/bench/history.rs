@@ -1,7 +1,7 @@
 //! Every value that was ever recorded, and a figure of the history.
 
 use super::record::Record;
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

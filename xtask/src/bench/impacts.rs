@@ -1,7 +1,7 @@
 //! Impacts on modal structures (thesis chapters 3, 4 and 8) and on infinite ones (chapter 2).
 
 use super::problem::{Found, Problem};
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use contact_models::Law;
 use std::path::Path;
 use vibroimpact::model::Modes;

@@ -1,7 +1,7 @@
 //! Instruction counts, by running this program under callgrind.
 
 use super::problem::measured_problem;
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;

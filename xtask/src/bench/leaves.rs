@@ -2,7 +2,7 @@
 //! equations. Reading a scene is measured here too.
 
 use super::problem::{Found, Problem};
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use beam_modes::{Beam, End, Segment};
 use std::f64::consts::PI;
 use std::path::Path;

@@ -9,7 +9,7 @@ mod page;
 mod problem;
 mod record;
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use crate::progress::Progress;
 use history::Stamp;
 pub use instructions::RUN_TASK;

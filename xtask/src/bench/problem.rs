@@ -1,6 +1,6 @@
 //! A problem of the record: the work that is run, the result that is expected, and the cost.
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use std::hint::black_box;
 
 /// Results of a run, and the costs that the solver itself counts.

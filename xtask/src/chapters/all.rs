@@ -1,8 +1,10 @@
 //! Runs all chapters and writes one report that can be checked number by number.
 
 use super::statement::{Kind, Verdict};
+use super::study::Finished;
 use super::tally::{Row, Tally, csv, tell};
-use super::{Failure, Finished, Part, run};
+use super::{Part, run};
+use crate::failure::Failure;
 use std::path::Path;
 use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

@@ -1,7 +1,7 @@
 //! Beams of the chapters and their modes.
 
-use super::Failure;
 use super::material::Material;
+use crate::failure::Failure;
 use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
 use vibroimpact_sim::modal::Structure;

@@ -1,8 +1,8 @@
 //! One impact of the chapters: beam, location, ball and number of modes.
 
-use super::Failure;
 use super::beam::Beam;
 use super::material::Material;
+use crate::failure::Failure;
 use contact_models::{Body, Hertz, Law};
 use serde::Serialize;
 use std::f64::consts::PI;

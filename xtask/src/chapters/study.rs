@@ -1,9 +1,9 @@
 //! Tools of all chapters: output folder, progress, parallel sweeps and one writer of files.
 
-use super::Failure;
 use super::figures::Course;
 use super::statement::Statement;
 use super::tally::{Row, Tally, tell};
+use crate::failure::Failure;
 use crate::progress::Progress;
 use rayon::prelude::*;
 use serde::Serialize;

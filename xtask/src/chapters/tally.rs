@@ -1,6 +1,7 @@
 //! Statements as rows of `statements.csv` and as tables of reports and pages, and counts of their verdicts.
 
 use super::statement::{Kind, Statement, Verdict};
+use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use vibroimpact::report::{Report, significant};
 
@@ -186,7 +187,7 @@ fn told(quantities: &[&str]) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn csv(rows: &[Row]) -> Result<Vec<u8>, super::Failure> {
+pub fn csv(rows: &[Row]) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row)?;

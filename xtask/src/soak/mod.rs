@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use crate::progress::Progress;
 use cases::case;
 use checks::{Verdict, judge};

@@ -1,9 +1,9 @@
 //! The semi-analytical solution of the first contact: Figs. 2.5 and 2.6.
 
 use super::{Parameters, in_ratio, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;

@@ -1,9 +1,9 @@
 //! The number `S` does not depend on units: Tables 2.1 and A.1, Fig. A.1.
 
 use super::{Parameters, Units, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};

@@ -1,9 +1,9 @@
 //! All contacts as functions of `S`: Fig. 2.8 with its turning points, and the regimes of Fig. 2.4.
 
 use super::{Parameters, in_ratio, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use std::time::Instant;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

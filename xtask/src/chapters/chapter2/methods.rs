@@ -1,8 +1,8 @@
 //! Cost against accuracy of every method of `fracdiff` and of the specialised solver, for the problem of the chapter.
 
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use fracdiff::{Collocation, Convolution, GalerkinStates, Method, SumOfExponentials, test_problems};
 use serde::Serialize;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! Motion and force of three impacts: Fig. 2.3.
 
 use super::{Course, Motion, Parameters, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::infinite::samples;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;

@@ -2,9 +2,9 @@
 //! the second contact, and the trends of later contacts.
 
 use super::{in_ratio, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::{FALLS, Statement};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
 use vibroimpact::report::significant;

@@ -1,9 +1,9 @@
 //! Sustained contact at large times: Fig. 2.7 and the error of Eq. 2.47.
 
 use super::{Course, Motion, Parameters, in_ratio, solved};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibroimpact::infinite::samples;

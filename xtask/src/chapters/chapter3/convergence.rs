@@ -3,11 +3,11 @@
 
 use super::Case;
 use super::scatter::{self, AtBoth, MANY, extremes, off_the_mean, reduction, scatter};
-use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution, restitution_and_sub_impacts};
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::statement::{RISES, Statement};
 use crate::chapters::study::{Study, slug};
+use crate::failure::Failure;
 use vibroimpact::plot::Axis;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {

@@ -1,11 +1,11 @@
 //! Dissipative contact laws: Figs. 3.2, 3.5, 3.6, 3.8 and 3.9.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::{Study, slug};
+use crate::failure::Failure;
 use contact_models::{Hysteretic, Law, trace};
 use serde::Serialize;
 use std::f64::consts::PI;

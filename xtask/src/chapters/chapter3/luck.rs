@@ -2,9 +2,9 @@
 
 use super::Case;
 use super::scatter::{fingerprint, gives_the_three_numbers};
-use crate::chapters::Failure;
 use crate::chapters::impact::{Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use contact_models::{Hertz, Law};
 use serde::Serialize;
 use vibroimpact::report::significant;

@@ -1,11 +1,11 @@
 //! Motion and force of single impacts: Figs. 3.3, 3.12 and A.2.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {

@@ -1,9 +1,9 @@
 //! Numbers of section 3.3.1 and of the closing remarks: beam, ball and frequencies.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use std::f64::consts::PI;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {

@@ -1,10 +1,10 @@
 //! Beyond the thesis: the same studies with remainder modes that represent the truncated modes, up to N = 400.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution};
 use crate::chapters::impact::{Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 

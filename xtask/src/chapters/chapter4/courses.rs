@@ -1,10 +1,10 @@
 //! Motion and force of single impacts: Figs. 4.5, 4.10 and 4.11.
 
 use super::{Case, Histories};
-use crate::chapters::Failure;
 use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
 use crate::chapters::study::{Study, slug};
+use crate::failure::Failure;
 use contact_models::Law;
 use vibroimpact::plot::{Figure, Panel};
 use vibroimpact_sim::modal::{History, Solution};

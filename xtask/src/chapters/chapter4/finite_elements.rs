@@ -1,9 +1,9 @@
 //! Fig. A.3: modal analysis against finite elements on the uniform cantilever.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use beam_modes::fem::Model;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

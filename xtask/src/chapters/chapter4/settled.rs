@@ -2,9 +2,9 @@
 
 use super::Case;
 use super::tables::{Table, compute};
-use crate::chapters::Failure;
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Figure};
 use vibroimpact::report::significant;

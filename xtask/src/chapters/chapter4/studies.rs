@@ -1,10 +1,10 @@
 //! Restitution against the speed (Fig. 4.3) and against the number of modes (Fig. 4.4).
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::figures::{Column, Curve, restitution_and_sub_impacts};
 use crate::chapters::impact::{Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 

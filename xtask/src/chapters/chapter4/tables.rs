@@ -1,10 +1,10 @@
 //! The restitution tables: every beam, location and ball. Figs. 4.6 to 4.9.
 
 use super::Case;
-use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 use vibroimpact_sim::modal::Solver;
 

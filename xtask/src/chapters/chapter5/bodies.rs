@@ -1,8 +1,8 @@
 //! The small examples: two bodies at a point (5.2), the rod of Fig. 5.1, the ball of Fig. 5.2.
 
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Coefficients, Contact, Friction, Problem, Solver};
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};

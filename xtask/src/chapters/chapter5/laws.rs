@@ -1,10 +1,10 @@
 //! Comparison of every impact law with every table.
 
-use crate::chapters::Failure;
 use crate::chapters::chapter7::{Dataset, LAW_MODES};
 use crate::chapters::impact::Row;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Coefficients, Contact, Friction, Impact, Mode, Problem, Solver};
 use serde::Serialize;
 use vibroimpact::net::{Observations, law};

@@ -4,11 +4,11 @@ mod bodies;
 mod laws;
 mod pictures;
 
-use super::Failure;
 use super::chapter4::Case;
 use super::chapter4::tables::compute;
 use super::chapter7::Dataset;
 use super::study::Study;
+use crate::failure::Failure;
 
 const INTRODUCTION: &str = "The thesis's central argument is that known algebraic impact laws, which know no \
 sub-impacts, cannot give the net restitution of a ball on a vibrating beam, and that least energy under outward \

@@ -1,10 +1,10 @@
 //! Figures that compare laws with tables.
 
 use super::laws::{Found, LAWS};
-use crate::chapters::Failure;
 use crate::chapters::chapter7::Dataset;
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 

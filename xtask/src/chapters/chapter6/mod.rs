@@ -5,9 +5,9 @@
 mod enumeration;
 mod resolved;
 
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Coefficients, Rebound, SingleImpact};
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

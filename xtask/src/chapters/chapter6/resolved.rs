@@ -1,12 +1,12 @@
 //! Comparison of the inequalities of the law with impacts resolved in time.
 
-use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
 use crate::chapters::chapter4::Case;
 use crate::chapters::chapter7::LAW_MODES;
 use crate::chapters::impact::Ball;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Impact, Site};
 use serde::Serialize;
 use vibroimpact::net::{Observations, law};

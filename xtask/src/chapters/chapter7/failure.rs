@@ -2,8 +2,8 @@
 
 use super::Dataset;
 use super::fits::BeamFit;
-use crate::chapters::Failure;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::Branch;
 use vibroimpact::net;
 use vibroimpact::plot::{Axis, Figure};

@@ -1,9 +1,9 @@
 //! The fits of section 7.2, and the error against the number of modes (Fig. 7.7).
 
 use super::{Dataset, LAW_MODES};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Impact, Site};
 use fitting::Fit;
 use serde::Serialize;

@@ -2,8 +2,8 @@
 
 use super::pictures::{Curve, by_ball};
 use super::{Dataset, LAW_MODES, SETTLED_MODES};
-use crate::chapters::Failure;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::Impact;
 use fitting::{Fit, Method, Parameter, Problem, Residuals, Settings, cross_validate, fit};
 use serde::Serialize;

@@ -1,19 +1,18 @@
 //! Chapter 7: the three parameters of the algebraic law, fitted to the tables of chapter 4.
 
+mod dataset;
 pub(super) mod failure;
 pub(super) mod fits;
 pub(super) mod laws;
 mod pictures;
 
-use super::Failure;
-use super::beam::Beam;
 use super::chapter4::Case;
-use super::chapter4::tables::{Table, compute};
-use super::impact::Row;
+use super::chapter4::tables::compute;
 use super::study::Study;
-use emoc::{Impact, Site};
+use crate::failure::Failure;
+use dataset::SETTLED_MODES;
+pub(super) use dataset::{Dataset, LAW_MODES};
 use std::time::Instant;
-use vibroimpact::net::Observations;
 
 const INTRODUCTION: &str = "The law of energy minimisation under outward constraints (chapter 6, closed form) with the \
 three parameters μ₀, α₀, α₁ is fitted to the restitution tables of chapter 4, one set of parameters a beam. The law has \
@@ -22,37 +21,6 @@ others, is what the same model settles to with more modes. The thesis does not p
 tables, its parameters, or where its stepped beams have their step, so errors can be compared in kind only. After the \
 thesis's own form the report asks where it fails and why, how one beam's parameters serve another, and sets a law with \
 two parameters beside it that does better on every count.";
-
-/// Modes in the law (thesis 7.2).
-pub(super) const LAW_MODES: usize = 50;
-/// Modes of the converged tables.
-const SETTLED_MODES: usize = 100;
-
-/// The table of one beam with the inputs of the laws for each impact.
-pub(super) struct Dataset<'a> {
-    pub beam: &'a Beam,
-    table: &'a Table<'a>,
-    /// The results that have a restitution, location by location.
-    pub rows: Vec<&'a Row>,
-}
-
-impl<'a> Dataset<'a> {
-    pub fn new(table: &'a Table<'a>) -> Dataset<'a> {
-        Dataset { beam: table.beam, table, rows: table.all().filter(|row| row.restitution.is_some()).collect() }
-    }
-
-    /// Inputs of the law for each impact, with this many modes.
-    pub fn observations(&self, modes: usize) -> Result<Observations, Failure> {
-        let mut observations = Observations::default();
-        for row in &self.rows {
-            let structure = self.beam.structure(row.location_m, modes, 0.0, false)?;
-            let phi: Vec<f64> = structure.modes.iter().map(|mode| mode.shape).collect();
-            observations.impacts.push(Impact::new(row.mass_kg, &Site::new(&phi)?)?);
-            observations.restitution.push(row.e());
-        }
-        Ok(observations)
-    }
-}
 
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {

@@ -2,8 +2,8 @@
 
 use super::Dataset;
 use super::fits::BeamFit;
-use crate::chapters::Failure;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::net;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

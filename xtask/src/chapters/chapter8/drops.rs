@@ -1,9 +1,9 @@
 //! Drops of rods, resolved in time.
 
 use super::Parameters;
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Figure, Marker, Panel, Series};
 use vibroimpact_sim::modal::{Settings, Solver};

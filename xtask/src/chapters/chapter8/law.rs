@@ -2,9 +2,9 @@
 
 use super::Parameters;
 use super::drops::DropRow;
-use crate::chapters::Failure;
 use crate::chapters::statement::{FALLS, Statement};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use emoc::{Impact, Site};
 use fitting::Fit;
 use serde::Serialize;

@@ -2,8 +2,8 @@
 
 use super::Parameters;
 use super::law::{Point, by_rod, observations};
-use crate::chapters::Failure;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use vibroimpact::report::significant;

@@ -3,9 +3,9 @@
 
 use super::Parameters;
 use super::drops::{DropRow, solve};
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::report::significant;
 
 const SOURCE: &str = "[19], abstract";

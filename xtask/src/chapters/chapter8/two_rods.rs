@@ -1,9 +1,9 @@
 //! Two rods that collide along their axes: the restitution is the ratio of their lengths.
 
 use super::Parameters;
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_modes};
 use contact_models::LinearSpring;
 use std::f64::consts::PI;

@@ -1,9 +1,9 @@
 //! Upright rods against the exact wave solution.
 
 use super::Parameters;
-use crate::chapters::Failure;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use contact_models::LinearSpring;
 use serde::Serialize;
 use vibroimpact::report::significant;

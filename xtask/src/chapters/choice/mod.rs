@@ -5,8 +5,8 @@ mod report;
 mod row;
 mod scenes;
 
-use super::Failure;
 use super::study::Study;
+use crate::failure::Failure;
 use row::Row;
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Write};

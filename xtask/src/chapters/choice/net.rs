@@ -1,8 +1,8 @@
 //! The net law with two parameters: fitted to impacts on random beams, and tested on beams left out of the fit.
 
 use super::scenes::{Random, ball, beam, hertz};
-use crate::chapters::Failure;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use contact_models::Law;
 use fitting::{Method, Parameter, Problem, Settings, cross_validate, fit};
 use serde::Serialize;

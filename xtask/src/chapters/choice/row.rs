@@ -1,7 +1,7 @@
 //! One scene at one tolerance: the answer, its cost, and the true result.
 
 use super::scenes;
-use crate::chapters::Failure;
+use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use vibroimpact::model::{Kept, Model, Modes};
 use vibroimpact::vibroimpact_sim::modal::{Settings, Solution};

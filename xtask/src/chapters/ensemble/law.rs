@@ -1,9 +1,9 @@
 //! Statements of section 7.2 on the accuracy of the law, for one table and the law fitted to it.
 
-use crate::chapters::Failure;
 use crate::chapters::chapter4::tables::Table;
 use crate::chapters::chapter4::trends::{Limits, RISES, Trend};
 use crate::chapters::chapter7::{Dataset, LAW_MODES};
+use crate::failure::Failure;
 use beam_modes::End;
 
 /// Number of modes of the tables, which is also tried in the law.

@@ -3,15 +3,16 @@
 
 mod law;
 mod single;
+mod variant;
 
-use super::Failure;
 use super::beam::{Beam, segment};
 use super::chapter4::trends::{self, Trend};
 use super::chapter4::{Case, EnsembleChoice, tables::Table};
 use super::impact::{Ball, Row};
-use super::statement::{Statement, Verdict, limits};
 use super::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
+use variant::{MOST_MODES, Variant, claim};
 use vibroimpact::plot::{Axis, Figure, HeatMap, Panel};
 use vibroimpact::report::significant;
 
@@ -34,16 +35,6 @@ struct TrendRow {
     value: f64,
     holds: bool,
 }
-
-/// A stepped beam, or a uniform one.
-struct Variant {
-    beam: Beam,
-    /// Location of the step (m), and relative thickness of the thin part.
-    step: Option<(f64, f64)>,
-}
-
-/// Modes of every beam: those of the law, and of Fig. 4.4.
-const MOST_MODES: usize = 60;
 
 /// Runs the ensembles and returns the text that introduces their report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
@@ -182,32 +173,6 @@ fn judge<'a>(
     })
 }
 
-/// One statement for every trend. Every choice has all trends. A beam with one choice has no unstated parameters.
-fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) {
-    for k in 0..choices.first().map_or(0, |first| first.len()) {
-        let of: Vec<&Trend> = choices.iter().filter_map(|trends| trends.get(k)).collect();
-        let trend = of[0];
-        let source = format!("{}, Fig. {figure}", trend.source);
-        if of.len() == 1 {
-            let quantity = format!("{}, {beam}", trend.quantity);
-            study.claim(Statement::trend(quantity, &source, trend.words, trend.limits, trend.reason, trend.ours));
-            continue;
-        }
-        let holds = of.iter().filter(|trend| trend.holds()).count();
-        let mut values: Vec<f64> = of.iter().map(|trend| trend.ours).collect();
-        values.sort_by(f64::total_cmp);
-        let [low, middle, high] = [0, values.len() / 2, values.len() - 1].map(|k| significant(values[k], 2));
-        let limits = limits(trend.limits.0, trend.limits.1);
-        let quantity = format!("share of choices with {limits} for {}, {beam}", trend.quantity);
-        let statement = Statement::choices(quantity, &source, trend.words, (holds, of.len())).note(format!(
-            "The values range from {low} to {high}, with the median {middle}. The limit is {}.",
-            trend.reason
-        ));
-        let refuted = statement.verdict() == Verdict::Differs;
-        study.claim(if refuted { statement.missing(trend.otherwise) } else { statement });
-    }
-}
-
 /// Plots the share of the trends that hold against step and thickness of the thin part.
 fn map(study: &mut Study, choice: &EnsembleChoice, judged: &[&Judged], beam: &Beam) -> Result<(), Failure> {
     if judged.iter().any(|one| one.variant.step.is_none()) {
@@ -313,7 +278,7 @@ mod tests {
             assert_eq!(rows.len(), 1);
             rows[0].verdict
         };
-        use Verdict::{Agrees, Differs, Undecidable};
+        use crate::chapters::statement::Verdict::{Agrees, Differs, Undecidable};
         assert_eq!(
             [10, 9, 8, 2, 1, 0].map(|n| verdicts(n, 10, "")),
             [Agrees, Agrees, Undecidable, Undecidable, Differs, Differs]

@@ -1,11 +1,11 @@
 //! The figures of chapter 4 that show single impacts, for every step and thin part: Figs. 4.3, 4.4, 4.5, 4.10 and 4.11.
 
 use super::{Variant, claim};
-use crate::chapters::Failure;
 use crate::chapters::chapter4::Case;
 use crate::chapters::chapter4::trends::{Limits, Trend};
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 
 pub(super) fn run(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {

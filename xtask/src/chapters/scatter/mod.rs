@@ -4,7 +4,6 @@
 mod models;
 mod scores;
 
-use super::Failure;
 use super::beam::Beam;
 use super::chapter4::Case;
 use super::chapter4::tables::{Table, of_beams};
@@ -12,6 +11,7 @@ use super::chapter7::laws::Datum;
 use super::chapter7::{Dataset, LAW_MODES};
 use super::study::Study;
 use super::theories::kaneko;
+use crate::failure::Failure;
 use models::{MODELS, Model, Predicted};
 use scores::{Evidence, LEVELS};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};

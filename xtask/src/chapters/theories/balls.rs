@@ -1,7 +1,6 @@
 //! Chapter 3: restitution against the number of modes by both theories, and with different shear coefficients.
 
 use super::{APART, Coefficient, coefficients, kaneko};
-use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
 use crate::chapters::chapter3::Case;
 use crate::chapters::chapter3::scatter::{MANY, deviation};
@@ -9,6 +8,7 @@ use crate::chapters::figures::{Column, Curve, restitution};
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 

@@ -1,9 +1,9 @@
 //! Chapter 7: EMOC fitted to the tables of both theories.
 
 use super::tables::Tables;
-use crate::chapters::Failure;
 use crate::chapters::chapter7::{Dataset, LAW_MODES, failure::irregularity, fits::BeamFit};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::net;
 use vibroimpact::report::significant;
 

@@ -25,45 +25,22 @@
 //! ```
 
 mod balls;
+mod coefficients;
 mod law;
 mod phase_speeds;
 mod predictable;
 mod tables;
 
-use super::material::Material;
 use super::study::Study;
-use super::{Failure, chapter3, chapter4};
+use super::{chapter3, chapter4};
+use crate::failure::Failure;
+pub(super) use coefficients::kaneko;
+use coefficients::{APART, Coefficient, coefficients};
 
 const INTRODUCTION: &str = "The impacts of chapters 3, 4 and 7 by Timoshenko's theory beside Euler-Bernoulli's, which \
 is the thesis's. Where nothing else is said, remainder modes answer for all modes left out, so that what is compared is \
 converged, and the shear coefficient is 5(1+ν)/(6+5ν). *Truncation* below is what plain truncation at N = 40 changes, as in the thesis; *theory* is the difference \
 of the two theories; *coefficient* is what ± 2 % of the shear coefficient change in Timoshenko's.";
-
-/// Relative change of the shear coefficient that represents the differences between the usual values.
-const APART: f64 = 0.02;
-
-/// A usual shear coefficient for the square section of the thesis.
-struct Coefficient {
-    name: &'static str,
-    value: f64,
-}
-
-/// The shear coefficients of Eq. (4).
-fn coefficients(material: &Material) -> [Coefficient; 4] {
-    let nu = material.poissons_ratio;
-    [
-        Coefficient { name: "Reissner", value: 5.0 / 6.0 },
-        Coefficient { name: "Cowper", value: 10.0 * (1.0 + nu) / (12.0 + 11.0 * nu) },
-        Coefficient { name: "Kaneko", value: kaneko(material) },
-        Coefficient { name: "Hutchinson", value: 0.8723 },
-    ]
-}
-
-/// The default coefficient of the program.
-pub(super) fn kaneko(material: &Material) -> f64 {
-    let nu = material.poissons_ratio;
-    5.0 * (1.0 + nu) / (6.0 + 5.0 * nu)
-}
 
 /// Runs the study and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {

@@ -1,11 +1,11 @@
 //! Phase speeds of bending waves by both theories, compared with elasticity in two dimensions.
 
 use super::{Coefficient, coefficients};
-use crate::chapters::Failure;
 use crate::chapters::chapter3::Case;
 use crate::chapters::material::Material;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use std::f64::consts::PI;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};

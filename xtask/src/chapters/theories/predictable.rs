@@ -1,11 +1,11 @@
 //! Locations on chapter 3's beam and balls for which the restitution can be predicted.
 
 use super::{APART, kaneko};
-use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
 use crate::chapters::chapter3::Case;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use serde::Serialize;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Panel};
 use vibroimpact::report::significant;

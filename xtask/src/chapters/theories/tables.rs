@@ -1,12 +1,12 @@
 //! Chapter 4: the tables of the four beams by both theories.
 
 use super::{APART, kaneko};
-use crate::chapters::Failure;
 use crate::chapters::beam::Beam;
 use crate::chapters::chapter4::Case;
 use crate::chapters::chapter4::tables::{Table, of_beams};
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
+use crate::failure::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
