@@ -346,3 +346,37 @@ fn modes_that_turn_many_times_in_a_panel_are_accounted_for() {
         assert!(ledger.unaccounted_j.abs() < floor, "{damping_ratio}: {ledger:?}");
     }
 }
+
+/// Near an undamped frequency the ledger is a small difference of large numbers. What it loses of its digits is stated, also where
+/// the errors of two parts cancel; the motion keeps its own.
+#[test]
+fn rounding_is_stated_where_a_load_nearly_meets_an_undamped_frequency() {
+    let (omega_rad_s, end_s) = (100.0, 1.0);
+    for (detuning, damping_ratio) in [(1e-3, 0.0), (1e-5, 0.0), (1e-7, 0.0), (1e-8, 0.0), (1e-7, 1e-9), (1e-8, 1e-9)] {
+        let harmonic = Force::Harmonic { force_n: 1.0, omega_rad_s: omega_rad_s * (1.0 + detuning), phase_rad: 0.0 };
+        let assembly = Assembly {
+            bodies: vec![Body::at_rest(vec![BodyMode { omega_rad_s, damping_ratio }])],
+            contacts: vec![Contact {
+                sides: [point(0, &[1.0]), Point::Ground],
+                gap_m: 1.0,
+                law: Law::from(LinearSpring::new(1e4).unwrap()),
+            }],
+            loads: vec![Load { body: 0, shape: vec![1.0], force: harmonic }],
+        };
+        let (found, ledger) = solve(&assembly, end_s, 1e-10);
+        let [_, energy] = ledger.bodies_j[0];
+        // the motion from rest at a frequency so near: `(sin(omega t) - omega t cos(omega t)) / (2 omega^2)`
+        if detuning < 1e-6 {
+            let turned = omega_rad_s * end_s;
+            let exact = (turned.sin() - turned * turned.cos()) / (2.0 * omega_rad_s * omega_rad_s);
+            assert!((found.amplitude[0][0] - exact).abs() < 2.0 * detuning * turned * exact.abs(), "{found:?}");
+        }
+        // such a small damping takes less than `2 zeta omega t` of twice the energy at the end
+        let damping = 4.0 * damping_ratio * omega_rad_s * end_s * energy;
+        assert!(ledger.modal_damping_j.abs() <= damping + ledger.rounding_j, "{detuning}: {ledger:?}");
+        let missing = (ledger.load_work_j - energy).abs();
+        assert!(missing <= damping + ledger.rounding_j, "{detuning}: {missing:e} {ledger:?}");
+        let visible = ledger.rounding_j > 1e-4 * energy;
+        assert_eq!(visible, detuning < 1e-6, "{detuning}: {ledger:?}");
+    }
+}

@@ -31,10 +31,12 @@
 //! (the modal equation times 1 and times `e^{i Omega t}`, by parts; `g` is the force of the contacts, on a rigid mode with
 //! that of the linear loads). Products of two sinusoids are elementary, and computed once for the whole run.
 //!
-//! # Residual
+//! # Residual and rounding
 //! Only `unaccounted_j` is the difference of the other parts. It consists of the quadrature error of a contact's work and the
-//! rounding of all parts, relative to the largest energy that occurs. The energy of the relative motion is large if a sampled
-//! load changes within a small part of a slow mode's period, or if the frequency of a harmonic load is nearly that of a mode.
+//! rounding of all parts. Each panel rounds the parts relative to the energy of the relative motion. That energy is large if a
+//! sampled load changes within a small part of a slow mode's period, or if the frequency of a harmonic load is nearly that of
+//! an undamped mode: the steady motion is then large, and free motion of the same size cancels it. Errors of two parts can
+//! cancel in `unaccounted_j`, so `rounding_j` states their bound.
 
 use super::damping::lost_within;
 use super::load::Loads;
@@ -58,6 +60,17 @@ pub(crate) struct Moment<'a> {
     pub rate: &'a [f64],
 }
 
+impl Moment<'_> {
+    /// Energy of the relative motion of a mode (J).
+    fn carried_energy(&self, k: usize) -> f64 {
+        0.5 * (self.rate[k].powi(2) + self.system.square[k] * self.amplitude[k].powi(2))
+    }
+
+    fn carried_energy_of_all(&self) -> f64 {
+        (0..self.amplitude.len()).map(|k| self.carried_energy(k)).sum()
+    }
+}
+
 /// The energy balance during a run.
 pub(crate) struct Account {
     bodies_j: Vec<f64>,
@@ -68,6 +81,9 @@ pub(crate) struct Account {
     flying_j: Option<f64>,
     damping_j: f64,
     load_work_j: f64,
+    /// Largest energy of the relative motion at the ends of the pieces (J), and the number of panels.
+    carried_j: f64,
+    panels: u64,
     piece: Piece,
 }
 
@@ -93,6 +109,8 @@ impl Account {
             flying_j: None,
             damping_j: 0.0,
             load_work_j: 0.0,
+            carried_j: stored_j,
+            panels: 0,
             piece: Piece::default(),
         };
         account.begin_piece(start);
@@ -102,9 +120,10 @@ impl Account {
     /// Adds a panel of `h` that is about to be accepted, with Legendre coefficients of the contact forces.
     pub fn panel(&mut self, start: &Moment, tables: &Tables, h: f64, contacts: &[usize], force: &[Nodal]) {
         let system = start.system;
+        self.panels += 1;
         if !self.damped.is_empty() {
             if contacts.is_empty() {
-                self.flying_j.get_or_insert_with(|| carried_energy(&self.damped, start));
+                self.flying_j.get_or_insert_with(|| damped_energy(&self.damped, start));
             } else {
                 self.land(start);
                 let motion = (start.amplitude, start.rate);
@@ -133,12 +152,13 @@ impl Account {
     /// A flight ends.
     fn land(&mut self, now: &Moment) {
         if let Some(energy) = self.flying_j.take() {
-            self.damping_j += energy - carried_energy(&self.damped, now);
+            self.damping_j += energy - damped_energy(&self.damped, now);
         }
     }
 
     /// Begins a new piece with the present relative motion.
     pub fn begin_piece(&mut self, now: &Moment) {
+        self.carried_j = self.carried_j.max(now.carried_energy_of_all());
         if now.loads.is_empty() {
             return;
         }
@@ -155,6 +175,7 @@ impl Account {
     /// Ends a piece at a break of the loads or at the end of the run.
     pub fn end_piece(&mut self, now: &Moment) {
         self.land(now);
+        self.carried_j = self.carried_j.max(now.carried_energy_of_all());
         if now.loads.is_empty() {
             return;
         }
@@ -239,6 +260,7 @@ impl Account {
             modal_damping_j,
             contact_loss_j: contact_work_j + self.stored_j - stored_j,
             unaccounted_j: load_work_j - gained - modal_damping_j - contact_work_j,
+            rounding_j: f64::EPSILON * (self.panels + 4) as f64 * self.carried_j,
         }
     }
 }
@@ -258,9 +280,8 @@ fn energies(now: &Moment) -> Vec<f64> {
 }
 
 /// Energy of the relative motion of the damped modes.
-fn carried_energy(damped: &[Range<usize>], now: &Moment) -> f64 {
-    let of = |k: usize| 0.5 * (now.rate[k].powi(2) + now.system.square[k] * now.amplitude[k].powi(2));
-    damped.iter().cloned().flatten().filter(|&k| now.system.drag[k] > 0.0).map(of).sum()
+fn damped_energy(damped: &[Range<usize>], now: &Moment) -> f64 {
+    damped.iter().cloned().flatten().filter(|&k| now.system.drag[k] > 0.0).map(|k| now.carried_energy(k)).sum()
 }
 
 /// Work of the straight lines on a rigid mode within a panel of `h`.

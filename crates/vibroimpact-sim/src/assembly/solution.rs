@@ -139,6 +139,10 @@ pub struct Ledger {
     pub contact_loss_j: f64,
     /// The residual of the balance (J).
     pub unaccounted_j: f64,
+    /// How far rounding can have falsified any of the parts (J). It is far below the energies unless a harmonic load nearly
+    /// meets an undamped frequency, or a sampled one changes within a small part of a slow mode's period; errors of two
+    /// parts can then cancel in `unaccounted_j`.
+    pub rounding_j: f64,
 }
 
 /// The cost of the computation, in deterministic counts.

@@ -115,6 +115,9 @@ pub struct Energy {
     pub contact_loss_j: f64,
     /// The residual of the balance.
     pub residual_j: f64,
+    /// How far rounding can have falsified any of the parts: far below the energies, unless a harmonic load nearly meets an
+    /// undamped frequency.
+    pub rounding_j: f64,
 }
 
 /// Energy of a body (J).
@@ -233,6 +236,7 @@ impl Summary {
                 modal_damping_j: ledger.modal_damping_j,
                 contact_loss_j: ledger.contact_loss_j,
                 residual_j: ledger.unaccounted_j,
+                rounding_j: ledger.rounding_j,
             }),
             counts: Cost {
                 contact_steps: counts.contact_steps,

@@ -98,6 +98,9 @@ pub(super) fn contact_rows(summary: &Summary) -> Vec<Vec<String>> {
     summary.contacts.iter().map(row).collect()
 }
 
+/// Share of the largest energy beyond which rounding shows in the digits that are printed.
+const VISIBLE_ROUNDING: f64 = 1e-4;
+
 /// Energies in rows: where, and how much.
 pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
     let Some(energy) = &summary.energy else { return Vec::new() };
@@ -115,7 +118,13 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
     ];
     let part = |(name, value): (&str, f64)| [name.to_owned(), quantity(value, "J")];
     let residual = ["unaccounted".to_owned(), format!("{:.0e} J", energy.residual_j)];
-    energy.bodies.iter().map(body).chain(parts.map(part)).chain([residual]).collect()
+    let largest =
+        energy.bodies.values().flat_map(|body| [body.start_j, body.end_j]).fold(energy.load_work_j.abs(), f64::max);
+    let rounding = (energy.rounding_j > VISIBLE_ROUNDING * largest).then(|| {
+        let why = "a load nearly meets an undamped frequency, or changes fast beside a slow mode";
+        ["rounding".to_owned(), format!("up to {:.0e} J in each of these: {why}", energy.rounding_j)]
+    });
+    energy.bodies.iter().map(body).chain(parts.map(part)).chain([residual]).chain(rounding).collect()
 }
 
 /// The result of a run.
