@@ -1,4 +1,4 @@
-//! A scene solved by the solver for its structure.
+//! Solves a scene by the solver for its structure.
 
 use contact_models::Law;
 use vibroimpact_sim::infinite::{self, Scale};
@@ -30,7 +30,7 @@ pub enum Simulation {
 /// An impact with its motion in time.
 #[derive(Debug, Clone)]
 pub struct Resolved {
-    /// What was solved.
+    /// The solved problem.
     pub impact: Impact,
     /// The result.
     pub summary: Summary,
@@ -42,7 +42,7 @@ impl Scene {
     /// Solves the impact by the model that the scene names, or that [`Scene::choose`] chooses, and records its motion.
     ///
     /// # Errors
-    /// A value out of range, or fields of which too few or too many are given.
+    /// A value out of range, or too few or too many fields.
     ///
     /// ```
     /// let scene = vibroimpact::Scene::from_json(r#"{
@@ -77,10 +77,10 @@ impl Scene {
         Ok(Simulation::Modal(Box::new(Resolved { impact, summary, history })))
     }
 
-    /// The contact with a structure that does not move at all.
+    /// The contact with an immovable structure.
     pub(crate) fn at_a_wall(&self) -> Result<Impact, InvalidInput> {
         let impact = self.impact_of(Some(0), &mut Kept::default())?;
-        // a tolerance that includes truncation may be looser than any that the solver takes
+        // a tolerance that includes truncation may be looser than the solver allows
         Ok(Impact {
             structure: Structure::default(),
             remainder_modes: 0,
@@ -93,14 +93,14 @@ impl Scene {
     /// Solves the impact on an infinite beam or plate; the scale holds the units of the solution.
     ///
     /// # Errors
-    /// As [`Scene::posed_on_infinite`], or numbers that are out of the solver's range.
+    /// As [`Scene::posed_on_infinite`], or numbers out of the range of the solver.
     pub fn solve_infinite(&self) -> Result<(Scale, infinite::Solution), InvalidInput> {
         self.posed_on_infinite()?.solve(&infinite::Settings::default())
     }
 }
 
 impl Simulation {
-    /// The scene as it was solved: with the theory of bending that answered, where `scene` leaves it open.
+    /// The scene as it was solved: with the theory of bending that was used, if `scene` does not state it.
     pub fn scene(&self, scene: &Scene) -> Scene {
         scene.as_answered(match self {
             Simulation::Modal(found) => found.summary.choice.as_ref(),
@@ -109,8 +109,8 @@ impl Simulation {
         })
     }
 
-    /// Motion and force over time, the table `history.csv`, if the model resolves them: until `until_s`, or a little
-    /// past the last contact. An impact that does not end is known no further than the computation went.
+    /// Motion and force over time, the table `history.csv`, if the model resolves them: until `until_s`, or until shortly after the
+    /// last contact. An impact that does not end is known only up to the end of the computation.
     pub fn history(&self, until_s: Option<f64>) -> Option<Table> {
         match self {
             Simulation::Modal(found) => Some(export::history(&found.history, found.until_s(until_s))),
@@ -122,7 +122,7 @@ impl Simulation {
         }
     }
 
-    /// The energy of each mode over time, the table `modal_energies.csv`, if there are modes; until when, as
+    /// The energy of each mode over time, the table `modal_energies.csv`, if there are modes; the end is that of
     /// [`Simulation::history`].
     pub fn modal_energies(&self, until_s: Option<f64>) -> Option<Table> {
         match self {
@@ -133,9 +133,8 @@ impl Simulation {
 }
 
 impl Resolved {
-    /// How far tables and pictures go (s), where a reader asks for `wanted` or leaves it open. After bodies have parted
-    /// for good their motion is free and known for all times; after a computation that stopped, or in sustained contact,
-    /// it is not.
+    /// End of tables and figures (s), with the requested end `wanted` or the default. After the bodies have separated for good
+    /// their motion is free and known for all times; after a computation that stopped, or in sustained contact, it is not.
     pub fn until_s(&self, wanted: Option<f64>) -> f64 {
         let known_s = self.history.duration_s();
         match (self.summary.outcome, wanted) {
@@ -146,5 +145,5 @@ impl Resolved {
     }
 }
 
-/// How far past the last separation tables and pictures go, as a share of the time until then.
+/// Extent of tables and figures after the last separation, as a share of the time until then.
 const AFTERMATH: f64 = 0.1;

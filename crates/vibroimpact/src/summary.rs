@@ -1,4 +1,4 @@
-//! The result of a scene as files and people read it.
+//! The result of a scene for files and text.
 
 use crate::impact::Impact;
 use crate::model::{Answer, Uncertainty};
@@ -7,12 +7,12 @@ use serde::Serialize;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Counts, EnergyLedger, Mode, Solution, SubImpact};
 
-/// A resolved impact on a structure with modes; [`ResultFile`](crate::ResultFile) is what `simulate --json` prints.
+/// A resolved impact on a structure with modes; `simulate --json` prints a [`ResultFile`](crate::ResultFile).
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// `rebound`, `no contact`, `sustained` or `stopped`.
     pub outcome: &'static str,
-    /// Why it stopped before the impact had ended, as a word of [`StopReason`]; null if it did not.
+    /// The reason why it stopped before the end of the impact, as a word of [`StopReason`]; null if it did not.
     #[serde(serialize_with = "word")]
     pub stopped_by: Option<StopReason>,
     /// Net restitution; null where the impact did not end in a rebound from an approach.
@@ -37,15 +37,15 @@ pub struct Summary {
     pub remainder_modes: usize,
     /// Static compliance of the truncated modes, which the remainder modes have (m/N); 0 without them.
     pub residual_compliance_m_n: f64,
-    /// Where the energy went.
+    /// The energy balance.
     pub energy: Energy,
     /// The cost of the computation.
     pub counts: Cost,
-    /// The model, the reason for it, and how near it came to the tolerance; null if no choice was made.
+    /// The model, the reason for it, and its accuracy compared with the tolerance; null if no choice was made.
     pub choice: Option<Answer>,
 }
 
-/// How a dropped rod moves as a rigid body, without vibration.
+/// Rigid-body motion of a dropped rod, without vibration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RodMotion {
     /// Velocity of the centre of mass, positive away from the floor (m/s).
@@ -87,22 +87,22 @@ pub struct Contact {
     pub peak_compression_m: f64,
 }
 
-/// Where the energy went (J). The residual is what the others leave of the initial energy, a measure of accuracy.
+/// The energy balance (J). The residual is the initial energy minus all other parts, a measure of accuracy.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Energy {
     /// Before the impact.
     pub initial_j: f64,
-    /// Left to the striker.
+    /// Final energy of the striker.
     pub striker_j: f64,
-    /// Left in the structure's modes together.
+    /// Final energy of all modes of the structure together.
     pub structure_j: f64,
-    /// Lost to modal damping until the last separation.
+    /// Dissipated by modal damping until the last separation.
     pub modal_damping_j: f64,
-    /// Lost in the contact.
+    /// Dissipated in the contact.
     pub contact_j: f64,
-    /// Not accounted for.
+    /// The residual of the balance.
     pub residual_j: f64,
-    /// Left in each mode, remainder modes last.
+    /// Final energy of each mode, remainder modes last.
     pub modes_j: Vec<f64>,
 }
 
@@ -122,7 +122,7 @@ pub struct Cost {
 }
 
 impl Summary {
-    /// Gathers a result for printing.
+    /// Collects a result for printing.
     pub fn new(solution: &Solution, energy: EnergyLedger, impact: &Impact) -> Summary {
         let contact = |&SubImpact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }: &SubImpact| {
             Contact { start_s, end_s, impulse_n_s, peak_force_n, peak_compression_m }
@@ -157,7 +157,7 @@ impl Summary {
         }
     }
 
-    /// The same with the choice that led to it, whose restitution and uncertainty count.
+    /// The same with the choice of the model, whose restitution and uncertainty are used.
     pub fn chosen(self, choice: Answer) -> Summary {
         Summary {
             restitution: choice.restitution,
@@ -169,7 +169,7 @@ impl Summary {
     }
 }
 
-/// What `modes --json` prints: modes from the lowest.
+/// The object that `modes --json` prints: modes from the lowest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModeTable {
     /// Natural frequencies (rad/s).
@@ -178,14 +178,14 @@ pub struct ModeTable {
     pub frequency_hz: Vec<f64>,
     /// Mass-normalised shapes at the point of impact (kg^-1/2).
     pub shape_at_location: Vec<f64>,
-    /// Of a plate by Ritz's method: how many of the frequencies, from the lowest, have converged to
+    /// For a plate by Ritz's method: number of frequencies, from the lowest, that have converged to
     /// [`CONVERGED_FREQUENCY`](crate::scene::CONVERGED_FREQUENCY).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub converged_modes: Option<usize>,
 }
 
 impl ModeTable {
-    /// Gathers modes for printing.
+    /// Collects modes for printing.
     pub fn new(modes: &[Mode], converged_modes: Option<usize>) -> ModeTable {
         ModeTable {
             converged_modes,

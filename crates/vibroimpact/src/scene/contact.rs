@@ -152,7 +152,7 @@ impl Contact {
         }
         let contact: Contact = read_beside(value, beside)
             .map_err(|fault_found| if fault_found.field.is_empty() { fault("law", law) } else { fault_found })?;
-        // and it cannot refuse unknown fields beside flattened ones, but what is not written back was not read
+        // serde cannot reject unknown fields beside flattened ones, but a field that is not written back was not read
         let written = serde_json::to_value(contact).unwrap_or_default();
         match entries.iter().find(|(field, _)| written.get(field).is_none()) {
             None => Ok(contact),
@@ -278,7 +278,7 @@ enum Damping {
     FromRestitution(f64),
 }
 
-/// Damping comes either as itself or from a restitution.
+/// The damping is stated directly or follows from a restitution.
 fn damping(given: (&str, Option<f64>), restitution: Option<f64>) -> Result<Damping, InvalidInput> {
     one_of_sets(&[given, ("restitution", restitution)], &[&[given.0], &["restitution"]]).map_err(in_contact)?;
     Ok(match (given.1, restitution) {

@@ -5,7 +5,7 @@ use invalid_input::InvalidInput;
 use super::fields;
 use super::told::number;
 
-/// Accepts a damping ratio of a structure.
+/// Checks a damping ratio of a structure.
 pub(super) fn require_damping(damping_ratio: f64) -> Result<(), InvalidInput> {
     if (0.0..=fields::MOST_DAMPING).contains(&damping_ratio) {
         return Ok(());

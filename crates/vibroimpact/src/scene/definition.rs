@@ -1,4 +1,4 @@
-//! A scene as its file poses it.
+//! A scene as it is stated in its file.
 
 use std::path::Path;
 
@@ -80,7 +80,7 @@ struct Outline {
 }
 
 impl Scene {
-    /// A scene of these, with all else left out.
+    /// A scene with these parts and defaults for all other fields.
     pub fn new(structure: impl Into<Structure>, striker: Striker, contact: Contact) -> Scene {
         Scene {
             description: None,
@@ -104,7 +104,7 @@ impl Scene {
         matches!(self.structure, Structure::InfiniteBeam(_) | Structure::InfinitePlate(_))
     }
 
-    /// Passes a yield strength that can be one.
+    /// Checks the yield strength.
     pub(crate) fn require_yield_strength(&self) -> Result<(), InvalidInput> {
         self.yield_strength_pa.map_or(Ok(()), |strength| error::require_positive("yield_strength_pa", strength))
     }
@@ -144,7 +144,7 @@ impl Scene {
     /// Reads a scene from a JSON tree.
     ///
     /// # Errors
-    /// As [`Scene::from_json`], text aside.
+    /// As [`Scene::from_json`], except for the text.
     pub fn from_value(value: &Value) -> Result<Scene, InvalidInput> {
         check_version(value, FORMAT_VERSION, "scene")?;
         if let Some(bodies) = value.get("bodies") {
@@ -189,8 +189,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Puts the numbers of a structure's `modes-file` in its place; `folder` is that of the scene. Other structures
-    /// stay as they are.
+    /// Replaces a structure's `modes-file` by its numbers; `folder` is that of the scene. Other structures are not changed.
     ///
     /// # Errors
     /// A table that cannot be read or used, with its line.
@@ -201,13 +200,13 @@ impl Scene {
         Ok(())
     }
 
-    /// The scene as JSON text, with its version and without the fields that are left out. A number that is not finite
-    /// has no JSON form and is left out.
+    /// The scene as JSON text, with its version and without the fields that are left out. A number that is not finite has no JSON
+    /// form and is omitted.
     pub fn to_json(&self) -> String {
         format!("{:#}", self.tree())
     }
 
-    /// The scene as TOML text, likewise.
+    /// The scene as TOML text, in the same form.
     ///
     /// # Errors
     /// A whole number that TOML cannot hold, which is never one that a scene may have.
@@ -220,14 +219,13 @@ impl Scene {
         versioned_tree(self)
     }
 
-    /// Where the structure is struck.
+    /// The location of impact.
     pub(crate) fn place(&self) -> Place<'_> {
         Place { location_m: self.location_m, location: self.location.as_deref() }
     }
 }
 
-/// Puts the numbers of a `modes-file` into the tree of a scene that stands in `folder`. The tree need not be a whole
-/// scene.
+/// Inserts the numbers of a `modes-file` into the tree of a scene in `folder`. The tree may be incomplete.
 pub(crate) fn read_modes_into(tree: &mut Value, folder: &Path) -> Result<(), SceneError> {
     let Some(structure) = tree.get_mut("structure") else { return Ok(()) };
     if structure.get("kind").is_some_and(|kind| kind == "modes-file")
@@ -245,8 +243,8 @@ impl<'de> Deserialize<'de> for Scene {
     }
 }
 
-/// Why there is nothing to choose and the modes are resolved as they are stated; `None` for a structure at rest that a
-/// striker of its own mass meets, which every tier can look at.
+/// The reason why there is no choice and the stated modes are used. `None` for a structure at rest that is struck by a body of
+/// finite mass, to which every model may apply.
 pub(crate) fn modal_only(scene: &Scene) -> Option<&'static str> {
     if matches!(scene.structure, Structure::DroppedRod(_)) {
         Some("a dropped rod is resolved in its modes")
@@ -259,7 +257,7 @@ pub(crate) fn modal_only(scene: &Scene) -> Option<&'static str> {
     }
 }
 
-/// Whether the program chooses the number of modes: none is stated, and there is a limit of many modes to converge to.
+/// Whether the program chooses the number of modes: none is stated, and the restitution has a limit for many modes.
 pub(crate) fn chooses_modes(scene: &Scene) -> bool {
     let settles = match &scene.structure {
         Structure::Modal(listed) => listed.gives_compliance(scene.location.as_deref()),

@@ -52,7 +52,7 @@ fn axial_modes() -> usize {
 }
 
 impl DroppedRod {
-    /// The rod in the terms of the solver.
+    /// The rod as input of the solver.
     ///
     /// # Errors
     /// An inclination or a damping ratio out of range; [`dropped_rod::DroppedRod::drop`] checks the rest.
@@ -81,7 +81,7 @@ impl DroppedRod {
         self.to_rod()?.drop(1.0)
     }
 
-    /// Rigid-body motions and modes as the floor meets them, from the lowest frequency.
+    /// Rigid-body motions and modes with their shapes at the end that strikes, from the lowest frequency.
     pub(super) fn modes(&self) -> Result<Vec<Mode>, InvalidInput> {
         let drop = self.at_unit_speed()?;
         let mut modes = drop.structure.modes;

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, and how it is told.
+//! Errors of scenes and their messages.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,12 @@ use super::told::number;
 /// Longest path of a field that a message shows (characters).
 const LONGEST_PATH: usize = 90;
 
-/// Passes a finite number greater than zero; another is shown as JSON has it.
+/// Checks that a number is finite and greater than zero; the error shows the number as in JSON.
 pub(crate) fn require_positive(field: impl Into<Path>, value: f64) -> Result<(), InvalidInput> {
     InvalidInput::require_positive(field, value).map(|_| ()).map_err(as_json)
 }
 
-/// A fault whose number is shown as JSON has it.
+/// An error that shows its number as in JSON.
 pub(crate) fn as_json(fault: InvalidInput) -> InvalidInput {
     match fault.value {
         Some(Value::Number(value)) => InvalidInput { value: Some(number(value).into()), ..fault },
@@ -22,7 +22,7 @@ pub(crate) fn as_json(fault: InvalidInput) -> InvalidInput {
     }
 }
 
-/// Why a text or a file is not a scene.
+/// The reason why a text or a file is not a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file could not be read.
@@ -30,7 +30,7 @@ pub enum SceneError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// The text is not JSON, or ends too early.
@@ -40,12 +40,12 @@ pub enum SceneError {
         line: usize,
         /// Column of the fault.
         column: usize,
-        /// Path of the field in which the fault stands; empty at the top.
+        /// Path of the field with the error; empty at the top.
         field: Path,
-        /// What was expected.
+        /// The expected text.
         reason: String,
     },
-    /// A field cannot be used.
+    /// A field is invalid.
     #[error(transparent)]
     Invalid(#[from] InvalidInput),
 }

@@ -1,5 +1,5 @@
-//! What each field of a scene may hold, said once for the messages about missing and mistyped fields. (Numbers out
-//! of range are found, and described, by the crates that work with them.)
+//! Allowed values of each field of a scene, for the messages about missing and mistyped fields. (Numbers out of range are found,
+//! and described, by the crates that use them.)
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
@@ -7,7 +7,7 @@ use invalid_input::{Path, Step};
 
 pub(crate) use super::ranges::{DAMPING, MOST_DAMPING, NOT_NEGATIVE, POSITIVE};
 
-/// Field and what it may hold.
+/// A field and its allowed values.
 const FIELDS: &[(&str, &str)] = &[
     ("", "a scene is an object with structure, striker and contact"),
     ("$schema", "a text: the address of the schema of scenes"),
@@ -118,22 +118,22 @@ const FIELDS: &[(&str, &str)] = &[
     ("poissons_ratio", "a number greater than -1 and not greater than 0.5"),
 ];
 
-/// What the field of this name may hold. (`name[]` are the items of a list.)
+/// Allowed values of the field of this name. (`name[]` are the items of a list.)
 pub(crate) fn allowed(name: &str) -> Option<&'static str> {
     look_up(FIELDS, name).or_else(|| look_up(crate::assembly::fields::FIELDS, name))
 }
 
-/// What the field at the end of this path may hold.
+/// Allowed values of the field at the end of this path.
 pub(crate) fn allowed_at(path: &Path) -> Option<&'static str> {
     allowed(&name_at(path))
 }
 
-/// What a table of fields says of the field of this name.
+/// The entry of a table of fields for this name.
 pub(crate) fn look_up(fields: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
     fields.iter().find(|(field, _)| *field == name).map(|(_, allowed)| *allowed)
 }
 
-/// The name at the end of a path, of a list where an item of it is meant; empty where the whole is.
+/// The name at the end of a path; for an item of a list the name of the list; empty for the whole scene.
 pub(crate) fn name_at(path: &Path) -> String {
     match path.steps() {
         [.., Step::Field(name)] => name.clone(),
@@ -142,8 +142,8 @@ pub(crate) fn name_at(path: &Path) -> String {
     }
 }
 
-/// The range of a number in the field of this name, where it has one; for the schema, which tests hold against what
-/// is refused. (`name[]` are the items of a list.)
+/// The range of a number in the field of this name, if it has one. It is used in the schema, which tests compare with the values
+/// that are rejected. (`name[]` are the items of a list.)
 pub(crate) fn range(name: &str) -> Option<(Bound<f64>, Bound<f64>)> {
     let of_text = |text: &str| match text {
         POSITIVE => Some((Excluded(0.0), Unbounded)),

@@ -10,10 +10,10 @@ use super::error::SceneError;
 use super::{fields, json, toml};
 use crate::input::read_bytes;
 
-/// The newest version of the scene format that is understood; a file without a version has version 1.
+/// The newest supported version of the scene format; a file without a version has version 1.
 pub const FORMAT_VERSION: u64 = 1;
 
-/// What a scene file holds, in messages.
+/// Name of the content of a scene file in messages.
 pub(crate) const A_SCENE: &str = "a scene";
 
 /// A scene as a tree, with its version and without the fields that are left out.
@@ -32,7 +32,7 @@ pub(crate) fn plain_tree(part: &impl Serialize) -> Value {
     tree
 }
 
-/// The tree of a file, which should hold `what`: TOML if its name ends in `.toml`, JSON otherwise.
+/// The tree of a file, whose expected content is `what`: TOML if its name ends in `.toml`, JSON otherwise.
 pub(crate) fn read_tree(path: &Path, what: &str) -> Result<Value, SceneError> {
     let text = utf8(read_bytes(path)?, path)?;
     let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
@@ -52,7 +52,7 @@ pub(crate) fn utf8(bytes: Vec<u8>, path: &Path) -> Result<String, SceneError> {
     })
 }
 
-/// A fault in the syntax of a text that would be none in another format: the name decides the format.
+/// A syntax error of a text that would be valid in the other format; the file name determines the format.
 fn hinted(found: SceneError, is_other: bool, format: &str, ending: &str) -> SceneError {
     match found {
         SceneError::Syntax { line, column, field, reason } if is_other => SceneError::Syntax {
@@ -65,7 +65,7 @@ fn hinted(found: SceneError, is_other: bool, format: &str, ending: &str) -> Scen
     }
 }
 
-/// A file of a newer format is told as that, before any field that only the newer format knows.
+/// Rejects a file in a newer format, before any unknown field is reported.
 pub(crate) fn check_version(value: &Value, newest: u64, what: &str) -> Result<(), InvalidInput> {
     match value.get("version") {
         Some(version) if version.as_u64().is_some_and(|version| version > newest) => {

@@ -35,7 +35,7 @@ pub struct Support {
     pub location_m: f64,
 }
 
-/// How the modes of a beam are damped.
+/// Damping of the modes of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Damping<'a> {
     /// Of every mode beyond the list.

@@ -5,7 +5,7 @@ use invalid_input::InvalidInput;
 use super::beam::{Beam, BeamModes};
 use super::plate::Plate;
 
-/// The modes of the last beam and of the last plate, by how many were requested: scenes of one structure share them.
+/// Cached modes of the last beam and of the last plate by their requested number, which scenes of one structure share.
 #[derive(Default)]
 pub(crate) struct KnownModes {
     pub(super) beams: Sets<Beam, BeamModes>,
@@ -24,12 +24,12 @@ impl<S, M> Default for Sets<S, M> {
     }
 }
 
-/// More sets are not kept.
+/// Largest number of cached sets.
 const MOST_SETS: usize = 32;
 
 impl<S: Clone + PartialEq, M> Sets<S, M> {
-    /// The first `count` modes of a structure. A set of another size is not cut to this one: it may differ in the last
-    /// bit, and no result may depend on what was asked before.
+    /// The first `count` modes of a structure. A larger set is not truncated to this size: it may differ in the last bit, and
+    /// results must not depend on earlier requests.
     pub fn first(
         &mut self,
         structure: &S,

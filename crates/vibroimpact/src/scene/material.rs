@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 
 use super::told::{did_you_mean, quote};
 
-/// A material as a norm or a handbook states it: typical, elastic, isotropic.
+/// Typical values of an elastic, isotropic material from a standard or a handbook.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NamedMaterial {
     /// Its name in a scene.
@@ -23,7 +23,7 @@ pub struct NamedMaterial {
     pub poissons_ratio: f64,
     /// Density (kg/m^3).
     pub density_kg_m3: f64,
-    /// Where the numbers are from.
+    /// Source of the numbers.
     pub source: &'static str,
 }
 
@@ -80,9 +80,9 @@ const STRIKER_MATERIAL: &str = "striker_material";
 const MODULUS: &str = "youngs_modulus_pa";
 const RATIO: &str = "poissons_ratio";
 const DENSITY: &str = "density_kg_m3";
-/// The numbers for which a material stands.
+/// The numbers of a material.
 pub(super) const NUMBERS: [&str; 3] = [MODULUS, RATIO, DENSITY];
-/// What states stiffness and mass in another way, beside which a material has nothing to say.
+/// Fields that state stiffness and mass in another way, with which a material cannot be combined.
 const IN_ITS_PLACE: [&str; 7] = [
     "flexural_rigidity_n_m2",
     "axial_rigidity_n",
@@ -104,10 +104,10 @@ pub(super) fn names_beside(known: &[&str]) -> Vec<&'static str> {
         .collect()
 }
 
-/// The scene with the numbers of its materials in the place of their names.
+/// The scene with the names of its materials replaced by their numbers.
 ///
 /// # Errors
-/// A name that no material has, or a material beside a field that states the same in another way.
+/// An unknown material, or a material together with a field that states the same property in another way.
 pub(crate) fn numbers_of_materials(scene: &Value) -> Result<Cow<'_, Value>, InvalidInput> {
     if !names_one(scene) {
         return Ok(Cow::Borrowed(scene));
@@ -117,7 +117,7 @@ pub(crate) fn numbers_of_materials(scene: &Value) -> Result<Cow<'_, Value>, Inva
     Ok(Cow::Owned(written_out))
 }
 
-/// The objects that may name a material, and those on the way to them.
+/// The objects that may name a material, and the objects that contain them.
 #[derive(Clone, Copy, PartialEq)]
 enum Holder {
     Scene,
@@ -125,14 +125,14 @@ enum Holder {
     /// A structure, or a body.
     Structure,
     Segment,
-    /// A segment of a rod in axial vibration, which has no use for Poisson's ratio.
+    /// A segment of a rod in axial vibration, which does not need Poisson's ratio.
     RodSegment,
     Striker,
     Contact,
 }
 
 impl Holder {
-    /// What stands under a key.
+    /// The value of a key.
     fn under(self, key: &str, of_rod: bool) -> Option<Holder> {
         Some(match (self, key) {
             (Holder::Scene, "structure") | (Holder::Bodies, _) => Holder::Structure,
@@ -145,7 +145,7 @@ impl Holder {
         })
     }
 
-    /// The numbers of a material that this object takes.
+    /// The numbers of a material that this object needs.
     fn takes(self, kind: Option<&str>) -> &'static [&'static str] {
         match (self, kind) {
             (Holder::Structure, Some("plate" | "infinite-beam" | "infinite-plate" | "dropped-rod"))
@@ -158,13 +158,13 @@ impl Holder {
     }
 }
 
-/// Whether a material is named anywhere that one may be.
+/// Whether any object names a material.
 fn names_one(value: &Value) -> bool {
     match value {
         Value::Object(map) => {
             map.contains_key(MATERIAL) || map.contains_key(STRIKER_MATERIAL) || map.values().any(names_one)
         }
-        // lists of numbers, which may be long, are passed over at their first
+        // lists of numbers, which may be long, are skipped after their first item
         Value::Array(items) => items.iter().take_while(|item| !item.is_number()).any(names_one),
         _ => false,
     }

@@ -1,4 +1,4 @@
-//! Stiffness of a contact, and the materials it may come from.
+//! Stiffness of a contact, stated directly or by materials.
 
 use contact_models::{Body, Hertz, effective_modulus_pa};
 use invalid_input::InvalidInput;
@@ -65,7 +65,7 @@ impl Materials {
             )
         })?;
         require_positive(["striker", "radius_m"], radius_m)?;
-        // a whole set was given, so that both are there
+        // a complete set was given, so both are present
         let [modulus, ratio] = [self.youngs_modulus_pa, self.poissons_ratio].map(|value| value.unwrap_or(f64::NAN));
         let structure = Body::flat(modulus, ratio);
         let ball = Body {
@@ -73,7 +73,7 @@ impl Materials {
             poissons_ratio: self.striker_poissons_ratio.unwrap_or(ratio),
             radius_m,
         };
-        // each material against a rigid partner, so that a fault is laid at the right door
+        // each material is checked with a rigid partner, so that an error names the right field
         let partner = Body::rigid(1.0);
         effective_modulus_pa(&structure, &partner).map_err(in_contact)?;
         effective_modulus_pa(&ball, &partner).map_err(|fault| {
@@ -117,7 +117,7 @@ impl HertzStiffness {
             .map_err(|fault| fault.within("striker"))
     }
 
-    /// The stiffness and exponent of a general power law, which must then stand alone.
+    /// The stiffness and exponent of a general power law, which cannot be combined with the fields of Hertz's law.
     pub(crate) fn or_general(
         &self,
         (stiffness, exponent): (Option<f64>, Option<f64>),

@@ -1,11 +1,11 @@
-//! Scenes: an impact as a JSON or TOML file poses it.
+//! Scenes: impacts as JSON or TOML files.
 //!
-//! The types mirror the file field by field; [`Scene::impact`] turns them into the solver's terms. Fields are
-//! required unless a default is stated. Lengths are in metres, and so on: every name carries its unit. A file may say
-//! `"version": 1`, the version of this format, and an editor may find the schema by its `"$schema"`. Where an object
-//! takes numbers of a material, it may name one of [`MATERIALS`] instead: `"material": "steel"`.
+//! The types mirror the file field by field; [`Scene::impact`] converts them into the input of the solver. Fields are required
+//! unless a default is stated. All quantities are in SI units, and every name contains its unit. A file may state
+//! `"version": 1`, the version of this format, and its schema as `"$schema"`, for editors. An object that needs numbers of a
+//! material may name one of [`MATERIALS`] instead: `"material": "steel"`.
 //!
-//! A scene can as well be put together in Rust:
+//! A scene can also be built in Rust:
 //!
 //! ```
 //! use vibroimpact::model::Modes;

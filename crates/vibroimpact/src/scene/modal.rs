@@ -63,7 +63,7 @@ pub struct Point {
     pub static_compliance_m_n: Option<f64>,
 }
 
-/// The shapes and the compliance at one place, and where they stand in the scene.
+/// The shapes and the compliance at one location, and their path in the scene.
 struct Seen<'a> {
     shape: &'a [f64],
     shape_field: Path,
@@ -136,7 +136,7 @@ impl Modal {
         }
     }
 
-    /// All modes as seen from a point.
+    /// All modes with their shapes at a point.
     pub(super) fn modes(&self, location: Option<&str>) -> Result<Vec<Mode>, InvalidInput> {
         let seen = self.seen_from(location)?;
         self.modes_of(&seen).map_err(|fault| fault.within("structure"))
@@ -163,7 +163,7 @@ impl Modal {
             shape: seen.shape[k] / self.modal_mass_kg.get(k).map_or(1.0, |mass| mass.sqrt()),
         };
         let modes: Vec<Mode> = (0..listed).map(mode).collect();
-        // the solver knows the ranges; its fault is told of the list in which the number stands
+        // the solver checks the ranges; its error is reported with the list that contains the number
         let structure = Structure { modes };
         match Solver::new(&structure) {
             Ok(_) => Ok(structure.modes),
@@ -182,7 +182,7 @@ impl Modal {
         InvalidInput { field, value, ..fault }
     }
 
-    /// Whether the static compliance at a point is stated, be its value allowed or not.
+    /// Whether the static compliance at a point is stated, with any value.
     pub(crate) fn gives_compliance(&self, location: Option<&str>) -> bool {
         self.seen_from(location).is_ok_and(|seen| seen.static_compliance_m_n.is_some())
     }
@@ -200,7 +200,7 @@ impl Modal {
     }
 }
 
-/// Names as a message lists them.
+/// Names in the form of a list in a message.
 fn shown<'a>(names: impl Iterator<Item = &'a String>) -> String {
     const MOST: usize = 12;
     let mut names: Vec<String> = names.take(MOST + 1).map(|name| format!("{name:?}")).collect();

@@ -1,4 +1,4 @@
-//! Modes from a table beside the scene.
+//! Modes from a table in the folder of the scene.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -38,7 +38,7 @@ const NEEDED: &str = "a table of comma-separated values whose line of names hold
                       need be damping_ratio and modal_mass_kg, and each point's name once";
 
 impl ModesFile {
-    /// Reads the table, from a scene that stands in `folder`.
+    /// Reads the table, for a scene in `folder`.
     pub(crate) fn load(&self, folder: &Path) -> Result<Modal, SceneError> {
         let path = table_path(["structure", "file"], &self.file)?;
         let mut modal = parse(&read_bytes(&folder.join(path))?).map_err(|fault| fault.in_place(self.file.as_str()))?;
@@ -53,7 +53,7 @@ impl ModesFile {
     }
 }
 
-/// The path of a table that a scene names, which stands in the folder of the scene or below.
+/// The path of a table that a scene names, in the folder of the scene or below.
 pub(crate) fn table_path(field: impl Into<invalid_input::Path>, file: &str) -> Result<&Path, InvalidInput> {
     let path = Path::new(file);
     let below = path.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));

@@ -1,4 +1,4 @@
-//! The motion at the start in the terms of the solver.
+//! The motion at the start as input of the solver.
 
 use invalid_input::InvalidInput;
 use vibroimpact_sim::modal::{self, Mode};
@@ -7,8 +7,8 @@ use super::definition::Scene;
 use super::start::Start;
 
 impl Scene {
-    /// The start in the terms of the solver, for these modes as seen from the point of impact, of which the last
-    /// `remainder` are remainder modes and rest.
+    /// The start as input of the solver, for these modes with their shapes at the point of impact. The last `remainder` of them are
+    /// remainder modes, which start at rest.
     pub(crate) fn start(&self, modes: &[Mode], remainder: usize) -> Result<Option<modal::Start>, InvalidInput> {
         let Some(start) = &self.start else { return Ok(None) };
         let mut posed = self.posed(start, &modes[..modes.len() - remainder])?;
@@ -31,7 +31,7 @@ impl Scene {
                 moving.shape(modes)
             } else {
                 let seen = self.structure.modes(there, Some(modes.len())).map_err(|fault| {
-                    // a fault of the structure itself keeps its own path
+                    // an error of the structure itself has its own path
                     if matches!(fault.field.first(), Some("location_m" | "location")) { within(fault) } else { fault }
                 })?;
                 moving.shape(&seen)
@@ -44,7 +44,7 @@ impl Scene {
     }
 }
 
-/// The values of the first modes, and 0 for the rest.
+/// The values of the first modes, and 0 for the others.
 fn padded(field: &str, first: &[f64], count: usize) -> Result<Vec<f64>, InvalidInput> {
     if first.len() > count {
         let allowed = format!("at most {count} values, the number of modes");

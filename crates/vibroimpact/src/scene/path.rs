@@ -7,12 +7,12 @@ use serde_json::{Map, Value};
 
 use super::told::counted;
 
-/// The place of a field in a scene file.
+/// The path of a field in a scene file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldPath(Path);
 
 impl FieldPath {
-    /// Reads a path; `None` for what is none.
+    /// Reads a path; `None` for an invalid one.
     pub(crate) fn parse(text: &str) -> Option<FieldPath> {
         let mut steps = Vec::new();
         for piece in text.split('.') {
@@ -33,7 +33,7 @@ impl FieldPath {
         Some(FieldPath(steps.into_iter().collect()))
     }
 
-    /// What stands in its place.
+    /// The value at this path.
     pub(crate) fn get<'a>(&self, tree: &'a Value) -> Option<&'a Value> {
         self.0.steps().iter().try_fold(tree, |place, step| match step {
             Step::Field(key) => place.get(key),
@@ -42,10 +42,10 @@ impl FieldPath {
         })
     }
 
-    /// Puts a value in its place. All that stands above the field must be there already; the field itself need not.
+    /// Sets the value at this path. The objects that contain the field must exist; the field itself need not.
     ///
     /// # Errors
-    /// Says what is not there.
+    /// Names the missing object.
     pub(crate) fn set(&self, tree: &mut Value, value: Value) -> Result<(), String> {
         let mut place = tree;
         for (depth, step) in self.0.steps().iter().enumerate() {
@@ -78,11 +78,11 @@ impl FieldPath {
         Ok(())
     }
 
-    /// As [`FieldPath::set`], but objects on the way that are not there are made. Names that the scene does not know are
-    /// left to its reader, which lists those that it knows.
+    /// As [`FieldPath::set`], but missing objects on the path are created. Unknown names are reported later, when the scene is
+    /// read, with a list of the allowed names.
     ///
     /// # Errors
-    /// Says what is no object, or which list is too short.
+    /// Names a value that is not an object, or a list that is too short.
     pub(crate) fn set_or_insert(&self, tree: &mut Value, value: Value) -> Result<(), String> {
         for depth in 1..self.0.steps().len() {
             let object =
@@ -95,7 +95,7 @@ impl FieldPath {
         self.set(tree, value)
     }
 
-    /// Whether the other field is this one or stands within it.
+    /// Whether the other field is this one or part of it.
     pub(crate) fn holds(&self, other: &Path) -> bool {
         other.steps().starts_with(self.0.steps())
     }
@@ -105,7 +105,7 @@ impl FieldPath {
         &self.0
     }
 
-    /// The path up to and with the step at `depth`.
+    /// The path up to and including the step at `depth`.
     fn upto(&self, depth: usize) -> FieldPath {
         FieldPath(self.0.steps().iter().take(depth + 1).cloned().collect())
     }

@@ -1,11 +1,11 @@
-//! Where a structure is struck, and how many modes a scene may ask for.
+//! The location of impact, and the largest number of modes of a scene.
 
 use invalid_input::InvalidInput;
 
 use super::fields;
 use super::location::Location;
 
-/// Where a structure is struck or seen from: a location on it, or the name of a point.
+/// A location on a structure: coordinates, or the name of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place<'a> {
     pub location_m: Option<Location>,
@@ -13,13 +13,13 @@ pub(crate) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Refuses a location that is given; `why` says why it must not be.
+    /// Rejects a location that is given; `why` states the reason.
     pub(crate) fn require_none(&self, why: &str) -> Result<(), InvalidInput> {
         self.require_no_distance(why)?;
         self.require_no_name(why)
     }
 
-    /// The location on a structure that has locations of its own.
+    /// The location on a structure with coordinates.
     pub(crate) fn on_structure(&self) -> Result<Location, InvalidInput> {
         self.require_no_name("left out: the location on this structure is location_m")?;
         let missing = || InvalidInput::missing("location_m", fields::allowed("location_m").unwrap_or_default());
@@ -41,7 +41,7 @@ impl Place<'_> {
     }
 }
 
-/// Largest number of modes that a scene may ask for.
+/// Largest number of modes that a scene may request.
 pub const MOST_MODES: usize = 10_000;
 
 pub(crate) fn require_count(count: usize) -> Result<(), InvalidInput> {

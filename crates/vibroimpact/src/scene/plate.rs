@@ -7,7 +7,7 @@ use vibroimpact_sim::modal::{Mode, Structure};
 
 use super::damping::require_damping;
 
-/// A frequency that more polynomials would change by a smaller share than this has converged.
+/// A frequency has converged if more polynomials would change it by a smaller share than this.
 pub const CONVERGED_FREQUENCY: f64 = 1e-5;
 
 /// A uniform rectangular plate, [`beam_modes::Plate`].
@@ -121,14 +121,14 @@ impl Plate {
         Ok(plate)
     }
 
-    /// The first `count` modes, to be seen from any location.
+    /// The first `count` modes, with shapes at any location.
     pub(super) fn modes(&self, count: usize) -> Result<beam_modes::PlateModes, InvalidInput> {
         require_damping(self.damping_ratio)?;
         let plate = self.to_plate().map_err(|fault| fault.within("structure"))?;
         plate.modes(count).map_err(in_structure)
     }
 
-    /// How many of the first `count` modes have converged; `None` where they have a closed form.
+    /// Number of converged modes among the first `count`; `None` if they have a closed form.
     pub(crate) fn converged_modes(&self, count: usize) -> Result<Option<usize>, InvalidInput> {
         if self.edges == [Edge::Pinned; 4] {
             return Ok(None);
@@ -136,7 +136,7 @@ impl Plate {
         Ok(Some(self.modes(count)?.converged(CONVERGED_FREQUENCY)))
     }
 
-    /// The modes as a striker at a location meets them.
+    /// The modes with their shapes at a location.
     pub(super) fn seen_from(
         &self,
         modes: &beam_modes::PlateModes,
@@ -146,7 +146,7 @@ impl Plate {
         Ok(Structure::from_modes(seen, self.damping_ratio).modes)
     }
 
-    /// Static compliance at a location, and by how much it may be off (m/N).
+    /// Static compliance at a location, and its uncertainty (m/N).
     pub(super) fn static_compliance_with_uncertainty_m_n(
         &self,
         [x_m, y_m]: [f64; 2],
@@ -155,8 +155,8 @@ impl Plate {
         plate.static_compliance_with_uncertainty(x_m, y_m).map_err(in_structure)
     }
 
-    /// Frequency of mode `n` by Weyl's law (rad/s), and what `n` modes add to the inverse mass of a location inside, on
-    /// average (1/kg).
+    /// Frequency of mode `n` by Weyl's law (rad/s), and mean contribution of `n` modes to the inverse mass of a location inside
+    /// (1/kg).
     pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
         let area = self.length_m * self.width_m;
         let rigidity = self.youngs_modulus_pa * self.thickness_m.powi(2) / (12.0 * (1.0 - self.poissons_ratio.powi(2)));

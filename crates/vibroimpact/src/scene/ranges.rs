@@ -1,4 +1,4 @@
-//! Ranges of numbers, in the words of messages and of the schema.
+//! Ranges of numbers, for messages and for the schema.
 
 pub(crate) const POSITIVE: &str = "a finite number greater than 0";
 pub(crate) const NOT_NEGATIVE: &str = "a finite number not less than 0";

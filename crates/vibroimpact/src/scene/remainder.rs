@@ -1,7 +1,7 @@
 //! The truncated modes of a structure, as a few remainder modes ([`beam_modes::remainder_modes`]).
 //!
-//! Of a structure whose modes are computed, as many more are computed as tell where the tail begins; what lies beyond
-//! them, and all of the tail of a list, follows from the static compliance and from how the frequencies grow.
+//! For a structure whose modes are computed, further modes are computed for the first part of the truncated spectrum. The rest,
+//! and the whole truncated spectrum of a list, follows from the static compliance and the growth of the frequencies.
 
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_from_trend, remainder_modes};
 use invalid_input::InvalidInput;
@@ -12,7 +12,7 @@ use super::place::MOST_MODES;
 use super::plate::Edge;
 use super::structure::Structure;
 
-/// Accepts a structure whose modes beyond those kept can be told from them: a list by at least one elastic mode.
+/// Checks that the truncated modes of a structure can be extrapolated: a list needs at least one elastic mode.
 pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), InvalidInput> {
     if whole_m_n == 0.0 || kept.iter().any(|mode| mode.omega_rad_s > 0.0) {
         return Ok(());
@@ -22,18 +22,19 @@ pub(crate) fn require_elastic(kept: &[Mode], whole_m_n: f64) -> Result<(), Inval
     Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed))
 }
 
-/// Remainder modes of a beam by Euler-Bernoulli's theory, whose tail is nearly a spring. All others are wave impedances.
+/// Remainder modes of a beam by Euler-Bernoulli's theory, whose truncated modes are nearly a spring. Those of all other structures
+/// are nearly a wave impedance.
 const OF_SLENDER_BEAM: usize = 2;
-/// Listed modes that leave less than this share of their static compliance to others are all that a structure has.
+/// A list counts as complete if less than this share of the static compliance is missing.
 pub(crate) const COMPLETE: f64 = 1e-11;
-/// A list may have this much more static compliance than is stated for the whole, by rounding.
+/// The static compliance of a list may exceed the stated one by this share, by rounding.
 const ROUNDING: f64 = 1e-9;
-/// Modes for a remainder are computed in multiples of this, so that impacts with a few modes more share them.
+/// Modes for a remainder are computed in multiples of this number, so that impacts with a few more modes share them.
 const SIZES: usize = 64;
 
 impl Structure {
-    /// How many modes tell enough of those beyond the first `kept`: no more than these for a list, and for a plate whose
-    /// modes take too long.
+    /// Number of modes from which those beyond the first `kept` can be extrapolated: only `kept` for a list, and for a plate whose
+    /// modes take too long to compute.
     pub(crate) fn enough_for_remainder(&self, kept: usize) -> usize {
         let cheap = match self {
             Structure::Beam(_) | Structure::TautString(_) => true,
@@ -47,12 +48,12 @@ impl Structure {
         }
     }
 
-    /// Remainder modes in place of all modes beyond the first `kept` of those `known`, for a structure with this static
-    /// compliance. They are damped as the last mode kept. Of a list of which nothing elastic is kept there are none.
+    /// Remainder modes in place of all modes beyond the first `kept` of those `known`, for a structure with this static compliance.
+    /// They have the damping of the last retained mode. A list without a retained elastic mode has none.
     pub(crate) fn remainder(&self, known: &[Mode], kept: usize, whole_m_n: f64) -> Result<Vec<Mode>, InvalidInput> {
         let (first, tail) = known.split_at_checked(kept).unwrap_or((known, &[]));
         let answered = compliance(first);
-        // where both are computed, less than nothing is rounding
+        // if both are computed, a negative difference is due to rounding
         if !self.is_computed() && whole_m_n < answered * (1.0 - ROUNDING) {
             let allowed = format!("not less than that of the modes retained, {answered:e}");
             return Err(InvalidInput::new(["structure", "static_compliance_m_n"], format!("{whole_m_n:e}"), allowed));

@@ -1,5 +1,5 @@
-//! JSON Schemas of the files that come in, from the types that read them: descriptions are the doc comments, ranges
-//! those that the messages state. An editor that knows the schema completes names and marks slips while one writes.
+//! JSON Schemas of the input files, generated from the types that read them: descriptions are the doc comments, and ranges those of
+//! the messages. With the schema an editor completes names and marks errors.
 
 use std::ops::Bound;
 
@@ -14,10 +14,10 @@ use super::sets::schema_of_sets;
 use super::{FORMAT_VERSION, Scene, fields};
 use crate::assembly::AssemblyScene;
 
-/// The JSON Schema (draft 2020-12) of scene files, those with `bodies` and those of one impact. What it lets pass has the
-/// right shape, a location where the structure needs one, and a mass, sections and loads each given in one way. It cannot
-/// compare different fields: that a location lies on the beam, that lists are equally long, and that a name is one of the
-/// points or bodies is left to [`Scene::impact`] and [`AssemblyScene::pose`].
+/// The JSON Schema (draft 2020-12) of scene files, with `bodies` and of one impact. A file that it accepts has the right form, a
+/// location if the structure needs one, and mass, sections and loads that are each stated in one way. The schema cannot compare
+/// different fields: [`Scene::impact`] and [`AssemblyScene::pose`] check that a location lies on the beam, that lists have the same
+/// length, and that a name is one of the points or bodies.
 ///
 /// ```
 /// let schema = vibroimpact::scene::schema::of_scenes();
@@ -38,7 +38,7 @@ pub fn of_scenes() -> Value {
         "title": "Scene",
         "description": "One impact, or many bodies and contacts under loads",
         "type": "object",
-        // said of a field that is absent, so that it holds where none is required
+        // stated for an absent field, so that it holds if none is required
         "if": { "properties": { "bodies": false } },
         "then": impact,
         "else": bodies,
@@ -46,7 +46,7 @@ pub fn of_scenes() -> Value {
     })
 }
 
-/// What the kind of structure asks of the fields beside it.
+/// Conditions of the kind of structure on other fields.
 fn dependent_fields() -> Value {
     let none = |fields: &[&str]| -> Map<String, Value> {
         fields.iter().map(|field| ((*field).to_owned(), json!({ "type": "null" }))).collect()
@@ -64,7 +64,7 @@ fn dependent_fields() -> Value {
         json!({ "required": [field], "properties": properties })
     };
     let mass_or_sphere = schema_of_sets(&[&["mass_kg"], &["density_kg_m3", "radius_m"]]);
-    // a radius may stand beside a mass, for the contact
+    // a radius may be combined with a mass, for the contact
     let mut mass_or_sphere = without(mass_or_sphere, 0, "radius_m");
     or_material(&mut mass_or_sphere);
     let mut stop = none(&["mass_kg", "density_kg_m3", "material"]);
@@ -98,7 +98,7 @@ fn dependent_fields() -> Value {
     ])
 }
 
-/// The sets, in one of which a field may stand or not.
+/// The alternative sets of fields, with an optional field.
 fn without(mut sets: Value, number: usize, field: &str) -> Value {
     if let Some(properties) = sets.pointer_mut(&format!("/{number}/properties")).and_then(Value::as_object_mut) {
         properties.remove(field);
@@ -106,8 +106,8 @@ fn without(mut sets: Value, number: usize, field: &str) -> Value {
     sets
 }
 
-/// Lets a material be named in every object that takes its numbers. (The derived schema knows the numbers alone, which
-/// take its place before a scene is read.)
+/// Allows a material in every object that needs its numbers. (The derived schema has only the numbers, which replace the name
+/// before a scene is read.)
 fn name_materials(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
@@ -146,7 +146,7 @@ fn name_materials(schema: &mut Value) {
     }
 }
 
-/// The sets of fields, and those in which a material stands for its numbers.
+/// The sets of fields, and those in which a material replaces its numbers.
 fn or_material(sets: &mut Value) {
     let Value::Array(sets) = sets else { return };
     let mut named = Vec::new();
@@ -174,7 +174,7 @@ fn settings() -> SchemaSettings {
     SchemaSettings::draft2020_12().with_transform(RecursiveTransform(refine))
 }
 
-/// The schema of a type that is read from a whole file of this format version.
+/// The schema of a type that is read from a complete file of this format version.
 pub(crate) fn of<T: JsonSchema>(version: u64) -> Value {
     let mut schema = settings().into_generator().into_root_schema_for::<T>().to_value();
     versioned(&mut schema, version);
@@ -189,8 +189,8 @@ fn versioned(schema: &mut Value, version: u64) {
     schema["properties"]["version"] = json!({ "const": version, "description": described });
 }
 
-/// What the derived schema does not know: ranges by the names of fields, and that there are no fields beside those of a
-/// law of contact and of the object that it stands in. Links in the doc comments become plain text.
+/// Adds what the derived schema does not contain: ranges by the names of fields, and that an object with a contact law has no other
+/// fields. Links in the doc comments become plain text.
 fn refine(schema: &mut Schema) {
     if let Some(Value::String(text)) = schema.get_mut("description") {
         *text = text.replace("[`", "`").replace("`]", "`").replace("(crate::Scene::read)", "");
@@ -208,7 +208,7 @@ fn refine(schema: &mut Schema) {
         }
     }
     let has_section = SECTIONS.concat().iter().all(|field| properties.contains_key(*field));
-    // what is put in below is no object of the format, and is gone through again
+    // the parts inserted below are not objects of the format, and are processed again
     if has_section && schema.get("type").is_some() {
         schema.insert("oneOf".to_owned(), schema_of_sets(&SECTIONS));
     }
@@ -222,7 +222,7 @@ fn bound(schema: &mut Map<String, Value>, name: &str) {
         Some(kind) => is_number(kind),
         None => false,
     };
-    // a machine's own size of an integer is no part of the format
+    // the size of an integer on a machine is not part of the format
     schema.remove("format");
     let Some((least, most)) = fields::range(name).filter(|_| numeric) else { return };
     for (bound, inclusive, exclusive) in [(least, "minimum", "exclusiveMinimum"), (most, "maximum", "exclusiveMaximum")]

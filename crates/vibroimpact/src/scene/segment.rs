@@ -1,4 +1,4 @@
-//! A uniform piece of a beam, and what its section makes of it by either theory of bending.
+//! A uniform segment of a beam, and its rigidity and mass by either theory of bending.
 
 use std::f64::consts::PI;
 
@@ -148,7 +148,7 @@ impl Segment {
         })
     }
 
-    /// Shear and rotary inertia, or `None` where nothing of them is given.
+    /// Shear and rotary inertia, or `None` if neither is given.
     pub(super) fn to_shear(self) -> Result<Option<beam_modes::ShearSection>, InvalidInput> {
         let section = self.section()?;
         let given = [
@@ -212,14 +212,14 @@ impl Segment {
         }))
     }
 
-    /// That nothing is said of shear where it is needed.
+    /// The error for missing data of shear.
     pub(super) fn lacks_shear(&self) -> InvalidInput {
         let field = if self.flexural_rigidity_n_m2.is_some() { "shear_rigidity_n" } else { "poissons_ratio" };
         let range = fields::allowed(field).unwrap_or_default();
         InvalidInput::missing(field, format!("needed by the theory timoshenko: {range}"))
     }
 
-    /// The same piece with another shear rigidity, by this factor.
+    /// The same segment with its shear rigidity multiplied by this factor.
     pub(super) fn with_shear_times(self, factor: f64) -> Segment {
         let by_section = self
             .poissons_ratio

@@ -5,12 +5,12 @@ use serde_json::{Map, Value, json};
 
 use super::json::number;
 
-/// Finds which of `sets` the given fields make up. Exactly one set must be given whole, and nothing beside it;
-/// otherwise the error names the field that is missing or too much for the set that comes nearest.
+/// Finds the one of `sets` that the given fields form. Exactly one set must be complete, without further fields; otherwise the
+/// error names the missing or superfluous field of the closest set.
 pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Result<usize, InvalidInput> {
     let here: Vec<(&str, f64)> = given.iter().filter_map(|&(field, value)| value.map(|value| (field, value))).collect();
     let in_common = |set: &[&str]| here.iter().filter(|(name, _)| set.contains(name)).count();
-    // of the sets that share most with what is given, the one that asks for least beside it
+    // of the sets that have most fields in common with the given ones, the one with the fewest missing fields
     let nearest = (0..sets.len()).min_by_key(|&i| (usize::MAX - in_common(sets[i]), sets[i].len())).unwrap_or(0);
     let set = sets.get(nearest).copied().unwrap_or(&[]);
     let ways = || sets.iter().map(|set| set.join(" and ")).collect::<Vec<_>>().join(", or ");
@@ -24,7 +24,7 @@ pub(crate) fn one_of_sets(given: &[(&str, Option<f64>)], sets: &[&[&str]]) -> Re
     Ok(nearest)
 }
 
-/// Exactly one of the sets of fields is given, and nothing of the others. A field that is null is not given.
+/// Schema: exactly one of the sets of fields is given, and no field of the others. A field that is null is not given.
 pub(crate) fn schema_of_sets(sets: &[&[&str]]) -> Value {
     let all = sets.concat();
     let set = |set: &&[&str]| {

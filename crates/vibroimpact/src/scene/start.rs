@@ -22,7 +22,8 @@ use super::place::Place;
 /// use vibroimpact::scene::{MovingMode, Start};
 ///
 /// // the first mode moves at 0.2 m/s towards the striker where it will be struck
-/// let start = Start { moving_modes: vec![MovingMode { mode: 1, velocity_m_s: 0.2, ..MovingMode::default() }], ..Start::default() };
+/// let start = Start { moving_modes: vec![MovingMode { mode: 1, velocity_m_s: 0.2, ..MovingMode::default() }], ..Start::default()
+/// };
 /// # assert_eq!(start.gap_m, 0.0);
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,11 +61,11 @@ pub struct MovingMode {
     pub velocity_m_s: f64,
 }
 
-/// A mode that moves less than this at the location, as a share of the mode that moves most there, has a node there.
+/// A mode whose shape at the location is below this share of the largest one has a node there.
 const NODE: f64 = 1e-9;
 
 impl MovingMode {
-    /// Where the mode's motion is told.
+    /// The location at which the mode's motion is stated.
     pub(super) fn place<'a>(&'a self, here: Place<'a>) -> Place<'a> {
         match (self.location_m, self.location.as_deref()) {
             (None, None) => here,
@@ -72,7 +73,7 @@ impl MovingMode {
         }
     }
 
-    /// The mode's index, and its shape at the location from which `modes` are seen.
+    /// The mode's index, and its shape at the location of `modes`.
     pub(crate) fn shape(&self, modes: &[Mode]) -> Result<(usize, f64), InvalidInput> {
         for (field, value) in [("displacement_m", self.displacement_m), ("velocity_m_s", self.velocity_m_s)] {
             if !value.is_finite() {

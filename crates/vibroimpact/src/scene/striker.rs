@@ -43,7 +43,7 @@ impl Striker {
         Striker { immovable: true, ..Striker::default() }
     }
 
-    /// The mass as given, or that of the sphere (kg). Infinite for an immovable striker.
+    /// The given mass, or that of the sphere (kg). Infinite for an immovable striker.
     ///
     /// # Errors
     /// Neither is given, or both, or a value is not positive.

@@ -35,7 +35,7 @@ pub struct TautString {
 }
 
 impl TautString {
-    /// The string in the terms of [`beam_modes`].
+    /// The string as input of [`beam_modes`].
     pub fn to_taut_string(&self) -> beam_modes::TautString {
         let TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2, .. } = *self;
         beam_modes::TautString { length_m, tension_n, mass_per_length_kg_m, flexural_rigidity_n_m2 }
@@ -59,8 +59,8 @@ impl TautString {
         self.to_taut_string().static_compliance(location_m).map_err(in_structure)
     }
 
-    /// Frequency of mode `n` without stiffness (rad/s), and what `n` modes add to the inverse mass of a location, on
-    /// average (1/kg).
+    /// Frequency of mode `n` without stiffness (rad/s), and mean contribution of `n` modes to the inverse mass of a location
+    /// (1/kg).
     pub(crate) fn estimate(&self, n: usize) -> (f64, f64) {
         let mass = self.mass_per_length_kg_m * self.length_m;
         let omega =

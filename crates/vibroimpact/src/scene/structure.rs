@@ -42,7 +42,7 @@ pub enum Structure {
     DroppedRod(DroppedRod),
 }
 
-/// A structure of one kind is a structure.
+/// Converts a structure of one kind.
 macro_rules! from_kind {
     ($($kind:ident),*) => {
         $(impl From<$kind> for Structure {
@@ -55,12 +55,12 @@ macro_rules! from_kind {
 
 from_kind!(Beam, TautString, Plate, Modal, ModesFile, InfiniteBeam, InfinitePlate, DroppedRod);
 
-/// How the kinds of structures are named in scene files.
+/// Names of the kinds of structures in scene files.
 const KINDS: [&str; 8] =
     ["beam", "string", "plate", "modal", "modes-file", "infinite-beam", "infinite-plate", "dropped-rod"];
 
 impl Structure {
-    /// The theory by which a beam with modes is solved.
+    /// The theory of bending by which a beam is solved.
     pub(crate) fn bending_theory(&self) -> Option<BeamTheory> {
         match self {
             Structure::Beam(beam) => beam.solved_by().ok(),
@@ -102,7 +102,7 @@ impl Structure {
         }
     }
 
-    /// Why this kind cannot be described by modes, or not yet.
+    /// The reason why this kind cannot be described by modes, or not yet.
     fn no_modes(&self) -> InvalidInput {
         let allowed = match self {
             Structure::ModesFile(_) => "replaced by its table: Scene::read does it, or Scene::read_modes_file",
@@ -111,12 +111,12 @@ impl Structure {
         InvalidInput::new(["structure", "kind"], format!("\"{}\"", self.kind()), allowed)
     }
 
-    /// The first `count` modes as seen from a location (all that there are, for `None`).
+    /// The first `count` modes with their shapes at a location (all modes for `None`).
     pub(crate) fn modes(&self, place: Place, count: Option<usize>) -> Result<Vec<modal::Mode>, InvalidInput> {
         self.modes_with(place, count, &mut KnownModes::default())
     }
 
-    /// As [`Structure::modes`], by what is known of the beam.
+    /// As [`Structure::modes`], with cached modes.
     pub(crate) fn modes_with(
         &self,
         place: Place,
@@ -178,8 +178,7 @@ impl Structure {
         }
     }
 
-    /// Whether modes and static compliance are computed from what the structure is, so that there is a limit of many
-    /// modes.
+    /// Whether modes and static compliance are computed from the structure, so that there is a limit for many modes.
     pub(crate) fn is_computed(&self) -> bool {
         match self {
             Structure::Beam(_) | Structure::TautString(_) => true,
@@ -190,7 +189,8 @@ impl Structure {
 
     /// Largest number of modes that the program tries of a structure whose modes it computes.
     pub(crate) fn most_modes(&self) -> usize {
-        // slow to converge, and cheap; many modes of a plate do not move the location, and by Ritz's method more take many seconds
+        // strings converge slowly and their modes are cheap; many modes of a plate do not move the location, and by Ritz's method
+        // more modes take many seconds
         const STRING: usize = 2000;
         const NAVIER: usize = 1600;
         const RITZ: usize = 500;
@@ -203,8 +203,8 @@ impl Structure {
         }
     }
 
-    /// Frequency of mode `n` of a string or plate (rad/s), and what `n` modes add to the inverse mass of a location (1/kg):
-    /// on average, before any is computed.
+    /// Frequency of mode `n` of a string or plate (rad/s), and contribution of `n` modes to the inverse mass of a location (1/kg):
+    /// means, before any mode is computed.
     pub(crate) fn estimate(&self, n: usize) -> Option<(f64, f64)> {
         match self {
             Structure::TautString(string) => Some(string.estimate(n)),
@@ -213,7 +213,7 @@ impl Structure {
         }
     }
 
-    /// How many ways a string or plate has to move as a rigid body.
+    /// Number of rigid-body modes of a string or plate.
     pub(crate) fn rigid_body_count(&self) -> Result<usize, InvalidInput> {
         match self {
             Structure::Plate(plate) => {
@@ -232,7 +232,7 @@ impl Structure {
         }
     }
 
-    /// [`Structure::static_compliance_m_n`], and by how much it may be off (m/N): 0 where it has a closed form, or is stated.
+    /// [`Structure::static_compliance_m_n`], and its uncertainty (m/N): 0 if it has a closed form or is stated.
     pub(crate) fn static_compliance_with_uncertainty_m_n(&self, place: Place) -> Result<(f64, f64), InvalidInput> {
         match self {
             Structure::Plate(plate) => plate.static_compliance_with_uncertainty_m_n(place.on_structure()?.on()?),

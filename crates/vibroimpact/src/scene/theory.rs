@@ -1,11 +1,11 @@
-//! Which theory of bending a beam is solved by, and its neighbours: the other theory, another shear coefficient.
+//! The theory of bending of a beam, and its variants: the other theory, another shear coefficient.
 
 use invalid_input::InvalidInput;
 
 use super::beam::Beam;
 use super::beam_theory::BeamTheory;
 
-/// How a beam differs from the one that a scene poses.
+/// A variant of the theory of a scene's beam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TheoryVariant {
     /// The other theory of bending.
@@ -16,7 +16,7 @@ pub enum TheoryVariant {
     LargerShearCoefficient,
 }
 
-/// Shear coefficients in use differ by about this much.
+/// Relative difference of usual shear coefficients.
 const SHEAR_COEFFICIENT_SPREAD: f64 = 0.02;
 
 impl Beam {
@@ -24,7 +24,7 @@ impl Beam {
     /// one that states Euler-Bernoulli's, as in the thesis.)
     ///
     /// # Errors
-    /// Timoshenko's theory asked for where a segment lacks what it needs.
+    /// If Timoshenko's theory is requested and a segment lacks its data.
     pub fn solved_by(&self) -> Result<BeamTheory, InvalidInput> {
         let possible = self.axial_force_n == 0.0 && self.foundation_n_m2 == 0.0;
         match self.theory.unwrap_or(BeamTheory::Auto) {
@@ -34,14 +34,14 @@ impl Beam {
         }
     }
 
-    /// States Euler-Bernoulli's theory where the choice is open and there is one: for scenes that state their modes.
+    /// Sets Euler-Bernoulli's theory if the theory is not stated and there is a choice: for scenes that state their modes.
     pub(crate) fn as_the_thesis(&mut self) {
         if self.theory.is_none() && self.has_shear() == Ok(true) {
             self.theory = Some(BeamTheory::EulerBernoulli);
         }
     }
 
-    /// Whether every segment gives what Timoshenko's theory needs.
+    /// Whether every segment has the data of Timoshenko's theory.
     fn has_shear(&self) -> Result<bool, InvalidInput> {
         let mut all = !self.segments.is_empty();
         for (i, segment) in self.segments.iter().enumerate() {
@@ -51,11 +51,11 @@ impl Beam {
         Ok(all)
     }
 
-    /// The beams whose impacts tell how far the theory of bending can be trusted: the same beam by the other theory, and
-    /// with a shear coefficient 2 % smaller and larger, as far as they can be solved. The uncertainty `beam_theory` of
-    /// a result is what the restitution changes by between them.
+    /// The variants of a beam whose impacts show the uncertainty of the theory of bending: the same beam by the other theory, and
+    /// with a shear coefficient 2 % smaller and larger, if they can be solved. The uncertainty `beam_theory` of a result is the
+    /// change of the restitution between them.
     ///
-    /// None where no segment gives what Timoshenko's theory needs, and where axial force or foundation ask for
+    /// There are none if the segments lack the data of Timoshenko's theory, or if axial force or foundation require
     /// Euler-Bernoulli's.
     ///
     /// ```

@@ -1,21 +1,21 @@
-//! What messages repeat of the input: short, without control characters, and with the name that was probably meant.
+//! Input that is repeated in messages: shortened, without control characters, and with the name that was probably meant.
 
 use invalid_input::LONGEST_VALUE;
 use serde_json::{Number, Value};
 
 /// Longest name that is compared with those that are allowed (characters).
 const LONGEST_NAME: usize = 60;
-/// Names less alike than this (Jaro similarity) are no slip of one another.
+/// Smallest Jaro similarity of two names that may be confused.
 const ALIKE: f64 = 0.75;
-/// A shorter piece of a name says too little to name the whole.
+/// Smallest length of a part of a name that identifies the whole name.
 const SHORTEST_PIECE: usize = 3;
 
-/// A number and what it counts: `1 entry`, `2 entries`.
+/// A number with a noun: `1 entry`, `2 entries`.
 pub fn counted(count: u64, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }
 
-/// A text cut to a length that fits a message. Cutting it again changes nothing.
+/// A text shortened for a message. Shortening it again does not change it.
 pub fn shorten(text: &str) -> String {
     invalid_input::cut(text, LONGEST_VALUE).to_string()
 }
@@ -30,8 +30,8 @@ pub(crate) fn number(value: f64) -> String {
     Number::from_f64(value).map_or_else(|| value.to_string(), |number| number.to_string())
 }
 
-/// A text that cannot steer a terminal: control characters other than line breaks and tabs, and characters that turn
-/// the direction of writing, are shown by their number.
+/// A text that cannot control a terminal: control characters other than line breaks and tabs, and characters that change the
+/// direction of writing, are shown by their numbers.
 ///
 /// ```
 /// assert_eq!(vibroimpact::text::printable("a\u{1b}[2J"), "a\\u{1b}[2J");
@@ -40,8 +40,8 @@ pub fn printable(text: &str) -> String {
     invalid_input::printable(text).to_string()
 }
 
-/// `; did you mean ...?` where one of the names is like the word, otherwise nothing. Of names that are equally alike the
-/// first is taken.
+/// `; did you mean ...?` if one of the names is similar to the word, otherwise nothing. Of equally similar names the first is
+/// used.
 pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     if word.chars().count() > LONGEST_NAME {
         return String::new();
@@ -50,7 +50,7 @@ pub(crate) fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a s
     let likeness = |name: &str| {
         let name = name.to_lowercase();
         let is_piece = word.chars().count() >= SHORTEST_PIECE && name.contains(&word);
-        // a piece of a name is nearer than a word that merely resembles it
+        // a part of a name is closer than a similar word
         strsim::jaro(&word, &name) + if is_piece { 1.0 } else { 0.0 }
     };
     let mut nearest: Option<(f64, &str)> = None;

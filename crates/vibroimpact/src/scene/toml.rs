@@ -1,4 +1,4 @@
-//! TOML as another way to write a scene: text to the same tree as JSON's, and back.
+//! TOML as a second format of scenes: converts text to the same tree as JSON, and back.
 
 use invalid_input::{InvalidInput, Path, Step};
 use serde_json::{Map, Number, Value};
@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 use super::error::SceneError;
 use super::fields;
 
-/// Parses TOML text. Keys that occur twice are refused by the format itself.
+/// Parses TOML text. The format itself rejects keys that occur twice.
 pub(crate) fn parse(text: &str) -> Result<Value, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let table: toml::Table = text.parse().map_err(|fault| syntax_error(text, &fault))?;
@@ -26,7 +26,7 @@ fn syntax_error(text: &str, fault: &toml::de::Error) -> SceneError {
     }
 }
 
-/// The tree in JSON's terms. Numbers that are not finite are reported as values of their field; dates become texts.
+/// The tree as JSON. Numbers that are not finite are reported as values of their field; dates become texts.
 fn tree(value: toml::Value, path: &Path) -> Result<Value, InvalidInput> {
     Ok(match value {
         toml::Value::String(text) => Value::String(text),

@@ -1,4 +1,4 @@
-//! How a scene of bodies changes with its numbers.
+//! Derivatives of a scene of bodies with respect to its numbers.
 
 use contact_models::Law;
 use serde::Serialize;
@@ -15,20 +15,20 @@ use crate::assembly::{AssemblyScene, Posed};
 use crate::same_modes::{Seen, matched};
 use crate::scene::{InvalidInput, versioned_tree};
 
-/// A run is kept whole while it is differentiated; one of more panels is refused.
+/// A run is held in memory while it is differentiated; a run with more panels is rejected.
 const MOST_PANELS: u64 = 100_000;
 
-/// A run of a scene of bodies, with the derivatives of its outputs by fields of the scene.
+/// A run of a scene of bodies, with the derivatives of its outputs with respect to fields of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodiesSensitivity {
     /// `end` or `rest`.
     pub outcome: &'static str,
-    /// When the run ended (s).
+    /// The time at which the run ended (s).
     pub end_s: f64,
     /// Number of intervals of contact.
     pub interval_count: usize,
-    /// Speed of the slowest touch in parts of the fastest. Where it comes near zero a contact only grazes, and the
-    /// derivatives grow beyond all bounds.
+    /// Speed of the slowest touch divided by that of the fastest. If it is nearly zero, a contact is near grazing, and the
+    /// derivatives are very large.
     pub nearest_graze: f64,
     /// The fields and the derivatives: outputs are `contacts.NAME.intervals[0].impulse_n_s` and the like,
     /// `points[0].displacement_m` and `points[0].velocity_m_s` of either side of each contact at the end, and
@@ -42,13 +42,13 @@ pub struct BodiesSensitivity {
 }
 
 impl AssemblyScene {
-    /// Differentiates the run by these fields, each the path of a number that the scene states; by all of them if none is
-    /// named.
+    /// Differentiates the run with respect to these fields, each the path of a number that the scene states, or to all numbers if
+    /// none is named.
     ///
     /// # Errors
-    /// As [`AssemblyScene::pose`]; a field that is no number, that the scene does not state, or that cannot change by a
-    /// little; a run that is too long to be kept, and one that has no derivative: where a contact grazes, and where contacts
-    /// whose force jumps touch at the same time.
+    /// As [`AssemblyScene::pose`]; a field that is not a number, that the scene does not state, or that cannot vary continuously; a
+    /// run that is too long, or that has no derivative because a contact grazes or contacts whose force jumps begin at the same
+    /// time.
     ///
     /// ```
     /// use vibroimpact::assembly::AssemblyScene;
@@ -100,8 +100,8 @@ impl AssemblyScene {
 }
 
 impl BodiesSensitivity {
-    /// What the table and the picture are of where nothing is said: the first impulse of the first contact that closes,
-    /// otherwise where the first point is at the end.
+    /// The default output of table and figure: the first impulse of the first contact that closes, otherwise the final displacement
+    /// of the first point.
     pub fn first_output(&self) -> &str {
         let outputs = || self.table.derivatives.keys();
         let impulse = outputs().find(|output| output.ends_with("intervals[0].impulse_n_s"));
@@ -191,7 +191,7 @@ fn shapes<'a>(
     of_contacts.chain(loads.iter_mut().filter(move |load| load.body == body).map(|load| &mut load.shape))
 }
 
-/// Gives the modes the signs and the order of those of an assembly nearby. `false` if they are not the same modes.
+/// Gives the modes the signs and the order of those of a neighbouring assembly. `false` if they are not the same modes.
 fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> bool {
     if near.contacts.len() != base.contacts.len() || near.bodies.len() != base.bodies.len() {
         return false;

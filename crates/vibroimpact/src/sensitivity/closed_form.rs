@@ -1,4 +1,4 @@
-//! Answers that have a closed form: by their own values at the neighbours, since nothing in them is integrated.
+//! Derivatives of answers in closed form, from their values at neighbouring points.
 
 use super::neighbours::{Neighbours, around};
 use super::single::Sensitivity;
@@ -33,7 +33,7 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
     })
 }
 
-/// Adds what the three-parameter law says of the same impact, where it holds: from the modes that are posed already.
+/// Adds the restitution of the three-parameter law for the same impact, if it applies, from the modes that are known already.
 pub(super) fn add_emoc(table: &mut Table, scene: &Scene, base: &Impact, around: &[Neighbours<Impact>]) {
     let parameters = Parameters::default();
     if scene.emoc(&parameters, None).is_err() {

@@ -1,10 +1,10 @@
-//! How an impact changes with the numbers of its scene.
+//! Derivatives of an impact with respect to the numbers of its scene.
 //!
-//! The motion is differentiated along itself ([`vibroimpact_sim::modal::Solver::differentiate`] and, for scenes of bodies,
-//! [`vibroimpact_sim::assembly::Solver::differentiate`]). What a field does to the modes, the masses, the loads and the law is
-//! known by posing the scene at four neighbouring values of the field, so that every number of a scene can be requested,
-//! and no motion is solved but the one that is differentiated. The model is chosen once, for the scene itself, and kept.
-//! Answers in closed form, those of a wall and of the net laws, are differentiated by their own values there.
+//! The motion itself is differentiated ([`vibroimpact_sim::modal::Solver::differentiate`] and, for scenes of bodies,
+//! [`vibroimpact_sim::assembly::Solver::differentiate`]). The derivatives of modes, masses, loads and law with respect to a field
+//! follow from the scene at four neighbouring values of the field. Every number of a scene can therefore be requested, and only one
+//! motion has to be solved. The model is chosen once, for the scene itself. Answers in closed form, those of a wall and of the net
+//! laws, are differentiated from their values at these points.
 
 mod bodies;
 mod closed_form;
@@ -35,12 +35,12 @@ pub use table::{Field, OfField, Table};
 pub use text::{text, text_of_bodies};
 
 impl Scene {
-    /// Differentiates the impact by these fields, each the path of a number that the scene states; by all of them if none
-    /// is named.
+    /// Differentiates the impact with respect to these fields, each the path of a number that the scene states, or to all numbers
+    /// if none is named.
     ///
     /// # Errors
-    /// As [`Scene::impact`]; a field that is no number, that the scene does not state, or that cannot change by a little;
-    /// an impact that does not end with a rebound, or that only grazes.
+    /// As [`Scene::impact`]; a field that is not a number, that the scene does not state, or that cannot vary continuously; an
+    /// impact that does not end with a rebound, or with a grazing contact.
     ///
     /// ```
     /// use vibroimpact::Scene;

@@ -7,18 +7,18 @@ use crate::impact::Impact;
 use crate::scene::json::{number, quote};
 use crate::scene::{FieldPath, InvalidInput};
 
-/// The modes whose frequencies and shapes are differentiated too, from the lowest.
+/// Number of modes, from the lowest, whose frequencies and shapes are differentiated too.
 pub(super) const MODES: usize = 10;
 
-/// Distance of neighbours in parts of the value: modes up to some hundreds change smoothly over it, and it costs five of
-/// the digits that they have.
+/// Distance of neighbours relative to the value: the first hundreds of modes change smoothly over it, and it costs five of their
+/// digits.
 const STEP: f64 = 1e-5;
-/// To this part frequencies and shapes are known.
+/// Relative accuracy of frequencies and shapes.
 const KNOWN: f64 = 2e-13;
 /// The same where the value is zero, in its unit.
 const STEP_AT_ZERO: f64 = 1e-6;
 
-/// What a scene poses at four neighbouring values of a field.
+/// The problem of a scene at four neighbouring values of a field.
 pub(super) struct Neighbours<T> {
     pub field: String,
     pub value: f64,
@@ -27,7 +27,7 @@ pub(super) struct Neighbours<T> {
 }
 
 impl<T> Neighbours<T> {
-    /// By what a scene poses, and whether that is the same but for a little; its modes may be put in order for that.
+    /// Computes the neighbours, and checks that they differ only continuously; their modes may be sorted for that.
     pub fn of(
         tree: &Value,
         field: &str,
@@ -43,7 +43,7 @@ impl<T> Neighbours<T> {
         let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
         let step = if value == 0.0 { STEP_AT_ZERO } else { STEP * value.abs() };
         let mut fault = None;
-        // on both sides, or beside a bound
+        // on both sides, or on one side of a bound
         for places in [[-2.0, -1.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [-4.0, -3.0, -2.0, -1.0]] {
             let offsets = places.map(|place| place * step);
             let mut posed = Vec::with_capacity(4);
@@ -61,7 +61,7 @@ impl<T> Neighbours<T> {
                     let allowed = "a field with which the modes change smoothly: here two modes swap their order";
                     return Err(named(&number(value), allowed.to_owned()));
                 }
-                // the value itself is what a number of a file can hold, and so are its neighbours
+                // the value is an integer or a float as in the file, and so are its neighbours
                 let offsets = places.map(|place| (value + place * step) - value);
                 return Ok(Neighbours { field: field.to_owned(), value, offsets, at });
             }
@@ -70,7 +70,7 @@ impl<T> Neighbours<T> {
         Err(named(&number(value), format!("a field that can vary continuously{why}")))
     }
 
-    /// What errors of modes make of it, each of the same size and of either sign; the size takes the place of a field.
+    /// The effect of errors of the modes, all of the same size and of either sign; the size is treated like a field.
     pub fn with_errors(with: impl Fn(&mut dyn FnMut() -> f64) -> T) -> Neighbours<T> {
         let offsets = [-2e-6, -1e-6, 1e-6, 2e-6];
         let at = offsets.map(|size| {
@@ -84,20 +84,19 @@ impl<T> Neighbours<T> {
         Neighbours { field: String::new(), value: 0.0, offsets, at }
     }
 
-    /// A derivative with what the errors of the modes may make of it, if errors of unit size change the output by this much.
+    /// A derivative with the possible effect of errors of the modes, if errors of unit size change the output by this amount.
     pub fn widened(&self, derivative: Derivative, by_errors: Derivative) -> Derivative {
         let nearest = self.offsets.iter().fold(f64::INFINITY, |least, offset| least.min(offset.abs()));
         let of_modes = KNOWN / nearest * by_errors.value.abs();
         Derivative { uncertainty: derivative.uncertainty.map(|own| own + of_modes), ..derivative }
     }
 
-    /// How a smooth function of what is posed changes, one that is `value` here.
+    /// Derivative of a smooth function of the problem, whose value here is `value`.
     pub fn derivative(&self, value: f64, of: impl Fn(&T) -> f64) -> Derivative {
         self.slope(value, self.at.each_ref().map(of))
     }
 
-    /// Slope of the polynomial through the value and its neighbours, and how much it differs from that through the
-    /// neighbours nearest to it.
+    /// Slope of the polynomial through the value and its neighbours, and its difference from that through the nearest neighbours.
     fn slope(&self, value: f64, at: [f64; 4]) -> Derivative {
         let mut around: [(f64, f64); 4] = std::array::from_fn(|i| (self.offsets[i], at[i]));
         around.sort_by(|one, other| one.0.abs().total_cmp(&other.0.abs()));
@@ -144,13 +143,13 @@ fn slope<const N: usize>(points: [(f64, f64); N]) -> f64 {
 
 fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidInput> {
     let mut tree = tree.clone();
-    // the field is there: it was read from the same tree
+    // the field exists, since it was read from the same tree
     path.set(&mut tree, value.into()).map_err(|why| InvalidInput::new(path.path().clone(), number(value), why))?;
     Ok(tree)
 }
 
-/// What a scene poses around the values of these fields; or, if none is named, of all numbers that it states, with those that
-/// cannot change by a little left out.
+/// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states, without those that
+/// cannot vary continuously.
 pub(super) fn around<T>(
     (tree, fields): (&Value, &[String]),
     pose: &dyn Fn(&Value) -> Result<T, InvalidInput>,
@@ -170,7 +169,7 @@ pub(super) fn around<T>(
     Ok((around, left_out))
 }
 
-/// Every number of a scene that can change by a little, lists of numbers apart.
+/// Every number of a scene that can vary continuously, without lists of numbers.
 fn all_numbers(tree: &Value) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![(String::new(), tree)];
@@ -194,5 +193,5 @@ fn all_numbers(tree: &Value) -> Vec<String> {
     found
 }
 
-/// Numbers that say how to solve, and not what.
+/// Numbers that are settings of the solution and not part of the problem.
 const CHOICES: [&str; 6] = ["version", "modes", "mode", "tolerance", "bending_modes", "axial_modes"];

@@ -1,14 +1,14 @@
-//! The tornado picture of a sensitivity.
+//! The tornado diagram of a sensitivity.
 
 use invalid_input::InvalidInput;
 
 use super::table::{Row, Table};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
-/// Fields drawn at most.
+/// Largest number of fields in the diagram.
 const MOST: usize = 20;
 
-/// What one per cent more and less of each field changes an output by, the greatest on top.
+/// Changes of an output by one per cent more and less of each field, the largest on top.
 ///
 /// # Errors
 /// An output that the impact does not have.

@@ -1,10 +1,10 @@
-//! Why a scene has no derivatives, in words.
+//! Messages about scenes without derivatives.
 
 use crate::scene::InvalidInput;
 use crate::text::significant;
 use vibroimpact_sim::modal::NoDerivative;
 
-/// As an error of the scene whose run came to this outcome; `name` tells how a contact is called.
+/// The error of the scene whose run had this outcome; `name` returns the name of a contact.
 pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> String) -> InvalidInput {
     let seconds = |time_s: f64| significant(time_s, 6);
     let (value, allowed) = match why {

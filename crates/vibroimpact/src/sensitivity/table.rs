@@ -8,16 +8,16 @@ use vibroimpact_sim::modal::Derivative;
 
 use super::neighbours::Neighbours;
 
-/// A derivative of an output by a field, in the unit of the output over that of the field.
+/// A derivative of an output with respect to a field, in the unit of the output over that of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct OfField {
     /// The derivative.
     pub value: f64,
-    /// By how much it may be off; null where no digit of it is certain.
+    /// Its uncertainty; null if no digit is certain.
     pub uncertainty: Option<f64>,
 }
 
-/// A field by which outputs were differentiated.
+/// A field with respect to which outputs were differentiated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Field {
     /// Its path, such as `striker.mass_kg`.
@@ -26,12 +26,12 @@ pub struct Field {
     pub value: f64,
 }
 
-/// Fields, and derivatives of outputs by them.
+/// Fields, and derivatives of outputs with respect to them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
-    /// The fields, in the order asked for.
+    /// The fields, in the requested order.
     pub fields: Vec<Field>,
-    /// Numbers of the scene that cannot change by a little, where all of its numbers were requested.
+    /// Numbers of the scene that cannot vary continuously, if all of its numbers were requested.
     pub left_out: Vec<String>,
     /// By output, then by field.
     pub derivatives: BTreeMap<String, BTreeMap<String, OfField>>,
@@ -48,12 +48,12 @@ impl Table {
         by_field.insert(field.to_owned(), OfField { value, uncertainty });
     }
 
-    /// The derivative of an output by a field, if there is such a one.
+    /// The derivative of an output with respect to a field, if it exists.
     pub fn of(&self, output: &str, field: &str) -> Option<OfField> {
         self.derivatives.get(output)?.get(field).copied()
     }
 
-    /// The fields by how much a part of them changes an output.
+    /// The fields, sorted by the effect of a relative change on an output.
     pub(super) fn rows(&self, output: &str) -> Result<Vec<Row<'_>>, InvalidInput> {
         let by_field = self.derivatives.get(output).ok_or_else(|| {
             let known = self.derivatives.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
@@ -70,7 +70,7 @@ impl Table {
     }
 }
 
-/// A field with the derivative of an output by it.
+/// A field with the derivative of an output.
 pub(super) struct Row<'a> {
     pub path: &'a str,
     pub value: f64,
@@ -78,7 +78,7 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// What one per cent more of the field changes.
+    /// Change of the output if the field grows by one per cent.
     pub fn by_part(&self) -> f64 {
         0.01 * self.value * self.derivative.value
     }

@@ -9,11 +9,10 @@ use super::single::Sensitivity;
 use super::table::{Row, Table};
 use crate::text::{counted, small};
 
-/// A touch slower than this part of the fastest is near a graze.
+/// A touch slower than this share of the fastest is near grazing.
 const NEAR: f64 = 1e-2;
 
-/// The derivatives of one output, those first that matter most. Fields that are zero come last: of these no part can be
-/// changed.
+/// The derivatives of one output, the most important first. Fields that are zero come last, since they have no relative change.
 ///
 /// # Errors
 /// An output that the impact does not have.
@@ -40,7 +39,7 @@ pub fn text(found: &Sensitivity, output: &str) -> Result<String, InvalidInput> {
     Ok(text)
 }
 
-/// The derivatives of one output of a scene of bodies, likewise.
+/// The derivatives of one output of a scene of bodies, in the same form.
 ///
 /// # Errors
 /// An output that the run does not have.
@@ -80,7 +79,7 @@ fn table(found: &Table, output: &str) -> Result<String, InvalidInput> {
     Ok(text)
 }
 
-/// How near the next graze is, and which derivatives are not known.
+/// Notes on contacts near grazing, and on derivatives that are not known.
 fn cautions(graze: f64, contacts: usize, rows: &[Row]) -> String {
     let mut text = String::new();
     if contacts > 1 {
@@ -103,7 +102,7 @@ fn cautions(graze: f64, contacts: usize, rows: &[Row]) -> String {
 /// Characters of the column of values.
 const WIDTH: usize = 12;
 
-/// A value as a scene might state it, as far as the column holds it.
+/// A value in the form of a scene, within the width of the column.
 fn short(value: f64) -> String {
     let whole =
         if value != 0.0 && !(1e-4..1e7).contains(&value.abs()) { format!("{value:e}") } else { value.to_string() };

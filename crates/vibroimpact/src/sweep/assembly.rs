@@ -1,33 +1,33 @@
-//! Handing out chunks to workers in any order and putting their rows together in the right one.
+//! Distributes chunks to workers in any order, and sorts their rows.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Chunks that may be under way per worker: enough that one slow chunk does not keep the others waiting, few enough
-/// that what waits for it fits in memory.
+/// Largest number of open chunks per worker: enough that one slow chunk does not stop the others, few enough that waiting rows fit
+/// in memory.
 const AHEAD: u64 = 64;
 
-/// What a worker is told.
+/// Instruction for a worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
     /// Compute this chunk.
     Chunk(u64),
     /// Ask again when a chunk has been completed.
     Wait,
-    /// Nothing is left to begin.
+    /// All chunks have begun.
     Done,
 }
 
-/// The state of a computation that is under way.
+/// The state of a running computation.
 #[derive(Debug)]
 pub(super) struct Assembly {
     /// Chunks not yet handed out.
     left: Range<u64>,
-    /// First chunk whose rows are not in `ready`, and not taken either.
+    /// First chunk whose rows are neither in `ready` nor written.
     missing: u64,
-    /// Rows that came before their turn.
+    /// Rows of chunks that were finished early.
     early: BTreeMap<u64, Vec<u8>>,
-    /// Rows whose turn has come, and how many chunks they are.
+    /// Rows that can be written, and the number of their chunks.
     ready: (u64, Vec<u8>),
     window: u64,
 }
@@ -44,7 +44,7 @@ impl Assembly {
         }
     }
 
-    /// What the next free worker is to do.
+    /// Instruction for the next free worker.
     pub(super) fn hand_out(&mut self) -> Order {
         if self.left.is_empty() {
             Order::Done
@@ -56,7 +56,7 @@ impl Assembly {
         }
     }
 
-    /// Takes the rows of a chunk that was handed out.
+    /// Receives the rows of a chunk.
     pub(super) fn take_in(&mut self, chunk: u64, rows: Vec<u8>) {
         self.early.insert(chunk, rows);
         while let Some(rows) = self.early.remove(&self.missing) {
@@ -71,7 +71,7 @@ impl Assembly {
         std::mem::take(&mut self.ready)
     }
 
-    /// Whether every chunk has been handed out and returned.
+    /// Whether every chunk is finished.
     pub(super) fn is_complete(&self) -> bool {
         self.left.is_empty() && self.missing == self.left.end
     }

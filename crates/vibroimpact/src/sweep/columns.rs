@@ -12,15 +12,15 @@ use super::status::{Sink, Status};
 use super::table::Kind;
 use super::threads;
 
-/// Most points of a sweep that is kept in memory.
+/// Largest number of points of a sweep in memory.
 pub const MOST_IN_MEMORY: u64 = 10_000_000;
 
 /// One column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Column {
-    /// Numbers, not-a-number where there is none.
+    /// Numbers; NaN if there is none.
     Numbers(Vec<f64>),
-    /// Texts, empty where there is none; `true` and `false` are texts too.
+    /// Texts, empty if there is none; `true` and `false` are texts too.
     Texts(Vec<String>),
 }
 
@@ -65,7 +65,7 @@ pub fn run_in_memory(
     Ok(table.columns)
 }
 
-/// Columns in the making.
+/// Columns that are being filled.
 struct Table<'a> {
     sweep: &'a Sweep,
     columns: Vec<(String, Column)>,

@@ -1,4 +1,4 @@
-//! A sweep: from the number of a point to its scene.
+//! A sweep: the scene of a point from its number.
 
 use invalid_input::Path;
 use serde_json::Value;
@@ -16,29 +16,29 @@ use crate::scene::FieldPath;
 use crate::scene::json::{self, quote};
 use crate::scene::{InvalidInput, toml};
 
-/// Changed whenever the same sweep gives other rows or other columns.
+/// Must be changed whenever the same sweep gives other rows or other columns.
 const FORMAT: u32 = 3;
-/// Points by which it is judged whether the scene can be used at all, spread over the sweep.
+/// Number of points, spread over the sweep, that are checked to find out whether the scene can be solved at all.
 const PROBES: u64 = 5;
 /// Chunks into which a sweep is divided, unless it is so large that they would hold too many points.
 const CHUNKS: u64 = 512;
-/// Most points of a chunk: what a thread computes at a time, and may have to compute again after a stop.
+/// Largest number of points of a chunk, which a thread computes at a time and may have to compute again after an interruption.
 const LARGEST_CHUNK: u64 = 128;
 
 /// Many scenes that differ in some fields.
 ///
-/// The points are numbered from 0. The axes of `vary` form a grid, of which the last axis runs fastest. With `random`,
-/// every point of the grid is met by all the draws, which are the same ones at each: draw `d` of grid point `g` has the
-/// number `g * draws + d`. A point depends on the sweep and its number alone.
+/// The points are numbered from 0. The axes of `vary` form a grid, whose last axis runs fastest. With `random`, every point of the
+/// grid is combined with all draws, which are the same at each: draw `d` of grid point `g` has the number `g * draws + d`. A
+/// point depends only on the sweep and its number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
     /// A text for the reader.
     pub description: Option<String>,
     /// The axes of the grid.
     pub axes: Vec<Axis>,
-    /// What is drawn at random.
+    /// Random draws.
     pub random: Option<Random>,
-    /// What is known as distributions.
+    /// Fields that are given as distributions.
     pub uncertain: Option<Uncertain>,
     scene: Value,
     canonical: Value,
@@ -50,7 +50,7 @@ impl Sweep {
     /// Reads a sweep file, and the scene file that it names: TOML if the name ends in `.toml`, JSON otherwise.
     ///
     /// # Errors
-    /// A file that cannot be read, a fault in the sweep or in its base scene, or too many points.
+    /// A file that cannot be read, an error in the sweep or in its base scene, or too many points.
     pub fn read(path: &std::path::Path) -> Result<Sweep, SweepError> {
         Ok(Sweep::new(file::read(path)?)?)
     }
@@ -58,7 +58,7 @@ impl Sweep {
     /// Reads a sweep with the scene in it from JSON text.
     ///
     /// # Errors
-    /// As [`Sweep::read`], files aside.
+    /// As [`Sweep::read`], except for the files.
     pub fn from_json(text: &str) -> Result<Sweep, SweepError> {
         Ok(Sweep::from_value(&json::parse(text, file::A_SWEEP)?)?)
     }
@@ -66,7 +66,7 @@ impl Sweep {
     /// Reads a sweep with the scene in it from TOML text.
     ///
     /// # Errors
-    /// As [`Sweep::read`], files aside.
+    /// As [`Sweep::read`], except for the files.
     pub fn from_toml(text: &str) -> Result<Sweep, SweepError> {
         Ok(Sweep::from_value(&toml::parse(text)?)?)
     }
@@ -74,7 +74,7 @@ impl Sweep {
     /// Reads a sweep from a JSON tree with the scene in it.
     ///
     /// # Errors
-    /// As [`Sweep::read`], files aside.
+    /// As [`Sweep::read`], except for the files.
     pub fn from_value(value: &Value) -> Result<Sweep, InvalidInput> {
         Sweep::new(file::from_tree(value.clone())?)
     }
@@ -99,7 +99,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub fn points(&self) -> u64 {
         self.points
     }
@@ -118,7 +118,7 @@ impl Sweep {
         })
     }
 
-    /// The axis of the very field with this number in [`Sweep::fields`], if that is an uncertain one.
+    /// The axis of the field with this number in [`Sweep::fields`], if the field is also uncertain.
     fn axis_before(&self, number: usize) -> Option<usize> {
         let drawn = number.checked_sub(self.axes.len())?;
         let (field, _) = self.uncertain.as_ref()?.fields.get(drawn)?;
@@ -131,7 +131,7 @@ impl Sweep {
         self.random.as_ref().map(|random| random.draws).or(uncertain).unwrap_or(1)
     }
 
-    /// What the points of a sweep with this scene come to.
+    /// The results of the points of a sweep with this scene.
     fn results_of(&self, scene: &AnyScene) -> Results {
         match (scene, &self.uncertain) {
             (AnyScene::Impact(_), Some(_)) => Results::Draw,
@@ -139,7 +139,7 @@ impl Sweep {
         }
     }
 
-    /// The numbers of chunks of a part after which it is asked whether more are needed; the last is all that there are.
+    /// The numbers of chunks of a part after which it is decided whether more are needed; the last is the total number.
     pub(super) fn stages(&self, part: Part) -> Vec<u64> {
         let chunks = part.chunks(self.chunks());
         match &self.uncertain {
@@ -155,7 +155,7 @@ impl Sweep {
         self.uncertain.as_ref().is_some_and(Uncertain::is_adaptive)
     }
 
-    /// A part of a sweep that ends by its sampling error cannot know when.
+    /// The error for parts of a sweep whose number of draws depends on its sampling error.
     pub(super) fn check_part(&self, part: Part) -> Result<(), InvalidInput> {
         if part == Part::WHOLE { Ok(()) } else { self.check_undivided() }
     }
@@ -183,7 +183,7 @@ impl Sweep {
         places
     }
 
-    /// What each point comes to.
+    /// The results of each point.
     pub(super) fn results(&self) -> &Results {
         &self.results
     }
@@ -215,12 +215,12 @@ impl Sweep {
     /// The scene of a point.
     ///
     /// # Errors
-    /// Values that together make no scene.
+    /// Values that do not form a valid scene.
     pub fn scene(&self, point: u64) -> Result<AnyScene, InvalidInput> {
         self.scene_with(&self.values(point))
     }
 
-    /// Points of a chunk, the unit in which work is handed out; the last chunk may have fewer.
+    /// Points of a chunk, the unit of work; the last chunk may have fewer.
     pub(super) fn points_per_chunk(&self) -> u64 {
         let whole = self.uncertain.as_ref().map(|uncertain| uncertain.draws_per_chunk(LARGEST_CHUNK));
         whole.unwrap_or((self.points / CHUNKS).clamp(1, LARGEST_CHUNK))
@@ -230,7 +230,7 @@ impl Sweep {
         self.points.div_ceil(self.points_per_chunk())
     }
 
-    /// The first point of a chunk; of the one after the last, the number of points.
+    /// The first point of a chunk; for the chunk after the last, the number of points.
     pub(super) fn first_of_chunk(&self, chunk: u64) -> u64 {
         chunk.saturating_mul(self.points_per_chunk()).min(self.points)
     }
@@ -240,14 +240,14 @@ impl Sweep {
         &self.canonical
     }
 
-    /// A number in which two sweeps differ if their rows could.
+    /// A fingerprint that differs for two sweeps whose rows may differ.
     pub fn fingerprint(&self) -> String {
         let version = env!("CARGO_PKG_VERSION");
         let text = format!("vibroimpact {version}, format {FORMAT}\n{}", canonical_text(&self.canonical));
         Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// Where in the sweep file the field with this number in [`Sweep::fields`] stands.
+    /// The path in the sweep file of the field with this number in [`Sweep::fields`].
     fn entry(&self, number: usize) -> Path {
         match number.checked_sub(self.axes.len()) {
             None => ("vary", number).into(),
@@ -258,13 +258,13 @@ impl Sweep {
         }
     }
 
-    /// Where the path of that field is written.
+    /// The place in the sweep file where the path of that field is stated.
     fn entry_field(&self, number: usize) -> Path {
         let entry = self.entry(number);
         if self.uncertain.is_some() && number >= self.axes.len() { entry } else { Path::from("field").within(entry) }
     }
 
-    /// No field may undo what one before it has set.
+    /// Checks that no field overwrites an earlier one.
     fn check_overlap(&self) -> Result<(), InvalidInput> {
         let fields: Vec<&FieldPath> = self.fields().collect();
         for (i, field) in fields.iter().enumerate() {
@@ -282,8 +282,8 @@ impl Sweep {
         Ok(())
     }
 
-    /// Every field must have its place in the scene, and every value, with the others at their first, must be of a kind
-    /// that the field can hold. Gives the scene of the first point.
+    /// Checks that every field exists in the scene, and that every value, with the others at their first, has a type that the field
+    /// accepts. Returns the scene of the first point.
     fn check_values(&self) -> Result<AnyScene, InvalidInput> {
         let first = self.values(0);
         let mut tree = self.scene.clone();
@@ -314,12 +314,12 @@ impl Sweep {
         Ok(scene)
     }
 
-    /// The number of the varied field in which a fault stands.
+    /// The number of the varied field with an error.
     fn varies(&self, fault: &InvalidInput) -> Option<usize> {
         self.fields().position(|field| field.holds(&fault.field))
     }
 
-    /// A fault at the first point, under the name of what has to be changed in the sweep file.
+    /// An error at the first point, with the field that has to be changed in the sweep file.
     fn blame(&self, fault: InvalidInput) -> InvalidInput {
         match self.varies(&fault) {
             None => fault.within("scene"),
@@ -335,19 +335,19 @@ impl Sweep {
         }
     }
 
-    /// A scene that cannot be solved for a reason that the varied fields have no part in is refused at once.
+    /// Rejects a scene that cannot be solved for a reason that does not depend on the varied fields.
     fn check_scene(&self) -> Result<(), InvalidInput> {
         let mut faults = Vec::new();
         let probes = PROBES.min(self.points);
         for probe in 0..probes {
-            // points number at most 1e12, so that the product is exact
+            // there are at most 1e12 points, so that the product is exact
             let point = (self.points - 1) * probe / (probes - 1).max(1);
             match self.scene(point).and_then(|scene| evaluate::check(&scene)) {
                 Ok(()) => return Ok(()),
                 Err(fault) => faults.push(fault),
             }
         }
-        // a fault of a varied field is one of its value's; what stands fast must be wrong in itself
+        // an error of a varied field may concern only some of its values; an error of a fixed field concerns all points
         let (varied, fast): (Vec<_>, Vec<_>) = faults.iter().partition(|fault| self.varies(fault).is_some());
         let judged = if fast.is_empty() { varied } else { fast };
         match judged.split_first() {

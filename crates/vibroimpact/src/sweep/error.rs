@@ -1,23 +1,23 @@
-//! What can keep a sweep from its end.
+//! Errors of sweeps.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::scene::{InvalidInput, SceneError};
 
-/// Why a sweep, or a merge of its parts, did not come to its end.
+/// The reason why a sweep, or a merge of its parts, did not finish.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// The sweep file or the base scene cannot be read.
     #[error(transparent)]
     File(#[from] SceneError),
-    /// A field of the sweep or of its base scene cannot be used.
+    /// A field of the sweep or of its base scene is invalid.
     #[error(transparent)]
     Invalid(#[from] InvalidInput),
-    /// The folder cannot take this sweep, or the parts do not make one; the text says why and what would help.
+    /// The folder cannot be used for this sweep, or the parts do not form a sweep; the text states the reason and advice.
     #[error("{0}")]
     Refused(String),
-    /// The program was asked to stop; what was finished is kept.
+    /// The program was interrupted; finished rows are kept.
     #[error("stopped with {done} of {points} points done; the same command continues from there")]
     Stopped {
         /// Points whose rows are in the folder.
@@ -30,18 +30,18 @@ pub enum SweepError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
 }
 
 impl SweepError {
-    /// Puts the name of the file to what the system said.
+    /// Adds the name of the file to an error of the system.
     pub(super) fn io(path: &Path) -> impl FnOnce(io::Error) -> SweepError + '_ {
         move |source| SweepError::Io { path: path.to_owned(), source }
     }
 
-    /// Whether the cause is what the user gave, not the machine.
+    /// Whether the cause is the user's input and not the machine.
     pub fn is_of_input(&self) -> bool {
         matches!(self, SweepError::File(_) | SweepError::Invalid(_) | SweepError::Refused(_))
     }

@@ -1,4 +1,4 @@
-//! From a scene to its cells. This is the one place where sweeps and solvers meet.
+//! Solves a scene and formats its cells. Only this file of sweeps uses the solvers.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,8 +10,7 @@ use super::results::{Results, of_draw, of_impact};
 use crate::assembly::{AnyScene, Wanted};
 use crate::model::Kept;
 
-/// Whether a scene can be solved, as far as can be told without solving it. A fault in the program itself is left to
-/// the rows.
+/// Checks whether a scene can be solved, without solving it. Errors of the program itself are reported in the rows.
 pub(super) fn check(scene: &AnyScene) -> Result<(), InvalidInput> {
     let check = || match scene {
         AnyScene::Impact(scene) => scene.check(),
@@ -20,7 +19,7 @@ pub(super) fn check(scene: &AnyScene) -> Result<(), InvalidInput> {
     catch_unwind(AssertUnwindSafe(check)).unwrap_or(Ok(()))
 }
 
-/// Solves a scene; `Err` says why it could not be solved, whatever went wrong. `None` if `stop` cut it short.
+/// Solves a scene; `Err` is the reason why it could not be solved, including a panic. `None` if `stop` interrupted it.
 pub(super) fn evaluate(
     scene: Result<AnyScene, InvalidInput>,
     results: &Results,
@@ -47,7 +46,7 @@ pub(super) fn evaluate(
         (AnyScene::Bodies(_), _) => Err("bodies is too much; the first point of the sweep has none".to_owned()),
     });
     if cells.is_err() {
-        // what a solver that failed has left may be anything
+        // the memory of a failed solver may be inconsistent
         kept.clear();
     }
     cells.transpose()

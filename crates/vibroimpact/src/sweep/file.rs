@@ -15,14 +15,14 @@ use crate::scene::fields::{look_up, name_at};
 use crate::scene::json::{self, number, quote};
 use crate::scene::{A_SCENE, InvalidInput, SceneError, check_version, read_modes_into, read_tree};
 
-/// The newest version of the sweep format that is understood; a file without a version has version 1.
+/// The newest supported version of the sweep format; a file without a version has version 1.
 pub const FORMAT_VERSION: u64 = 1;
-/// What a sweep file holds, in messages.
+/// Name of the content of a sweep file in messages.
 pub(super) const A_SWEEP: &str = "a sweep";
 
 const FIELD: &str = "the path of a field of the scene, as in striker.mass_kg or structure.segments[0].length_m";
 
-/// Field and what it may hold.
+/// A field and its allowed values.
 const FIELDS: &[(&str, &str)] = &[
     ("", "a sweep is an object with scene or scene_file, and vary, random or uncertain"),
     ("$schema", "a text: the address of the schema of sweeps"),
@@ -163,7 +163,7 @@ struct IntervalEntry {
     whole_numbers: bool,
 }
 
-/// What a sweep file says, checked by itself: not yet against the scene.
+/// The content of a sweep file, not yet checked against the scene.
 pub(super) struct Contents {
     pub description: Option<String>,
     pub scene: Value,
@@ -196,7 +196,7 @@ pub(super) fn read(path: &Path) -> Result<Contents, SweepError> {
     Ok(from_tree(tree)?)
 }
 
-/// A fault of the scene file, told apart from those of the sweep file.
+/// An error of the scene file, in contrast to one of the sweep file.
 fn in_file(path: &Path, found: SceneError) -> SceneError {
     match found {
         SceneError::Syntax { line, column, field, reason } => {
@@ -206,7 +206,7 @@ fn in_file(path: &Path, found: SceneError) -> SceneError {
     }
 }
 
-/// Puts the numbers of tables that the scene names in their places. A fault of the scene's own fields has their path.
+/// Inserts the numbers of tables that the scene names. An error of the scene's own fields has their path.
 pub(super) fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), SceneError> {
     let read = match scene.get("bodies") {
         Some(_) => assembly::read_tables_into(scene, folder),
@@ -228,7 +228,7 @@ pub(super) fn read_tables_into(scene: &mut Value, folder: &Path) -> Result<(), S
 pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> {
     check_version(&canonical, FORMAT_VERSION, "sweep")?;
     let file: SweepFile = typed(&canonical)?;
-    // neither is part of what is computed
+    // neither has an influence on the results
     for key in ["$schema", "version"] {
         canonical.as_object_mut().and_then(|map| map.remove(key));
     }
@@ -269,7 +269,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
     Ok(Contents { description: file.description, scene, axes, random, uncertain, told, canonical })
 }
 
-/// Reads an object; what is allowed is told in the terms of sweeps.
+/// Reads an object; messages describe the allowed values of sweep files.
 fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
     json::read_whole(value, "the sweep").map_err(|found| {
         let unknown = found.allowed.starts_with(json::UNKNOWN_FIELD);
@@ -338,7 +338,7 @@ fn interval(place: &invalid_input::Path, interval: Interval) -> Result<Interval,
     Ok(interval)
 }
 
-/// The one form of a tree as text: keys in order, no spaces.
+/// The canonical text of a tree: sorted keys, no spaces.
 pub(super) fn canonical_text(tree: &Value) -> String {
     fn sorted(tree: &Value) -> Value {
         match tree {

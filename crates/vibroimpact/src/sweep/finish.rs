@@ -1,4 +1,4 @@
-//! What is made of the rows when all are there: Parquet, summary, pictures, report.
+//! The files that are made from the complete rows: Parquet, summary, figures, report.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -14,7 +14,7 @@ use super::table::Table;
 use super::tally::Tally;
 use super::uncertain::{self, Collector, Uncertain};
 
-/// Makes the rest of a folder's files, whose rows are complete. A part has a summary only: the rest is made when the
+/// Writes the remaining files of a folder whose rows are complete. A part has only a summary: the other files are written when the
 /// parts are merged.
 pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<Tally, SweepError> {
     if part != Part::WHOLE {
@@ -51,7 +51,7 @@ pub(super) fn finish(sweep: &Sweep, part: Part, folder: &mut Folder) -> Result<T
     Ok(tally)
 }
 
-/// Whether the draws that are there have the sampling error that is wanted.
+/// Whether the draws so far have the requested sampling error.
 pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bool, SweepError> {
     let adaptive = sweep.uncertain.as_ref().is_some_and(Uncertain::is_adaptive);
     let Some(mut draws) = Collector::new(sweep).filter(|_| adaptive) else { return Ok(false) };
@@ -62,7 +62,7 @@ pub(super) fn is_enough(sweep: &Sweep, part: Part, folder: &Folder) -> Result<bo
     Ok(draws.enough())
 }
 
-/// The summary of a folder that is finished.
+/// The summary of a finished folder.
 pub(super) fn summary(folder: &Folder) -> Result<Tally, SweepError> {
     let path = folder.path().join(SUMMARY);
     read_json(&path)?.ok_or_else(|| SweepError::Refused(format!("{} is missing", path.display())))
@@ -89,7 +89,7 @@ fn each_row(
     let first = part.chunks(sweep.chunks()).start;
     let there = sweep.first_of_chunk(first)..sweep.first_of_chunk(first + folder.progress().chunks);
     for point in there {
-        // after the last row nothing is read, and an empty row is refused
+        // nothing is read after the last row, and an empty row is rejected
         table.read_record(&mut cells).map_err(blame)?;
         let row = Row::new(sweep, point, &cells)?;
         tally.add(point, &row);

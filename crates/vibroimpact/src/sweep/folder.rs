@@ -1,8 +1,8 @@
-//! The folder of a sweep: what it holds survives being cut off at any moment.
+//! The folder of a sweep, whose contents survive an interruption at any moment.
 //!
-//! `results.csv` grows at its end. After each growth has reached the disk, `progress.json`, replaced as a whole, says
-//! how many chunks are in it, how long it is and its checksum. What is beyond that length when a sweep goes on was being
-//! written when it was cut off, and is dropped.
+//! Rows are appended to `results.csv`. When they have reached the disk, `progress.json` is replaced as a whole. It states the
+//! number of chunks in `results.csv`, its length and its checksum. Bytes beyond that length were being written when the sweep was
+//! interrupted, and are dropped when it is resumed.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -17,7 +17,7 @@ use super::part::Part;
 use super::row;
 use super::status::Sink;
 
-/// What a folder says of itself, in `sweep.json`.
+/// The description of a folder, `sweep.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Record {
     pub program: String,
@@ -39,7 +39,7 @@ impl Record {
     }
 }
 
-/// How far a folder has come, in `progress.json`.
+/// The progress of a folder, `progress.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Chunks whose rows are in `results.csv`.
@@ -48,17 +48,17 @@ pub(super) struct Progress {
     pub bytes: u64,
     /// Checksum of these bytes.
     pub crc32: u32,
-    /// Whether everything that is made at the end is there too.
+    /// Whether the final files are complete too.
     pub finished: bool,
 }
 
-/// A folder that this process alone works in.
+/// A folder that only this process uses.
 #[derive(Debug)]
 pub(super) struct Folder {
     path: PathBuf,
     results: File,
     progress: Progress,
-    /// Held as long as the folder is.
+    /// The lock of the folder.
     _lock: File,
 }
 
@@ -69,14 +69,14 @@ pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const DISTRIBUTION: &str = "distribution.csv";
 const PROGRESS: &str = "progress.json";
 const LOCK: &str = "lock";
-/// What a sweep writes beside its record. Where there is no record these are another's, and are not replaced.
+/// The files of a sweep in addition to its record. Without a record they belong to something else, and are not replaced.
 const WRITTEN: [&str; 8] = [RESULTS, PROGRESS, TABLE, SUMMARY, DISTRIBUTION, "report.html", "report.md", "figures"];
 
 impl Folder {
-    /// Opens the folder of a sweep to begin, or to go on.
+    /// Opens the folder of a sweep, to begin or to resume it.
     ///
     /// # Errors
-    /// A folder in use, of another sweep, or damaged; or what the system says.
+    /// A folder that is in use, belongs to another sweep, or is damaged; errors of the system.
     pub(super) fn open(path: &Path, sweep: &Sweep, part: Part) -> Result<Folder, SweepError> {
         let record = Record::new(sweep, part);
         let found = read_json::<Record>(&path.join(RECORD))?;
@@ -122,7 +122,7 @@ impl Folder {
         &self.progress
     }
 
-    /// Notes that nothing is left to do.
+    /// Records that the folder is finished.
     pub(super) fn finish(&mut self) -> Result<(), SweepError> {
         self.progress.finished = true;
         self.save()
@@ -132,7 +132,7 @@ impl Folder {
         write_durably(&self.path.join(PROGRESS), &json(&self.progress)?)
     }
 
-    /// The results must begin with what is noted of them.
+    /// Checks that the beginning of the results agrees with the record.
     fn check(&mut self) -> Result<(), SweepError> {
         let file = self.path.join(RESULTS);
         if checksum(&mut self.results, self.progress.bytes).map_err(SweepError::io(&file))? == Some(self.progress.crc32)
@@ -144,7 +144,7 @@ impl Folder {
         Err(SweepError::Refused(text))
     }
 
-    /// Drops what was being written when the sweep was cut off.
+    /// Drops the bytes that were being written when the sweep was interrupted.
     fn cut(&mut self) -> Result<(), SweepError> {
         let bytes = self.progress.bytes;
         let cut = self.results.set_len(bytes).and_then(|()| self.results.seek(SeekFrom::Start(bytes)));
@@ -157,7 +157,7 @@ impl Sink for Folder {
         self.progress.chunks
     }
 
-    /// Adds the rows of the next chunks; they are safe when this returns.
+    /// Adds the rows of the next chunks; they are on the disk when this returns.
     fn append(&mut self, chunks: u64, rows: &[u8]) -> Result<(), SweepError> {
         let written = self.results.write_all(rows).and_then(|()| self.results.sync_data());
         written.map_err(SweepError::io(&self.path.join(RESULTS)))?;
@@ -170,13 +170,13 @@ impl Sink for Folder {
     }
 }
 
-/// What the folder of a finished part holds.
+/// The contents of the folder of a finished part.
 pub(super) struct Finished {
     pub record: Record,
     pub progress: Progress,
 }
 
-/// Looks into the folder of a part, which must be finished and whole.
+/// Opens the folder of a part, which must be finished and undamaged.
 pub(super) fn look_into(path: &Path) -> Result<Finished, SweepError> {
     let refused = |reason: &str| SweepError::Refused(format!("{} {reason}", path.display()));
     let record = read_json::<Record>(&path.join(RECORD))?.ok_or_else(|| refused("is not the folder of a sweep"))?;
@@ -186,7 +186,7 @@ pub(super) fn look_into(path: &Path) -> Result<Finished, SweepError> {
     Ok(Finished { record, progress })
 }
 
-/// The checksum of the first bytes of a file; `None` if it has not so many.
+/// The checksum of the first bytes of a file; `None` if it is shorter.
 fn checksum(file: &mut File, bytes: u64) -> io::Result<Option<u32>> {
     file.seek(SeekFrom::Start(0))?;
     let mut sum = crc32fast::Hasher::new();
@@ -223,7 +223,7 @@ fn same_sweep(path: &Path, found: &Record, wanted: &Record) -> Result<(), SweepE
 
 fn lock(path: &Path) -> Result<File, SweepError> {
     let file = path.join(LOCK);
-    // a file that stands there under this name keeps what it holds
+    // an existing file with this name is not changed
     let opened = OpenOptions::new().write(true).create(true).truncate(false).open(&file);
     let lock = opened.map_err(SweepError::io(&file))?;
     match lock.try_lock() {
@@ -250,7 +250,7 @@ pub(super) fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<Opt
     serde_json::from_str(&text).map(Some).map_err(damaged)
 }
 
-/// Replaces a file as a whole; afterwards the new one is there whatever happens to the machine.
+/// Replaces a file atomically; afterwards the new file is on the disk, whatever happens to the machine.
 pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), SweepError> {
     let part = path.with_extension("part");
     let write = || {
@@ -262,10 +262,10 @@ pub(super) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), SweepError>
     write().map_err(SweepError::io(path))
 }
 
-/// Moves a file that is on the disk into its place.
+/// Renames a file that is on the disk.
 pub(super) fn settle(part: &Path, path: &Path) -> io::Result<()> {
     fs::rename(part, path)?;
-    // the name lives in the folder, which is a file of its own to Unix
+    // the name is stored in the folder, which has to be synchronised separately on Unix
     #[cfg(unix)]
     if let Some(folder) = path.parent() {
         File::open(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?.sync_all()?;

@@ -1,4 +1,4 @@
-//! What the varied fields of a sweep are called in its pictures.
+//! Names of the varied fields of a sweep in its figures.
 
 use serde_json::Value;
 
@@ -44,7 +44,7 @@ const UNITS: [(&str, &str); 22] = [
     ("_w", "W"),
 ];
 
-/// What an axis is called: `striker.mass_kg` is `striker mass` in `kg`.
+/// The name of an axis: `striker.mass_kg` is `striker mass` in `kg`.
 pub(super) fn label_and_unit(field: &FieldPath) -> (String, &'static str) {
     let path = field.to_string();
     named(["structure.", "bodies."].iter().find_map(|object| path.strip_prefix(object)).unwrap_or(&path))

@@ -1,4 +1,4 @@
-//! From the folders of all parts to the folder of the whole sweep.
+//! Merges the folders of all parts into the folder of the whole sweep.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -17,13 +17,12 @@ use super::tally::Tally;
 /// Rows are copied in pieces of about this size.
 const PIECE: usize = 4 << 20;
 
-/// Makes the folder of a whole sweep from those of its parts: the very bytes that [`run`](super::run) gives without
-/// parts. Every point is looked at, so that none is missing and none doubled.
+/// Makes the folder of a whole sweep from those of its parts, with the same bytes as [`run`](super::run) without parts. Every
+/// point is checked, so that none is missing or duplicated.
 ///
 /// # Errors
 /// Folders that are not those of all parts of one sweep, each once, finished and undamaged; the text names those that
-/// are missing. Nothing is then written, unless the damage is found in the middle of a part, which leaves an unfinished
-/// folder.
+/// are missing. Nothing is then written, unless damage is found in the middle of a part; the folder is then unfinished.
 pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
     let refused = |text: String| Err(SweepError::Refused(text));
     let mut found: BTreeMap<u64, (&PathBuf, Finished)> = BTreeMap::new();
@@ -65,7 +64,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
     }
     for (number, (path, part)) in &found {
         let chunks = Part { number: *number, of }.chunks(sweep.chunks());
-        // those that an earlier merge, cut off, has already copied
+        // rows that an interrupted merge has already copied
         if folder.progress().chunks >= chunks.end {
             continue;
         }
@@ -77,7 +76,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Tally, SweepError> {
     finish::finish(&sweep, Part::WHOLE, &mut folder)
 }
 
-/// Copies the rows of a part that are not there yet, chunk by chunk.
+/// Copies the missing rows of a part, chunk by chunk.
 fn copy(sweep: &Sweep, folder: &mut Folder, path: &Path, part: &Finished, first: u64) -> Result<(), SweepError> {
     let file = path.join(RESULTS);
     let damaged = |what: &str| SweepError::Refused(format!("{} is damaged: {what}", file.display()));
@@ -116,7 +115,7 @@ fn copy(sweep: &Sweep, folder: &mut Folder, path: &Path, part: &Finished, first:
         }
     }
     next(&mut Vec::new())?;
-    // before the last rows go in, the whole part must be as its sweep left it
+    // before the last rows are added, the whole part must be unchanged
     if sum.finalize() != part.progress.crc32 {
         return Err(damaged("its checksum differs from the recorded one"));
     }

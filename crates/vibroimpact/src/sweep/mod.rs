@@ -1,16 +1,16 @@
-//! Sweeps: many scenes that differ in some fields, computed on all cores, in parts on many machines, or over the ranks
-//! of an MPI job, with the same bytes as a result.
+//! Sweeps: many scenes that differ in some fields, computed on all cores, in parts on many machines, or over the ranks of an MPI
+//! job. The bytes of the results are the same in all cases.
 //!
 //! A [`Sweep`] is a base scene and the fields that vary. Its points are numbered, and each is a function of its number
 //! alone. [`run`] computes them into a folder; after an interruption at any moment, another run continues from there.
 //! [`merge`] makes the folder of a whole sweep from those of its parts.
 //!
-//! | file | what it holds |
+//! | file | content |
 //! |---|---|
 //! | `results.csv` | one row for each point: `index`, the varied fields, the result, its cost, `error` if there is none |
 //! | `results.parquet` | the same, typed and compressed |
 //! | `report.html`, `report.md`, `figures/` | the varied fields, the results, pictures |
-//! | `distribution.csv` | of a sweep with uncertain fields: figures of the outputs at each grid point |
+//! | `distribution.csv` | for a sweep with uncertain fields: statistics of the outputs at each grid point |
 //! | `summary.json` | a [`Tally`] |
 //! | `sweep.json`, `progress.json`, `lock` | the sweep, its progress, the process that works on it |
 //!
@@ -82,14 +82,13 @@ pub use values::{Axis, AxisValues, Interval, Random, Scale};
 use folder::Folder;
 use status::Sink;
 
-/// Computes a part of a sweep into a folder, or what is missing of it there, and says what came out. `threads` of 0
-/// stands for as many as the machine has cores. `tell` hears how far it has come, first before anything is computed,
-/// and then several times a second.
+/// Computes a part of a sweep, or its missing points, into a folder, and returns a summary. With `threads` equal to 0 every core
+/// of the machine has a thread. `tell` is called with the progress before anything is computed, and then several times a second.
 ///
 /// # Errors
-/// A folder that cannot be used, as [`SweepError`] says; [`SweepError::Stopped`] after `stop` has become true, which
-/// loses nothing that was finished; a part of a sweep that ends by itself once its sampling error is small enough. Scenes
-/// that cannot be solved are rows.
+/// A folder that cannot be used, see [`SweepError`]; [`SweepError::Stopped`] after `stop` has become true, which loses no finished
+/// row; a part of a sweep whose number of draws depends on its sampling error. Scenes that cannot be solved are rows with an
+/// error.
 pub fn run(
     sweep: &Sweep,
     part: Part,
@@ -105,7 +104,7 @@ pub fn run(
         return finish::summary(&folder);
     }
     for until in sweep.stages(part) {
-        // a stage that is over was not enough, or it is asked anew
+        // a finished stage was not sufficient, or is checked again
         if folder.chunks() < until {
             threads::compute(sweep, part, until, &mut folder, threads, stop, tell)?;
         }

@@ -1,8 +1,8 @@
-//! Computing the chunks of a sweep on the ranks of an MPI job.
+//! Computes the chunks of a sweep on the ranks of an MPI job.
 //!
-//! Rank 0 reads the sweep, hands out chunks to whoever is free, puts the rows in order and writes them; it computes
-//! nothing itself. The other ranks need no file: the sweep comes to them as text. The bytes in the folder are those of
-//! [`run`](super::run), and the two can go on with what the other began. A single rank computes on its threads.
+//! Rank 0 reads the sweep, sends chunks to free ranks, sorts the rows and writes them; it computes nothing itself. The other ranks
+//! need no file: they receive the sweep as text. The bytes in the folder are those of [`run`](super::run), and each of the two
+//! can resume a sweep of the other. A single rank computes on its threads.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,13 +24,13 @@ use super::status::{Sink, Status};
 use super::tally::Tally;
 use super::threads::BETWEEN_WRITES;
 
-/// How long rank 0 rests when no message is there. Waiting inside MPI would take a whole core.
+/// Pause of rank 0 if there is no message. Waiting inside MPI would occupy a whole core.
 const REST: Duration = Duration::from_micros(200);
-/// In place of a chunk's number: from rank 0, nothing is left to do; to rank 0, a signal came.
+/// In place of a chunk's number: from rank 0, all work is done; to rank 0, a signal was received.
 const END: u64 = u64::MAX;
 
 /// Computes a part of a sweep as [`run`](super::run) does, over all ranks of the MPI job that this process belongs to.
-/// `read` is called on rank 0 only. The result is there on rank 0, the other ranks have `None`.
+/// `read` is called on rank 0 only. Rank 0 returns the result, the other ranks return `None`.
 ///
 /// # Errors
 /// As [`run`](super::run), on rank 0; MPI that cannot be used.
@@ -58,7 +58,7 @@ pub fn run(
     });
     let text = match &begun {
         Ok((sweep, folder)) if !folder.progress().finished => sweep.canonical().to_string(),
-        // the others have nothing to do
+        // the other ranks have no work
         _ => String::new(),
     };
     share(&world, text.into_bytes());
@@ -71,23 +71,23 @@ pub fn run(
     finish::finish(&sweep, part, &mut folder).map(Some)
 }
 
-/// Gives the bytes of rank 0 to all.
+/// Sends the bytes of rank 0 to all ranks.
 fn share(world: &SimpleCommunicator, mut bytes: Vec<u8>) -> Vec<u8> {
     let root = world.process_at_rank(0);
     let mut length = bytes.len() as u64;
     root.broadcast_into(&mut length);
     bytes.resize(length as usize, 0);
-    // MPI refuses to send nothing
+    // MPI cannot send an empty message
     if length > 0 {
         root.broadcast_into(&mut bytes[..]);
     }
     bytes
 }
 
-/// What every rank but the first does: asks for a chunk, returns its rows, until none is left.
+/// Work of every rank except the first: requests chunks and returns their rows until none is left.
 fn work(world: &SimpleCommunicator, stop: &AtomicBool) {
     let text = share(world, Vec::new());
-    // rank 0 has read the same, so that there is a sweep unless there is nothing to do
+    // rank 0 has read the same text, so it is a valid sweep unless there is no work
     let tree = serde_json::from_slice(&text).ok();
     let Some(sweep) = tree.and_then(|tree| Sweep::from_value(&tree).ok()) else { return };
     let lead = world.process_at_rank(0);
@@ -106,7 +106,7 @@ fn work(world: &SimpleCommunicator, stop: &AtomicBool) {
     }
 }
 
-/// What rank 0 does: hands out chunks and writes what comes back.
+/// Work of rank 0: sends chunks and writes the returned rows.
 fn lead(
     world: &SimpleCommunicator,
     sweep: &Sweep,
@@ -123,7 +123,7 @@ fn lead(
     let mut last = Instant::now();
     let mut given_up = false;
     let mut written = Ok(());
-    // until every worker has been sent home, whatever happens in between
+    // until every worker has been told to stop, whatever happens in between
     while working > 0 {
         match world.any_process().immediate_matched_probe() {
             Some(message) => {

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// One of the parts into which a sweep is divided: neighbouring chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
-    /// Which part, from 1.
+    /// Number of the part, from 1.
     pub number: u64,
-    /// How many there are.
+    /// Number of parts.
     pub of: u64,
 }
 

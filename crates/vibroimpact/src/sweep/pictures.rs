@@ -1,4 +1,4 @@
-//! Pictures of a sweep: lines over one quantity, maps over two, points over what was drawn at random.
+//! Figures of a sweep: lines over one quantity, maps over two, points over random draws.
 
 use std::ops::RangeInclusive;
 
@@ -11,48 +11,48 @@ use super::row::Row;
 use super::values::{Axis as Varied, AxisValues, Scale};
 use crate::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 
-/// Larger sweeps have no pictures: a person looks at a part of them.
+/// Largest number of points of a sweep with figures.
 const MOST_POINTS: u64 = 1_000_000;
-/// Lines or maps in one picture.
+/// Largest number of lines or maps in one figure.
 const MOST_CURVES: u64 = 6;
-/// Values along a line, and along either side of a map; of more, as many are picked evenly.
+/// Largest number of values along a line, and along either side of a map; from more values this number is selected evenly.
 const ALONG_LINE: u64 = 2000;
 const ALONG_MAP: u64 = 150;
-/// Points that are drawn for themselves.
+/// Largest number of points that are drawn individually.
 const MOST_DOTS: u64 = 4000;
-/// The share of the draws within a band is that between these quantiles.
+/// Quantiles at the limits of a band.
 const BAND: RangeInclusive<f64> = 0.05..=0.95;
 
-/// Under curves that are not drawn as lines.
+/// Caption for curves that are not drawn as lines.
 const UNRESOLVED: &str = " Points that alternate irregularly are not joined, and have bars for bands: finer \
                           steps would show what lies between them.";
-/// A curve that turns round at more than this share of its points is not resolved by them.
+/// A curve that changes its direction at more than this share of its points is not resolved.
 const TURNING: f64 = 0.25;
-/// Fewer points say nothing about that.
+/// Smallest number of points for this decision.
 const FEWEST: usize = 8;
-/// Smaller steps to and fro are no jumps; as a share of the range of all points.
+/// Smaller alternating steps do not count, as a share of the range of all points.
 const JUMP: f64 = 0.02;
 
-/// One for each curve, so that points in one place are told apart.
+/// One marker for each curve, so that overlapping points can be distinguished.
 const MARKERS: [Marker; MOST_CURVES as usize] =
     [Marker::Dot, Marker::Circle, Marker::Cross, Marker::Square, Marker::Triangle, Marker::Plus];
 
-/// A longer description does not fit over a picture.
+/// Longest description above a figure.
 const LONGEST_TITLE: usize = 90;
 
-/// The results that pictures need.
+/// The results for the figures.
 pub(super) struct Pictures<'a> {
     sweep: &'a Sweep,
     quantities: Vec<Quantity>,
-    /// What is drawn, as it begins a title.
+    /// Name of the drawn results, at the start of a title.
     name: &'static str,
     /// `None` if the sweep is too large.
     points: Option<Vec<Drawn>>,
-    /// The motions to which runs have settled, numbered in the order in which they occur, and how many they are.
+    /// The motions to which runs have converged, numbered in the order in which they occur, and their counts.
     motions: Vec<(String, u64)>,
 }
 
-/// A value along an axis, and where it stands there.
+/// A value along an axis, and its position.
 struct Place {
     number: u64,
     at: f64,
@@ -79,7 +79,7 @@ impl<'a> Pictures<'a> {
         points.push(drawn);
     }
 
-    /// The pictures, each with a name and a caption.
+    /// The figures, each with a name and a caption.
     pub(super) fn figures(mut self) -> Vec<(&'static str, Figure, String)> {
         self.sort_motions();
         let Some(points) = &self.points else { return Vec::new() };
@@ -93,8 +93,8 @@ impl<'a> Pictures<'a> {
         }
     }
 
-    /// Gives motions numbers in the order of their periods and intervals, and the axis their names. Where there are none,
-    /// or medians of several draws would have to be told, they are not drawn.
+    /// Numbers motions in the order of their periods and intervals, and gives the axis their names. They are not drawn if there are
+    /// none, or if there are several draws, for which motions have no median.
     fn sort_motions(&mut self) {
         if self.motions.is_empty() || self.sweep.draws() > 1 {
             self.quantities.retain(|quantity| quantity.column != MOTION);
@@ -105,7 +105,7 @@ impl<'a> Pictures<'a> {
         let (Some(place), Some(points)) = (place, &mut self.points) else { return };
         for drawn in points {
             let value = &mut drawn.values[place];
-            // not-a-number stands for no number, and becomes none
+            // NaN means that there is no number
             *value = numbers.get(*value as usize).filter(|_| !value.is_nan()).map_or(f64::NAN, |number| *number as f64);
         }
         let last = names.len() as f64;
@@ -131,7 +131,7 @@ impl<'a> Pictures<'a> {
                 let colour = crate::plot::Colour::of_series(number);
                 let marker = MARKERS[number % MARKERS.len()];
                 let middle = of(1);
-                // points that jump to and fro do not tell what lies between them
+                // points that alternate irregularly are not joined, since the curve between them is unknown
                 let jumps = !counted && !is_resolved(&middle);
                 unresolved |= jumps;
                 let series = match counted || jumps {
@@ -139,7 +139,7 @@ impl<'a> Pictures<'a> {
                     false => Series::line(&x, &middle),
                 };
                 if jumps {
-                    // what is not joined has a bar of its own
+                    // points that are not joined have bars
                     let across: Vec<f64> = x.iter().flat_map(|&x| [x, x, f64::NAN]).collect();
                     let up: Vec<f64> = spread.iter().flat_map(|[low, _, high]| [*low, *high, f64::NAN]).collect();
                     panel = panel.with(Series::line(&across, &up).colour(colour));
@@ -202,7 +202,7 @@ impl<'a> Pictures<'a> {
         ("draws", figure, format!("{} draws, {shown}.", picked.len()))
     }
 
-    /// The values along an axis, rising.
+    /// The values along an axis, ascending.
     fn along(&self, axis: usize, most: u64) -> Vec<Place> {
         let varied = &self.sweep.axes[axis];
         let place = |number: u64| {
@@ -215,8 +215,8 @@ impl<'a> Pictures<'a> {
         places
     }
 
-    /// The values of the other axes for which a curve or a map of its own is drawn: for each axis the number of the
-    /// value, of which those of `taken` mean nothing.
+    /// The values of the other axes for each separate curve or map: for each axis the number of the value; those of the axes
+    /// `taken` are not used.
     fn others(&self, taken: &[usize]) -> Vec<Vec<u64>> {
         let axes = &self.sweep.axes;
         let free = (0..axes.len()).filter(|axis| !taken.contains(axis));
@@ -296,7 +296,7 @@ impl<'a> Pictures<'a> {
         }
     }
 
-    /// What of the sweep is not in the picture.
+    /// Description of the parts of the sweep that are not in the figure.
     fn told(&self, taken: &[usize], curves: usize, along: u64) -> String {
         let axes = &self.sweep.axes;
         let combinations: u64 =
@@ -312,7 +312,7 @@ impl<'a> Pictures<'a> {
     }
 }
 
-/// Numbers below `count`, all of them or as many as asked for, evenly spread, the first and the last among them.
+/// Numbers below `count`: all of them, or a selection that is evenly spread and includes the first and the last.
 fn evenly(count: u64, most: u64) -> Vec<u64> {
     let picked = count.min(most);
     // both at most MOST_POINTS
@@ -343,7 +343,7 @@ mod tests {
         let curve = |of: fn(f64) -> f64| (0..40).map(|i| of(f64::from(i))).collect::<Vec<f64>>();
         assert!(is_resolved(&curve(|x| (0.3 * x).sin())));
         assert!(!is_resolved(&curve(|x| (2.5 * x).sin())));
-        // noise of rounding on a smooth curve is no jump
+        // rounding on a smooth curve does not count
         assert!(is_resolved(&curve(|x| x + 1e-9 * (2.5 * x).sin())));
         assert!(is_resolved(&[0.0, 1.0, 0.0, 1.0]));
     }

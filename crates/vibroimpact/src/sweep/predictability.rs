@@ -1,4 +1,4 @@
-//! Where the outcome can be predicted: its spread over one or two fields of a scene, under a stated blur.
+//! Maps of predictability: the spread of the outcome over one or two fields of a scene, for stated uncertainties of fields.
 
 use invalid_input::{InvalidInput, Path, Step};
 use serde_json::{Map, Value, json};
@@ -20,13 +20,13 @@ pub struct Over {
     pub from: f64,
     /// Last value.
     pub to: f64,
-    /// How many.
+    /// Number of values.
     pub count: u64,
     /// Equal differences or equal ratios.
     pub scale: Scale,
 }
 
-/// How well a field is known.
+/// The uncertainty of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blur {
     /// The path of the field.
@@ -35,7 +35,7 @@ pub struct Blur {
     pub width: BlurWidth,
 }
 
-/// The standard deviation of a field that is known about a value.
+/// The standard deviation of a field about its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BlurWidth {
     /// In the unit of the field; it is normally distributed.
@@ -45,13 +45,12 @@ pub enum BlurWidth {
 }
 
 impl Sweep {
-    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), where some fields are
-    /// known within a `blur` only: about the value on the map, or about the scene's own. Of a scene of bodies it maps the
-    /// default outputs of its sweeps. Every point has as many draws, by the same `seed`.
+    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), if some fields have a standard
+    /// deviation
+    /// (`blur`) about the value on the map, or about that of the scene. For a scene of bodies it maps the default outputs of its sweeps. Every point has the same number of draws with the same `seed`.
     ///
     /// # Errors
-    /// A scene that cannot be read or used, or a field or number that cannot be; a fault names the option of the command
-    /// `predictability`.
+    /// A scene, field or number that is invalid; the error names the option of the command `predictability`.
     pub fn predictability(
         draft: &Draft,
         over: &[Over],
@@ -92,7 +91,7 @@ impl Sweep {
     }
 }
 
-/// The number that the scene has in a field.
+/// The number in a field of the scene.
 fn value(scene: &Value, field: &str) -> Result<f64, InvalidInput> {
     let found = FieldPath::parse(field).and_then(|path| path.get(scene).cloned());
     found.as_ref().and_then(Value::as_f64).ok_or_else(|| {
@@ -101,7 +100,7 @@ fn value(scene: &Value, field: &str) -> Result<f64, InvalidInput> {
     })
 }
 
-/// A fault of the sweep under the name of the option that caused it.
+/// An error of the sweep with the name of the option that caused it.
 fn of_option(fault: InvalidInput, over: &[Over]) -> InvalidInput {
     match fault.field.steps() {
         [Step::Field(list), Step::Index(i), inner @ ..] if list == "vary" && !inner.is_empty() => {

@@ -1,4 +1,4 @@
-//! The quantities that pictures of a sweep show of each point.
+//! The quantities of each point in figures of a sweep.
 
 use std::collections::BTreeMap;
 
@@ -6,9 +6,9 @@ use super::results::Results;
 use super::row::NO_MOTION;
 use crate::plot::Axis;
 
-/// The column of motions, which are no numbers.
+/// The column of motions, which are not numbers.
 pub(super) const MOTION: &str = "motion";
-/// Motions that have a colour of their own, the most common ones; the others share one.
+/// Number of motions with a separate colour, the most common ones; the others share one.
 const MOST_MOTIONS: usize = 9;
 
 /// A quantity that is drawn.
@@ -25,10 +25,10 @@ impl Quantity {
     }
 }
 
-/// Most quantities of one sweep.
+/// Largest number of quantities of one sweep.
 pub(super) const QUANTITIES: usize = 3;
 
-/// What is drawn of one point; not a number where there is none.
+/// The drawn values of one point; NaN if there is none.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drawn {
     pub values: [f64; QUANTITIES],
@@ -40,7 +40,7 @@ pub(super) fn median(draws: &[Drawn], quantity: usize) -> f64 {
     quantile(draws, 0.5, quantity)
 }
 
-/// The value below which a share of those draws lie that have one.
+/// Quantile of the draws that have a value.
 pub(super) fn quantile(draws: &[Drawn], share: f64, quantity: usize) -> f64 {
     let mut values: Vec<f64> = draws.iter().map(|drawn| drawn.values[quantity]).filter(|v| !v.is_nan()).collect();
     values.sort_by(f64::total_cmp);
@@ -48,7 +48,7 @@ pub(super) fn quantile(draws: &[Drawn], share: f64, quantity: usize) -> f64 {
     values.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
 }
 
-/// The number of a motion, which gets the next one if it is new; not a number where there is no motion.
+/// The number of a motion, which is the next one if the motion is new; NaN if there is no motion.
 pub(super) fn motion_number(motions: &mut Vec<(String, u64)>, name: String) -> f64 {
     if name.is_empty() {
         return f64::NAN;
@@ -62,8 +62,8 @@ pub(super) fn motion_number(motions: &mut Vec<(String, u64)>, name: String) -> f
     number as f64
 }
 
-/// For each motion its place among those that are drawn, and the names of these places: first the most common motions in
-/// the order of their periods and intervals, then all others, then no motion.
+/// For each motion its position among the drawn ones, and the names of these positions: first the most common motions in the order
+/// of their periods and intervals, then all others, then no motion.
 pub(super) fn ranked(motions: &[(String, u64)]) -> (Vec<usize>, Vec<String>) {
     let parts = |name: &str| -> Option<(u64, u64)> {
         let (intervals, periods) = name.split_once('/')?;
@@ -86,7 +86,7 @@ pub(super) fn ranked(motions: &[(String, u64)]) -> (Vec<usize>, Vec<String>) {
     (motions.iter().map(place).collect(), names)
 }
 
-/// What is drawn of a sweep, and how a title calls it.
+/// The drawn quantities of a sweep, and their name in titles.
 pub(super) fn of_results(results: &Results) -> (&'static str, Vec<Quantity>) {
     match results {
         Results::Impact | Results::Draw => {

@@ -1,4 +1,4 @@
-//! The report of a sweep: what was varied, what came out, pictures.
+//! The report of a sweep: varied fields, results, figures.
 
 use std::io;
 
@@ -11,7 +11,7 @@ use super::values::{AxisValues, Interval, Scale};
 use crate::plot::Figure;
 use crate::report::{Report, significant};
 
-/// Values of a list that are told one by one.
+/// Largest number of values of a list that are printed individually.
 const VALUES_TOLD: usize = 12;
 
 pub(super) fn report(sweep: &Sweep, tally: &Tally, figures: Vec<(String, Figure, String)>) -> io::Result<Report> {

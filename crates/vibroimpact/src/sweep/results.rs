@@ -1,4 +1,4 @@
-//! What a point of a sweep comes to: the columns after the varied fields, for scenes of one impact and for scenes of bodies.
+//! The results of a point of a sweep: the columns after the varied fields, for scenes of one impact and for scenes of bodies.
 
 use super::table::Kind;
 use crate::assembly::{AnyScene, Simulation, Summary};
@@ -86,9 +86,9 @@ const LAST: [(&str, Kind); 11] = [
     ("error", Kind::Text),
 ];
 
-/// What is told of a run as a distribution, where nothing else is asked for.
+/// Default outputs of a run that are reported as distributions.
 const TOLD_OF_RUN: [&str; 3] = ["intervals", "largest_force_n", "contact_work_rate_w"];
-/// Numbers of a run that are no outputs: how it was computed, and the motion, of which there is no mean.
+/// Numbers of a run that cannot be outputs: the work of the solver, and the motion, which has no mean.
 const NOT_OUTPUTS: [&str; 9] = [
     "motion_periods",
     "motion_intervals",
@@ -101,20 +101,20 @@ const NOT_OUTPUTS: [&str; 9] = [
     "events",
 ];
 
-/// Which results there are.
+/// The kind of the results.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Results {
-    /// Those of one impact.
+    /// Results of one impact.
     Impact,
-    /// Those of one impact of many with uncertain fields.
+    /// Results of one impact among many with uncertain fields.
     Draw,
-    /// Those of a run with these contacts, which are the contacts of the first point. Of another point with other contacts
-    /// the cells of those that it does not have stay empty.
+    /// Results of a run with these contacts, which are the contacts of the first point. If another point lacks one of them, its
+    /// cells are empty.
     Run(Vec<String>),
 }
 
 impl Results {
-    /// The results that scenes like this one have.
+    /// The results of scenes of this kind.
     pub(super) fn of(scene: &AnyScene) -> Results {
         match scene {
             AnyScene::Impact(_) => Results::Impact,
@@ -124,10 +124,10 @@ impl Results {
         }
     }
 
-    /// What one point leaves for the next.
+    /// Cache from point to point.
     pub(super) fn kept(&self) -> Kept {
         match self {
-            // each has a place of its own, if the place is uncertain
+            // each draw has another location, if the location is uncertain
             Results::Draw => Kept::passing(),
             _ => Kept::default(),
         }
@@ -147,7 +147,7 @@ impl Results {
         }
     }
 
-    /// The columns that can be told as distributions.
+    /// The columns that can be reported as distributions.
     pub(super) fn outputs(&self) -> Vec<String> {
         match self {
             Results::Impact | Results::Draw => ["restitution", "sub_impact_count"].map(str::to_owned).to_vec(),
@@ -159,7 +159,7 @@ impl Results {
         }
     }
 
-    /// Those of them that are told unless others are asked for.
+    /// The default columns that are reported as distributions.
     pub(super) fn told(&self) -> &'static [&'static str] {
         match self {
             Results::Impact | Results::Draw => &["restitution"],
@@ -167,7 +167,7 @@ impl Results {
         }
     }
 
-    /// Where the column of this name stands.
+    /// The position of the column of this name.
     pub(super) fn place(&self, name: &str) -> Option<usize> {
         let among = |columns: &[(&str, Kind)]| columns.iter().position(|(column, _)| *column == name);
         match self {

@@ -9,7 +9,7 @@ use super::results::Results;
 use super::table::Kind;
 use crate::model::Kept;
 
-/// What a run that has settled to no motion is called.
+/// The word for a run that has not converged to a motion.
 pub(super) const NO_MOTION: &str = "none";
 
 /// Every column of a sweep's results: `index`, the varied fields under their paths, the results.
@@ -24,7 +24,7 @@ pub(super) fn header(sweep: &Sweep) -> Vec<u8> {
     line(columns(sweep).into_iter().map(|(name, _)| name))
 }
 
-/// The lines of a chunk, computed one after the other; `None` if `stop` told to give up on the way.
+/// The lines of a chunk, computed one after the other; `None` if `stop` interrupted it.
 pub(super) fn rows(sweep: &Sweep, chunk: u64, kept: &mut Kept, stop: impl Fn() -> bool) -> Option<Vec<u8>> {
     let mut lines = Vec::new();
     for point in sweep.first_of_chunk(chunk)..sweep.first_of_chunk(chunk + 1) {
@@ -52,23 +52,23 @@ pub(super) fn cell(value: &Value) -> String {
 pub(super) fn line(cells: impl Iterator<Item = String>) -> Vec<u8> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let cells = cells.map(|cell| if cell.contains(['\n', '\r']) { cell.replace(['\n', '\r'], " ") } else { cell });
-    // memory does not fail to be written
+    // writing to memory cannot fail
     let written = table.write_record(cells.map(String::into_bytes)).is_ok();
     debug_assert!(written);
     table.into_inner().unwrap_or_default()
 }
 
-/// A row read back.
+/// A row that is read.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row<'a> {
     cells: &'a csv::StringRecord,
-    /// Where the results begin.
+    /// The position of the first result.
     first: usize,
     results: &'a Results,
 }
 
 impl<'a> Row<'a> {
-    /// Takes a line of the table apart; it must be that of the point with this number.
+    /// Parses a line of the table, which must be that of the point with this number.
     pub(super) fn new(sweep: &'a Sweep, point: u64, cells: &'a csv::StringRecord) -> Result<Row<'a>, SweepError> {
         let (first, results) = (1 + sweep.fields().count(), sweep.results());
         if cells.len() != first + results.columns().len() || cells.get(0) != Some(&point.to_string()) {
@@ -90,12 +90,12 @@ impl<'a> Row<'a> {
         self.results.place(name).map_or("", |place| self.at(place))
     }
 
-    /// The cell of the result that stands there among the results.
+    /// The cell of a result by its position among the results.
     fn at(&self, place: usize) -> &'a str {
         self.cells.get(self.first + place).unwrap_or_default()
     }
 
-    /// The motion to which a run has settled, `intervals/periods`; `none` if it has not, empty without a harmonic load.
+    /// The motion to which a run has converged, `intervals/periods`; `none` if it has not, empty without a harmonic load.
     pub(super) fn motion(&self) -> String {
         match (self.text("motion_intervals"), self.text("motion_periods")) {
             (_, "") => String::new(),
@@ -109,7 +109,7 @@ impl<'a> Row<'a> {
         self.text(name).parse().ok()
     }
 
-    /// The same of the result that stands there among the results.
+    /// The same for a result by its position among the results.
     pub(super) fn number_at(&self, place: usize) -> Option<f64> {
         self.at(place).parse().ok()
     }

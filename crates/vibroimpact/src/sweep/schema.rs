@@ -1,12 +1,12 @@
-//! The JSON Schema of sweep files: that of the sweep's own fields, and within it that of scenes.
+//! The JSON Schema of sweep files, which contains that of scenes.
 
 use serde_json::Value;
 
 use super::file::{FORMAT_VERSION, SweepFile};
 use crate::scene::schema::{of, of_scenes};
 
-/// The JSON Schema (draft 2020-12) of sweep files, as [`of_scenes`] gives that of scenes. A scene in a sweep may leave
-/// out what varies, so that nothing is required in it.
+/// The JSON Schema (draft 2020-12) of sweep files; [`of_scenes`] is that of scenes. A scene in a sweep may omit the varied fields,
+/// so that no field is required.
 ///
 /// ```
 /// let schema = vibroimpact::sweep::schema();
@@ -16,7 +16,7 @@ pub fn schema() -> Value {
     let mut sweep = of::<SweepFile>(FORMAT_VERSION);
     let mut scene = of_scenes();
     relax(&mut scene);
-    // what one field asks of another is not known where either may vary
+    // conditions between two fields cannot be checked if either may vary
     if let Some(impact) = scene["$defs"]["Scene"].as_object_mut() {
         impact.remove("allOf");
     }
@@ -33,7 +33,7 @@ pub fn schema() -> Value {
     sweep
 }
 
-/// Lets every field be left out. Then more than one form of an object may fit.
+/// Makes every field optional. More than one form of an object may then match.
 fn relax(schema: &mut Value) {
     match schema {
         Value::Object(map) => {

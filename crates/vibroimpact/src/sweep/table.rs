@@ -14,10 +14,10 @@ use parquet::schema::types::Type;
 
 use super::error::SweepError;
 
-/// Rows that are held in memory and become one group of the file.
+/// Number of rows in memory that become one group of the file.
 const GROUP: usize = 1 << 18;
 
-/// The kind of what a column holds.
+/// The type of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// A whole number, or nothing.
@@ -30,7 +30,7 @@ pub(crate) enum Kind {
     Text,
 }
 
-/// A column of the group that is being filled. Where a definition level is 0, there is no value.
+/// A column of the group that is being filled. A definition level of 0 means that there is no value.
 enum Column {
     Whole(Vec<i64>, Vec<i16>),
     Number(Vec<f64>, Vec<i16>),
@@ -48,7 +48,7 @@ impl Column {
         }
     }
 
-    /// Adds a cell; what is not of the column's kind becomes a cell without value.
+    /// Adds a cell; a value of another type becomes a cell without value.
     fn push(&mut self, cell: &str) {
         fn optional<T: std::str::FromStr>(cell: &str, values: &mut Vec<T>, levels: &mut Vec<i16>) {
             let value = cell.parse().ok();
@@ -75,7 +75,7 @@ impl Column {
     }
 }
 
-/// A Parquet file in the making.
+/// A Parquet file that is being written.
 pub(crate) struct Table {
     writer: SerializedFileWriter<File>,
     columns: Vec<(Kind, Column)>,

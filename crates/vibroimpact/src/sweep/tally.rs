@@ -1,4 +1,4 @@
-//! What a sweep comes to: the figures that a person reads first.
+//! The summary of a sweep.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -9,7 +9,7 @@ use super::row::Row;
 use super::uncertain::{self, Distributions, OutputDistribution, Uncertain};
 use crate::text::significant;
 
-/// Failures that are told one by one.
+/// Largest number of failures that are listed.
 const FAILURES_TOLD: usize = 5;
 
 /// Counts, extremes and costs of a sweep's results.
@@ -17,7 +17,7 @@ const FAILURES_TOLD: usize = 5;
 pub struct Tally {
     /// Points.
     pub points: u64,
-    /// Points by outcome; those that failed are not among them.
+    /// Number of points by outcome, without those that failed.
     pub outcomes: BTreeMap<String, u64>,
     /// Points by the model that was solved.
     pub models: BTreeMap<String, u64>,
@@ -35,16 +35,17 @@ pub struct Tally {
     pub sub_impact_count: Option<Extremes>,
     /// Least and greatest number of intervals of contact in a run; null for single impacts.
     pub intervals: Option<Extremes>,
-    /// Least and greatest of the largest forces of runs (N); null likewise.
+    /// Least and greatest of the largest forces of runs (N); null for single impacts.
     pub largest_force_n: Option<Extremes>,
-    /// Least and greatest work of compression over time (W); null likewise.
+    /// Least and greatest work of compression over time (W); null for single impacts.
     pub contact_work_rate_w: Option<Extremes>,
-    /// Runs under a harmonic load by the motion to which they have settled, as `intervals/periods`, or `none`.
+    /// Number of runs under a harmonic load by the motion to which they have converged, as `intervals/periods`, or `none`.
     pub motions: BTreeMap<String, u64>,
-    /// What each output is with uncertain fields, where there is no grid.
+    /// The distribution of each output with uncertain fields, if there is no grid.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub distributions: BTreeMap<String, OutputDistribution>,
-    /// For each output the least and greatest width of the interval of nine draws of ten, by points of the grid, where there is one.
+    /// For each output the least and greatest width of the interval of nine draws of ten over the points of the grid, if there is
+    /// one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub width_90: BTreeMap<String, Extremes>,
     /// Steps in contact, over all points.
@@ -60,7 +61,7 @@ pub struct Tally {
 pub struct FailedPoint {
     /// Its number.
     pub index: u64,
-    /// Why.
+    /// The reason.
     pub error: String,
 }
 
@@ -128,7 +129,7 @@ impl Tally {
         self.mode_steps = self.mode_steps.saturating_add(count("mode_steps"));
     }
 
-    /// Takes the distributions at the points of a grid, or those where there is none.
+    /// Adds the distributions at the points of a grid, or those of a sweep without a grid.
     pub(super) fn add_distributions(&mut self, uncertain: &Uncertain, has_grid: bool, found: &[Distributions]) {
         for (place, found) in (0..).zip(found) {
             for (output, one) in uncertain.outputs.iter().zip(found) {
@@ -144,14 +145,14 @@ impl Tally {
         }
     }
 
-    /// The lines that a person reads.
+    /// The summary as text.
     pub fn text(&self) -> String {
         let counts = |counts: &BTreeMap<String, u64>| {
             counts.iter().map(|(name, count)| format!("{count} {name}")).collect::<Vec<_>>().join(", ")
         };
         let mut lines = String::new();
         let mut line = |name: &str, text: &str| {
-            // a String does not fail to be written
+            // writing to a String cannot fail
             let _ = writeln!(lines, "  {name:<22}{text}");
         };
         line("points", &self.points.to_string());

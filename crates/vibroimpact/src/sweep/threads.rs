@@ -1,4 +1,4 @@
-//! Computing the chunks of a sweep on the threads of one machine.
+//! Computes the chunks of a sweep on the threads of one machine.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,12 +13,12 @@ use super::part::Part;
 use super::row;
 use super::status::{Sink, Status};
 
-/// Rows are written this often: what a sweep that is cut off has to compute again.
+/// Interval between two writes of rows, whose work is lost by an interruption.
 pub(super) const BETWEEN_WRITES: Duration = Duration::from_millis(200);
-/// How often the one that asked hears how far it has come, and `stop` is looked at.
+/// Interval between two reports of the progress, and between two checks of `stop`.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// The assembly and the sign that something in it has changed.
+/// The assembly and the signal that it has changed.
 struct Desk {
     assembly: Mutex<Assembly>,
     changed: Condvar,
@@ -26,7 +26,7 @@ struct Desk {
 
 impl Desk {
     fn assembly(&self) -> MutexGuard<'_, Assembly> {
-        // no one panics while holding it
+        // no thread panics while it holds the lock
         self.assembly.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -46,7 +46,7 @@ pub(super) fn compute(
     let first = part.chunks(sweep.chunks()).start;
     let begun = (first + sink.chunks())..(first + until);
     let desk = Desk { assembly: Mutex::new(Assembly::new(begun, threads)), changed: Condvar::new() };
-    // a writer that fails ends the workers too
+    // an error of the writer also ends the workers
     let ended = AtomicBool::new(false);
     let give_up = || stop.load(Ordering::Relaxed) || ended.load(Ordering::Relaxed);
     thread::scope(|scope| {

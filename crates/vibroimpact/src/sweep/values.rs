@@ -1,5 +1,5 @@
-//! The values that a field takes: of an axis by their number, of a draw by its number. Each is a function of its number
-//! alone, so that any part of a sweep can be computed by itself.
+//! The values of a field along an axis and in random draws. Each value is a function of its number alone, so that any part of a
+//! sweep can be computed separately.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -32,7 +32,7 @@ pub struct Interval {
     pub from: f64,
     /// The other end; may be the lower one.
     pub to: f64,
-    /// How it is divided.
+    /// Its division.
     pub scale: Scale,
     /// Whether values are rounded to whole numbers.
     pub whole_numbers: bool,
@@ -71,7 +71,7 @@ pub enum AxisValues {
 }
 
 impl Axis {
-    /// How many values there are.
+    /// Number of values.
     pub fn count(&self) -> u64 {
         match &self.values {
             AxisValues::Range(_, count) => *count,
@@ -103,9 +103,9 @@ impl Axis {
 /// Fields that are drawn at random.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Random {
-    /// What the draws depend on, beside their number.
+    /// The seed: draws depend only on it and on their number.
     pub seed: u64,
-    /// How many draws.
+    /// Number of draws.
     pub draws: u64,
     /// The fields, each with the interval it is drawn from.
     pub fields: Vec<(FieldPath, Interval)>,
@@ -116,7 +116,7 @@ impl Random {
     pub(super) fn draw(&self, number: u64) -> Vec<Value> {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&self.seed.to_le_bytes());
-        // one stream of the cipher a draw: any draw is reached at once
+        // one stream of the cipher for each draw, so that any draw can be computed directly
         let mut stream = ChaCha8Rng::from_seed(key);
         stream.set_stream(number);
         self.fields.iter().map(|(_, interval)| json_number(interval.at(unit(stream.next_u64())))).collect()
@@ -128,7 +128,7 @@ fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (-53f64).exp2()
 }
 
-/// A number as JSON has it; whole ones without a fraction, so that fields that count things can take them.
+/// A number as JSON; whole numbers without a fraction, so that they are valid in integer fields.
 pub(super) fn json_number(value: f64) -> Value {
     const EXACT: f64 = (1u64 << 53) as f64;
     if value.fract() == 0.0 && value.abs() <= EXACT {
@@ -157,7 +157,7 @@ mod tests {
         for (i, value) in logarithmic.iter().enumerate() {
             assert!((value / 10f64.powi(i as i32 - 3) - 1.0).abs() < 4.0 * f64::EPSILON);
         }
-        // no step of the way overflows
+        // no intermediate result overflows
         assert!(range(-1e308, 1e308, 9, Scale::Linear).iter().all(|value| value.is_finite()));
         assert!(range(1e-300, 1e300, 9, Scale::Log).iter().all(|value| value.is_finite() && *value > 0.0));
     }

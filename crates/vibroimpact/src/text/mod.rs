@@ -1,4 +1,4 @@
-//! Results as a person reads them in a terminal.
+//! Results as text for the terminal.
 
 mod parts;
 
@@ -13,9 +13,9 @@ use crate::summary::Summary;
 pub use parts::{counted, printable, quantity, shorten, significant};
 pub(crate) use parts::{filled, restitution, small, stopped, superscript};
 
-/// Shares of the energy below this are rounding, and shown as zero.
+/// Shares of the energy below this value are due to rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Most contacts that are listed; the rest are counted.
+/// Largest number of contacts that are listed; the others are counted.
 const LISTED: usize = 20;
 
 /// A line that states what strikes what.
@@ -71,7 +71,7 @@ pub fn headline(scene: &Scene, striker: &Striker) -> String {
     )
 }
 
-/// A line that states what strikes what, for an infinite structure.
+/// A line that describes striker and structure, for an infinite structure.
 pub fn infinite_headline(scene: &Scene, striker: &Striker) -> String {
     let (mass, speed) = (quantity(striker.mass_kg * 1e3, "g"), quantity(striker.speed_m_s, "m/s"));
     let structure = scene.structure.kind().replace('-', " ");
@@ -100,7 +100,7 @@ pub fn result(summary: &Summary) -> String {
             line("and turns at", quantity(rod.angular_velocity_rad_s, "rad/s"));
             line("its end leaves at", format!("{}, without vibration", quantity(rod.end_velocity_m_s, "m/s")));
         }
-        // a stop leaves at no speed
+        // the final speed of a stop is zero
         None if summary.energy.striker_j == 0.0 && summary.striker_velocity_m_s == 0.0 => {}
         None => line("striker leaves at", quantity(summary.striker_velocity_m_s, "m/s")),
     }
@@ -161,7 +161,7 @@ pub fn result(summary: &Summary) -> String {
     text
 }
 
-/// A table of modes, and how many of their frequencies have converged where that is not known to be all.
+/// A table of modes, and the number of converged frequencies if not all are known to have converged.
 pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     let mut text =
         format!("{:>6}{:>18}{:>18}{:>26}\n", "mode", "omega (rad/s)", "frequency (Hz)", "shape here (kg^-1/2)");
@@ -179,7 +179,7 @@ pub fn modes(modes: &[Mode], converged: Option<usize>) -> String {
     text
 }
 
-/// A net restitution and the numbers behind it; `stated` says whether the user gave the parameters.
+/// A net restitution and the numbers behind it; `stated` is true if the user gave the parameters.
 pub fn net_rebound(rebound: &NetRebound, stated: bool) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

@@ -1,4 +1,4 @@
-//! The figures themselves.
+//! The individual checks.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use super::section::Section;
 use crate::scene::{Contact, InvalidInput, Scene, Structure};
 use crate::text::{quantity, small};
 
-/// Modes that take this share of the energy matter.
+/// The relevant modes take up this share of the energy.
 const MATTERS: f64 = 0.99;
 const SPECTRUM: [f64; 2] = [0.01, 0.1];
 const PRESSURE: [f64; 2] = [1.6, 4.5];
@@ -22,7 +22,7 @@ const OBLONG: f64 = 2.64;
 /// Acceleration of gravity (m/s^2).
 const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Waves against the theory of bending.
+/// Checks of bending waves against the theory of bending.
 pub(super) fn waves(course: &Course, section: Option<&Section>) -> Vec<Check> {
     let Some(section) = section.filter(|_| course.moves) else { return Vec::new() };
     let limits = section.limits();
@@ -52,7 +52,7 @@ pub(super) fn waves(course: &Course, section: Option<&Section>) -> Vec<Check> {
     found
 }
 
-/// Contact, ball and gravity.
+/// Checks of contact, ball and gravity.
 pub(super) fn contact(scene: &Scene, course: &Course, section: Option<&Section>) -> Result<Vec<Check>, InvalidInput> {
     let mut found = Vec::new();
     let Some(hardest) = course.pulses.first() else { return Ok(found) };
@@ -76,7 +76,7 @@ fn of_hertz(scene: &Scene, course: &Course, section: Option<&Section>, radius_m:
     if contact_m <= 0.0 {
         return;
     }
-    // an elastoplastic law knows where the bodies yield
+    // an elastoplastic law includes yielding
     let elastic = !matches!(scene.contact, Contact::Elastoplastic { .. });
     if let Some(strength_pa) = scene.yield_strength_pa.filter(|_| elastic) {
         let pressure_pa = 1.5 * force_n / (std::f64::consts::PI * contact_m * contact_m);

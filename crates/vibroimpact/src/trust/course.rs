@@ -8,12 +8,12 @@ use crate::scene::{InvalidInput, Scene};
 use crate::simulate::Simulation;
 use vibroimpact_sim::modal::Mode;
 
-/// Contacts whose force is looked at: those of the largest impulses.
+/// Number of contacts whose force is analysed: those with the largest impulses.
 const CONTACTS: usize = 8;
 /// Samples of each.
 const SAMPLES: usize = 256;
-/// Beyond this frequency times its duration a contact counts as having no spectrum left: a smooth force falls as
-/// `omega^(-5/2)`, and the samples resolve no more than three times that.
+/// Frequency times duration beyond which the spectrum of a contact is neglected: the spectrum of a smooth force decreases as
+/// `omega^(-5/2)`, and the samples resolve no more than three times this frequency.
 const FASTEST: f64 = 200.0;
 /// Steps of Simpson's rule over the frequency, in units of the inverse duration, over which the spectrum varies.
 const STEP: f64 = 1.0;
@@ -24,24 +24,24 @@ pub(super) struct Pulse {
     pub impulse_n_s: f64,
     pub peak_force_n: f64,
     pub peak_compression_m: f64,
-    /// Time and force; empty where they are not looked at.
+    /// Time and force; empty if the contact is not analysed.
     force: Vec<[f64; 2]>,
 }
 
-/// An impact as far as these checks need it.
+/// The data of an impact for these checks.
 pub(super) struct Course {
     /// The largest impulse first.
     pub pulses: Vec<Pulse>,
     /// The modes retained.
     pub modes: Vec<Mode>,
-    /// From the first touch to the last separation (s); `None` where that is not known.
+    /// From the first touch to the last separation (s); `None` if that is not known.
     pub interaction_s: Option<f64>,
-    /// Whether the location moves: whether waves run.
+    /// Whether the location moves, so that there are waves.
     pub moves: bool,
 }
 
 impl Course {
-    /// Of a simulation; where that does not resolve the motion in time, of the contact with an immovable location.
+    /// The data of a simulation or, if that does not resolve the motion in time, of the contact with an immovable location.
     pub fn of(scene: &Scene, simulation: &Simulation) -> Result<Course, InvalidInput> {
         Ok(match simulation {
             Simulation::Modal(found) => {
@@ -119,7 +119,7 @@ impl Course {
         self.pulses.iter().map(|pulse| pulse.spectrum(omega_rad_s)).sum()
     }
 
-    /// The fastest mode that matters: the slowest that together take `share` of the energy put into them (rad/s).
+    /// Frequency of the fastest relevant mode (rad/s): the slowest modes up to it take up `share` of the energy of all modes.
     pub fn fastest_rad_s(&self, share: f64) -> Option<f64> {
         let mut energies: Vec<[f64; 2]> = self
             .modes
@@ -178,7 +178,7 @@ impl Pulse {
     }
 }
 
-/// By the trapezoidal rule, which is as good as any for a force that begins and ends at zero.
+/// By the trapezoidal rule, which is accurate for a force that begins and ends at zero.
 fn integral(samples: &[[f64; 2]], of: impl Fn([f64; 2]) -> f64) -> f64 {
     samples.windows(2).map(|pair| 0.5 * (pair[1][0] - pair[0][0]) * (of(pair[0]) + of(pair[1]))).sum()
 }

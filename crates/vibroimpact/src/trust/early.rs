@@ -1,7 +1,7 @@
-//! How Timoshenko's beam would answer the first contact on an infinite beam.
+//! The first contact on an infinite beam by Timoshenko's theory.
 //!
 //! A point of an infinite beam takes up energy at every frequency. A force `e^(i omega t)` moves it with the mobility
-//! `Y(omega)`, and its answer to an impulse,
+//! `Y(omega)`, and its response to an impulse,
 //!
 //! ```text
 //! w(t) = (2/pi) int_0^inf Re Y(omega) sin(omega t)/omega d omega,                                                 (3)
@@ -16,7 +16,7 @@
 //! ```
 //!
 //! which is Euler-Bernoulli's `omega/(4 EI k^3)`, `k^4 = m omega^2/EI`, for slow motions, and `1/(2 sqrt(S m))`, an impedance, for
-//! fast ones: until some `sqrt(EI m)/S` after the first touch the beam answers as a string under the tension `S` does.
+//! fast ones: until about `sqrt(EI m)/S` after the first touch the beam responds like a string with the tension `S`.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
@@ -31,12 +31,12 @@ use crate::text::quantity;
 
 /// Change of the speed at which the first contact ends, as a share of the speed of impact.
 const EARLY_RESPONSE: [f64; 2] = [0.01, 0.05];
-/// Modes up to the fastest that a contact excites, at equal steps of the wave number, as those of a finite beam. Waves would come
-/// back from its ends after five contacts.
+/// Number of modes up to the fastest that a contact excites, at equal steps of the wave number, like those of a finite beam from
+/// whose ends waves return after five durations of the contact.
 const MODES: usize = 96;
-/// A contact excites nothing faster than this over its duration.
+/// Frequency times duration of the fastest motion that a contact excites.
 const FASTEST: f64 = 60.0;
-/// Modes for all that is faster, at equal steps of the period.
+/// Number of modes for all faster motion, at equal steps of the period.
 const FASTER: usize = 12;
 /// Accuracy of the contact.
 const TOLERANCE: f64 = 1e-6;
@@ -61,7 +61,7 @@ fn mobility(bending: &Segment, shear: &ShearSection, omega: f64) -> f64 {
     }
 }
 
-/// The continuum of modes of Eq. (3) as far as a contact of this duration sees it.
+/// The continuum of modes of Eq. (3) for a contact of this duration.
 fn modes(re_y: impl Fn(f64) -> f64, duration_s: f64) -> Vec<Mode> {
     let mode = |omega_rad_s: f64, width: f64| {
         let shape = (FRAC_2_PI * re_y(omega_rad_s) * width).sqrt();
@@ -86,7 +86,7 @@ fn first_rebound_ratio(modes: Vec<Mode>, scene: &Scene) -> Result<Option<f64>, I
     let Posed { striker, law, .. } = scene.posed_on_infinite()?;
     let settings =
         Settings { tolerance: TOLERANCE, estimate_uncertainty: false, max_sub_impacts: 1, ..Settings::default() };
-    // numbers beyond what the solver of modes takes are no reason to refuse an answer without them
+    // numbers out of the range of the modal solver are not a reason to reject a scene
     let Ok(solver) = Solver::new(&Structure { modes }) else { return Ok(None) };
     let Ok(found) = solver.solve(&striker, &law, None, &settings) else { return Ok(None) };
     let momentum = striker.mass_kg * striker.speed_m_s;
@@ -94,8 +94,7 @@ fn first_rebound_ratio(modes: Vec<Mode>, scene: &Scene) -> Result<Option<f64>, I
     Ok(ratio.filter(|ratio| ratio.is_finite()))
 }
 
-/// By how much the first contact on an infinite beam would end otherwise by Timoshenko's theory, where the beam says what
-/// that needs.
+/// The change of the first contact on an infinite beam by Timoshenko's theory, if the beam has the data of that theory.
 pub(super) fn response(scene: &Scene, solution: &Solution, time_unit_s: f64) -> Result<Option<Check>, InvalidInput> {
     let scene::Structure::InfiniteBeam(beam) = &scene.structure else { return Ok(None) };
     let in_structure = |fault: InvalidInput| fault.within("structure");

@@ -1,11 +1,11 @@
-//! How far to trust an answer: whether its theories hold, each with a number.
+//! Limits of an answer: whether its theories hold, each with a number.
 //!
-//! No solver knows whether its equations hold. These figures show it, computed from the impact as it was solved; each has a
-//! limit within which the theory holds and one beyond which it does not:
+//! A solver does not check whether its equations apply. The following numbers do; they are computed from the solved impact. Each
+//! has a limit within which the theory holds and one beyond which it does not:
 //!
 //! | check | figure | within | outside |
 //! |---|---|---|---|
-//! | `wavelength` | half the wavelength of the fastest mode that matters, over the thickness | at least 6 (0.5 with shear) | below 2.2 (0.25) |
+//! | `wavelength` | half wavelength of the fastest relevant mode, over the thickness | at least 6 (0.5 with shear) | below 2.2 (0.25) |
 //! | `spectrum` | share of the contact force's spectrum that is faster than the first of these limits | at most 0.01 | above 0.1 |
 //! | `pressure` | largest Hertz pressure over the yield strength, where that is given | at most 1.6 | above 4.5 |
 //! | `contact_radius` | largest contact radius over the radius of the ball | at most 0.1 | above 0.3 |
@@ -16,10 +16,10 @@
 //! | `gravity` | speed gained in a fall as long as the interaction, over the speed of impact | at most 0.01 | above 0.1 |
 //!
 //! *Waves.* Euler-Bernoulli's frequencies are 5 % too high where half a wavelength is six times the thickness, and 27 %
-//! where it is 2.2 times; so are Kirchhoff's for plates. Timoshenko's follow Rayleigh and Lamb's within 0.4 % down to 0.44.
-//! A mode matters if it is among the slowest that take 99 % of the energy `1/2 phi_k^2 |F(omega_k)|^2` that the contacts
-//! put into vibration, each for itself. `F` is the Fourier transform of the force of a contact, and by Parseval the share
-//! beyond `omega` is
+//! where it is 2.2 times; the same holds for Kirchhoff's theory of plates. Timoshenko's frequencies agree with those of Rayleigh
+//! and Lamb within 0.4 % down to 0.44. A mode is relevant if it is among the slowest that take up 99 % of the energy
+//! `1/2 phi_k^2 |F(omega_k)|^2` that the contacts transfer to vibration, each contact for itself. `F` is the Fourier transform of
+//! the force of a contact, and by Parseval's theorem the share beyond `omega` is
 //!
 //! ```text
 //! 1 - sum int_0^omega |F|^2 d omega' / (pi sum int F^2 dt).                                                       (1)
@@ -35,16 +35,16 @@
 //! is `p = 4.5 Y` (K. L. Johnson, *Contact Mechanics*, 1985, 4.2 and 6.3). Hertz's law assumes half-spaces, which is
 //! right while `a` is small compared with radius and thickness.
 //!
-//! *Edge.* The stresses at an end that a theory of bending leaves out decay as `e^(-4.2 x/h)` (P. F. Papkovich, 1940): to
+//! *Edge.* The stresses at an end that a theory of bending neglects decay as `e^(-4.2 x/h)` (P. F. Papkovich, 1940): to
 //! 1.5 % over one thickness, and to 35 % over a quarter.
 //!
 //! *Ball.* The lowest mode of a solid ball that an impact excites is the one that makes it oblong, `omega R / c_t = 2.64`
 //! (H. Lamb, 1882; 2.64 to 2.65 for Poisson's ratios of 0.25 to 0.33), with `c_t = sqrt(G/rho)`.
 //!
-//! *Early response.* At first Timoshenko's beam answers with an impedance and not with the square root of time. Its mobility
-//! shows how the first contact would end then, Eqs. (3) and (4) in `early.rs`.
+//! *Early response.* The initial response of Timoshenko's beam is that of an impedance and not the square root of time. Its
+//! mobility determines how the first contact would end, Eqs. (3) and (4) in `early.rs`.
 //!
-//! *Gravity* is left out of an impact; between contacts a ball that falls on the structure gains `g t`.
+//! *Gravity* is neglected during an impact; between contacts a ball that falls on the structure gains the speed `g t`.
 
 mod check;
 mod checks;
@@ -60,8 +60,8 @@ use course::Course;
 pub use text::trust_text;
 
 impl Scene {
-    /// Whether the theories behind a simulation of this scene hold, as far as the scene states what that needs: the
-    /// thickness of the structure, the ball's radius and material, a yield strength.
+    /// Checks whether the theories behind a simulation of this scene hold, if the scene states the necessary data: the thickness of
+    /// the structure, the ball's radius and material, a yield strength.
     ///
     /// ```
     /// use vibroimpact::Scene;

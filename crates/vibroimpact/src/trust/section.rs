@@ -1,18 +1,18 @@
-//! Waves in the structure at the location of impact: which wavelength a frequency has.
+//! Waves in the structure at the location of impact: the wavelength for a frequency.
 
 use std::f64::consts::PI;
 
 use crate::scene::{BeamTheory, InvalidInput, Location, PlateTheory, Scene, Structure};
 
-/// The section of a beam or plate where it is struck.
+/// The section of a beam or plate at the location of impact.
 pub(super) struct Section {
     pub thickness_m: f64,
-    /// Distance to the nearest end, edge, support or step, where the structure has such.
+    /// Distance to the nearest end, edge, support or step, if there is one.
     pub clearance_m: Option<f64>,
-    /// Flexural rigidity: `EI`, or of a plate that per width, with the mass per length or area.
+    /// Flexural rigidity `EI` (per width for a plate), and mass per length or area.
     rigidity: f64,
     mass: f64,
-    /// Shear rigidity and rotary inertia, if the theory has them; likewise.
+    /// Shear rigidity and rotary inertia (per width for a plate), if the theory has them.
     shear: Option<[f64; 2]>,
 }
 
@@ -41,7 +41,7 @@ impl Section {
         PI / root.sqrt()
     }
 
-    /// The frequency at which half the wavelength is so many times the thickness (rad/s).
+    /// The frequency at which half the wavelength is this multiple of the thickness (rad/s).
     pub fn frequency_rad_s(&self, ratio: f64) -> f64 {
         // the wavelength falls with the frequency; without shear the closed form, which is an upper bound with it
         let k = PI / (ratio * self.thickness_m);
@@ -58,7 +58,7 @@ impl Section {
     }
 }
 
-/// The section where a scene is struck; `None` where it has no thickness.
+/// The section at the location of impact of a scene; `None` if it has no thickness.
 pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
     let plate = |rigidity: f64, density: f64, thickness_m: f64, shear: Option<[f64; 2]>| {
         Some(Section { thickness_m, clearance_m: None, rigidity, mass: density * thickness_m, shear })
@@ -84,7 +84,7 @@ pub(super) fn section(scene: &Scene) -> Result<Option<Section>, InvalidInput> {
                 (Ok(BeamTheory::Timoshenko), Some(shear)) => Some(shear[here]),
                 _ => None,
             };
-            // the thickness of a rectangle that turns with this inertia
+            // the thickness of a rectangle with this rotary inertia
             let by_inertia = shear.map(|s| (12.0 * s.rotary_inertia_kg_m / bending.mass_per_length_kg_m).sqrt());
             let thickness_m = segment.thickness().map(|(_, thickness_m)| thickness_m).or(by_inertia);
             thickness_m.filter(|thickness| *thickness > 0.0).map(|thickness_m| Section {
@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// What the limits rest on: Euler-Bernoulli's frequencies against Timoshenko's at half waves of 6 and of 2.2 thicknesses.
+    /// The basis of the limits: Euler-Bernoulli's frequencies compared with Timoshenko's at half waves of 6 and of 2.2 thicknesses.
     #[test]
     fn slender_bending_is_off_by_five_and_by_a_quarter_at_its_limits() {
         let (h, modulus, density): (f64, f64, f64) = (0.011323, 2e11, 7800.0);

@@ -1,4 +1,4 @@
-//! The checks as a person reads them.
+//! The checks as text.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::text::filled;
 const WIDTH: usize = 96;
 const INDENT: usize = 24;
 
-/// The end of what `simulate` prints; empty where nothing can be told.
+/// The last part of the output of `simulate`; empty if no check applies.
 pub fn trust_text(checks: &[Check]) -> String {
     let mut text = String::new();
     if checks.is_empty() {

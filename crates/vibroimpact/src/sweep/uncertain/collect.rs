@@ -1,4 +1,4 @@
-//! From the rows of a sweep to distributions for each point of its grid, and to their table.
+//! Distributions at each point of the grid from the rows of a sweep, and their table.
 
 use super::design::{Draws, Uncertain};
 use super::estimate::OutputDistribution;
@@ -7,17 +7,17 @@ use crate::scene::json::number;
 use crate::sweep::definition::Sweep;
 use crate::sweep::row::{Row, cell, line};
 
-/// The distribution of every output at a point of the grid; `None` of one that no draw has.
+/// The distribution of every output at a point of the grid; `None` for an output that no draw has.
 pub(in crate::sweep) type Distributions = Vec<Option<OutputDistribution>>;
 
-/// Takes rows in order.
+/// Receives rows in order.
 pub(in crate::sweep) struct Collector<'a> {
     uncertain: &'a Uncertain,
     layout: Draws,
     fields: Option<Vec<String>>,
-    /// Where the outputs stand in a row.
+    /// Positions of the outputs in a row.
     places: Vec<Option<usize>>,
-    /// Each output of the grid point whose draws come now.
+    /// Values of each output at the present grid point.
     draws: Vec<Vec<f64>>,
     found: Vec<Distributions>,
 }
@@ -56,14 +56,14 @@ impl<'a> Collector<'a> {
 
     /// The distributions at every point of the grid.
     pub fn finish(mut self) -> Vec<Distributions> {
-        // fewer draws than there could be, because they were enough
+        // fewer draws than the maximum, because they were sufficient
         if self.draws.iter().any(|draws| !draws.is_empty()) {
             self.close();
         }
         self.found
     }
 
-    /// Whether all sampling errors are as small as was wanted.
+    /// Whether all sampling errors are as small as requested.
     pub fn enough(self) -> bool {
         let wanted: Vec<f64> =
             self.uncertain.outputs.iter().map(|output| output.sampling_error.unwrap_or(f64::INFINITY)).collect();
@@ -78,7 +78,7 @@ impl<'a> Collector<'a> {
 pub(in crate::sweep) fn table(sweep: &Sweep, found: &[Distributions]) -> Vec<u8> {
     let axes = sweep.axes.iter().map(|axis| axis.field.to_string());
     let outputs = || sweep.uncertain.iter().flat_map(|uncertain| &uncertain.outputs);
-    // indices are there if the output varies
+    // indices exist if the output varies
     let most = found.iter().flatten().flatten().map(figures).max_by_key(Vec::len);
     let names: Vec<String> = most.unwrap_or_default().into_iter().map(|(name, _)| name).collect();
     let with_error = |name: &String| [name.clone(), format!("{name}_standard_error")];

@@ -1,4 +1,4 @@
-//! Which values the draw of a number has.
+//! The values of a draw by its number.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -9,10 +9,10 @@ use super::distribution::Distribution;
 use super::sobol::{Sobol, mixed, unit};
 use crate::scene::FieldPath;
 
-/// Fewest draws of a group's place in a replicate after which it is asked whether they are enough.
+/// Smallest number of groups in a replicate after which it is decided whether they are sufficient.
 const FIRST_STAGE: u64 = 64;
 
-/// Where draws come from.
+/// Source of the draws.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Sequence {
@@ -25,16 +25,16 @@ pub enum Sequence {
 
 invalid_input::names!(Sequence, "sequence", { Sobol: "sobol", Random: "random" });
 
-/// How uncertain fields are drawn.
+/// Sampling of uncertain fields.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
     /// What the draws depend on, beside their number.
     pub seed: u64,
-    /// At most so many draws: rounded down to a power of two of groups in each replicate.
+    /// Largest number of draws, rounded down to a power of two of groups in each replicate.
     pub draws: u64,
-    /// Where they come from.
+    /// Their source.
     pub sequence: Sequence,
-    /// Independent scramblings, from whose scatter the sampling error is told.
+    /// Number of independent scramblings, whose scatter gives the sampling error.
     pub replicates: u64,
     /// Whether first and total indices of Sobol' are computed.
     pub indices: bool,
@@ -47,23 +47,23 @@ pub struct Uncertain {
     pub fields: Vec<(FieldPath, Distribution)>,
     /// How they are drawn.
     pub sampling: Sampling,
-    /// What is told as a distribution.
+    /// The outputs that are reported as distributions.
     pub outputs: Vec<Output>,
     sobol: Sobol,
 }
 
-/// A result of the sweep that is told as a distribution.
+/// A result of the sweep that is reported as a distribution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Output {
     /// Its column.
     pub name: String,
-    /// No more draws are made once the mean and every quantile of all outputs have a standard error of at most this, in the unit
-    /// of the output.
+    /// Requested standard error of the mean and of every quantile, in the unit of the output. Drawing ends once all outputs have
+    /// reached theirs.
     pub sampling_error: Option<f64>,
 }
 
-/// The numbers in which draws are laid out: draw `(group * replicates + replicate) * impacts + impact`, so that all draws up to
-/// any group of all replicates are a sample.
+/// The layout of draws: draw `(group * replicates + replicate) * impacts + impact`, so that all draws up to any group of all
+/// replicates are a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::sweep) struct Draws {
     /// Impacts in a group: one, or one each of `a`, `b` and every `ab_j`.
@@ -74,14 +74,14 @@ pub(in crate::sweep) struct Draws {
 }
 
 impl Draws {
-    /// How many there are.
+    /// Total number of draws.
     pub fn count(&self) -> u64 {
         self.impacts * self.replicates * self.groups
     }
 }
 
 impl Uncertain {
-    /// Needs at most 16 fields, and draws enough for two groups in each replicate.
+    /// Needs at most 16 fields, and enough draws for two groups in each replicate.
     pub(super) fn new(fields: Vec<(FieldPath, Distribution)>, sampling: Sampling) -> Uncertain {
         let coordinates = if sampling.indices { 2 * fields.len() } else { fields.len() };
         Uncertain { sobol: Sobol::new(coordinates), fields, sampling, outputs: Vec::new() }
@@ -92,7 +92,7 @@ impl Uncertain {
         self.outputs.iter().any(|output| output.sampling_error.is_some())
     }
 
-    /// How the draws are laid out.
+    /// The layout of the draws.
     pub(in crate::sweep) fn draws(&self) -> Draws {
         let Sampling { draws, replicates, indices, .. } = self.sampling;
         let impacts = if indices { self.fields.len() as u64 + 2 } else { 1 };
@@ -108,7 +108,7 @@ impl Uncertain {
         whole * times.min(groups)
     }
 
-    /// The numbers of draws after which it is asked whether they are enough, the last of which is all.
+    /// The numbers of draws after which it is decided whether they are sufficient; the last is the total number.
     pub(in crate::sweep) fn stages(&self) -> impl Iterator<Item = u64> {
         let Draws { impacts, replicates, groups } = self.draws();
         let first = if self.is_adaptive() { FIRST_STAGE.min(groups) } else { groups };

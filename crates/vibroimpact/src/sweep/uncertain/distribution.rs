@@ -1,4 +1,4 @@
-//! How an uncertain field is distributed.
+//! Distributions of uncertain fields.
 
 use puruspe::inverfc;
 use schemars::JsonSchema;
@@ -19,7 +19,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// What is wrong with the numbers, if anything is.
+    /// The error of the numbers, if there is one.
     pub(super) fn fault(&self) -> Option<&'static str> {
         let finite = |numbers: &[f64; 2]| numbers.iter().all(|number| number.is_finite());
         let (fits, allowed) = match self {
@@ -48,7 +48,7 @@ impl Distribution {
         }
     }
 
-    /// A drawn number beside the value of a grid: added to it or, of a distribution of the logarithm, multiplied by it.
+    /// Combines a drawn number with the value of a grid: added or, for a distribution of the logarithm, multiplied.
     pub(in crate::sweep) fn about(&self, value: f64, drawn: f64) -> f64 {
         match self {
             Distribution::Uniform(_) | Distribution::Normal(_) => value + drawn,
@@ -56,7 +56,7 @@ impl Distribution {
         }
     }
 
-    /// As a reader wants it told.
+    /// Description of the distribution as text.
     pub(in crate::sweep) fn text(&self) -> String {
         match self {
             Distribution::Uniform([a, b]) => format!("uniform from {a} to {b}"),

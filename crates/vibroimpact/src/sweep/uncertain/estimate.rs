@@ -1,4 +1,4 @@
-//! The figures of a distribution with their sampling errors, by equation (1).
+//! Statistics of a distribution with their sampling errors, by equation (1).
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::design::Draws;
 use super::figure::{Estimate, mean, standard_deviation};
 use super::indices::{SobolIndices, indices};
 
-/// The shares of which quantiles are told.
+/// The orders of the reported quantiles.
 pub(super) const SHARES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 /// Bars of the histogram.
 const BARS: usize = 50;
@@ -35,12 +35,12 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// What an output is where fields are uncertain.
+/// The distribution of an output for uncertain fields.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OutputDistribution {
     /// Scenes solved, of all replicates.
     pub draws: u64,
-    /// Those that have the output.
+    /// Number of scenes that have the output.
     pub with_value: u64,
     /// Mean.
     pub mean: Estimate,
@@ -48,16 +48,16 @@ pub struct OutputDistribution {
     pub standard_deviation: Estimate,
     /// The interval that holds nine draws of ten: from the 5 % quantile to the 95 % one.
     pub width_90: Estimate,
-    /// Quantiles, by rising share.
+    /// Quantiles in ascending order.
     pub quantiles: Vec<Quantile>,
     /// Numbers of draws between the least and the greatest value.
     pub histogram: Histogram,
-    /// Indices of Sobol' by field, if they were asked for, every draw has the output, and it varies.
+    /// Indices of Sobol' by field, if they were requested, every draw has the output, and it varies.
     pub indices: Option<BTreeMap<String, SobolIndices>>,
 }
 
 impl OutputDistribution {
-    /// Of the output of all draws by their number, not-a-number where there is none; `None` if there is none at all.
+    /// Computes the statistics of an output from all draws by their number, with NaN if a draw has none; `None` if no draw has one.
     /// `fields` are those of the indices, if these are requested.
     pub(super) fn new(outputs: &[f64], draws: Draws, fields: Option<&[String]>) -> Option<OutputDistribution> {
         let replicate = |number: usize| number / draws.impacts as usize % draws.replicates as usize;
@@ -93,19 +93,19 @@ impl OutputDistribution {
         })
     }
 
-    /// The largest standard error of the mean and the quantiles; infinite where one is not known.
+    /// The largest standard error of the mean and the quantiles; infinite if one is not known.
     pub fn largest_error(&self) -> f64 {
         let errors = self.quantiles.iter().map(|quantile| quantile.standard_error).chain([self.mean.standard_error]);
         errors.map(|error| error.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
     }
 
-    /// A quantile that is told.
+    /// A reported quantile.
     pub(super) fn quantile(&self, share: f64) -> Option<&Quantile> {
         self.quantiles.iter().find(|quantile| quantile.share == share)
     }
 }
 
-/// The value below which a share of sorted values lies, linear between neighbours; not a number if there are none.
+/// Quantile of sorted values, with linear interpolation between neighbours; NaN if there are none.
 pub(super) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * sorted.len().saturating_sub(1) as f64;
     match sorted.get(place as usize..) {

@@ -1,18 +1,18 @@
-//! A figure of a distribution with its sampling error, by equation (1).
+//! A statistic of a distribution with its sampling error, by equation (1).
 
 use serde::{Deserialize, Serialize};
 
-/// A figure and its sampling error.
+/// A statistic and its sampling error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// The figure, from all draws.
+    /// The statistic, from all draws.
     pub value: f64,
-    /// Its standard error, from the scatter over the replicates; null where some have no such figure.
+    /// Its standard error, from the scatter over the replicates; null if some replicates do not have it.
     pub standard_error: Option<f64>,
 }
 
 impl Estimate {
-    /// From the figure of all draws and those of the replicates.
+    /// From the statistic of all draws and those of the replicates.
     pub(super) fn new(value: f64, replicates: impl Iterator<Item = f64>) -> Estimate {
         let found: Vec<f64> = replicates.collect();
         let squared = standard_deviation(&found).powi(2) / (found.len() as f64 - 1.0);

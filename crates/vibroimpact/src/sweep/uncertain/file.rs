@@ -1,4 +1,4 @@
-//! What a sweep file says of uncertain fields.
+//! The entries of a sweep file for uncertain fields.
 
 use std::collections::BTreeMap;
 
@@ -15,15 +15,15 @@ use crate::scene::json::{number, quote};
 use crate::sweep::results::Results;
 use crate::sweep::values::MAX_POINTS;
 
-/// Most uncertain fields: indices take two coordinates each.
+/// Largest number of uncertain fields: indices need two coordinates for each.
 const MOST_FIELDS: usize = MOST_COORDINATES / 2;
 const DISTRIBUTION: &str =
     "an object with one of uniform, log-uniform, normal and lognormal, which is a list of two numbers";
-/// Draws when nothing is said, and scramblings.
+/// Default numbers of draws and of scramblings.
 const DRAWS: u64 = 16_384;
 const REPLICATES: u64 = 16;
 const MOST_REPLICATES: u64 = 1000;
-/// Most outputs: each is kept for all draws of a point of the grid.
+/// Largest number of outputs: each is stored for all draws of a point of the grid.
 const MOST_OUTPUTS: usize = 32;
 
 /// Fields by their path, each with its distribution. Beside a field of `vary` the drawn number is added to the grid's value
@@ -46,8 +46,8 @@ pub(in crate::sweep) struct SamplingEntry {
     /// Independent scramblings, from whose scatter the sampling error is told; 16 when left out.
     #[schemars(range(min = 2, max = 1000))]
     replicates: Option<u64>,
-    /// Results of the sweep that are told as distributions; the restitution when left out or, of a scene of bodies, the intervals of
-    /// contact, the largest force and the contact work rate.
+    /// Results of the sweep that are told as distributions; the restitution when left out or, of a scene of bodies, the intervals
+    /// of contact, the largest force and the contact work rate.
     #[schemars(length(min = 1, max = 32))]
     outputs: Option<Vec<String>>,
     /// The standard error at which no more draws are made, of the mean and every quantile: a number for a single output, an
@@ -65,7 +65,7 @@ enum SamplingError {
     OfEach(BTreeMap<String, f64>),
 }
 
-/// What is to be told of the draws, not yet held against the results of the sweep.
+/// The requested outputs, not yet compared with the results of the sweep.
 #[derive(Default)]
 pub(in crate::sweep) struct Told {
     outputs: Option<Vec<String>>,
@@ -73,14 +73,14 @@ pub(in crate::sweep) struct Told {
 }
 
 impl Told {
-    /// Whether draws are to end by their sampling error.
+    /// Whether the number of draws depends on the sampling error.
     pub fn is_adaptive(&self) -> bool {
         self.sampling_error.is_some()
     }
 }
 
 impl Uncertain {
-    /// Takes what is to be told, of a sweep with these results.
+    /// The outputs of a sweep with these results.
     pub(in crate::sweep) fn tell(&mut self, told: Told, results: &Results) -> Result<(), InvalidInput> {
         let all = results.outputs();
         let allowed = || format!("one of {}", all.join(", "));
@@ -120,7 +120,7 @@ impl Uncertain {
     }
 }
 
-/// Reads both; `typed` reads an object in the terms of sweeps.
+/// Reads both entries; `typed` reads an object with the messages of sweep files.
 pub(in crate::sweep) fn read(
     uncertain: &Value,
     sampling: Option<&Value>,

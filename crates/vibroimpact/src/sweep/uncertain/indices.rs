@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::design::Draws;
 use super::figure::{Estimate, mean};
 
-/// How much of the variance a field answers for.
+/// The shares of the variance that a field causes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SobolIndices {
-    /// By itself: the share that would be gone if it were known.
+    /// First-order index: the share that would vanish if the field were known.
     pub first: Estimate,
-    /// With all that it has in common with others: the share that would be left if all others were known.
+    /// Total index: the share that would remain if all other fields were known.
     pub total: Estimate,
 }
 
@@ -56,9 +56,9 @@ impl Sums {
     }
 }
 
-/// The indices of these fields; `None` where the draws do not vary. Every draw must have a value.
+/// The indices of these fields; `None` if the draws do not vary. Every draw must have a value.
 pub(super) fn indices(values: &[f64], draws: Draws, fields: &[String]) -> Option<BTreeMap<String, SobolIndices>> {
-    // by their own mean, so that nothing of equation (2) is lost to rounding, nor to the scatter of f(b)
+    // the mean is subtracted, which avoids rounding errors and the scatter of f(b) in equation (2)
     let middle = mean(values);
     let of = |(field, name): (usize, &String)| {
         let mut sums = vec![Sums::default(); draws.replicates as usize];
@@ -90,7 +90,7 @@ mod tests {
         indices(&values, uncertain.draws(), &names).unwrap().into_values().collect()
     }
 
-    /// Within four standard errors of what is known, and known well.
+    /// Within four standard errors of the exact value, and with a small standard error.
     #[track_caller]
     fn holds(found: &Estimate, known: f64, error: f64) {
         let Estimate { value, standard_error: Some(s) } = *found else { panic!("{found:?}") };

@@ -1,15 +1,15 @@
-//! Fields that are known as distributions, and what the outputs are then: distributions too.
+//! Fields that are given as distributions, and the distributions of the outputs.
 //!
-//! Draw `m` of a replicate `r` are numbers `u` from (0, 1), one a field, by scrambled Sobol' points (`sobol.rs`) or at random,
-//! and each field has the value `Q_j(u_j)` with the quantile function of its distribution. Every replicate is an
-//! independent scrambling. With `theta` any figure of the distribution (mean, standard deviation, quantile, index), from all draws, and
-//! `theta_r` the same from replicate `r` of `R`, its standard error is
+//! Draw `m` of a replicate `r` consists of numbers `u` from (0, 1), one for each field, from scrambled Sobol' points (`sobol.rs`)
+//! or at random. Each field has the value `Q_j(u_j)` with the quantile function of its distribution. Every replicate is an
+//! independent scrambling. With any statistic `theta` of the distribution (mean, standard deviation, quantile, index) from all
+//! draws, and `theta_r` the same from replicate `r` of `R`, its standard error is
 //!
 //! ```text
 //! s^2 = sum_r (theta_r - mean theta_r)^2 / (R (R - 1)).                                     (1)
 //! ```
 //!
-//! The indices of Sobol' tell which field the variance `V` comes from. Each draw then is a group of `k + 2` impacts: of two
+//! The indices of Sobol' show which field causes the variance `V`. Each draw is then a group of `k + 2` impacts: of two
 //! independent points `a` and `b`, and of `ab_j`, which is `a` with the field `j` of `b`:
 //!
 //! ```text
@@ -17,9 +17,9 @@
 //! T_j = mean( (f(ab_j) - f(a))^2 ) / (2 V)      total (Jansen 1999)                        (3)
 //! ```
 //!
-//! `S_j` is the share of the variance that would be gone if field `j` were known, `T_j` the share that would be left if
-//! all others were. Draws without the output (an impact without restitution, a run that was stopped) are counted by their
-//! outcome; the figures are those of the others.
+//! `S_j` is the share of the variance that would vanish if field `j` were known, `T_j` the share that would remain if all others
+//! were known. Draws without the output (an impact without restitution, a run that was stopped) are counted by their outcome; the
+//! statistics are those of the other draws.
 
 mod collect;
 mod design;

@@ -1,4 +1,4 @@
-//! Pictures of distributions: histogram, cumulative share and indices of one, the median and the width of those of a grid.
+//! Figures of distributions: histogram, cumulative share and indices of one, median and width of those of a grid.
 
 use super::collect::Distributions;
 use super::design::Output;
@@ -8,10 +8,10 @@ use crate::sweep::definition::Sweep;
 use crate::sweep::labels::{axis, axis_of_result, label_and_unit};
 use crate::sweep::values::{Axis as Varied, AxisValues, Scale};
 
-/// Larger grids have no picture.
+/// Largest grid with figures.
 const MOST_POINTS: usize = 40_000;
 
-/// The pictures of every output, each with a name and a caption.
+/// The figures of every output, each with a name and a caption.
 pub(in crate::sweep) fn figures(sweep: &Sweep, found: &[Distributions]) -> Vec<(String, Figure, String)> {
     let outputs = sweep.uncertain.as_ref().map_or(&[][..], |uncertain| &uncertain.outputs);
     let of_output = |(number, output): (usize, &Output)| {

@@ -8,20 +8,20 @@
 //! ```
 //!
 //! with the direction numbers `v` of Joe and Kuo (2008) and an independent random bit `pi` for every coordinate and every
-//! prefix. Each point is uniform by itself, and `2^k` points stay a net for any `k`, so that the error of a mean falls
-//! faster than `n^-1/2`; independent scramblings give independent errors, whose size can be told from their scatter
-//! (Owen 1995). The random bits are hashes of key, coordinate and prefix: any point is reached at once. The crates that
-//! offer the sequence give 24 bits and 65,536 points a scrambling, or do not scramble.
+//! prefix. Each point is uniform by itself, and `2^k` points remain a net for any `k`, so that the error of a mean decreases
+//! faster than `n^-1/2`. Independent scramblings give independent errors, whose size follows from their scatter (Owen 1995). The
+//! random bits are hashes of key, coordinate and prefix, so that any point can be computed directly. Existing crates with the
+//! sequence have 24 bits and 65,536 points for each scrambling, or do not scramble.
 
-/// Coordinates that there are.
+/// Largest number of coordinates.
 pub(super) const MOST_COORDINATES: usize = 32;
 /// Bits of a point's number, and of equation (1).
 const BITS: u32 = 32;
 /// Bits of a coordinate: all below the prefix's length are random.
 const DIGITS: u32 = 52;
 
-/// For every coordinate but the first the inner coefficients of its primitive polynomial as bits, and the first odd
-/// numbers `m`, as many as its degree.
+/// For every coordinate except the first, the inner coefficients of its primitive polynomial as bits, and the first odd numbers
+/// `m`, whose number is its degree.
 const POLYNOMIALS: [(u32, &[u32]); MOST_COORDINATES - 1] = [
     (0, &[1]),
     (1, &[1, 3]),
@@ -64,7 +64,7 @@ pub(super) struct Sobol {
 }
 
 impl Sobol {
-    /// In so many coordinates, at most [`MOST_COORDINATES`].
+    /// The sequence in this number of coordinates, at most [`MOST_COORDINATES`].
     pub(super) fn new(coordinates: usize) -> Sobol {
         let first = std::array::from_fn(|bit| 1 << (BITS - 1 - bit as u32));
         let others = POLYNOMIALS.iter().map(|(inner, start)| directions(*inner, start));
@@ -77,7 +77,7 @@ impl Sobol {
         let plain = bits.filter(|(bit, _)| point >> bit & 1 == 1).fold(0, |sum, (_, direction)| sum ^ direction);
         let key = mixed(key, coordinate as u64);
         let flipped = |length: u32| {
-            // the prefix with a one before it, so that its length shows
+            // the prefix with a leading one, which encodes its length
             let prefix = (1u64 << length) | (u64::from(plain) >> (BITS - length));
             mixed(key, prefix)
         };
@@ -88,7 +88,7 @@ impl Sobol {
     }
 }
 
-/// A number strictly between 0 and 1 from its first 52 bits: the middle of what they leave open.
+/// A number strictly between 0 and 1 from its first 52 bits: the middle of the interval that they define.
 pub(super) fn unit(digits: u64) -> f64 {
     (digits as f64 + 0.5) * (-f64::from(DIGITS)).exp2()
 }

@@ -1,4 +1,4 @@
-//! A distribution as a person reads it.
+//! A distribution as text.
 
 use std::fmt::Write;
 
@@ -6,10 +6,10 @@ use super::estimate::OutputDistribution;
 use super::figure::Estimate;
 use crate::text::significant;
 
-/// Characters before the figures.
+/// Width of the labels (characters).
 const NAMES: usize = 22;
 
-/// A figure with its standard error, to the digits that this leaves.
+/// A statistic with its standard error, to the significant digits.
 fn told(figure: Estimate) -> String {
     let Estimate { value, standard_error } = figure;
     match standard_error {
@@ -25,7 +25,7 @@ fn told(figure: Estimate) -> String {
 /// The lines on the distribution of an output.
 pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String {
     let mut lines = String::new();
-    // a String does not fail to be written
+    // writing to a String cannot fail
     let mut line = |name: &str, text: String| {
         let gap = if name.len() < NAMES { "" } else { "  " };
         let _ = writeln!(lines, "  {name:<NAMES$}{gap}{text}");
