@@ -45,9 +45,9 @@ pub enum BlurWidth {
 }
 
 impl Sweep {
-    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), if some fields have a standard
-    /// deviation
-    /// (`blur`) about the value on the map, or about that of the scene. For a scene of bodies it maps the default outputs of its sweeps. Every point has the same number of draws with the same `seed`.
+    /// The sweep that maps the spread of the restitution of a scene over one or two fields (`over`), if some fields have a
+    /// standard deviation (`blur`) about the value on the map, or about that of the scene. For a scene of bodies it maps the
+    /// default outputs of its sweeps. Every point has the same number of draws with the same `seed`.
     ///
     /// # Errors
     /// A scene, field or number that is invalid; the error names the option of the command `predictability`.
