@@ -18,7 +18,10 @@ fn against_tolerance(answer: &Answer) -> String {
     let wanted = small(answer.tolerance);
     match (answer.uncertainty.of_model(), answer.settled) {
         (Some(u), true) if u <= answer.tolerance => {
-            format!("requested {wanted}, known within {} ({} times better)", small(u), small(answer.tolerance / u))
+            let margin = answer.tolerance / u;
+            // the uncertainty of a converged answer is often the tolerance itself
+            let better = if margin < 1.5 { String::new() } else { format!(" ({} times better)", small(margin)) };
+            format!("requested {wanted}, known within {}{better}", small(u))
         }
         (Some(u), true) => {
             let solver = answer.uncertainty.solver.unwrap_or(u);
