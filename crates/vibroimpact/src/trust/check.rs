@@ -19,7 +19,7 @@ invalid_input::names!(Verdict, "verdict", { Within: "within", Doubtful: "doubtfu
 /// One figure that tells whether a theory holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// What is judged: a name of the table in [`trust`](self).
+    /// What is judged: a name of the table in [`trust`](super).
     pub check: &'static str,
     /// Within the theory's range, doubtful, or outside.
     pub verdict: Verdict,
