@@ -81,8 +81,9 @@ pub(crate) struct Account {
     flying_j: Option<f64>,
     damping_j: f64,
     load_work_j: f64,
-    /// Largest energy of the relative motion at the ends of the pieces (J), and the number of panels.
+    /// Largest energy of the relative motion at the ends of the pieces, or stored in the contacts at the start (J).
     carried_j: f64,
+    /// Number of panels, each of which rounds the parts once.
     panels: u64,
     piece: Piece,
 }

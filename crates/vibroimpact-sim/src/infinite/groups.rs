@@ -2,6 +2,7 @@
 
 use super::problem::Structure;
 use crate::modal::Striker;
+use beam_modes::Segment;
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
@@ -39,6 +40,14 @@ pub struct BeamSection {
     pub flexural_rigidity_n_m2: f64,
     /// Mass per length `rho A` (kg/m).
     pub mass_per_length_kg_m: f64,
+}
+
+/// The section of a stretch of a beam that goes on without ends.
+impl From<Segment> for BeamSection {
+    fn from(segment: Segment) -> BeamSection {
+        let Segment { flexural_rigidity_n_m2, mass_per_length_kg_m, .. } = segment;
+        BeamSection { flexural_rigidity_n_m2, mass_per_length_kg_m }
+    }
 }
 
 /// What a thin infinite plate opposes to an impact.

@@ -247,8 +247,9 @@ impl Solution {
         self.records.push(Record { units: Units::OF_IMPACT, pieces, peak_force: Some(peak_force), body_travel });
     }
 
-    /// After a flight, which begins where the solution is known so far: the time until the next contact and its closing speed,
-    /// if there is one and it is to be followed. `rounding` says that its closing speed is none but rounding.
+    /// Decides after a flight, which begins where the solution is known so far, whether to follow the `next` contact, given by
+    /// the time until then and its closing speed. Returns it if so; otherwise the solution ends, and states why. `rounding`
+    /// says that the closing speed is no more than rounding.
     pub(super) fn go_on(
         &mut self,
         next: Option<(f64, f64)>,

@@ -32,8 +32,8 @@ const MOST_RESTARTS: usize = 4;
 enum Loss {
     /// Their squares.
     Squares,
-    /// `ln(1 + r^2)`, in which outliers, such as rows whose contacts have split or joined, count little: parameters near the best ones
-    /// are then recognised by the rows that fit.
+    /// `ln(1 + r^2)`, in which outliers, such as rows whose contacts have split or joined, count little: parameters near the
+    /// best ones are then recognised by the rows that fit.
     Robust,
 }
 

@@ -1,9 +1,8 @@
 //! From a scene to the terms of [`vibroimpact_sim::infinite`].
 
-use beam_modes::Segment;
 use contact_models::Law;
 use invalid_input::{InvalidInput, Path};
-use vibroimpact_sim::infinite::{self, BeamSection, PlateSection, Receptance, Scale, Solution};
+use vibroimpact_sim::infinite::{self, PlateSection, Receptance, Scale, Solution};
 use vibroimpact_sim::modal::Striker;
 
 use crate::scene::json::number;
@@ -103,9 +102,7 @@ impl Scene {
                 let section = beam.section().map_err(|fault| fault.within("structure"))?;
                 // checked even though the impact itself does without
                 beam.shear().map_err(|fault| fault.within("structure"))?;
-                let Segment { flexural_rigidity_n_m2, mass_per_length_kg_m, .. } = section;
-                let beam = BeamSection { flexural_rigidity_n_m2, mass_per_length_kg_m };
-                infinite::Impact::on_beam(beam, striker, stiffness_n_m1_5)
+                infinite::Impact::on_beam(section.into(), striker, stiffness_n_m1_5)
             }
             Structure::InfinitePlate(plate) => {
                 plate.check().map_err(|fault| fault.within("structure"))?;

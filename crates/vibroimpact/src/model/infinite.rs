@@ -101,19 +101,13 @@ impl Uniform {
             return Ok(Err(format!("the beam has {more}, unlike the infinite beam")));
         }
         let built = beam.to_beam().map_err(|fault| fault.within("structure"))?;
-        let Some(first) = built.segments.first() else { return Ok(Err("there is no beam".to_owned())) };
-        let alike = built.segments.iter().all(|other| {
-            other.flexural_rigidity_n_m2 == first.flexural_rigidity_n_m2
-                && other.mass_per_length_kg_m == first.mass_per_length_kg_m
-        });
-        if !alike {
+        let mut sections = built.segments.iter().map(|segment| BeamSection::from(*segment));
+        let Some(section) = sections.next() else { return Ok(Err("there is no beam".to_owned())) };
+        if sections.any(|other| other != section) {
             return Ok(Err("the beam is not uniform".to_owned()));
         }
         Ok(Ok(Uniform {
-            section: BeamSection {
-                flexural_rigidity_n_m2: first.flexural_rigidity_n_m2,
-                mass_per_length_kg_m: first.mass_per_length_kg_m,
-            },
+            section,
             distances: [*location_m, built.length_m() - location_m],
             ends: beam.ends,
             damping_ratio: beam.damping_ratio,

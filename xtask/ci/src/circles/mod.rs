@@ -1,8 +1,8 @@
 //! No crate has a circle among its files.
 //!
-//! A file uses another if a path in its code, tests included, leads to something that the other defines. A re-export is not a use, and a path
-//! through it leads to the file that defines the item, so that a module may show what its children define. Calls of methods and
-//! macros by their mere name have no path and are not seen.
+//! A file uses another if a path in its code, tests included, leads to something that the other defines. A re-export is not a
+//! use: a path through it leads to the file that defines the item, so that a module may re-export what its children define.
+//! Calls of methods, and of macros by name alone, have no path and are not seen.
 
 mod modules;
 
