@@ -1,5 +1,5 @@
-//! Time to find modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps, plates
-//! by Ritz's method.
+//! Time to compute modes: uniform beams for an impact, a stepped beam with many modes, a taper of many steps, plates by Ritz's
+//! method.
 
 use beam_modes::{Beam, BeamSystem, Edge, End, Plate, PlateTheory, Segment, ShearSection};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -29,7 +29,7 @@ fn modes(c: &mut Criterion) {
     ] {
         c.bench_function(&format!("{name}, {count} modes"), |b| b.iter(|| black_box(beam).modes(black_box(count))));
     }
-    // a beam forty times as long as thick
+    // A beam forty times as long as it is thick.
     let shear = [(1.4e5, 5e-4), (7e4, 2.5e-4)]
         .map(|(shear_rigidity_n, rotary_inertia_kg_m)| ShearSection { shear_rigidity_n, rotary_inertia_kg_m });
     let timoshenko = BeamSystem { shear: Some(shear.to_vec()), ..BeamSystem::from(stepped.clone()) };
@@ -57,7 +57,7 @@ fn modes(c: &mut Criterion) {
         c.bench_function(&name, |b| b.iter(|| black_box(&plate).modes(black_box(400))));
     }
     let found = uniform.modes(40).unwrap();
-    c.bench_function("40 shapes at one place", |b| b.iter(|| found.shapes_at(black_box(0.4))));
+    c.bench_function("40 shapes at one location", |b| b.iter(|| found.shapes_at(black_box(0.4))));
 }
 
 criterion_group!(benches, modes);

@@ -1,6 +1,6 @@
-//! Modes of a stepped cantilever, twenty times over: for callgrind. See docs/performance-other.md.
+//! Computes the modes of a stepped cantilever twenty times, for callgrind. See docs/performance-other.md.
 //!
-//! `modes_cost COUNT [timoshenko]`; 500 when left out.
+//! Usage: `modes_cost COUNT [timoshenko]`; the default is 500.
 
 use beam_modes::{Beam, BeamSystem, End, Segment, ShearSection};
 use std::hint::black_box;

@@ -1,5 +1,5 @@
-//! The first modes of a stepped cantilever, checked against a finite-element model, and how much of the static compliance
-//! each of them carries.
+//! The first modes of a stepped cantilever, compared with a finite-element model, and the share of the static compliance of
+//! each of them.
 //!
 //! `cargo run --release -p beam-modes --example stepped_shaft`
 

@@ -1,7 +1,7 @@
-//! Axial waves on a stepped rod: the counterpart of `flexure` with one state vector in place of a plane.
+//! Axial waves on a stepped rod: the counterpart of `flexure`, with one state vector in place of a plane.
 //!
-//! `u'' = -k^2 u`, trial value `q = omega`, `k = q sqrt(m/EA)`, state `z = sqrt(EA k) (u, u'/k)`: a span turns it by
-//! `k l`, a step stretches it.
+//! `u'' = -k^2 u`, trial value `q = omega`, `k = q sqrt(m/EA)`, state `z = sqrt(EA k) (u, u'/k)`: a span rotates it by `k l`, a
+//! step scales its components.
 
 use crate::piece::Piece;
 use crate::roots::Characteristic;
@@ -9,7 +9,7 @@ use crate::shapes::{Match, Waveguide};
 use crate::span::Span;
 use std::f64::consts::PI;
 
-/// How an end of a rod is held.
+/// The boundary condition at an end of a rod.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -34,16 +34,16 @@ pub(crate) struct Axial {
     steps: Vec<f64>,
 }
 
-/// The unit state that one end allows, on its way along the rod; lists in the order of the spans.
+/// The unit state that satisfies the condition of one end, propagated along the rod; lists in the order of the spans.
 pub(crate) struct Sweep {
-    /// Where each span is entered and left; from the right, in reflected variables.
+    /// State at the entry and at the exit of each span; from the right, in reflected variables.
     entries: Vec<[f64; 2]>,
     exits: Vec<[f64; 2]>,
-    /// Lengths that were divided out at the steps.
+    /// Norms by which the state was divided at the steps.
     stretches: Vec<f64>,
 }
 
-/// Those of both ends.
+/// The states from both ends.
 pub(crate) struct Sweeps {
     left: Sweep,
     right: Sweep,
@@ -114,7 +114,7 @@ impl Characteristic for Axial {
             let inside = (angle / PI).floor();
             let sign = if inside % 2.0 == 0.0 { 1.0 } else { -1.0 };
             let (sin, cos) = angle.sin_cos();
-            // stiffness of what lies to the left plus that of the span with its far end fixed, times |sin| u^2
+            // Stiffness of the part to the left plus that of the span with its far end fixed, times |sin| u^2.
             let stiffness = sin.abs() * state[0] * state[1] + sign * cos * state[0] * state[0];
             count += inside as usize + usize::from(stiffness < 0.0);
             state = turn(state, angle);
@@ -169,7 +169,7 @@ impl Waveguide for Axial {
     fn unroll(&self, q: f64, Sweeps { left, right }: &Sweeps, at: &Match) -> Vec<Piece> {
         let n = self.spans.len();
         let [u, v, ..] = at.state;
-        // how much of the unit state each span carries
+        // Share of each span in the unit state.
         let mut share = vec![0.0; n];
         let mut carried = left.entries[at.span][0] * u + left.entries[at.span][1] * v;
         for i in (0..at.span).rev() {
@@ -183,7 +183,7 @@ impl Waveguide for Axial {
         (0..n)
             .map(|i| {
                 let span = &self.spans[i];
-                // u = z_0 / sqrt(EA k), the common power of q left out
+                // u = z_0 / sqrt(EA k); the common power of q is omitted.
                 let size = share[i] / (span.rigidity * self.slowness[i]).sqrt();
                 let k = q * self.slowness[i];
                 let piece = |[a, b]: [f64; 2]| Piece::slender(k, span.length, [a * size, b * size, 0.0, 0.0]);

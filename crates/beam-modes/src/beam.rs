@@ -15,8 +15,8 @@ use crate::uniform;
 use invalid_input::InvalidInput;
 
 impl Beam {
-    /// How many rigid-body motions the ends leave: two for free-free, one for pinned-free, guided-free and
-    /// guided-guided, none otherwise.
+    /// Number of rigid-body motions that the ends allow: two for free-free, one for pinned-free, guided-free and guided-guided,
+    /// none otherwise.
     pub fn rigid_body_count(&self) -> usize {
         use End::{Free, Guided, Pinned};
         match self.ends {
@@ -26,7 +26,7 @@ impl Beam {
         }
     }
 
-    /// The first `count` modes in bending, rigid-body motions (with `omega = 0`) included and first.
+    /// The first `count` modes in bending, beginning with rigid-body motions (`omega = 0`).
     ///
     /// # Errors
     /// [`InvalidInput`] for lengths, rigidities or masses that are not positive and finite (or beyond 1e-60 to
@@ -54,10 +54,9 @@ impl Beam {
 
     /// Static compliance `G(x, x)`: displacement at `x_m` under a steady unit force there, m/N.
     ///
-    /// When the ends leave rigid-body motions, this is the elastic part: the response orthogonal (in mass) to those
-    /// motions, with the uniform accelerations that the force causes taken out. In either case it equals the sum of
-    /// `phi_k(x)^2 / omega_k^2` over all elastic modes, and is computed exactly, from the piecewise polynomial
-    /// deflection.
+    /// If the ends allow rigid-body motions, this is the elastic part: the response orthogonal (in mass) to those motions,
+    /// without the uniform accelerations that the force causes. In either case it equals the sum of `phi_k(x)^2 / omega_k^2`
+    /// over all elastic modes, and is computed exactly, from the piecewise polynomial deflection.
     ///
     /// ```
     /// use beam_modes::{Beam, End, Segment};
@@ -68,7 +67,7 @@ impl Beam {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location outside the beam.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.static_green(x_m, x_m)
     }

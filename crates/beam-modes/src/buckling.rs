@@ -1,4 +1,4 @@
-//! Whether a beam under compression is stable.
+//! Checks whether a beam under compression is stable.
 
 use crate::chain::Chain;
 use crate::flexure::Flexure;
@@ -6,11 +6,11 @@ use crate::rigid::rigid_motions;
 use crate::roots::Characteristic;
 use invalid_input::InvalidInput;
 
-/// A trial `q = sqrt(omega)` below every natural frequency of a beam that stands.
+/// A trial `q = sqrt(omega)` below every natural frequency of a stable beam.
 const STILL: f64 = 1e-3;
 
-/// Refuses a compression under which the count of Wittrick and Williams finds a negative square of a frequency; the
-/// critical load is where it first does.
+/// Rejects a compression for which the count of Wittrick and Williams finds a negative square of a frequency; the critical load
+/// is the smallest such compression.
 pub(crate) fn require_stable(chain: &Chain) -> Result<(), InvalidInput> {
     let rigid = rigid_motions(&chain.spans, chain.ends, &chain.nodes).len();
     let buckled = |tension: f64| {

@@ -10,15 +10,15 @@ use invalid_input::InvalidInput;
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
     pub spans: Vec<Span>,
-    /// One more than spans.
+    /// One more than the number of spans.
     pub nodes: Vec<Node>,
     pub ends: [End; 2],
     pub units: Units,
 }
 
-/// Locations closer than this, in lengths of the beam, are one.
+/// Locations closer than this, relative to the length of the beam, count as one.
 const SAME_PLACE: f64 = 1e-12;
-/// More spans than this are not cut.
+/// Largest number of spans into which a beam is divided.
 const MOST_SPANS: f64 = 5000.0;
 const BESIDE_BENDING: &str =
     "a smaller value: with this one the beam would have to be divided into more than 5000 segments";
@@ -33,7 +33,7 @@ impl Chain {
         Ok(chain)
     }
 
-    /// With a node at `y`, and cut so finely that no span decays.
+    /// The chain with a node at `y`, divided so finely that waves do not decay within a span.
     pub fn for_statics(system: &BeamSystem, y: f64) -> Result<Self, InvalidInput> {
         let mut chain = Self::nodes_between(system, Some(y))?;
         chain.cut_by_decay()?;
@@ -104,7 +104,7 @@ impl Chain {
         if let Some(x) = place {
             chain.node_at(x);
         }
-        // a support at an end is a way to hold it
+        // A support at an end is a boundary condition.
         let last = chain.spans.len();
         for (end, node) in [(0, 0), (1, last)] {
             if std::mem::take(&mut chain.nodes[node].support) {
@@ -114,7 +114,7 @@ impl Chain {
         Ok(chain)
     }
 
-    /// The node at a location; a span is cut there if there is none.
+    /// The node at a location; the span is divided there if there is none.
     fn node_at(&mut self, x: f64) -> &mut Node {
         let i = self.index(x);
         &mut self.nodes[i]
@@ -135,7 +135,7 @@ impl Chain {
         i + 1
     }
 
-    /// Cuts spans over which axial force or foundation make waves that decay.
+    /// Divides spans in which axial force or foundation cause decaying waves.
     fn cut_by_decay(&mut self) -> Result<(), InvalidInput> {
         let pieces = |span: &Span| {
             let by_force = (span.tension.abs() / span.rigidity).sqrt();

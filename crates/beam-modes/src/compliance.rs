@@ -1,8 +1,7 @@
-//! Static deflection under a unit force, exactly: a polynomial on every bay between steps and force.
+//! Exact static deflection under a unit force: a polynomial on every piece between steps and force.
 //!
-//! `EI w'''' = delta(x - y) - m sum_r phi_r(x) phi_r(y)`: rigid-body motions `phi_r`, if the ends leave any, take their
-//! share of the force as uniform acceleration, and what remains is in equilibrium. The deflection is then made
-//! orthogonal to them.
+//! `EI w'''' = delta(x - y) - m sum_r phi_r(x) phi_r(y)`: if the ends allow rigid-body motions `phi_r`, these take up their
+//! part of the force as uniform acceleration, and the rest is in equilibrium. The deflection is then made orthogonal to them.
 
 use crate::definition::End;
 use crate::flexure::{allowed, constrained};
@@ -12,7 +11,7 @@ use crate::span::Span;
 /// `(w, w', EI w'', (EI w'')')`.
 type State = [f64; 4];
 
-/// A stretch with constant rigidity and a load per length `load[0] + load[1] xi`, `xi` from its left end.
+/// A piece with constant rigidity and a load per length `load[0] + load[1] xi`, with `xi` from its left end.
 #[derive(Clone, Copy)]
 struct Bay {
     span: Span,
@@ -42,7 +41,7 @@ impl Bay {
 /// Dimensionless Green's function `G(x, y)` of a beam whose mass-normalised rigid motions are `p + q x`.
 pub(crate) fn green(spans: &[Span], ends: [End; 2], motions: &[[f64; 2]], x: f64, y: f64) -> f64 {
     if y > 0.5 {
-        // start from the nearer end, where a small deflection is not a difference of large ones
+        // Start from the nearer end, where a small deflection is not a difference of large ones.
         let mut mirrored: Vec<Span> = spans.iter().rev().copied().collect();
         let mut start = 0.0;
         for span in &mut mirrored {
@@ -59,7 +58,7 @@ fn deflection(spans: &[Span], ends: [End; 2], motions: &[[f64; 2]], x: f64, y: f
     let bays = bays(spans, motions, y);
     let across = |start: State, loaded: f64| bays.iter().fold(start, |state, bay| bay.end(state, loaded));
 
-    // the two unknowns at the left end, from the two conditions at the right end
+    // The two unknowns at the left end, from the two conditions at the right end.
     let unknowns = allowed(ends[0]);
     let conditions = constrained(ends[1]);
     let responses = unknowns.map(|i| {
@@ -88,7 +87,7 @@ fn deflection(spans: &[Span], ends: [End; 2], motions: &[[f64; 2]], x: f64, y: f
     shares.iter().zip(motions).fold(at_x, |w, (share, [p, q])| w - share * (p + q * x))
 }
 
-/// Spans, cut where the force acts, with the load that takes the rigid acceleration out.
+/// Spans, divided where the force acts, with the load that balances the rigid-body acceleration.
 fn bays(spans: &[Span], motions: &[[f64; 2]], y: f64) -> Vec<Bay> {
     let [p, q] = motions.iter().fold([0.0; 2], |[a, b], &[p, q]| [a + p * (p + q * y), b + q * (p + q * y)]);
     let bay = |span: Span, force: f64| {
@@ -110,7 +109,7 @@ fn bays(spans: &[Span], motions: &[[f64; 2]], y: f64) -> Vec<Bay> {
     bays
 }
 
-/// Solves two equations of known rank by complete pivoting; what the rank leaves open is set to zero.
+/// Solves two equations of known rank by complete pivoting; undetermined unknowns are zero.
 fn solve(a: [[f64; 2]; 2], b: [f64; 2], rank: usize) -> [f64; 2] {
     let mut x = [0.0; 2];
     if rank == 0 {

@@ -1,6 +1,6 @@
-//! A beam and what is fixed to it, as the user poses them.
+//! The input: a beam and its attachments.
 
-/// A uniform stretch of a beam.
+/// A uniform segment of a beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -13,8 +13,8 @@ pub struct Segment {
     pub mass_per_length_kg_m: f64,
 }
 
-/// A uniform stretch of rectangular section, by its measures and its material. It becomes a [`Segment`], whose values are
-/// checked when the beam is used.
+/// A uniform segment of rectangular section, by its dimensions and its material. It converts into a [`Segment`], whose values
+/// are checked when the beam is used.
 ///
 /// ```
 /// use beam_modes::{RectangularSegment, Segment};
@@ -55,18 +55,18 @@ impl From<RectangularSegment> for Segment {
     }
 }
 
-/// How an end of a beam is held.
+/// The boundary condition at an end of a beam.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum End {
-    /// No displacement, no slope.
+    /// Zero displacement and slope.
     Clamped,
-    /// No displacement, no moment.
+    /// Zero displacement and moment.
     Pinned,
-    /// No moment, no shear force.
+    /// Zero moment and shear force.
     Free,
-    /// No slope, no shear force.
+    /// Zero slope and shear force.
     Guided,
 }
 
@@ -106,7 +106,7 @@ impl Beam {
     }
 }
 
-/// What Timoshenko's theory needs of a segment beside its rigidity and mass.
+/// The properties of a segment that Timoshenko's theory needs in addition to its rigidity and mass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -117,7 +117,7 @@ pub struct ShearSection {
     pub rotary_inertia_kg_m: f64,
 }
 
-/// Springs and masses fixed to a beam at one location. Each of them may be zero, and is by default.
+/// Springs and masses attached to a beam at one location. Each of them may be zero, which is the default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -134,7 +134,7 @@ pub struct Attachment {
     pub rotational_spring_n_m_rad: f64,
 }
 
-/// A rigid support between the ends: no displacement, no moment.
+/// A rigid support between the ends: zero displacement, free rotation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -143,14 +143,14 @@ pub struct Support {
     pub location_m: f64,
 }
 
-/// A beam by either theory of bending, and what is fixed to it.
+/// A beam by either theory of bending, with its attachments.
 ///
-/// Timoshenko's theory is exact in shear and rotary inertia: each segment has the frequencies of both spectra. Axial
-/// force and foundation are those of Euler-Bernoulli's theory.
+/// Timoshenko's theory includes shear and rotary inertia exactly: each segment has the frequencies of both spectra. Axial force
+/// and foundation are available with Euler-Bernoulli's theory only.
 ///
 /// ```
 /// use beam_modes::{Attachment, Beam, BeamSystem, End, RectangularSegment, ShearSection};
-/// // 1 m of steel, 50 mm square, pinned at both ends: shear and rotary inertia take a quarter of the tenth frequency
+/// // 1 m of steel, 50 mm square, pinned at both ends: shear and rotary inertia lower the tenth frequency by a quarter
 /// let side: f64 = 0.05;
 /// let segment = RectangularSegment {
 ///     length_m: 1.0,
@@ -177,9 +177,9 @@ pub struct Support {
 pub struct BeamSystem {
     /// Segments and ends.
     pub beam: Beam,
-    /// One for each segment makes a Timoshenko beam; `None` leaves shear and rotary inertia out (Euler-Bernoulli).
+    /// One for each segment makes a Timoshenko beam; `None` neglects shear and rotary inertia (Euler-Bernoulli).
     pub shear: Option<Vec<ShearSection>>,
-    /// Springs and masses; those at one place add up.
+    /// Springs and masses; those at the same location are added.
     pub attachments: Vec<Attachment>,
     /// Rigid supports between the ends.
     pub supports: Vec<Support>,
@@ -202,7 +202,7 @@ impl From<Beam> for BeamSystem {
     }
 }
 
-/// An end that a support holds.
+/// An end with a support.
 pub(crate) fn held(end: End) -> End {
     match end {
         End::Free | End::Pinned => End::Pinned,

@@ -1,4 +1,4 @@
-//! Hermite finite elements for the same beams: an independent check, and the model of thesis appendix A.4.
+//! Hermite finite elements for the same beams: an independent reference, and the model of thesis appendix A.4.
 //!
 //! Two-node elements with displacement and rotation at each node, cubic shape functions and consistent mass; the
 //! generalised eigenproblem `K v = omega^2 M v` is reduced by the Cholesky factor of `M`. Frequencies converge from
@@ -11,7 +11,7 @@ use faer::linalg::solvers::{Llt, SelfAdjointEigen};
 use faer::{Mat, Side};
 use invalid_input::InvalidInput;
 
-/// What a degree of freedom measures.
+/// The quantity of a degree of freedom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -24,16 +24,16 @@ pub enum Coordinate {
 
 invalid_input::names!(Coordinate, "coordinate", { Displacement: "displacement", Rotation: "rotation" });
 
-/// A beam cut into elements.
+/// A beam divided into elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
     /// Locations of the nodes, m.
     pub nodes_m: Vec<f64>,
-    /// Node and coordinate of every degree of freedom that the ends leave free.
+    /// Node and kind of every degree of freedom that the ends do not constrain.
     pub dofs: Vec<(usize, Coordinate)>,
-    /// Stiffness matrix, row by row, `dofs.len()` squared; N/m, N, N m by coordinate.
+    /// Stiffness matrix, row by row, `dofs.len()` squared; N/m, N, N m by kind.
     pub stiffness: Vec<f64>,
-    /// Consistent mass matrix, row by row; kg, kg m, kg m^2 by coordinate.
+    /// Consistent mass matrix, row by row; kg, kg m, kg m^2 by kind.
     pub mass: Vec<f64>,
     rigid: usize,
 }
@@ -43,15 +43,15 @@ pub struct Model {
 pub struct ModelModes {
     nodes_m: Vec<f64>,
     omega_rad_s: Vec<f64>,
-    /// Mode by mode: displacement and rotation of every node, held ones included.
+    /// Displacement and rotation of every node, mode by mode, constrained ones included.
     nodal: Vec<Vec<[f64; 2]>>,
 }
 
 impl Model {
-    /// Cuts every segment of the beam into the same number of equal elements.
+    /// Divides every segment of the beam into the same number of equal elements.
     ///
     /// # Errors
-    /// [`InvalidInput`] for an invalid beam, for no elements, and for more than 2,000 in all.
+    /// [`InvalidInput`] for an invalid beam, for no elements, and for more than 2,000 in total.
     pub fn new(beam: &Beam, elements_per_segment: usize) -> Result<Self, InvalidInput> {
         beam.checked()?;
         let elements = beam.segments.len().saturating_mul(elements_per_segment);
@@ -113,7 +113,7 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidInput`] when segments differ so much that the mass matrix is singular to rounding.
+    /// [`InvalidInput`] if segments differ so much that the mass matrix is singular to rounding.
     pub fn modes(&self) -> Result<ModelModes, InvalidInput> {
         let n = self.dofs.len();
         let unsolved =
@@ -121,12 +121,12 @@ impl Model {
         let mut omega_rad_s = Vec::with_capacity(n);
         let mut nodal = Vec::with_capacity(n);
         if n > 0 {
-            // displacements and rotations differ in size: without scaling the reduction would lose digits
+            // Displacements and rotations differ in size: without scaling, the reduction would lose digits.
             let scale: Vec<f64> = (0..n).map(|i| 1.0 / self.mass[i * n + i].sqrt()).collect();
             let stiffness = Mat::from_fn(n, n, |i, j| self.stiffness[i * n + j] * scale[i] * scale[j]);
             let mass = Mat::from_fn(n, n, |i, j| self.mass[i * n + j] * scale[i] * scale[j]);
             let factor = Llt::new(mass.as_ref(), Side::Lower).map_err(|_| unsolved())?;
-            // L^-1 K L^-T, whose eigenvectors y give v = L^-T y
+            // L^-1 K L^-T, whose eigenvectors y give v = L^-T y.
             let mut reduced = stiffness;
             factor.L().solve_lower_triangular_in_place(reduced.as_mut());
             let mut reduced = reduced.transpose().to_owned();
@@ -147,7 +147,7 @@ impl Model {
         }
     }
 
-    /// An eigenvector on all nodes, its largest displacement positive.
+    /// An eigenvector at all nodes, with its largest displacement positive.
     fn spread(&self, value: impl Fn(usize) -> f64) -> Vec<[f64; 2]> {
         let mut nodal = vec![[0.0; 2]; self.nodes_m.len()];
         for (row, &(node, coordinate)) in self.dofs.iter().enumerate() {
@@ -170,7 +170,7 @@ impl ModelModes {
     /// Shape of mode `k` at `x_m`, kg^(-1/2), by the element's cubics.
     ///
     /// # Errors
-    /// [`InvalidInput`] for a mode that is not there or a location off the beam.
+    /// [`InvalidInput`] for a mode that does not exist or a location outside the beam.
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         let length_m = self.nodes_m.last().copied().unwrap_or(0.0);
         let x_m = require_on("x_m", x_m, length_m)?;
@@ -188,12 +188,12 @@ impl ModelModes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a location off the beam.
+    /// [`InvalidInput`] for a location outside the beam.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         (0..self.nodal.len()).map(|k| self.shape(k, x_m)).collect()
     }
 
-    /// All modes as a force at `x_m` meets them.
+    /// All modes as excited by a force at `x_m`.
     ///
     /// # Errors
     /// As for [`shapes_at`](Self::shapes_at).

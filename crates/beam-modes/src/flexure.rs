@@ -1,9 +1,9 @@
-//! Bending waves on a stepped beam: count of Wittrick and Williams, characteristic function, and the states from
-//! which mode shapes are unrolled.
+//! Bending waves on a stepped beam: count of Wittrick and Williams, characteristic function, and the states from which mode
+//! shapes are computed.
 //!
 //! Everything is dimensionless (see `span`); the trial value is `q = sqrt(omega)`, and a span's scaling wave number is
-//! `k = q (m/EI)^(1/4)`. What the two theories of bending, axial force and foundation make of a span is in `waves`;
-//! what is fixed to the beam between spans is in `node`.
+//! `k = q (m/EI)^(1/4)`. `waves` describes a span with either theory of bending, axial force and foundation; `node` describes
+//! the attachments between spans.
 
 use crate::definition::End;
 use crate::node::Node;
@@ -18,7 +18,7 @@ use crate::waves::{State, Waves};
 pub(crate) struct Flexure {
     spans: Vec<Span>,
     ends: [End; 2],
-    /// At both ends and between spans: one more than spans.
+    /// At both ends and between spans: one more than the number of spans.
     nodes: Vec<Node>,
     /// `(m/EI)^(1/4)` of each span.
     wave_numbers: Vec<f64>,
@@ -26,30 +26,30 @@ pub(crate) struct Flexure {
     phase: f64,
     /// Factors of the state from span `i` to span `i + 1`.
     steps: Vec<State>,
-    /// Neither shear, rotary inertia, tension nor foundation anywhere.
+    /// There is no shear, rotary inertia, tension or foundation anywhere.
     plain: bool,
 }
 
-/// What a plane passes between two spans: masses and springs, a support, the change of units.
+/// The transformation of a plane between two spans: masses and springs, a support, the change of units.
 #[derive(Debug, Clone, Copy)]
 struct Joint([Option<Handover>; 3]);
 
-/// The plane of one end at one frequency, on its way along the beam; all lists in the order of the spans.
+/// The plane of one end at one frequency, propagated along the beam; all lists in the order of the spans.
 struct Sweep {
-    /// Where each span is entered.
+    /// The plane at the entry of each span.
     entries: Vec<Plane>,
     crossings: Vec<Crossing>,
-    /// Between spans.
+    /// The transformations between spans.
     joints: Vec<Joint>,
 }
 
-/// Those of both ends.
+/// The planes from both ends.
 pub(crate) struct Sweeps {
     left: Sweep,
     right: Sweep,
 }
 
-/// The states an end allows: two of the four unit vectors.
+/// The states that an end allows: two of the four unit vectors.
 pub(crate) fn allowed(end: End) -> [usize; 2] {
     match end {
         End::Clamped => [2, 3],
@@ -59,7 +59,7 @@ pub(crate) fn allowed(end: End) -> [usize; 2] {
     }
 }
 
-/// The two components that an end makes zero.
+/// The two components that are zero at an end.
 pub(crate) fn constrained(end: End) -> [usize; 2] {
     match end {
         End::Clamped => [0, 1],
@@ -82,7 +82,7 @@ impl Joint {
         self.0.iter().flatten().next_back().map_or(entry, |handover| handover.plane)
     }
 
-    /// Coefficients, in the plane that entered, of a state of the plane that left.
+    /// Coefficients, in the plane at the entry, of a state of the plane at the exit.
     fn coefficients_before(&self, state: &State, exit: &Plane) -> [f64; 2] {
         self.0.iter().rev().flatten().fold(exit.coefficients(state), |after, handover| handover.before(after))
     }
@@ -98,7 +98,7 @@ impl Flexure {
         Self { spans, ends, nodes, wave_numbers, phase, steps, plain }
     }
 
-    /// The scaling wave number, from the mass or, where it pushes harder, from the foundation.
+    /// The scaling wave number, from the mass or, if it is stiffer, from the foundation.
     fn wave_number(&self, i: usize, q: f64) -> f64 {
         let Span { mass, foundation, rigidity, .. } = self.spans[i];
         if foundation == 0.0 {
@@ -119,7 +119,7 @@ impl Flexure {
         step(&self.spans[i - 1], self.wave_number(i - 1, q), &self.spans[i], self.wave_number(i, q))
     }
 
-    /// What is fixed at a node, for a plane in the units of a span beside it.
+    /// The attachments at a node, for a plane in the units of a span beside it.
     fn pass(&self, node: usize, plane: Plane, span: usize, q: f64) -> Joint {
         let node = &self.nodes[node];
         let load = (!node.is_bare()).then(|| {
@@ -132,14 +132,14 @@ impl Flexure {
         Joint([load, support, None])
     }
 
-    /// The same between two spans, into the units of the next: `scale`.
+    /// The same between two spans, into the units of the next span: `scale`.
     fn join(&self, node: usize, plane: Plane, span: usize, q: f64, scale: &State) -> Joint {
         let mut joint = self.pass(node, plane, span, q);
         joint.0[2] = Some(joint.exit(plane).rescaled(scale));
         joint
     }
 
-    /// The plane that one end allows, with what is fixed there.
+    /// The plane that one end allows, including its attachments.
     fn start(&self, q: f64, from_right: bool) -> Plane {
         let n = self.spans.len();
         let plane = end_plane(self.ends[usize::from(from_right)]);
@@ -147,7 +147,7 @@ impl Flexure {
         self.pass(node, plane, span, q).exit(plane)
     }
 
-    /// The plane that one end allows, carried over every span from there; from the right, in reflected variables.
+    /// The plane that one end allows, propagated over every span from there; from the right, in reflected variables.
     fn sweep(&self, q: f64, from_right: bool) -> Sweep {
         let n = self.spans.len();
         let mut plane = self.start(q, from_right);
@@ -176,14 +176,14 @@ impl Flexure {
         sweep
     }
 
-    /// `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`, a common power of `q` left out where there is one.
+    /// From `w` to the span's own variables: `w = z_0 / sqrt(EI k^3)`; a common power of `q` is omitted where there is one.
     fn amplitude(&self, i: usize, q: f64) -> f64 {
         let foundation = self.spans[i].foundation != 0.0;
         let k = if foundation { self.wave_number(i, q) } else { self.wave_numbers[i] };
         1.0 / (self.spans[i].rigidity * k.powi(3)).sqrt()
     }
 
-    /// The plane carried over one span and, but for the last, into the next.
+    /// The plane propagated over one span and, unless it is the last, into the next.
     fn advance(&self, i: usize, plane: Plane, waves: &Waves, q: f64) -> Plane {
         let exit = plane.cross(waves).exit;
         if i + 1 < self.spans.len() {
@@ -193,13 +193,13 @@ impl Flexure {
         }
     }
 
-    /// The characteristic function: zero when the plane holds a state that the right end allows.
+    /// The characteristic function, which is zero if the plane contains a state that the right end allows.
     fn at_right_end(&self, Plane([u, v]): &Plane) -> f64 {
         let [m, n] = constrained(self.ends[1]);
         u[m] * v[n] - v[m] * u[n]
     }
 
-    /// Half waves on the whole beam.
+    /// Number of half waves on the whole beam.
     fn half_waves(&self, q: f64) -> f64 {
         (0..self.spans.len()).map(|i| self.waves(i, q).half_waves()).sum()
     }
@@ -212,7 +212,7 @@ fn step(left: &Span, left_k: f64, right: &Span, right_k: f64) -> State {
     [rho, rho * slower, 1.0 / (rho * slower), 1.0 / rho]
 }
 
-/// How many eigenvalues of the symmetric matrix `[[p, r], [r, s]]` are negative.
+/// Number of negative eigenvalues of the symmetric matrix `[[p, r], [r, s]]`.
 fn negative_eigenvalues(p: f64, r: f64, s: f64) -> usize {
     let determinant = p * s - r * r;
     if determinant < 0.0 {
@@ -231,7 +231,7 @@ impl Characteristic for Flexure {
         for i in 0..self.spans.len() {
             let waves = self.waves(i, q);
             let (inside, [ww, wt, tt], denominator) = waves.clamped();
-            // U' (K_left + K_span) U times |denominator|: same signature as K_left + K_span, and no pole
+            // U' (K_left + K_span) U times |denominator|: the signature of K_left + K_span, without poles.
             let [u, v] = plane.0;
             let (size, sign) = (denominator.abs(), denominator.signum());
             let entry = |a: &State, b: &State| {
@@ -243,7 +243,7 @@ impl Characteristic for Flexure {
             count += inside + negative_eigenvalues(entry(&u, &u), off_diagonal, entry(&v, &v));
             plane = self.advance(i, plane, &waves, q);
         }
-        // the right end releases what it does not constrain
+        // The right end leaves the other components free.
         let [u, v] = plane.0;
         let orientation = (u[0] * v[1] - v[0] * u[1]).signum();
         count += match self.ends[1] {
@@ -269,7 +269,7 @@ impl Characteristic for Flexure {
         if self.plain {
             return slender;
         }
-        // waves are more where shear makes them slow, fewer on a foundation
+        // Shear makes waves slower and hence more numerous; a foundation reduces their number.
         let wanted = count as f64 + 1.0;
         let (mut low, mut high) = (0.0, slender);
         for _ in 0..60 {

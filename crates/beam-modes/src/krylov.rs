@@ -1,4 +1,4 @@
-//! The functions of Krylov.
+//! Krylov's functions.
 
 /// `[1/m!, 1/(m+4)!, 1/(m+8)!, ...]` for m = 0..4.
 const TAYLOR: [[f64; 6]; 4] = {
@@ -12,7 +12,7 @@ const TAYLOR: [[f64; 6]; 4] = {
     table
 };
 
-/// `sum_i (y^4)^i / (4i+m)!` for m = 0..4: times `y^m`, these are the functions of Krylov, `(cosh y + cos y)/2` and on.
+/// `sum_i (y^4)^i / (4i+m)!` for m = 0..4: times `y^m`, these are Krylov's functions, `(cosh y + cos y)/2` and so on.
 pub(crate) fn krylov(y: f64) -> [f64; 4] {
     let y4 = (y * y) * (y * y);
     TAYLOR.map(|row| row.iter().rev().fold(0.0, |sum, coefficient| sum * y4 + coefficient))

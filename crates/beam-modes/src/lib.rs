@@ -1,22 +1,23 @@
-//! Exact natural modes of stepped beams in bending, by Euler-Bernoulli's or Timoshenko's theory, with attachments,
-//! supports, axial force and foundation ([`BeamSystem`]), and of stepped rods in axial vibration; modes of strings
-//! ([`TautString`]) and of rectangular plates ([`Plate`]); their static compliance; remainder modes for what a truncated
-//! model leaves out; and a Hermite finite-element model.
+//! Exact natural modes of stepped beams in bending, by Euler-Bernoulli's or Timoshenko's theory, with attachments, supports,
+//! axial force and foundation ([`BeamSystem`]), and of stepped rods in axial vibration; modes of strings ([`TautString`]) and
+//! of rectangular plates ([`Plate`]); their static compliance; remainder modes for the truncated modes of a model; and a
+//! Hermite finite-element model.
 //!
 //! # The mathematics
-//! A beam of uniform segments obeys `EI w'''' = m omega^2 w` on each segment (thesis Eq. 4.1 without force), with `w`,
-//! `w'`, `EI w''` and `EI w'''` continuous at the steps and two conditions at either end. Its modes `phi_k` are
-//! orthonormal in mass, `int m phi_i phi_j dx = delta_ij` (Eq. 4.4).
+//! A beam of uniform segments satisfies `EI w'''' = m omega^2 w` on each segment (thesis Eq. 4.1 without force), with `w`,
+//! `w'`, `EI w''` and `EI w'''` continuous at the steps and two conditions at either end. Its modes `phi_k` are orthonormal in
+//! mass, `int m phi_i phi_j dx = delta_ij` (Eq. 4.4).
 //!
-//! Timoshenko's theory lets sections turn by `theta` apart from the slope (S. P. Timoshenko, Phil. Mag. 41:744, 1921):
+//! In Timoshenko's theory the rotation `theta` of a section differs from the slope (S. P. Timoshenko, Phil. Mag. 41:744, 1921):
 //!
 //! ```text
 //! (kappa G A (w' - theta))' + m omega^2 w = 0,
 //! (EI theta')' + kappa G A (w' - theta) + rho I omega^2 theta = 0,      int m w_i w_j + rho I theta_i theta_j dx = delta_ij.
 //! ```
 //!
-//! Below `omega_c = sqrt(kappa G A / rho I)` one pair of waves travels and one decays, above it both travel (the second
-//! spectrum). Axial force `T` (tension positive) and foundation `k_f` make `EI w'''' - T w'' + k_f w = m omega^2 w`.
+//! Below `omega_c = sqrt(kappa G A / rho I)` one pair of waves propagates and one decays, above it both propagate (the second
+//! spectrum). With axial force `T` (tension positive) and foundation `k_f`, Euler-Bernoulli's equation is
+//! `EI w'''' - T w'' + k_f w = m omega^2 w`.
 //!
 //! | symbol | meaning | unit | equation |
 //! |---|---|---|---|
@@ -30,30 +31,31 @@
 //! | `G(x,y)` | static Green's function, `sum phi_k(x) phi_k(y) / omega_k^2` over elastic modes | m/N | |
 //!
 //! # The method
-//! 1. Each end allows a plane of states (displacement, slope, moment, shear). The plane is carried along the beam as
-//!    an orthonormal basis, turned at every span so that the growing exponential stands in one column and is measured
-//!    at the far end. Nothing overflows and nothing cancels, however many waves a segment holds; on a segment shorter
-//!    than a wave the power series of Krylov's functions take the place of sines and exponentials.
-//! 2. The count of W. H. Wittrick and F. W. Williams (Q. J. Mech. Appl. Math. 24:263, 1971) tells how many natural
-//!    frequencies lie below a trial one. Intervals are split until each holds one; the characteristic function,
-//!    computed apart from the count and checked against its parity, then leads to the root. No frequency is missed.
-//! 3. The planes from the left and from the right are compared at every span, and the mode is started where they agree
-//!    best, that is, where the mode is large, and unrolled from there to both sides. Shapes of nearly equal frequencies
-//!    are orthogonalised with closed-form integrals, which also give the norm.
+//! 1. The conditions of each end define a plane of states (displacement, slope, moment, shear). The plane is propagated along
+//!    the beam as an orthonormal basis, rotated at every span so that the growing exponential is in one column and is
+//!    normalised at the far end. Nothing overflows and nothing cancels for any number of waves in a segment; on a segment
+//!    shorter than a wave the power series of Krylov's functions replace sines and exponentials.
+//! 2. The count of W. H. Wittrick and F. W. Williams (Q. J. Mech. Appl. Math. 24:263, 1971) is the number of natural
+//!    frequencies below a trial value. Intervals are divided until each contains one; the root of the characteristic function,
+//!    which is computed separately from the count and checked against its parity, is then the frequency. No frequency is
+//!    missed.
+//! 3. The planes from the left and from the right are compared at every span. The mode is started where they agree best, that
+//!    is, where the mode is large, and computed from there to both sides. Shapes of nearly equal frequencies are orthogonalised
+//!    with closed-form integrals, which also give the norm.
 //! 4. A uniform Euler-Bernoulli beam needs no search: one formula covers the ten pairs of ends.
-//! 5. All this holds for every span whose four first-order equations have constant coefficients. Shear, rotary inertia,
-//!    axial force and foundation change the two exponents of a span and the ratios of moment to displacement of its
-//!    waves, nothing else (`waves.rs`); masses and springs shear the plane where they are fixed, a support replaces one
-//!    of its columns (`node.rs`, `plane.rs`). Where a foundation holds a span so that no wave travels, the span is cut
-//!    into pieces for power series.
+//! 5. All this applies to every span whose four first-order equations have constant coefficients. Shear, rotary inertia, axial
+//!    force and foundation change only the two exponents of a span and the ratios of moment to displacement of its waves
+//!    (`waves.rs`); masses and springs shear the plane at their location, and a support replaces one of its columns (`node.rs`,
+//!    `plane.rs`). If a foundation is so stiff that no wave propagates in a span, the span is divided into pieces for power
+//!    series.
 //!
-//! Neighbours whose rigidities are in the ratio 1e12, or lengths in the ratio 1e3, keep shapes orthonormal to 1e-11;
-//! see `tests/stepped.rs`. Contrasts are refused beyond 1e12.
+//! Shapes stay orthonormal to 1e-11 for ratios of neighbouring rigidities of 1e12 or of lengths of 1e3; see `tests/stepped.rs`.
+//! Larger contrasts than 1e12 are rejected.
 //!
 //! # Limits
-//! Euler-Bernoulli ([`Beam`]) knows no shear and no rotary inertia, which tell once a half wave is shorter than some ten
-//! thicknesses; Timoshenko's theory follows elasticity to half waves of about one thickness. The beam is straight and
-//! bends in one plane.
+//! Euler-Bernoulli's theory ([`Beam`]) neglects shear and rotary inertia, which matter if a half wave is shorter than about ten
+//! thicknesses; Timoshenko's theory is accurate down to half waves of about one thickness. The beam is straight and bends in
+//! one plane.
 //!
 //! # Example
 //! ```
@@ -69,7 +71,7 @@
 //! let beam = Beam { segments: vec![thick.into(), slim.into()], ends: [End::Clamped, End::Free] };
 //! let modes = beam.modes(40)?;
 //! let (omega, phi) = (modes.omega_rad_s(), modes.shapes_at(0.75)?);
-//! // what forty modes leave out of the static compliance
+//! // the static compliance of all modes beyond the first forty
 //! let sum: f64 = omega.iter().zip(&phi).map(|(omega, phi)| (phi / omega).powi(2)).sum();
 //! let residual = beam.static_compliance(0.75)? - sum;
 //! assert!(residual > 0.0 && residual < 1e-4 * sum);
@@ -118,7 +120,7 @@ pub use remainder::{
 pub use rod::{Rod, RodSegment};
 pub use string::{TautString, TautStringModes};
 
-/// Runs the example of the readme.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

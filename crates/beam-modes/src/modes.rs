@@ -8,23 +8,23 @@ use invalid_input::InvalidInput;
 
 /// Natural modes of a beam or a rod, in ascending order of frequency.
 ///
-/// Shapes are mass-normalised, `int m phi_i phi_j dx = delta_ij` (thesis Eq. 4.4), so their unit is kg^(-1/2). The sign
-/// of a shape is fixed at the left end: the lowest derivative that the end leaves free is positive there (displacement
-/// at a free or guided end, slope at a pinned or, for rods, fixed end, curvature at a clamped end). The rotation of a
-/// free-free beam has positive slope.
+/// Shapes are mass-normalised, `int m phi_i phi_j dx = delta_ij` (thesis Eq. 4.4), so that their unit is kg^(-1/2). The sign of
+/// a shape is determined at the left end: the lowest derivative that is not zero there is positive (displacement at a free or
+/// guided end, slope at a pinned or, for rods, fixed end, curvature at a clamped end). The rotation of a free-free beam has
+/// positive slope.
 #[derive(Debug, Clone)]
 pub struct Modes {
     spans: Vec<Span>,
     units: Units,
     omega_rad_s: Vec<f64>,
     rigid: usize,
-    /// Mode by mode, span by span; dimensionless.
+    /// Dimensionless shapes, mode by mode and span by span.
     pieces: Vec<Piece>,
-    /// Masses fixed to the structure: span, location within it, mass; dimensionless.
+    /// Masses attached to the structure: span, location within it, mass; dimensionless.
     fixed: Vec<(usize, f64, f64)>,
 }
 
-/// Guards memory: `count` modes of `spans` pieces each.
+/// Limits the memory: `count` modes of `spans` pieces each.
 pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInput> {
     const MOST: usize = 100_000;
     const MOST_PIECES: usize = 20_000_000;
@@ -35,7 +35,7 @@ pub(crate) fn require_count(count: usize, spans: usize) -> Result<(), InvalidInp
 }
 
 impl Modes {
-    /// From dimensionless, mass-normalised shapes: rigid-body ones first, then elastic ones with their frequencies.
+    /// From dimensionless, mass-normalised shapes: rigid-body motions first, then elastic modes with their frequencies.
     pub(crate) fn assemble(
         spans: Vec<Span>,
         units: Units,
@@ -58,12 +58,12 @@ impl Modes {
         if resolved { Ok(modes) } else { Err(InvalidInput::new("segments", "as given", RESOLVABLE)) }
     }
 
-    /// With masses fixed to the structure, which a uniform acceleration also pulls at.
+    /// With masses attached to the structure, on which a uniform acceleration also acts.
     pub(crate) fn with_fixed(self, fixed: Vec<(usize, f64, f64)>) -> Self {
         Self { fixed, ..self }
     }
 
-    /// How many modes there are.
+    /// Number of modes.
     pub fn len(&self) -> usize {
         self.omega_rad_s.len()
     }
@@ -73,7 +73,7 @@ impl Modes {
         self.omega_rad_s.is_empty()
     }
 
-    /// How many of them are rigid-body motions; these come first and have `omega = 0`.
+    /// Number of rigid-body modes; these come first and have `omega = 0`.
     pub fn rigid_body_count(&self) -> usize {
         self.rigid
     }
@@ -91,7 +91,7 @@ impl Modes {
     /// Shape of mode `k` (from 0) at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a mode that is not there or a location off the structure. The same holds for
+    /// [`InvalidInput`] for a mode that does not exist or a location outside the structure. The same applies to
     /// [`slope`](Self::slope) and [`curvature`](Self::curvature).
     pub fn shape(&self, k: usize, x_m: f64) -> Result<f64, InvalidInput> {
         self.quantity(0, k, x_m, Piece::displacement)
@@ -105,7 +105,7 @@ impl Modes {
         self.quantity(1, k, x_m, Piece::slope)
     }
 
-    /// Rotation of the sections in mode `k` at `x_m`, kg^(-1/2)/m: the slope, but for beams with shear.
+    /// Rotation of the sections in mode `k` at `x_m`, kg^(-1/2)/m: the slope, except for beams with shear.
     ///
     /// # Errors
     /// As for [`shape`](Self::shape).
@@ -114,7 +114,7 @@ impl Modes {
     }
 
     /// Derivative of the rotation of mode `k` at `x_m`, kg^(-1/2)/m^2 (without shear, the second derivative of the shape);
-    /// times `E I` it is the bending moment. At a step, where it jumps, the value on the right.
+    /// times `E I` it is the bending moment. At a step, where it jumps, this is the value on the right.
     ///
     /// # Errors
     /// As for [`shape`](Self::shape).
@@ -125,14 +125,14 @@ impl Modes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a location off the structure.
+    /// [`InvalidInput`] for a location outside the structure.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (span, x) = self.place(x_m)?;
         let unit = self.unit(0);
         Ok(self.pieces.chunks(self.spans.len()).map(|mode| unit * mode[span].displacement(x)).collect())
     }
 
-    /// All modes as a force at `x_m` meets them.
+    /// All modes as excited by a force at `x_m`.
     ///
     /// # Errors
     /// As for [`shapes_at`](Self::shapes_at).
@@ -140,16 +140,16 @@ impl Modes {
         Ok(point_modes(&self.omega_rad_s, self.shapes_at(x_m)?))
     }
 
-    /// Participation `int m phi_k dx` of every mode in a uniform acceleration, kg^(1/2): the modal force of the weight
-    /// over the acceleration of gravity. The squares of all of them add up to the mass; of a structure that is free to
-    /// translate, rigid-body motions alone have any.
+    /// Participation `int m phi_k dx` of every mode in a uniform acceleration, kg^(1/2): the modal force of the weight divided
+    /// by the acceleration of gravity. The squares of all of them add up to the mass. In a structure that is free to translate,
+    /// only rigid-body modes participate.
     ///
     /// ```
     /// use beam_modes::{Beam, End, Segment};
     /// let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 275.0, mass_per_length_kg_m: 2.0 };
     /// let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
     /// let participation = beam.modes(2)?.participation_kg0_5();
-    /// // a half sine of amplitude sqrt(2 / (m L)), and a whole one
+    /// // a half sine of amplitude sqrt(2 / (m L)), and a full one
     /// assert!((participation[0] - 2.0 * 2.0 / std::f64::consts::PI).abs() < 1e-14);
     /// assert!(participation[1].abs() < 1e-14);
     /// # Ok::<(), beam_modes::InvalidInput>(())

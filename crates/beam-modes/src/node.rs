@@ -1,18 +1,18 @@
-//! What is fixed to a beam at one location.
+//! The attachments of a beam at one location.
 
 /// Springs, masses and a support at one location, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Node {
-    /// Against displacement and against rotation.
+    /// Springs against displacement and against rotation.
     pub spring: [f64; 2],
     /// Mass and rotary inertia.
     pub mass: [f64; 2],
-    /// No displacement.
+    /// Whether the displacement is zero.
     pub support: bool,
 }
 
 impl Node {
-    /// Neither springs nor masses.
+    /// Whether there are neither springs nor masses.
     pub fn is_bare(&self) -> bool {
         self.spring == [0.0; 2] && self.mass == [0.0; 2]
     }

@@ -1,15 +1,15 @@
 //! A mode shape on one span: evaluation and exact integrals of products.
 //!
-//! Every solution on a span of length `l` is held in one of three forms:
+//! Every solution on a span of length `l` has one of three forms:
 //!
-//! - long: `a cos kx + b sin kx` and a second pair of waves, `c exp(-kappa x) + d exp(-kappa (l - x))` where it decays,
-//!   `c C(x) + d mu S(x)` with `C = cosh(sqrt(mu) x)`, `S = sinh(sqrt(mu) x)/sqrt(mu)` where it is bounded over the span
-//!   or travels (`mu < 0`); none of these overflows or cancels;
-//! - short, for `w'''' = k^4 w` and `k l <= 1`: the four derivatives at the left end and the power series that continue
-//!   them. Here sines and exponentials would be nearly dependent. A rigid-body motion is the short form with `k = 0`;
-//! - series: the same for any short span, by the state at the left end (see `waves`).
+//! - long: `a cos kx + b sin kx` and a second pair of waves, `c exp(-kappa x) + d exp(-kappa (l - x))` if it decays,
+//!   `c C(x) + d mu S(x)` with `C = cosh(sqrt(mu) x)`, `S = sinh(sqrt(mu) x)/sqrt(mu)` if it is bounded over the span or
+//!   propagates (`mu < 0`); none of these overflows or cancels;
+//! - short, for `w'''' = k^4 w` and `k l <= 1`: the four derivatives at the left end and the power series from there, because
+//!   sines and exponentials would be nearly linearly dependent. A rigid-body motion is the short form with `k = 0`;
+//! - series: the same for any short span, from the state at the left end (see `waves`).
 //!
-//! Axial modes use the long form with `c = d = 0` (and the short one for the rigid motion).
+//! Axial modes use the long form with `c = d = 0` (and the short one for the rigid-body motion).
 
 use crate::krylov::krylov;
 use crate::quadrature::gauss;
@@ -44,7 +44,7 @@ impl Piece {
         Piece::Long { k, second: Second::Decaying(k), length, wave, turns: [k, k] }
     }
 
-    /// The solution whose amplitudes (long) or left-end state (short) are given, in units of its displacement.
+    /// The solution with these amplitudes (long) or this left-end state (short), in units of its displacement.
     pub fn of_waves(waves: &Waves, amplitudes: [f64; 4]) -> Piece {
         let (k, length) = (waves.k, waves.length);
         let [a, b, c, d] = amplitudes;
@@ -56,7 +56,7 @@ impl Piece {
                 let travelling = h1 / pair.travelling * k;
                 let (second, wave, turn) = match pair.second {
                     Exponent::Decaying(kappa) => (Second::Decaying(k * kappa), [a, b, c, d], h2 / kappa * k),
-                    // the odd function is mu sinh(sqrt(mu) x)/sqrt(mu) in x, not in k x
+                    // The odd function is mu sinh(sqrt(mu) x)/sqrt(mu) in x, not in k x.
                     Exponent::Bounded(mu) => (Second::Bounded(k * k * mu), [a, b, c, d / k], h2 * k * k),
                 };
                 Piece::Long { k: k * pair.travelling, second, length, wave, turns: [travelling, turn] }
@@ -102,7 +102,7 @@ impl Piece {
         }
     }
 
-    /// The rotation of the sections, which is the slope where there is no shear.
+    /// The rotation of the sections, which is the slope if there is no shear.
     pub fn rotation(&self, x: f64) -> f64 {
         match *self {
             Piece::Long { k, second, length, wave: [a, b, c, d], turns } => {
@@ -147,7 +147,7 @@ impl Piece {
         values
     }
 
-    /// Largest of the four numbers that make up the piece.
+    /// Largest of the four coefficients of the piece.
     pub fn size(&self) -> f64 {
         let mut copy = *self;
         copy.values_mut().iter().fold(0.0, |size, v| v.abs().max(size))
@@ -165,7 +165,7 @@ impl Piece {
         sum
     }
 
-    /// Both in one form, where one is just below, the other just above the limit between two.
+    /// Both pieces in one form, if one is just below and the other just above the limit between two forms.
     fn alike(self, other: Self) -> (Self, Self) {
         match (self, other) {
             (Piece::Long { second: u, .. }, Piece::Long { second: v, .. })
@@ -195,7 +195,7 @@ impl Piece {
         }
     }
 
-    /// The same piece with a decaying pair written as a bounded one.
+    /// The same piece with a decaying pair in the form of a bounded one.
     fn bounded(self) -> Self {
         match self {
             Piece::Long { k, second: Second::Decaying(kappa), length, wave: [a, b, c, d], turns } => {
@@ -213,11 +213,11 @@ impl Piece {
         }
     }
 
-    /// The same piece by its state at the left end.
+    /// The same piece from its state at the left end.
     fn as_series(self, waves: Waves) -> Self {
         match self.bounded() {
             Piece::Long { k, wave: [_, b, _, d], .. } => {
-                // the shear force is the integral of the displacement
+                // The shear force is the integral of the displacement.
                 let integral = d - b / k;
                 let start = waves.state(self.displacement(0.0), self.rotation(0.0), self.curvature(0.0), integral);
                 Piece::Series { waves, start }
@@ -226,7 +226,7 @@ impl Piece {
         }
     }
 
-    /// The same shape seen from the other end of the span.
+    /// The same shape from the other end of the span.
     pub fn reflected(self) -> Self {
         match self {
             Piece::Long { k, second, length, wave: [a, b, c, d], turns } => {
@@ -272,8 +272,8 @@ impl Piece {
         }
     }
 
-    /// Integral of the product of the displacements over the span: closed form for two long pieces, Gauss's rule, of
-    /// degree 19 on panels of a few radians, where a pair of waves is nearly constant over the span.
+    /// Integral of the product of the displacements over the span: closed form for two long pieces; Gauss's rule of degree 19
+    /// on panels of a few radians if a pair of waves is nearly constant over the span.
     pub fn product(&self, other: &Self) -> f64 {
         match (self.displacement_waves(), other.displacement_waves()) {
             (Some(u), Some(v)) => u.product(&v, self.length()),

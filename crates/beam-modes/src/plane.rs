@@ -1,9 +1,10 @@
-//! The plane of states that one end of a beam allows, carried along the beam without loss.
+//! The plane of states that one end of a beam allows, propagated along the beam without loss of digits.
 //!
 //! The state at a location is `z = sqrt(EI k^3) (w, t/k, M/(EI k^2), -V/(EI k^3))` with the span's own `k` (see `waves`); for
-//! Euler-Bernoulli's beam these are the derivatives of `w`. The states that satisfy the two conditions of an end form a plane; its orthonormal basis is all that an eigenvalue search needs.
-//! Crossing a span turns the oscillating part, shrinks one exponential and stretches the other: the basis is first
-//! turned so that a single column holds the growing exponential, and that column is measured at the far end.
+//! Euler-Bernoulli's beam these are the derivatives of `w`. The states that satisfy the two conditions of an end form a plane,
+//! and an eigenvalue search needs only an orthonormal basis of it. Over a span the oscillating part rotates, one exponential
+//! decays and the other grows: the basis is first rotated so that a single column contains the growing exponential, and that
+//! column is normalised at the far end.
 
 use crate::piece::Piece;
 use crate::waves::{Form, State, Waves, decay};
@@ -12,39 +13,39 @@ use crate::waves::{Form, State, Waves, decay};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plane(pub [State; 2]);
 
-/// A span crossed: enough to follow a state of the plane back.
+/// A span over which the plane was propagated, with the data to follow a state of the plane back.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Crossing {
     waves: Waves,
-    /// Columns where the span was entered: wave amplitudes (long span) or states (short).
+    /// Columns at the entry of the span: wave amplitudes (long span) or states (short).
     entry: [[f64; 4]; 2],
-    /// What the second column was multiplied by on the way.
+    /// Factor of the second column over the span.
     shrink: f64,
-    /// The amplitude of the second column's growing exponential, measured at the far end, if there is one.
+    /// The amplitude of the second column's growing exponential, normalised at the far end, if there is one.
     arrived: Option<f64>,
-    /// Columns as they arrived = `exit` times this.
+    /// Columns before normalisation = `exit` times this.
     triangle: Triangle,
-    /// The plane where the span was left.
+    /// The plane at the exit of the span.
     pub exit: Plane,
 }
 
-/// A plane handed to the next span, in that span's variables.
+/// A plane in the variables of the next span.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Handover {
     pub plane: Plane,
     back: Back,
 }
 
-/// How coefficients are followed back.
+/// The transformation of coefficients back.
 #[derive(Debug, Clone, Copy)]
 enum Back {
-    /// The old basis, as it arrived, = `plane` times this.
+    /// The old basis before normalisation = `plane` times this.
     Triangle(Triangle),
     /// The old state is this combination of the old basis, times the coefficient of the second column.
     Support([f64; 2]),
 }
 
-/// Upper triangle `(r11, r12, r22)`: what Gram and Schmidt divided out.
+/// Upper triangle `(r11, r12, r22)` of the Gram-Schmidt process.
 #[derive(Debug, Clone, Copy)]
 struct Triangle(f64, f64, f64);
 
@@ -63,25 +64,25 @@ pub(crate) fn combine(p: f64, u: &State, q: f64, v: &State) -> State {
     [p * u[0] + q * v[0], p * u[1] + q * v[1], p * u[2] + q * v[2], p * u[3] + q * v[3]]
 }
 
-/// The state seen by a traveller in the other direction: odd derivatives change sign.
+/// The state for the opposite direction: odd derivatives change sign.
 pub(crate) fn reflect(z: &State) -> State {
     [z[0], -z[1], z[2], -z[3]]
 }
 
-/// The bilinear form that stays constant along a span: `U_l . P_r + P_l . U_r` with displacements `U = (w, w')` and the
-/// conjugate forces `P` on the left part, `(-w''', w'')`, and on the right part, the opposite.
+/// The bilinear form that is constant along a span: `U_l . P_r + P_l . U_r` with displacements `U = (w, w')` and the conjugate
+/// forces `P`, which are `(-w''', w'')` on the left part and the opposite on the right part.
 pub(crate) fn form(left: &State, right: &State) -> f64 {
     left[0] * right[3] - left[3] * right[0] - left[1] * right[2] + left[2] * right[1]
 }
 
 impl Plane {
-    /// Gram-Schmidt; positive factors only, so that orientation is kept.
+    /// Gram-Schmidt process with positive factors only, so that the orientation does not change.
     fn orthonormal(u: State, v: State) -> (Plane, Triangle) {
         let r11 = dot(&u, &u).sqrt();
         let e1 = u.map(|c| c / r11);
         let r12 = dot(&e1, &v);
         let rest = combine(1.0, &v, -r12, &e1);
-        // once more, against the rounding of nearly parallel columns
+        // Repeated, because of the rounding of nearly parallel columns.
         let again = dot(&e1, &rest);
         let rest = combine(1.0, &rest, -again, &e1);
         let r22 = dot(&rest, &rest).sqrt();
@@ -100,7 +101,7 @@ impl Plane {
         [dot(&self.0[0], z), dot(&self.0[1], z)]
     }
 
-    /// Carries the plane over a span.
+    /// Propagates the plane over a span.
     pub fn cross(&self, waves: &Waves) -> Crossing {
         let y = waves.k * waves.length;
         let Form::Long(pair) = waves.form else {
@@ -126,7 +127,7 @@ impl Plane {
         Crossing { waves: *waves, entry: [first, second], shrink, arrived: Some(arrived), triangle, exit }
     }
 
-    /// The plane beyond a spring or a mass: the moment grows by `stiffness[1]` times the rotation, the shear force by
+    /// The plane behind a spring or a mass: the moment grows by `stiffness[1]` times the rotation, the shear force by
     /// `stiffness[0]` times the displacement, both in the units of the state.
     pub fn loaded(&self, stiffness: [f64; 2]) -> Handover {
         let load = |z: &State| [z[0], z[1], z[2] + stiffness[1] * z[1], z[3] - stiffness[0] * z[0]];
@@ -134,14 +135,14 @@ impl Plane {
         Handover { plane, back: Back::Triangle(triangle) }
     }
 
-    /// The plane beyond a rigid support: no displacement, any shear force.
+    /// The plane behind a rigid support: zero displacement, any shear force.
     pub fn supported(&self) -> Option<Handover> {
         let [u, v] = &self.0;
         let size = u[0].hypot(v[0]);
         let (cos, sin) = if size > 0.0 { (u[0] / size, v[0] / size) } else { (1.0, 0.0) };
         let still = combine(-sin, u, cos, v);
         let norm = still[1].hypot(still[2]);
-        // without displacement or with nothing else, the plane stays as it is
+        // Without displacement, or with displacement only, the plane does not change.
         if size == 0.0 || norm == 0.0 {
             return None;
         }
@@ -151,8 +152,8 @@ impl Plane {
 }
 
 impl Handover {
-    /// Coefficients in the basis before the handover, from those after it. (Taking the state itself back would lose
-    /// the digits of its small components where the spans differ much.)
+    /// Coefficients in the basis before the transformation, from those after it. (A transformation of the state itself would
+    /// lose the digits of its small components if the spans differ much.)
     pub fn before(&self, after: [f64; 2]) -> [f64; 2] {
         match self.back {
             Back::Triangle(triangle) => triangle.solve(after),
@@ -162,8 +163,8 @@ impl Handover {
 }
 
 impl Crossing {
-    /// From a state's coefficients in the exit plane: the solution on the span, and the state where the span was
-    /// entered. Both in the variables of the span; the piece runs in the direction of travel.
+    /// From a state's coefficients in the exit plane: the solution on the span, and the state at its entry. Both are in the
+    /// variables of the span; the piece runs in the direction of propagation.
     pub fn follow_back(&self, coefficients: [f64; 2]) -> (Piece, State) {
         let [p, q] = self.triangle.solve(coefficients);
         let entry = combine(p, &self.entry[0], q * self.shrink, &self.entry[1]);

@@ -1,6 +1,6 @@
-//! Modes as a force at one point meets them.
+//! Modes as excited by a force at one point.
 
-/// A mode as seen from one point of the structure.
+/// A mode at one point of the structure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -11,7 +11,7 @@ pub struct PointMode {
     pub shape: f64,
 }
 
-/// Modes of these frequencies and shapes.
+/// Modes with these frequencies and shapes.
 pub(crate) fn point_modes(omega_rad_s: &[f64], shapes: Vec<f64>) -> Vec<PointMode> {
     omega_rad_s.iter().zip(shapes).map(|(&omega_rad_s, shape)| PointMode { omega_rad_s, shape }).collect()
 }

@@ -5,8 +5,7 @@ use crate::node::Node;
 use crate::piece::Piece;
 use crate::span::Span;
 
-/// Mass-normalised displacements `p + q x` that strain nothing: a translation before a rotation about the centre of
-/// mass.
+/// Mass-normalised displacements `p + q x` without strain: a translation before a rotation about the centre of mass.
 pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> Vec<[f64; 2]> {
     use End::{Free, Guided, Pinned};
     let places = || spans.iter().map(|s| s.start).chain([1.0]);
@@ -18,12 +17,12 @@ pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> V
     let held =
         places().zip(nodes).filter(|(_, n)| n.support || n.spring[0] > 0.0).map(|(x, _)| x).collect::<Vec<f64>>();
     let founded = spans.iter().any(|s| s.foundation > 0.0);
-    // an axial force keeps its direction, and so turns the beam towards it
+    // An axial force keeps its direction, and therefore turns the beam towards it.
     let turned = spans.iter().any(|s| s.tension != 0.0) || nodes.iter().any(|node| node.spring[1] > 0.0);
     let stands = |&[p, q]: &[f64; 2]| !founded && (!turned || q == 0.0) && held.iter().all(|x| p + q * x == 0.0);
     let motions = match ends {
         [Free, Free] => match held.as_slice() {
-            // about the only location that is held
+            // About the only support.
             [x, rest @ ..] if rest.iter().all(|other| other == x) => vec![[-x, 1.0]],
             _ => vec![[1.0, 0.0], [-centre, 1.0]],
         },
@@ -33,7 +32,7 @@ pub(crate) fn rigid_motions(spans: &[Span], ends: [End; 2], nodes: &[Node]) -> V
         _ => vec![],
     };
     let normalised = |[p, q]: [f64; 2]| {
-        // the integral of (p + q x)^2 over a span, by its mean and its spread
+        // The integral of (p + q x)^2 over a span, from its mean and its variation.
         let square = |s: &Span| (p + q * (s.start + 0.5 * s.length)).powi(2) + (q * s.length).powi(2) / 12.0;
         let along = spans.iter().map(|s| s.mass * s.length * square(s) + s.rotary * s.length * q * q).sum::<f64>();
         let fixed = fixed().map(|(x, node)| node.mass[0] * (p + q * x).powi(2) + node.mass[1] * q * q).sum::<f64>();

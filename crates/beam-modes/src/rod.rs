@@ -11,7 +11,7 @@ use crate::span::{Span, Units, nondimensional};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
-/// A uniform stretch of a rod.
+/// A uniform segment of a rod.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -77,7 +77,7 @@ impl Rod {
     /// elastic part, as for [`Beam::static_compliance`](crate::Beam::static_compliance).
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the rod.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location outside the rod.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         let (spans, units) = self.checked()?;
         let x = require_on("x_m", x_m, units.length_m)? / units.length_m;
@@ -91,8 +91,8 @@ impl Rod {
     }
 }
 
-/// `G(x, x)` is the integral of `N^2 / EA`, with `N` the axial force under the unit force at `x`: constant on either
-/// side of it, or, in a free-free rod, growing with the mass that is accelerated.
+/// `G(x, x)` is the integral of `N^2 / EA`, with `N` the axial force under the unit force at `x`: constant on either side of
+/// it, or, in a free-free rod, proportional to the accelerated mass.
 fn strain_energy(spans: &[Span], ends: [RodEnd; 2], x: f64) -> f64 {
     let flexibility = |s: &Span| s.length / s.rigidity;
     let total: f64 = spans.iter().map(flexibility).sum();

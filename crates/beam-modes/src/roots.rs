@@ -1,19 +1,19 @@
-//! Natural frequencies by counting, then by root finding: none can be missed.
+//! Natural frequencies by a count and a root finder, so that none can be missed.
 //!
-//! A waveguide gives, at a trial frequency, how many natural frequencies lie below (the count of Wittrick and
-//! Williams) and a characteristic function. The count splits an interval until each part holds one frequency; there
-//! the characteristic function changes sign once, and Chandrupatla's method converges to the last digits. Where
-//! frequencies coincide to rounding, the count alone closes in on them.
+//! At a trial frequency, a waveguide gives the number of natural frequencies below it (the count of Wittrick and Williams) and
+//! a characteristic function. The count divides an interval until each part contains one frequency; there the characteristic
+//! function changes sign once, and Chandrupatla's method converges to the last digits. If frequencies coincide to rounding, the
+//! count alone is used to enclose them.
 //!
-//! The two are computed differently, so that each checks the other: the sign of the characteristic function must be
-//! the parity of the count.
+//! The two are computed differently, so that each checks the other: the sign of the characteristic function must have the
+//! parity of the count.
 
 use crate::span::RESOLVABLE;
 use invalid_input::InvalidInput;
 
-/// What the search asks at a trial value `q` (any increasing function of frequency).
+/// The functions that the search evaluates at a trial value `q` (any increasing function of frequency).
 pub(crate) trait Characteristic {
-    /// How many natural frequencies, rigid-body ones included, lie below `q`, and the characteristic function there.
+    /// Number of natural frequencies below `q`, rigid-body ones included, and the characteristic function at `q`.
     fn count_and_function(&self, q: f64) -> (usize, f64);
     /// The characteristic function alone.
     fn function(&self, q: f64) -> f64;
@@ -21,7 +21,7 @@ pub(crate) trait Characteristic {
     fn estimate(&self, count: usize) -> f64;
 }
 
-/// A trial value with what is known there.
+/// A trial value with its count and characteristic function.
 #[derive(Clone, Copy)]
 struct Trial {
     q: f64,
@@ -29,10 +29,10 @@ struct Trial {
     value: f64,
 }
 
-/// Relative width at which an interval has closed.
+/// Relative width below which an interval counts as a point.
 const CLOSED: f64 = 4.0 * f64::EPSILON;
 
-/// Where an interval is split.
+/// Fractions at which an interval is divided.
 const SPLITS: [f64; 4] = [0.487_139, 0.531_477, 0.461_893, 0.549_917];
 
 /// The first `wanted` roots after `rigid` zero ones, in ascending order.
@@ -56,7 +56,7 @@ pub(crate) fn elastic_roots(
         }
         low = trial(0.4871 * low.q);
     }
-    // each root changes the sign once: from here on the sign must agree with the count's parity
+    // Each root changes the sign once: from here on the sign must agree with the parity of the count.
     let agrees = |t: &Trial| (t.value * low.value > 0.0) == t.below.abs_diff(rigid).is_multiple_of(2);
     let mut high = trial(problem.estimate(rigid + wanted));
     for _ in 0..200 {
@@ -80,8 +80,8 @@ pub(crate) fn elastic_roots(
         } else if inside == 1 && low.value * high.value < 0.0 {
             roots.push(chandrupatla(|q| problem.function(q), (low.q, low.value), (high.q, high.value)));
         } else {
-            // within rounding of a pole of a part's stiffness the count can err by one, and the parity shows it;
-            // fractions that hit no pole by design, and a second choice
+            // Within rounding of a pole of the stiffness of a part the count can be wrong by one, and the parity shows it.
+            // These fractions avoid likely poles, and there is a second choice.
             let at = |fraction: f64| trial(low.q + fraction * (high.q - low.q));
             let mut split = SPLITS.iter().map(|&f| at(f)).find(&agrees).unwrap_or_else(|| at(SPLITS[0]));
             split.below = split.below.clamp(low.below, high.below);
@@ -93,8 +93,8 @@ pub(crate) fn elastic_roots(
     Ok(roots)
 }
 
-/// Root of `f` between two points of opposite sign (T. R. Chandrupatla, Adv. Eng. Softw. 28:145, 1997): inverse
-/// quadratic interpolation where that is safe, bisection where not.
+/// Root of `f` between two points of opposite sign (T. R. Chandrupatla, Adv. Eng. Softw. 28:145, 1997): inverse quadratic
+/// interpolation if it is safe, bisection otherwise.
 fn chandrupatla(f: impl Fn(f64) -> f64, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
     let mut fraction = 0.5;
     for _ in 0..200 {

@@ -1,4 +1,4 @@
-//! From natural frequencies to orthonormal mode shapes.
+//! Orthonormal mode shapes from natural frequencies.
 
 use crate::piece::Piece;
 use crate::span::Span;
@@ -7,16 +7,16 @@ use crate::waves::State;
 /// A state at the left end of a span that (nearly) satisfies the conditions of both ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Match {
-    /// Sine of the angle between what the left and the right end allow: zero for a mode, and least sensitive to
+    /// Sine of the angle between the states that the left and the right end allow: zero for a mode, and least sensitive to
     /// rounding where the mode is large.
     pub defect: f64,
     pub span: usize,
     pub state: State,
 }
 
-/// A chain of spans that carries waves.
+/// A chain of spans with waves.
 pub(crate) trait Waveguide {
-    /// What both ends allow at one frequency, at every span.
+    /// The states that both ends allow at one frequency, at every span.
     type Sweeps;
     fn spans(&self) -> &[Span];
     /// Mass inner product of two shapes.
@@ -25,17 +25,17 @@ pub(crate) trait Waveguide {
     }
     /// The lowest derivative that the left end leaves free, there; shapes are positive in it.
     fn leading(&self, first: &Piece) -> f64;
-    /// Mean distance between roots near `q`.
+    /// The lowest derivative at the left end that is not constrained; it is positive for every shape.
     fn spacing(&self, q: f64) -> f64;
     fn sweeps(&self, q: f64) -> Self::Sweeps;
     /// Candidates for the mode, at every span.
     fn matches(&self, sweeps: &Self::Sweeps) -> Vec<Match>;
-    /// The solution that passes through a match, span by span.
+    /// The solution through a match, span by span.
     fn unroll(&self, q: f64, sweeps: &Self::Sweeps, at: &Match) -> Vec<Piece>;
 }
 
 fn normalise(guide: &impl Waveguide, pieces: &mut [Piece]) {
-    // first to size one, lest the squares leave the range of f64
+    // First normalised, so that the squares do not leave the range of f64.
     let size = pieces.iter().map(Piece::size).fold(0.0, f64::max);
     if size > 0.0 {
         pieces.iter_mut().for_each(|p| *p = p.scaled(1.0 / size));
@@ -44,9 +44,10 @@ fn normalise(guide: &impl Waveguide, pieces: &mut [Piece]) {
     }
 }
 
-/// Roots closer than this fraction of their mean distance leave shapes too uncertain to be orthogonal by themselves.
+/// For roots closer than this fraction of their mean distance, shapes are too uncertain to be orthogonal without
+/// orthogonalisation.
 const CLUSTER: f64 = 0.02;
-/// A candidate whose part orthogonal to the shapes already chosen is smaller than this is one of them again.
+/// A candidate whose part orthogonal to the chosen shapes is smaller than this depends on them.
 const NEW: f64 = 0.1;
 
 /// Mass-normalised shapes (dimensionless) of the ascending roots.
@@ -68,7 +69,7 @@ pub(crate) fn shapes(guide: &impl Waveguide, roots: &[f64]) -> Vec<Vec<Piece>> {
             let mut shape = guide.unroll(q, &sweeps, candidate);
             normalise(guide, &mut shape);
             let mut part = 1.0;
-            // twice is enough (Kahan and Parlett)
+            // Twice is enough (Kahan and Parlett).
             for _ in 0..2 {
                 for other in &shapes[cluster..n] {
                     let overlap = guide.inner(&shape, other);

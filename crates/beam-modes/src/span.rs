@@ -1,14 +1,14 @@
 //! The dimensionless chain of uniform spans that beams and rods share.
 //!
-//! Lengths are measured in the total length, rigidity and mass per length in those of the first segment.
+//! The units are the total length, and the rigidity and mass per length of the first segment.
 
 use crate::definition::{Beam, ShearSection};
 use invalid_input::InvalidInput;
 
-/// One uniform stretch, dimensionless.
+/// One uniform segment, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Span {
-    /// Where it starts.
+    /// Start of the span.
     pub start: f64,
     pub length: f64,
     /// `EI` or `EA`.
@@ -31,13 +31,13 @@ impl Span {
         Self { start, length, rigidity, mass, shear: 0.0, rotary: 0.0, tension: 0.0, foundation: 0.0 }
     }
 
-    /// Whether rigidity and mass are all that counts.
+    /// Whether the span has only rigidity and mass.
     pub fn is_plain(&self) -> bool {
         [self.shear, self.rotary, self.tension, self.foundation] == [0.0; 4]
     }
 }
 
-/// What turns dimensionless results back to SI.
+/// Conversion of dimensionless results to SI.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Units {
     pub length_m: f64,
@@ -47,7 +47,7 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// rad/s in bending: the dimensionless frequency is `q^2`.
+    /// The unit in rad/s; in bending the dimensionless frequency is `q^2`.
     pub fn bending_frequency(&self) -> f64 {
         self.rigidity.sqrt() / self.mass_per_length_kg_m.sqrt() / self.length_m / self.length_m
     }
@@ -57,12 +57,12 @@ impl Units {
 const MAX_CONTRAST: f64 = 1e12;
 const CONTRAST: &str = "within a factor 1e12 of the same property of every other segment";
 const SCALE: &str = "between 1e-60 and 1e60";
-/// What an extreme chain of segments lacks.
+/// The property that an extreme chain of segments does not have.
 pub(crate) const RESOLVABLE: &str = "contrasts and sizes for which double precision resolves the modes";
 
-/// Checks raw segments `[length, rigidity, mass per length]` and makes them dimensionless.
+/// Checks segments `[length, rigidity, mass per length]` and makes them dimensionless.
 ///
-/// Equal neighbours are merged: a uniform beam is one span, however it was cut.
+/// Equal neighbours are merged: a uniform beam is one span, however it was divided.
 pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<Span>, Units), InvalidInput> {
     let Some(first) = raw.first() else {
         return Err(InvalidInput::new("segments", "[]", "at least one segment"));
@@ -83,7 +83,7 @@ pub(crate) fn nondimensional(raw: &[[f64; 3]], names: [&str; 3]) -> Result<(Vec<
     Ok(merged(raw, |_| [0.0; 2]))
 }
 
-/// The same for a beam, with shear and rotary inertia where they are given.
+/// The same for a beam, with shear and rotary inertia if they are given.
 pub(crate) fn nondimensional_beam(
     beam: &Beam,
     shear: Option<&[ShearSection]>,
@@ -113,13 +113,13 @@ pub(crate) fn nondimensional_beam(
     Ok(merged(&raw, |i| sections[i]))
 }
 
-/// Largest flexibility in shear, and rotary inertia, against those in bending of a beam as long as this one.
+/// Largest flexibility in shear, and rotary inertia, relative to those in bending of a beam of this length.
 const SHEAR_MOST: f64 = 1e6;
 const SHEAR_RANGE: &str =
     "at least 1e-6 times the flexural rigidity of the first segment over the square of the length";
 const ROTARY_RANGE: &str = "0 up to 1e6 times the mass per length of the first segment times the square of the length";
 
-/// Merges equal neighbours; `section` is what a segment has beside length, rigidity and mass.
+/// Merges equal neighbours; `section` contains the properties of a segment other than length, rigidity and mass.
 fn merged(raw: &[[f64; 3]], section: impl Fn(usize) -> [f64; 2]) -> (Vec<Span>, Units) {
     let first = raw[0];
     let length_m: f64 = raw.iter().map(|s| s[0]).sum();

@@ -1,10 +1,10 @@
-//! Static deflection under a unit force of a beam with all that may be fixed to it.
+//! Static deflection of a beam with attachments under a unit force.
 //!
-//! The affine plane of states that one end allows (its plane, and one particular solution of the loads) is carried to
-//! the force from either side, in each span's own units, and made orthonormal on the way, so that neither springs nor
-//! foundations make it lose digits. Where both meet, the force fixes the solution, which is then followed back.
+//! The affine plane of states that one end allows (its plane, and one particular solution of the loads) is propagated to the
+//! force from either side, in each span's own units, and orthonormalised on the way, so that neither springs nor foundations
+//! cause a loss of digits. Where both meet, the force determines the solution, which is then followed back.
 //!
-//! Rigid-body motions take their share of the force as uniform acceleration, as in `compliance`.
+//! Rigid-body motions take up their part of the force as uniform acceleration, as in `compliance`.
 
 use crate::chain::Chain;
 use crate::definition::End;
@@ -27,16 +27,16 @@ struct Acceleration {
     q: f64,
 }
 
-/// A span on the way of one side, entered from its left (as that side sees it).
+/// A span of one side, entered from its left (in the direction of that side).
 struct Stage {
     span: Span,
     k: f64,
     start: Frame,
-    /// From the coefficients where the next span is entered to those here.
+    /// From the coefficients at the entry of the next span to those of this one.
     back: Back,
 }
 
-/// `(EI k^3)^(1/2)` and `(EI k)^(1/2)`: displacement and rotation in them are of the size of their forces.
+/// `(EI k^3)^(1/2)` and `(EI k)^(1/2)`: in these units displacement and rotation have the size of their forces.
 fn units(span: &Span) -> [f64; 4] {
     let k = 1.0 / span.length;
     let [force, moment] = [(span.rigidity * k).sqrt() * k, (span.rigidity * k).sqrt()];
@@ -55,13 +55,13 @@ fn dot(u: &State, v: &State) -> f64 {
     (0..4).map(|i| u[i] * v[i]).sum()
 }
 
-/// Carries a state by `x` into a span; `loaded` is the acceleration for the particular solution.
+/// Propagates a state by `x` into a span; `loaded` is the acceleration for the particular solution.
 fn carried(span: &Span, z: &State, x: f64, loaded: Option<Acceleration>) -> State {
     let k = 1.0 / span.length;
     let unit = span.rigidity * k * k;
     let [shear, rotary, inertia] = [span.shear * unit, -span.tension / unit, -span.foundation / (unit * k * k)];
     let root = (span.rigidity * k).sqrt();
-    // loads against bending: force per length at the left end, its growth, and the couple per length
+    // Loads relative to bending: force per length at the left end, its growth, and the couple per length.
     let (f0, f1, couple) = loaded.map_or((0.0, 0.0, 0.0), |Acceleration { p, q }| {
         let force = -span.mass / (root * k * k);
         (force * (p + q * span.start), force * q / k, -span.rotary * q / (root * k))
@@ -86,7 +86,7 @@ fn carried(span: &Span, z: &State, x: f64, loaded: Option<Acceleration>) -> Stat
     sum
 }
 
-/// Springs, and the forces of accelerated masses, for a state not scaled.
+/// Springs, and the forces of accelerated masses, for an unscaled state.
 fn loaded(node: &Node, x: f64, z: &State, acceleration: Option<Acceleration>) -> State {
     let [force, moment] =
         acceleration.map_or([0.0; 2], |Acceleration { p, q }| [node.mass[0] * (p + q * x), node.mass[1] * q]);
@@ -109,19 +109,19 @@ fn orthonormal(frame: &Frame) -> (Frame, Back) {
     let e2 = rest.map(|c| c / r22);
     let (t1, r13) = along(&e1, t);
     let (t2, r23) = along(&e2, &t1);
-    // inverse of the triangle
+    // Inverse of the triangle.
     let back =
         [[1.0 / r11, -r12 / (r11 * r22), (r12 * r23 / r22 - r13) / r11], [0.0, 1.0 / r22, -r23 / r22], [0.0, 0.0, 1.0]];
     ([e1, e2, t2], back)
 }
 
-/// Beyond a support: any shear force, no displacement. `None` where there is none anyway.
+/// Behind a support: any shear force, zero displacement. `None` if the displacement is zero already.
 fn supported(frame: &Frame) -> Option<(Frame, Back)> {
     let [u, v, t] = frame;
     let size = u[0].hypot(v[0]);
     let (cos, sin) = if size > 0.0 { (u[0] / size, v[0] / size) } else { return None };
     let share = t[0] / size;
-    // moving, still and particular solution in the old columns
+    // Moving, constrained and particular solution in the old columns.
     let still = combine(frame, [-sin, cos, 0.0]);
     let rest = combine(frame, [-share * cos, -share * sin, 1.0]);
     let without = |z: State| [0.0, z[1], z[2], 0.0];
@@ -137,7 +137,7 @@ fn applied(back: &Back, c: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|j| back[i][j] * c[j]).sum())
 }
 
-/// What is fixed at a node, for a frame that is not scaled: the frame beyond it.
+/// The attachments at a node: the frame behind it, for an unscaled frame.
 fn passed(node: &Node, x: f64, frame: &Frame, acceleration: Option<Acceleration>) -> (Frame, Back) {
     let [u, v, t] = frame;
     let loaded = [loaded(node, x, u, None), loaded(node, x, v, None), loaded(node, x, t, acceleration)];
@@ -145,7 +145,7 @@ fn passed(node: &Node, x: f64, frame: &Frame, acceleration: Option<Acceleration>
     held.unwrap_or((loaded, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
 }
 
-/// One side: the stages from its end to the force, and the frame there, not scaled, in the last stage's coefficients.
+/// One side: the stages from its end to the force, and the unscaled frame there, in the last stage's coefficients.
 fn side(spans: &[Span], nodes: &[Node], end: End, acceleration: Option<Acceleration>) -> (Vec<Stage>, Frame, Back) {
     let mut frame: Frame = [[0.0; 4]; 3];
     let free = crate::flexure::allowed(end);
@@ -227,14 +227,14 @@ pub(crate) fn green(chain: &Chain, x: f64, y: f64) -> f64 {
     });
     let from_right = accelerated.map(|Acceleration { p, q }| Acceleration { p: p + q, q: -q });
     let left = side(&spans[..node], &nodes[..=node], ends[0], accelerated);
-    // the node of the force belongs to the left side
+    // The node of the force belongs to the left side.
     let mut right_nodes: Vec<Node> = nodes[node..].iter().rev().copied().collect();
     if let Some(last) = right_nodes.last_mut().filter(|_| node > 0 && node <= n) {
         *last = Node::default();
     }
     let mut left = left;
     if node == 0 {
-        // nothing lies to the left: the right side has passed the node already
+        // If there is nothing to the left, the right side has passed the node already.
         left.1 = end_frame(ends[0]);
     }
     let right_end = if node == n { None } else { Some(ends[1]) };
@@ -244,7 +244,7 @@ pub(crate) fn green(chain: &Chain, x: f64, y: f64) -> f64 {
         None => (Vec::new(), end_frame(ends[1]), identity()),
     };
 
-    // left state, with the unit force, = reflected right state; in the units of a span beside
+    // Left state with the unit force = reflected right state, in the units of a span beside it.
     let by = units(&spans[node.min(n - 1)]);
     let l = left.1.map(|z| scaled(&z, by));
     let r = right.1.map(|[w, t, m, v]| scaled(&[w, -t, m, -v], by));
@@ -300,7 +300,7 @@ fn end_frame(end: End) -> Frame {
     frame
 }
 
-/// Solves four equations of known rank by complete pivoting; what the rank leaves open is set to zero.
+/// Solves four equations of known rank by complete pivoting; undetermined unknowns are zero.
 pub(crate) fn solve(mut a: [[f64; 4]; 4], mut b: [f64; 4], rank: usize) -> [f64; 4] {
     let mut order = [0, 1, 2, 3];
     for step in 0..rank {

@@ -6,10 +6,10 @@ use crate::point_mode::{PointMode, point_modes};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
-/// A uniform string between two pinned ends, with bending stiffness if it has any.
+/// A uniform string between two pinned ends, with or without bending stiffness.
 ///
-/// `T w'' - EI w'''' = m w_tt` with `w = w'' = 0` at both ends. Modes are sines whatever the stiffness (H. Fletcher,
-/// *J. Acoust. Soc. Am.* 36 (1964) 203): with `k = n pi/L`,
+/// `T w'' - EI w'''' = m w_tt` with `w = w'' = 0` at both ends. The modes are sines for any stiffness (H. Fletcher, *J. Acoust.
+/// Soc. Am.* 36 (1964) 203): with `k = n pi/L`,
 ///
 /// ```text
 /// omega^2 = (T k^2 + EI k^4)/m,      phi = sqrt(2/(m L)) sin k x.
@@ -83,17 +83,17 @@ impl TautString {
         Ok(TautStringModes { string: *self, omega_rad_s })
     }
 
-    /// Static deflection at `x_m` under a unit load there, m/N: `x (L - x)/(T L)` without stiffness. With it, for
+    /// Static deflection at `x_m` under a unit load there, m/N: `x (L - x)/(T L)` without stiffness. With stiffness, for
     /// `lambda = sqrt(T/EI)`, `p = lambda x`, `q = lambda (L - x)` and Langevin's `L(p) = coth p - 1/p`,
     ///
     /// ```text
     /// G = (L(p) + L(q)) / (T lambda (1/p + 1/q)(coth p + coth q)),
     /// ```
     ///
-    /// in which nothing cancels, down to a string that only its stiffness holds.
+    /// in which nothing cancels, even if only the stiffness carries the load.
     ///
     /// # Errors
-    /// As [`TautString::modes`], and for a location off the string.
+    /// As [`TautString::modes`], and for a location outside the string.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.checked()?;
         let x = require_on("x_m", x_m, self.length_m)?;
@@ -104,7 +104,7 @@ impl TautString {
         let lambda = (self.tension_n / self.flexural_rigidity_n_m2).sqrt();
         let (p, q) = (lambda * x, lambda * rest);
         if p.min(q) > 1e8 {
-            return Ok(x / self.tension_n * (rest / self.length_m)); // stiffness beyond the last digit
+            return Ok(x / self.tension_n * (rest / self.length_m)); // Stiffness below rounding.
         }
         let coth = |r: f64| 1.0 / r.tanh();
         let bent = (langevin(p) + langevin(q)) / ((1.0 / p + 1.0 / q) * (coth(p) + coth(q)));
@@ -131,14 +131,14 @@ impl TautStringModes {
     /// Shapes of all modes at `x_m`, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a location off the string.
+    /// [`InvalidInput`] for a location outside the string.
     pub fn shapes_at(&self, x_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let share = require_on("x_m", x_m, self.string.length_m)? / self.string.length_m;
         let size = (2.0 / (self.string.mass_per_length_kg_m * self.string.length_m)).sqrt();
         Ok((1..=self.omega_rad_s.len()).map(|n| size * sine_of(n, share)).collect())
     }
 
-    /// All modes as a force at `x_m` meets them.
+    /// All modes as excited by a force at `x_m`.
     ///
     /// # Errors
     /// As for [`shapes_at`](Self::shapes_at).
@@ -159,7 +159,7 @@ pub(crate) fn sine_mean(n: usize) -> f64 {
     if n.is_multiple_of(2) { 0.0 } else { 2.0 / (n as f64 * PI) }
 }
 
-/// `sin(n pi s)`, exactly zero where `n s` is whole.
+/// `sin(n pi s)`, exactly zero if `n s` is an integer.
 pub(crate) fn sine_of(n: usize, s: f64) -> f64 {
     let turns = (n as f64 * s).rem_euclid(2.0);
     let (sign, turns) = if turns >= 1.0 { (-1.0, turns - 1.0) } else { (1.0, turns) };

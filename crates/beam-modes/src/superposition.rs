@@ -39,8 +39,8 @@ enum Pair {
 }
 
 impl Superposition {
-    /// From the travelling pair `[k, a, b]` and the second one, whose amplitudes are `bounded(mu)`, those of
-    /// `cosh(sqrt(mu) x)` and `sinh(sqrt(mu) x)/sqrt(mu)`, or `decaying`; `None` where it hardly varies over the span.
+    /// From the propagating pair `[k, a, b]` and the second one, whose amplitudes are `bounded(mu)`, those of
+    /// `cosh(sqrt(mu) x)` and `sinh(sqrt(mu) x)/sqrt(mu)`, or `decaying`; `None` if it is nearly constant over the span.
     pub fn new(
         [k, a, b]: [f64; 3],
         second: Second,
@@ -88,7 +88,7 @@ impl Oscillation {
     fn product(&self, other: &Self, length: f64) -> f64 {
         let (sum, difference) = (self.k + other.k, self.k - other.k);
         let (u, v) = ([self.a, self.b], [other.a, other.b]);
-        // integrals of cos(nu x) and sin(nu x)
+        // Integrals of cos(nu x) and sin(nu x).
         let cosine = |nu: f64| length * sinc(nu * length);
         let sine = |nu: f64| length * (0.5 * nu * length) * sinc(0.5 * nu * length).powi(2);
         0.5 * ((u[0] * v[0] + u[1] * v[1]) * cosine(difference)

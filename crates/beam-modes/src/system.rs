@@ -1,5 +1,5 @@
-//! Modes and static compliance of a beam with all that may be said of it: theory of bending, attachments, supports, axial
-//! force, foundation.
+//! Modes and static compliance of a beam with all its options: theory of bending, attachments, supports, axial force,
+//! foundation.
 
 use crate::buckling::require_stable;
 use crate::chain::Chain;
@@ -18,7 +18,7 @@ use crate::statics;
 use invalid_input::InvalidInput;
 
 impl BeamSystem {
-    /// Whether segments and ends are all there is.
+    /// Whether there are only segments and ends.
     fn is_bare(&self) -> bool {
         let Self { beam: _, shear, attachments, supports, axial_force_n, foundation_n_m2 } = self;
         shear.is_none()
@@ -28,7 +28,7 @@ impl BeamSystem {
             && *foundation_n_m2 == 0.0
     }
 
-    /// How many rigid-body motions ends, supports, springs, axial force and foundation leave.
+    /// Number of rigid-body motions that ends, supports, springs, axial force and foundation allow.
     ///
     /// # Errors
     /// As for [`modes`](Self::modes).
@@ -37,22 +37,22 @@ impl BeamSystem {
         Ok(rigid_motions(&chain.spans, chain.ends, &chain.nodes).len())
     }
 
-    /// Mass of the segments and of what is attached, kg.
+    /// Mass of the segments and of the attachments, kg.
     pub fn mass_kg(&self) -> f64 {
         self.beam.mass_kg() + self.attachments.iter().map(|attachment| attachment.mass_kg).sum::<f64>()
     }
 
-    /// The first `count` modes in bending, rigid-body motions (with `omega = 0`) included and first, orthonormal in all
-    /// the mass there is: `int m w^2 + rho I t^2 dx` and the attached masses and inertias.
+    /// The first `count` modes in bending, beginning with rigid-body motions (`omega = 0`), orthonormal in the whole mass:
+    /// `int m w^2 + rho I t^2 dx` and the attached masses and inertias.
     ///
-    /// Without anything beyond segments and ends these are the modes of [`Beam::modes`], to the last bit. A beam pinned
-    /// at both ends has, by Timoshenko's theory, a mode of pure shear at `sqrt(kappa G A / rho I)`; it is counted and
-    /// moves no point.
+    /// With segments and ends only, these are the modes of [`Beam::modes`], to the last bit. In Timoshenko's theory a beam that
+    /// is pinned at both ends has a mode of pure shear at `sqrt(kappa G A / rho I)`; it is counted, and its displacement is
+    /// zero.
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`Beam::modes`]; for shear sections that are not one a segment or out of range; for
-    /// attachments and supports off the beam; for axial force or foundation on a Timoshenko beam; for a compression
-    /// under which the beam buckles, with the critical load.
+    /// [`InvalidInput`] as for [`Beam::modes`]; for shear sections that are out of range or not one per segment; for
+    /// attachments and supports outside the beam; for axial force or foundation on a Timoshenko beam; for a compression under
+    /// which the beam buckles, with the critical load.
     pub fn modes(&self, count: usize) -> Result<Modes, InvalidInput> {
         if self.is_bare() {
             return self.beam.modes(count);
@@ -81,7 +81,7 @@ impl BeamSystem {
     /// Static compliance `G(x, x)`, m/N, with the deflection in shear; see [`Beam::static_compliance`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location outside the beam.
     pub fn static_compliance(&self, x_m: f64) -> Result<f64, InvalidInput> {
         self.static_green(x_m, x_m)
     }

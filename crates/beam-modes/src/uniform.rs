@@ -1,10 +1,10 @@
 //! The characteristic equations of a uniform beam, in a form that never overflows.
 //!
-//! For every pair of ends the textbook equation (`cos x cosh x = 1`, `tan x = tanh x`, ...) with `x = k L` is the same as
+//! For every pair of ends the textbook equation (`cos x cosh x = 1`, `tan x = tanh x`, ...) with `x = k L` is equivalent to
 //!
 //! `x = (n + shift) pi + s m atan(exp(-2 x / m))`,  `s = -1, 0, +1`,  `m = 1, 2`,
 //!
-//! whose last term is at most a fraction of the distance between roots: each `n` has exactly one root, and Newton's
+//! whose last term is at most a fraction of the distance between roots: there is exactly one root for each `n`, and Newton's
 //! method finds it in a few steps.
 
 use crate::definition::End;

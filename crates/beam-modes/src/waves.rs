@@ -1,24 +1,24 @@
-//! The exact waves of one span at one frequency, of either theory of bending.
+//! The exact waves of one span at one frequency, by either theory of bending.
 //!
-//! Every span obeys one linear system for displacement `w`, rotation `t`, moment `M` and shear force `V`:
+//! Every span satisfies one linear system for displacement `w`, rotation `t`, moment `M` and shear force `V`:
 //!
 //! ```text
 //! w' = t + s V,    t' = M / EI,    M' = -V - j t,    V' = -p w,
 //! p = m omega^2 - foundation,    j = rho I omega^2 - tension,    s = 1/(kappa G A).
 //! ```
 //!
-//! Euler-Bernoulli's beam has `s = 0` and `rho I = 0`; Timoshenko's has neither tension nor foundation here. With the
-//! scaling wave number `k`, `k^4 EI = max(p, foundation)`, the state `z = sqrt(EI k^3) (w, t/k, M/(EI k^2),
-//! -V/(EI k^3))` depends on `xi = k x` by
+//! Euler-Bernoulli's beam has `s = 0` and `rho I = 0`; Timoshenko's has neither tension nor foundation here. With the scaling
+//! wave number `k`, `k^4 EI = max(p, foundation)`, the state `z = sqrt(EI k^3) (w, t/k, M/(EI k^2), -V/(EI k^3))` depends on
+//! `xi = k x` by
 //!
 //! ```text
 //! z0' = z1 - S z3,    z1' = z2,    z2' = z3 - J z1,    z3' = P z0,      S = s EI k^2,   J = j/(EI k^2),   P = p/(EI k^4).
 //! ```
 //!
-//! For `P = 1` its exponents are `+-i kappa_1`, `kappa_1^2 = (S + J + D)/2`, and `+-sqrt(mu)`, `mu = (D - S - J)/2`,
-//! with `D^2 = (S - J)^2 + 4`: a wave that travels, and a pair that decays below Timoshenko's cut-off `S J = 1` and
-//! travels above it (the second spectrum). Their product `kappa_1^2 mu = 1 - S J` is free of cancellation. Without
-//! shear, rotary inertia and tension both are 1, and every product with them is exact.
+//! For `P = 1` its exponents are `+-i kappa_1`, `kappa_1^2 = (S + J + D)/2`, and `+-sqrt(mu)`, `mu = (D - S - J)/2`, with
+//! `D^2 = (S - J)^2 + 4`: a wave that propagates, and a pair that decays below Timoshenko's cut-off `S J = 1` and propagates
+//! above it (the second spectrum). Their product `kappa_1^2 mu = 1 - S J` is free of cancellation. Without shear, rotary
+//! inertia and tension both are 1, and every product with them is exact.
 
 use crate::krylov::krylov;
 use crate::span::Span;
@@ -26,7 +26,7 @@ use crate::span::Span;
 pub(crate) type State = [f64; 4];
 
 /// Up to this value of `k l` (and of the exponents times `l`) a span is short: sines and exponentials would be nearly
-/// dependent, and power series take their place.
+/// dependent, and power series replace them.
 pub(crate) const SHORT: f64 = 1.0;
 
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +37,7 @@ pub(crate) struct Waves {
     shear: f64,
     rotary: f64,
     inertia: f64,
-    /// Neither shear nor rotary inertia nor tension nor foundation.
+    /// Whether there is neither shear nor rotary inertia nor tension nor foundation.
     pub plain: bool,
     pub form: Form,
 }
@@ -62,7 +62,7 @@ pub(crate) struct Pair {
 pub(crate) enum Exponent {
     /// `sqrt(mu)` of a pair that decays from both ends.
     Decaying(f64),
-    /// `mu` of a pair that stays of one size over the span.
+    /// `mu` of a pair that has a similar size over the whole span.
     Bounded(f64),
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn cosine_and_sine(mu: f64, x: f64) -> (f64, f64) {
 }
 
 impl Waves {
-    /// At `omega = q^2`.
+    /// The waves at `omega = q^2`.
     pub fn new(span: &Span, k: f64, q: f64) -> Self {
         let length = span.length;
         if span.is_plain() {
@@ -97,14 +97,14 @@ impl Waves {
         let inertia = if load >= span.foundation { 1.0 } else { load / (unit * k * k) };
         let (sum, difference) = (shear + rotary, shear - rotary);
         let root = difference.hypot(2.0);
-        // the larger of the two by addition, the smaller by the product
+        // The larger of the two by addition, the smaller by the product.
         let product = 1.0 - shear * rotary;
         let (squared, mu) = if sum > 0.0 {
             (0.5 * (sum + root), 2.0 * product / (sum + root))
         } else {
             (2.0 * product / (root - sum), 0.5 * (root - sum))
         };
-        // product of the two is 1
+        // The product of the two is 1.
         let moments = if difference > 0.0 {
             [2.0 / (root + difference), 0.5 * (root + difference)]
         } else {
@@ -135,7 +135,7 @@ impl Waves {
         waves / std::f64::consts::PI
     }
 
-    /// A state carried by `xi`, by power series; for short spans.
+    /// Propagates a state by `xi`, by power series; for short spans.
     pub fn series(&self, z: &State, xi: f64) -> State {
         if self.plain {
             let [c0, c1, c2, c3] = krylov(xi);
@@ -160,8 +160,7 @@ impl Waves {
         sum
     }
 
-    /// Displacement, slope, rotation and curvature (the derivative of the rotation) that belong to a state, in units of
-    /// its displacement.
+    /// Displacement, slope, rotation and curvature (the derivative of the rotation) of a state, in units of its displacement.
     pub fn kinematics(&self, z: &State) -> [f64; 4] {
         [z[0], self.k * (z[1] - self.shear * z[3]), self.k * z[1], self.k * self.k * z[2]]
     }
@@ -187,8 +186,8 @@ impl Pair {
         }
     }
 
-    /// Amplitudes `a, b` of the travelling pair, and of the second one: from the left and from the right where it
-    /// decays, of its even and odd function where it is bounded.
+    /// Amplitudes `a, b` of the propagating pair, and those of the second one: from the left and from the right if it decays,
+    /// of its even and odd function if it is bounded.
     pub fn to_waves(self, z: &State) -> [f64; 4] {
         let ([h1, h2], total) = (self.moments, self.total());
         let even = (h2 * z[0] - z[2]) / total;
@@ -200,7 +199,7 @@ impl Pair {
         }
     }
 
-    /// The state at the left end of the span, the growing exponential measured there.
+    /// The state at the left end of the span, with the growing exponential normalised there.
     pub fn to_state(self, [a, b, c, d]: [f64; 4]) -> State {
         let ([h1, h2], k1) = (self.moments, self.travelling);
         match self.second {
@@ -212,8 +211,8 @@ impl Pair {
         }
     }
 
-    /// Amplitudes referred to a location `y = k x` further on; `factor` is common to all but the growing exponential,
-    /// which is measured at that location.
+    /// Amplitudes with respect to a location `y = k x` further on; `factor` is common to all but the growing exponential, which
+    /// is normalised at that location.
     pub fn carry(&self, [a, b, c, d]: [f64; 4], y: f64, factor: f64) -> [f64; 4] {
         let (sin, cos) = (self.travelling * y).sin_cos();
         let (even, odd) = (factor * (a * cos + b * sin), factor * (b * cos - a * sin));
@@ -227,18 +226,18 @@ impl Pair {
     }
 }
 
-/// Beyond `exp(-600)` an exponential is nothing; the floor keeps every quotient finite.
+/// Below `exp(-600)` an exponential is negligible; this limit keeps every quotient finite.
 pub(crate) fn decay(y: f64) -> f64 {
     (-y.min(600.0)).exp()
 }
 
 impl Waves {
-    /// The span with its far end clamped: how many of its doubly clamped frequencies lie below, and its stiffness
+    /// The span with its far end clamped: the number of its doubly clamped frequencies below the trial value, and its stiffness
     /// matrix at the near end, `[ww, wt, tt]` over the last number.
     ///
-    /// Long spans: the stiffness is the mean of those against a symmetric and an antisymmetric motion of both ends, and
-    /// the count is that of the pinned span, whose waves are sines, less the negative eigenvalues of its stiffness
-    /// against rotations of its ends (Wittrick and Williams).
+    /// For long spans, the stiffness is the mean of those for a symmetric and an antisymmetric motion of both ends, and the
+    /// count is that of the pinned span, whose waves are sines, minus the negative eigenvalues of its stiffness against
+    /// rotations of its ends (Wittrick and Williams).
     pub fn clamped(&self) -> (usize, [f64; 3], f64) {
         let y = self.k * self.length;
         let Form::Long(pair) = self.form else {
@@ -248,14 +247,14 @@ impl Waves {
                 self.series(&unit, y)
             };
             let [u, v, m, n] = [0, 1, 2, 3].map(column);
-            // displacement and rotation vanish at the far end: solve for z_2, z_3 in terms of z_0, z_1
+            // Displacement and rotation vanish at the far end: solve for z_2, z_3 in terms of z_0, z_1.
             let stiffness = [m[1] * u[0] - m[0] * u[1], m[1] * v[0] - m[0] * v[1], v[0] * n[1] - v[1] * n[0]];
             return (0, stiffness, m[0] * n[1] - m[1] * n[0]);
         };
         let ([h1, h2], k1, total) = (pair.moments, pair.travelling, pair.total());
         let half = 0.5 * y;
         let (sin, cos) = (k1 * half).sin_cos();
-        // even and odd function of the second pair at the end, seen from the middle; the odd one also times mu
+        // Even and odd function of the second pair at the end, with respect to the middle; the odd one also times mu.
         let (even, odd, mu_odd, inside) = match pair.second {
             Exponent::Decaying(kappa) => {
                 let far = decay(kappa * y);
@@ -274,7 +273,7 @@ impl Waves {
         let negative = usize::from((cos * even < 0.0) != (symmetric < 0.0))
             + usize::from((mu_odd * sin < 0.0) != (antisymmetric < 0.0));
         let count = (pinned as usize).saturating_sub(negative);
-        // the two numerators over their common denominator; signs of the mixed entry as the left end sees it
+        // The two numerators over their common denominator; the sign of the mixed entry is that at the left end.
         let mean = |s: f64, a: f64| s * antisymmetric + a * symmetric;
         let stiffness = [
             mean(-total / k1 * sin * odd, total / k1 * cos * even),

@@ -1,4 +1,4 @@
-//! Static compliance against closed forms and mode sums.
+//! Static compliance compared with closed forms and modal sums.
 
 mod common;
 use beam_modes::{Beam, End, Rod, RodEnd, RodSegment};
@@ -22,9 +22,9 @@ fn closed_forms() {
     check([End::Clamped, End::Pinned], &|x| {
         x.powi(3) * (l - x).powi(2) * (4.0 * l - x) / (12.0 * rigidity * l.powi(3))
     });
-    // half of a beam on two supports, under two forces
+    // Half of a beam on two supports, under two forces.
     check([End::Pinned, End::Guided], &|x| x * x * (3.0 * l - 2.0 * x) / (3.0 * rigidity));
-    // free-free at an end: sum of 4 / (k L)^4 over cos cosh = 1, which is 4 / 420
+    // Free-free at an end: the sum of 4 / (k L)^4 over cos cosh = 1, which is 4 / 420.
     let free = Beam { segments: vec![segment(l, rigidity, 0.6)], ends: [End::Free, End::Free] };
     let end = l.powi(3) / (105.0 * rigidity);
     assert!((free.static_compliance(0.0).unwrap() / end - 1.0).abs() < 1e-12);
@@ -32,7 +32,7 @@ fn closed_forms() {
 }
 
 #[test]
-fn mode_sums_approach_it() {
+fn modal_sums_converge_to_it() {
     for left in ENDS {
         for right in ENDS {
             let beam = Beam { segments: vec![segment(0.4, 2.0, 1.0), segment(0.6, 0.3, 0.5)], ends: [left, right] };
@@ -43,7 +43,7 @@ fn mode_sums_approach_it() {
                 let sum: f64 = (rigid..400).map(|k| at_x[k] * at_y[k] / modes.omega_rad_s()[k].powi(2)).sum();
                 let exact = beam.static_green(x, y).unwrap();
                 let scale = (beam.static_compliance(x).unwrap() * beam.static_compliance(y).unwrap()).sqrt();
-                // the rest of the sum falls with the cube of the number of modes
+                // The rest of the sum decreases with the cube of the number of modes.
                 assert!((sum - exact).abs() < 1e-5 * scale, "{left:?} {right:?} {x} {y}: {sum} {exact}");
                 assert!((exact - beam.static_green(y, x).unwrap()).abs() < 1e-13 * scale);
             }
@@ -73,7 +73,7 @@ fn rods() {
         for x in [0.2, 0.7] {
             let exact = rod.static_compliance(x).unwrap();
             let (coarse, fine) = (exact - sum(1000, x), exact - sum(4000, x));
-            // the rest falls with the number of modes
+            // The rest decreases with the number of modes.
             assert!(fine > 0.0 && fine < 1e-3 * exact, "{ends:?} {x}: {fine:e} of {exact}");
             assert!((coarse / fine - 4.0).abs() < 0.1, "{ends:?} {x}: {}", coarse / fine);
         }

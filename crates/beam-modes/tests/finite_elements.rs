@@ -60,7 +60,7 @@ fn appendix_a4_model() {
             assert_eq!(model.mass[i * n + j], model.mass[j * n + i]);
         }
     }
-    // static compliance from all modes of the model: exact at nodes for Hermite elements
+    // The static compliance from all modes of the model is exact at nodes for Hermite elements.
     let modes = model.modes().unwrap();
     for node in [5, 10, 20] {
         let x = model.nodes_m[node];

@@ -74,7 +74,7 @@ fn multiple_precision_reference() {
     }
 }
 
-/// Sines stay the modes of a pinned beam under axial force and on a foundation.
+/// The modes of a pinned beam under axial force and on a foundation are still sines.
 #[test]
 fn axial_force_and_foundation_of_a_pinned_beam() {
     for (force, foundation) in
@@ -85,7 +85,7 @@ fn axial_force_and_foundation_of_a_pinned_beam() {
             (1..=60).map(|n| (n as f64 * PI).powi(2)).map(|k2| (k2 * k2 + force * k2 + foundation).sqrt()).collect();
         let mut sorted = exact.clone();
         sorted.sort_by(f64::total_cmp);
-        // near buckling, small squares of frequencies are differences
+        // Near buckling, small squares of frequencies are differences of large numbers.
         assert_close(&omega(&system, 60), &sorted, 1e-11);
         let x = 0.3;
         let sum: f64 = (1..200_000)
@@ -123,17 +123,17 @@ fn buckling_is_refused_at_the_critical_load() {
     }
 }
 
-/// A force that keeps its direction: a free beam in tension turns about its centre as a string does.
+/// A force keeps its direction: a free beam in tension rotates about its centre like a string.
 #[test]
 fn a_free_end_keeps_the_direction_of_the_force() {
     let system = BeamSystem { axial_force_n: 1e-4, ..unit([End::Free; 2]) };
     let modes = system.modes(3).unwrap();
     assert_eq!(modes.rigid_body_count(), 1);
-    // rotation of a stiff bar: inertia 1/12, restoring moment T L
+    // Rotation of a stiff bar: inertia 1/12, restoring moment T L.
     assert!((modes.omega_rad_s()[1] / (12.0 * 1e-4f64).sqrt() - 1.0).abs() < 1e-5, "{:?}", modes.omega_rad_s());
 }
 
-/// A heavy attachment or a stiff spring is a support; with rotary inertia too, a clamp.
+/// A heavy attachment or a stiff spring is equivalent to a support; with rotary inertia too, to a clamp.
 #[test]
 fn heavy_attachments_and_stiff_springs_are_supports() {
     for base in [unit([End::Clamped, End::Free]), thick([End::Pinned, End::Free]), unit([End::Free; 2])] {
@@ -149,9 +149,9 @@ fn heavy_attachments_and_stiff_springs_are_supports() {
     }
 }
 
-/// An attachment at an end or a support there: the end of another kind.
+/// An attachment or a support at an end is equivalent to an end of another kind.
 #[test]
-fn an_end_can_be_made_of_fittings() {
+fn an_attachment_can_replace_an_end() {
     for base in [unit([End::Clamped, End::Free]), thick([End::Clamped, End::Free])] {
         let with = |attachment: Attachment| BeamSystem { attachments: vec![attachment], ..base.clone() };
         let ended =
@@ -167,7 +167,7 @@ fn an_end_can_be_made_of_fittings() {
     }
 }
 
-/// A mass on a cantilever that weighs nothing beside it, and a stiff bar on two soft springs.
+/// A mass on a cantilever of negligible weight, and a stiff bar on two soft springs.
 #[test]
 fn one_and_two_degrees_of_freedom() {
     let light =
@@ -202,13 +202,13 @@ fn sum_of_modes(modes: &Modes, x: f64, y: f64) -> f64 {
     (first..modes.len()).map(|k| u[k] * v[k] / modes.omega_rad_s()[k].powi(2)).sum()
 }
 
-/// Everything at once: the beam turned round is the same beam, its static compliance is what its modes add up to, and
-/// more mass lowers, more stiffness raises every frequency.
+/// All options at once: the reversed beam is the same beam, its static compliance is the sum over its modes, and more mass
+/// lowers, more stiffness raises every frequency.
 #[test]
 fn metamorphic_checks() {
     let section = |factor: f64| ShearSection { shear_rigidity_n: 400.0 * factor, rotary_inertia_kg_m: 1e-3 * factor };
     for (i, &left) in ENDS.iter().enumerate() {
-        // the other pairs are these turned round
+        // The other pairs are the same reversed.
         for &right in &ENDS[i..] {
             let base = BeamSystem {
                 attachments: vec![
@@ -248,9 +248,9 @@ fn metamorphic_checks() {
     }
 }
 
-/// Nothing attached, in so many words: the numbers of the beam alone, to the last bit.
+/// A system without attachments gives the numbers of the beam alone, to the last bit.
 #[test]
-fn a_bare_system_is_its_beam() {
+fn a_system_without_attachments_is_its_beam() {
     let system = bare(&[segment(0.45, 1.0, 1.0), segment(0.55, 0.6, 0.8)], [End::Clamped, End::Free]);
     assert_eq!(omega(&system, 50), system.beam.modes(50).unwrap().omega_rad_s());
     assert_eq!(system.static_green(0.2, 0.7), system.beam.static_green(0.2, 0.7));

@@ -1,4 +1,4 @@
-//! What breaks codes for the modes of beams, each case with what is to come of it.
+//! Cases that are difficult for codes of the modes of beams, each with its expected result.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::{ENDS, defect, segment, thick};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Frequencies and shapes there, agreeing in `share` of themselves.
+/// Frequencies and shapes there agree to this `share`.
 fn same(a: &Beam, b: &Beam, count: usize, places: [f64; 2], share: f64, name: &str) {
     let (p, q) = (a.modes(count).unwrap(), b.modes(count).unwrap());
     for (k, (x, y)) in p.omega_rad_s().iter().zip(q.omega_rad_s()).enumerate() {
@@ -16,12 +16,12 @@ fn same(a: &Beam, b: &Beam, count: usize, places: [f64; 2], share: f64, name: &s
     let (s, t) = (p.shapes_at(places[0]).unwrap(), q.shapes_at(places[1]).unwrap());
     let size = s.iter().fold(0.0f64, |m, phi| m.max(phi.abs()));
     for (k, (x, y)) in s.iter().zip(&t).enumerate() {
-        // far from the end that fixes the sign, it is known only as well as the frequency
+        // Far from the end that determines the sign, it is known only as accurately as the frequency.
         assert!((x.abs() - y.abs()).abs() <= 1e3 * share * size, "{name}: shape {k}: {x} against {y}");
     }
 }
 
-/// A step that is none, a step at an end, a step of almost no length: the beam is the uniform one.
+/// With a step of equal sections, a step at an end or a step of almost no length, the beam is the uniform one.
 #[test]
 fn steps_that_change_nothing() {
     let whole = thick(1.0, 1.0);
@@ -29,13 +29,13 @@ fn steps_that_change_nothing() {
     for ends in [[End::Pinned, End::Pinned], [End::Clamped, End::Free], [End::Free, End::Free]] {
         let uniform = Beam { segments: vec![whole], ends };
         for (name, segments) in [
-            ("a step that is none", vec![part(0.3), part(0.7)]),
-            ("ten steps that are none", (0..10).map(|_| part(0.1)).collect()),
+            ("a step of equal sections", vec![part(0.3), part(0.7)]),
+            ("ten steps of equal sections", (0..10).map(|_| part(0.1)).collect()),
             ("a piece of 1e-6 at the end", vec![part(1e-6), part(1.0 - 1e-6)]),
         ] {
             same(&uniform, &Beam { segments, ends }, 30, [0.37; 2], 1e-10, name);
         }
-        // a ring 1e-7 long is no part of the beam that the first modes can tell
+        // A segment of 1e-7 does not affect the first modes.
         let ring = segment(1e-7, 8.0, 2.0);
         let ringed = Beam { segments: vec![part(0.5 - 1e-7), ring, part(0.5)], ends };
         same(&uniform, &ringed, 10, [0.37; 2], 1e-5, "a ring 1e-7 long");
@@ -57,9 +57,9 @@ fn nearly_equal_frequencies() {
     }
 }
 
-/// At supports, at the ends, beside them and on steps: continuous, zero where held.
+/// At supports, at the ends, beside them and on steps: continuous, zero if constrained.
 #[test]
-fn places_at_the_edge() {
+fn locations_at_limits() {
     for left in ENDS {
         for right in ENDS {
             let beam = Beam { segments: vec![thick(0.4, 1.0), thick(0.6, 0.5)], ends: [left, right] };
@@ -78,7 +78,7 @@ fn places_at_the_edge() {
             for (k, ((a, b), c)) in before.unwrap().iter().zip(&on).zip(&after.unwrap()).enumerate() {
                 assert!((a - b).abs() < 1e-9 && (b - c).abs() < 1e-9, "mode {k}: {a} {b} {c}");
             }
-            // what the modes leave out of the static compliance is never negative, and shrinks
+            // The static compliance of the truncated modes is never negative, and decreases.
             let whole = beam.static_compliance(0.4).unwrap();
             let terms = modes.omega_rad_s().iter().zip(&on).filter(|(omega, _)| **omega > 0.0);
             let sum: f64 = terms.map(|(omega, phi)| (phi / omega).powi(2)).sum();
@@ -102,7 +102,7 @@ fn counts_of_modes() {
         }
     }
     assert!(many.omega_rad_s().windows(2).all(|pair| pair[0] < pair[1]));
-    // far up, frequencies follow a uniform beam's: k sum l_i (m_i/EI_i)^(1/4) grows by pi a mode
+    // At high frequencies those of a uniform beam are approached: k sum l_i (m_i/EI_i)^(1/4) grows by pi per mode.
     let phase: f64 =
         beam.segments.iter().map(|s| s.length_m * (s.mass_per_length_kg_m / s.flexural_rigidity_n_m2).powf(0.25)).sum();
     let count = phase * (many.omega_rad_s()[999].sqrt() - many.omega_rad_s()[499].sqrt()) / std::f64::consts::PI;
@@ -114,7 +114,7 @@ proptest! {
         cases: 40, rng_seed: RngSeed::Fixed(2019), failure_persistence: None, ..ProptestConfig::default()
     })]
 
-    /// Seen from its other end a beam has the same frequencies, and the same shapes but for their sign.
+    /// From its other end a beam has the same frequencies, and the same shapes except for their sign.
     #[test]
     fn mirrored(
         parts in proptest::collection::vec((0.1..1.0f64, -1.5..1.5f64, -1.0..1.0f64), 1..5), left in 0..4usize, right in 0..4usize,

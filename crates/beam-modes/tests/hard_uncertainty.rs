@@ -1,4 +1,5 @@
-//! What the modes certify, over random stepped beams: frequencies found alike whatever the way, shapes orthonormal. The seed is fixed.
+//! Statements about modes over random stepped beams: frequencies do not depend on the way in which they are found, and shapes
+//! are orthonormal. The seed is fixed.
 
 mod common;
 
@@ -8,10 +9,10 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-/// Elastic modes compared.
+/// Number of elastic modes compared.
 const MODES: usize = 6;
 
-/// The same row of random beams on every machine: two to four segments, any ends.
+/// The same sequence of random beams on every machine: two to four segments, any ends.
 fn beams(count: usize) -> Vec<Beam> {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[19; 32]);
     let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
@@ -32,7 +33,7 @@ fn discrete(beam: &Beam, elements: usize) -> fem::ModelModes {
     fem::Model::new(beam, elements).unwrap().modes().unwrap()
 }
 
-/// Orthonormal to 1e-11, and of the shape that finite elements find.
+/// Shapes are orthonormal to 1e-11 and agree with finite elements.
 #[test]
 fn shapes_are_orthonormal_and_those_of_finite_elements() {
     for beam in beams(24) {
@@ -48,7 +49,7 @@ fn shapes_are_orthonormal_and_those_of_finite_elements() {
             let size = p.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             let sign = p.iter().zip(&q).map(|(a, b)| a * b).sum::<f64>().signum();
             let apart = p.iter().zip(&q).fold(0.0_f64, |m, (a, b)| m.max((a - sign * b).abs()));
-            // frequencies that lie close mix their shapes: the distance to the neighbours counts
+            // Close frequencies mix their shapes: the distance to the neighbours counts.
             let omega = ours.omega_rad_s();
             let all = [k.checked_sub(1), Some(k + 1)];
             let gap = all.into_iter().flatten().filter_map(|i| omega.get(i)).map(|w| (w / omega[k] - 1.0).abs());
@@ -58,8 +59,7 @@ fn shapes_are_orthonormal_and_those_of_finite_elements() {
     }
 }
 
-/// The whole list up to 120 modes agrees with that of the mirror image to 1e-13, and what is asked of fewer modes is the
-/// beginning of what is asked of more.
+/// The list up to 120 modes agrees with that of the mirror image to 1e-13, and a shorter list is the beginning of a longer one.
 #[test]
 fn frequencies_do_not_depend_on_the_way_they_are_found() {
     for beam in beams(40) {

@@ -1,4 +1,4 @@
-//! Scaling laws on random stepped beams, and input that must be refused.
+//! Scaling laws on random stepped beams, and input that must be rejected.
 
 mod common;
 use beam_modes::{Beam, End, Rod, RodEnd, RodSegment, Segment, fem};
@@ -42,7 +42,7 @@ proptest! {
         prop_assert!((ours / expected - 1.0).abs() < 1e-9, "{ours} {expected}");
     }
 
-    /// Whatever the numbers, the answer is finite or an error, never a panic.
+    /// For any numbers the result is finite or an error, never a panic.
     #[test]
     fn no_input_panics(
         values in proptest::collection::vec((any::<f64>(), any::<f64>(), any::<f64>()), 0..4),

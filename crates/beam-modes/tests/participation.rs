@@ -1,4 +1,4 @@
-//! Participation of the modes in a uniform acceleration: against quadrature, against the mass, against statics.
+//! Participation of the modes in a uniform acceleration, compared with quadrature, the mass, and statics.
 
 use beam_modes::{
     Attachment, Beam, BeamSystem, Edge, End, Modes, Plate, PlateTheory, Rod, RodEnd, RodSegment, Segment, TautString,
@@ -41,13 +41,13 @@ fn participation_is_the_integral_of_mass_times_shape() {
 
 #[test]
 fn squares_of_the_participations_add_up_to_the_mass() {
-    // of a free beam in its rigid-body motions alone
+    // For a free beam in its rigid-body modes alone.
     let free = stepped([End::Free, End::Free]);
     let participation = free.modes(30).unwrap().participation_kg0_5();
     let rigid: f64 = participation[..2].iter().map(|p| p * p).sum();
     assert!((rigid / free.mass_kg() - 1.0).abs() < 1e-12);
     assert!(participation[2..].iter().all(|p| p.abs() < 1e-10), "{participation:?}");
-    // of a held one slowly: by 1/k, what lies close to a clamp moves in high modes only
+    // For a constrained beam it converges slowly, as 1/k, because the part close to a clamp moves in high modes only.
     let held = stepped([End::Clamped, End::Free]);
     let sum: f64 = held.modes(400).unwrap().participation_kg0_5().iter().map(|p| p * p).sum();
     let missing = 1.0 - sum / held.mass_kg();
@@ -55,8 +55,8 @@ fn squares_of_the_participations_add_up_to_the_mass() {
 }
 
 #[test]
-fn the_modes_sag_under_their_weight_as_statics_says() {
-    // pinned beam under its weight: 5 m g L^4 / (384 EI) at mid-span
+fn the_modal_deflection_under_the_weight_is_that_of_statics() {
+    // Pinned beam under its weight: 5 m g L^4 / (384 EI) at mid-span.
     let segment = Segment { length_m: 2.0, flexural_rigidity_n_m2: 300.0, mass_per_length_kg_m: 1.5 };
     let modes = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] }.modes(200).unwrap();
     let shapes = modes.shapes_at(1.0).unwrap();
@@ -66,14 +66,14 @@ fn the_modes_sag_under_their_weight_as_statics_says() {
     let found = sag(modes.omega_rad_s(), &shapes, &modes.participation_kg0_5());
     let expected = 5.0 * 1.5 * 9.81 * 2f64.powi(4) / (384.0 * 300.0);
     assert!((found / expected - 1.0).abs() < 1e-11, "{found} {expected}");
-    // rod hung at one end: m g L^2 / (2 EA) at the other
+    // Rod suspended at one end: m g L^2 / (2 EA) at the other.
     let segment = RodSegment { length_m: 3.0, axial_rigidity_n: 1e6, mass_per_length_kg_m: 4.0 };
     let modes = Rod { segments: vec![segment], ends: [RodEnd::Fixed, RodEnd::Free] }.modes(2000).unwrap();
     let found = sag(modes.omega_rad_s(), &modes.shapes_at(3.0).unwrap(), &modes.participation_kg0_5());
     assert!((found / (4.0 * 9.81 * 9.0 / 2e6) - 1.0).abs() < 1e-6);
 }
 
-/// What the modes sag at a place under their weight, with `g = 9.81`.
+/// Modal deflection at a location under the weight, with `g = 9.81`.
 fn sag(omega: &[f64], shapes: &[f64], participation: &[f64]) -> f64 {
     (0..omega.len())
         .filter(|&k| omega[k] > 0.0)
@@ -82,8 +82,8 @@ fn sag(omega: &[f64], shapes: &[f64], participation: &[f64]) -> f64 {
 }
 
 #[test]
-fn what_is_fixed_to_a_beam_weighs_too() {
-    // pinned beam with a mass M at mid-span: (5 m L^4/384 + M L^3/48) g/EI
+fn attachments_of_a_beam_have_weight() {
+    // Pinned beam with a mass M at mid-span: (5 m L^4/384 + M L^3/48) g/EI.
     let segment = Segment { length_m: 2.0, flexural_rigidity_n_m2: 300.0, mass_per_length_kg_m: 1.5 };
     let beam = Beam { segments: vec![segment], ends: [End::Pinned, End::Pinned] };
     let mass = Attachment { location_m: 1.0, mass_kg: 7.0, rotary_inertia_kg_m2: 0.1, ..Attachment::default() };
@@ -95,15 +95,15 @@ fn what_is_fixed_to_a_beam_weighs_too() {
 }
 
 #[test]
-fn strings_and_plates_sag_under_their_weight() {
-    // string: m g L^2/(8 T) at the middle
+fn strings_and_plates_deflect_under_their_weight() {
+    // String: m g L^2/(8 T) at the middle.
     let string =
         TautString { length_m: 0.6, tension_n: 700.0, mass_per_length_kg_m: 0.006, flexural_rigidity_n_m2: 0.0 };
     let modes = string.modes(400).unwrap();
     let found = sag(modes.omega_rad_s(), &modes.shapes_at(0.3).unwrap(), &modes.participation_kg0_5());
     let expected = 0.006 * 9.81 * 0.36 / (8.0 * 700.0);
     assert!((found / expected - 1.0).abs() < 1e-7, "{found} {expected}");
-    // square plates under q = rho h g: the centre by Timoshenko and Woinowsky-Krieger, tables 8 and 35, in q a^4/D
+    // Square plates under q = rho h g: the centre by Timoshenko and Woinowsky-Krieger, tables 8 and 35, in q a^4/D.
     let rigidity = 2e11 * 0.01f64.powi(3) / (12.0 * (1.0 - 0.09));
     for (edges, expected) in [([Edge::Pinned; 4], 0.00406235), ([Edge::Clamped; 4], 0.00126532)] {
         let plate = Plate {
@@ -121,7 +121,7 @@ fn strings_and_plates_sag_under_their_weight() {
         let coefficient = found * rigidity / (7800.0 * 0.01 * 9.81);
         assert!((coefficient / expected - 1.0).abs() < 2e-4, "{edges:?}: {coefficient} {expected}");
     }
-    // of a free plate the mass belongs to its translation alone
+    // The mass of a free plate belongs to its translation alone.
     let free = Plate {
         length_m: 1.0,
         width_m: 0.7,

@@ -1,4 +1,4 @@
-//! Plates against published tables, closed forms, limits and each other.
+//! Plates compared with published tables, closed forms, limits and each other.
 
 use beam_modes::{Edge, Plate, PlateTheory};
 use std::f64::consts::PI;
@@ -21,7 +21,7 @@ fn unit(width_m: f64, poissons_ratio: f64, edges: [Edge; 4]) -> Plate {
     }
 }
 
-/// Of steel, pinned all round.
+/// Of steel, pinned along all edges.
 const STEEL: Plate = Plate {
     length_m: 0.4,
     width_m: 0.3,
@@ -37,8 +37,8 @@ fn frequencies(plate: &Plate, count: usize) -> Vec<f64> {
     plate.modes(count).unwrap().omega_rad_s().to_vec()
 }
 
-/// A. W. Leissa, *J. Sound Vib.* 31 (1973) 257: squares, `nu = 0.3`. Two opposite edges pinned: exact. The others by
-/// 36 products of beam functions, which are bounds from above, up to 1.1 % too high where edges are free.
+/// A. W. Leissa, *J. Sound Vib.* 31 (1973) 257: squares, `nu = 0.3`. With two opposite pinned edges the values are exact. The
+/// others, by 36 products of beam functions, are upper bounds, up to 1.1 % too high for free edges.
 #[test]
 fn leissa_s_tables() {
     let exact: [(&str, [Edge; 4], [f64; 6]); 4] = [
@@ -66,21 +66,21 @@ fn leissa_s_tables() {
             assert!(*found < listed + 5e-3 && *found > listed * 0.989, "{name}: {found} {listed}");
         }
     }
-    // clamped: 35.98519, 73.39385, 108.2165, 131.5808, 132.2048 are converged in the literature
+    // Clamped: 35.98519, 73.39385, 108.2165, 131.5808, 132.2048 are converged in the literature.
     let clamped = frequencies(&unit(1.0, 0.3, [C, C, C, C]), 6);
     for (found, known) in clamped.iter().zip([35.98519, 73.39385, 73.39385, 108.2165, 131.5808, 132.2048]) {
         assert!((found / known - 1.0).abs() < 1e-6, "{found} {known}");
     }
 }
 
-/// Ritz's method on a plate that has a closed form: pinned all round but for one edge that is pinned too, seen from a
-/// free plate twice as long whose antisymmetric modes have a pinned line. And a longer count.
+/// Ritz's method on plates with a reference: a plate with a pinned edge is half of a free plate twice as long, whose
+/// antisymmetric modes have a pinned line. The second test is a longer list.
 #[test]
 fn ritz_agrees_with_lines_of_symmetry() {
-    // two free edges apart: antisymmetric modes of [F, F] about the middle line are those of [P, F] on one half
+    // Antisymmetric modes of [F, F] about the middle line are those of [P, F] on one half.
     let whole = Plate { length_m: 2.0, ..unit(0.8, 0.3, [F, F, C, P]) };
     let half = unit(0.8, 0.3, [P, F, C, P]);
-    // as many as the singular corners between clamped and free edges ask for
+    // As many polynomials as the singular corners between clamped and free edges require.
     let (all, halves) = (whole.modes(400).unwrap(), frequencies(&half, 200));
     let middle = all.shapes_at(1.0, 0.37).unwrap();
     let odd = all.omega_rad_s().iter().zip(&middle).filter(|(_, phi)| phi.abs() < 1e-9).map(|(omega, _)| *omega);
@@ -89,7 +89,7 @@ fn ritz_agrees_with_lines_of_symmetry() {
     }
 }
 
-/// The largest change that is stated of the first modes bounds what many more polynomials do to them, also where a clamped edge
+/// The stated change of the first modes is an upper bound on the effect of many more polynomials, also where a clamped edge
 /// meets a free one.
 #[test]
 fn the_stated_change_bounds_the_error() {
@@ -104,7 +104,7 @@ fn the_stated_change_bounds_the_error() {
     }
 }
 
-/// Wide edges, mirrored edges, and length and width exchanged: the same plate.
+/// Exchanged edges, mirrored edges, and exchanged length and width: the same plate.
 #[test]
 fn one_plate_seen_in_four_ways() {
     let plate = unit(0.7, 0.25, [C, F, P, F]);
@@ -133,7 +133,7 @@ fn a_narrow_strip_is_a_beam() {
     for (found, root) in found.iter().zip([1.875_104_07_f64, 4.694_091_13, 7.854_757_44]) {
         assert!((found / root.powi(2) - 1.0).abs() < 1e-5, "{found} {root}");
     }
-    // at the tip 1/(3 D b), and the plate's own dent under the load
+    // At the tip 1/(3 D b), and the local deflection of the plate under the load.
     let tip = strip.static_compliance(1.0, 0.05).unwrap();
     assert!((tip * 3.0 * 0.1 - 1.0).abs() < 0.01, "{tip}");
 }
@@ -142,12 +142,12 @@ fn a_narrow_strip_is_a_beam() {
 fn a_pinned_plate_is_navier_s() {
     let plate = STEEL;
     let modes = plate.modes(500).unwrap();
-    // the gallery's plate before it was posed by its geometry
+    // The plate of the gallery as a list of modes.
     assert!((modes.omega_rad_s()[0] - 1312.81534266).abs() < 1e-6);
     assert!((modes.omega_rad_s()[39] - 37809.0818686).abs() < 1e-5);
     assert!(modes.omega_rad_s().windows(2).all(|pair| pair[0] <= pair[1]) && modes.converged(1e-12) == 500);
     let (d, mass) = (plate.flexural_rigidity_n_m(), plate.mass_per_area_kg_m2());
-    // none is missing: as many as pairs (m, n) below the last
+    // No mode is missing: there are as many as pairs (m, n) below the last.
     let last = modes.omega_rad_s()[499];
     let below =
         |m: i32, n: i32| PI * PI * (f64::from(m * m) / 0.16 + f64::from(n * n) / 0.09) * (d / mass).sqrt() <= last;
@@ -157,7 +157,7 @@ fn a_pinned_plate_is_navier_s() {
     assert!((centre / 5.69683074923e-07 - 1.0).abs() < 1e-6, "{centre}");
     let quarter = plate.static_compliance(0.1, 0.075).unwrap();
     assert!((quarter / 2.86502193169e-07 - 1.0).abs() < 1e-6, "{quarter}");
-    // a square's centre: 0.0116008395 a^2/D (double series); and what 10,000 modes leave is Weyl's 1/(4 pi omega sqrt(D rho h))
+    // A square's centre: 0.0116008395 a^2/D (double series); the rest of 10,000 modes is Weyl's 1/(4 pi omega sqrt(D rho h)).
     let square = unit(1.0, 0.3, [P; 4]);
     let whole = square.static_compliance(0.37, 0.21).unwrap();
     let modes = square.modes(10_000).unwrap();
@@ -168,10 +168,11 @@ fn a_pinned_plate_is_navier_s() {
     assert!((square.static_compliance(0.5, 0.5).unwrap() - 0.0116008397722116).abs() < 1e-14);
 }
 
-/// Modes leave behind, on average over places, what Weyl's law says: shapes, frequencies and compliance belong together.
+/// The static compliance of the truncated modes, averaged over locations, is that of Weyl's law, so that shapes, frequencies
+/// and compliance are consistent.
 #[test]
-fn static_deflection_and_modes_belong_together() {
-    // clamped all round, at the centre: 0.005612024 a^2/D
+fn static_deflection_and_modes_are_consistent() {
+    // Clamped along all edges, at the centre: 0.005612024 a^2/D.
     let clamped = unit(1.0, 0.3, [C; 4]).static_compliance(0.5, 0.5).unwrap();
     assert!((clamped - 0.0056120238).abs() < 1e-9, "{clamped}");
     for (edges, count) in [([C, F, F, F], 120), ([F, F, F, F], 120), ([C, C, P, P], 150)] {
@@ -202,18 +203,18 @@ fn mindlin_s_plate_is_slower_and_tends_to_kirchhoff_s() {
     let shear = kappa * 2e11 / 2.6 * h;
     for (k, (kirchhoff, mindlin)) in a.omega_rad_s().iter().zip(b.omega_rad_s()).enumerate() {
         assert!(mindlin < kirchhoff);
-        // the characteristic equation of the file's head, with k^2 from Kirchhoff's frequency
+        // The characteristic equation at the head of the file, with k^2 from Kirchhoff's frequency.
         let wave = kirchhoff * (mass / d).sqrt();
         let square = mindlin * mindlin;
         let left = (shear * wave - mass * square) * (d * wave + shear - mass * h * h / 12.0 * square);
         assert!((left / (shear * shear * wave) - 1.0).abs() < 1e-9, "{k}");
-        // to the first order in h: k^2 D/2 (1/S + h^2/(12 D))
+        // To first order in h: k^2 D/2 (1/S + h^2/(12 D)).
         let slower = 0.5 * wave * (d / shear + h * h / 12.0);
         assert!(((1.0 - mindlin / kirchhoff) / slower - 1.0).abs() < 3.0 * slower, "{k}");
     }
-    // stiff in shear and without inertia of rotation it is Kirchhoff's; rotary inertia stays
+    // A plate that is stiff in shear is Kirchhoff's except for rotary inertia, which remains.
     assert_eq!(thick.static_compliance(0.1, 0.1).unwrap_err().field, "theory");
-    // far beyond the cut-off, sqrt(12 kappa G/rho)/h, both branches are there
+    // Far beyond the cut-off, sqrt(12 kappa G/rho)/h, both branches exist.
     let cut_off = (shear * 12.0 / (mass * h * h)).sqrt();
     let thicker = Plate { thickness_m: 0.05, ..thick };
     let modes = thicker.modes(400).unwrap();
@@ -246,7 +247,7 @@ fn input_out_of_range_is_named() {
     assert_eq!(plate.modes(100_000).unwrap_err().field, "count");
     assert_eq!(plate.modes(plate.most_modes() + 1).unwrap_err().field, "count");
     assert_eq!(plate.modes(0).unwrap().len(), 0);
-    // held places do not move
+    // Constrained locations do not move.
     assert_eq!(unit(1.0, 0.3, [P; 4]).static_compliance(0.0, 0.3), Ok(0.0));
     assert!(unit(1.0, 0.3, [C; 4]).static_compliance(0.0, 0.3).unwrap() < 1e-15);
 }
@@ -254,8 +255,8 @@ fn input_out_of_range_is_named() {
 /// Static deflection under a unit load, times the rigidity, of a plate pinned at `x = 0` and `x = a` and free at `y = 0` and
 /// `y = b`, by Levy's single series (S. P. Timoshenko and S. Woinowsky-Krieger, *Theory of Plates and Shells*, 1959, ch. 6).
 fn levy([a, b]: [f64; 2], nu: f64, [x, y]: [f64; 2]) -> f64 {
-    // bending moment and shear force on an edge, with derivatives inwards: of the load's own term, at the distance `u`, and
-    // of the two terms that decay from this edge (`u = 0`) or from the other one, which turns the sign of the shear force
+    // Bending moment and shear force on an edge, with derivatives inwards: of the load's own term, at the distance `u`, and of
+    // the two terms that decay from this edge (`u = 0`) or from the other one, for which the sign of the shear force changes.
     let moment = |u: f64| (u - 1.0 - nu * (1.0 + u)) * (-u).exp();
     let shear = |u: f64| -(2.0 - u + (2.0 - nu) * u) * (-u).exp();
     let decaying = |u: f64| {
@@ -304,8 +305,8 @@ fn deflection_near_free_edges_is_levy_s() {
     }
 }
 
-/// The middle of a free edge, by Ritz's method with the pinned plate's correction alone: 30 and 42 polynomials along that edge,
-/// extrapolated by the square of their number.
+/// The middle of a free edge, by Ritz's method with the correction of the pinned plate alone: 30 and 42 polynomials along that
+/// edge, extrapolated by the square of their number.
 #[test]
 fn deflection_in_the_middle_of_a_free_edge() {
     let extrapolated = |few: f64, many: f64| many + (many - few) * 900.0 / (1764.0 - 900.0);

@@ -1,4 +1,4 @@
-//! Remainder modes against moments summed by brute force.
+//! Remainder modes compared with moments summed directly.
 
 mod common;
 use beam_modes::{Beam, End, PointMode, PointsMode, remainder_at_points, remainder_from_trend, remainder_modes};
@@ -43,10 +43,10 @@ fn a_tail_of_few_frequencies_is_its_own_remainder() {
     assert!(remainder_modes(&[], 0.0, 1).unwrap().is_empty());
 }
 
-/// Evenly spaced frequencies `k` of even shapes: the sums beyond `k` are known, and the atoms that stand for them have
-/// the first moment exactly and the second as it is in the limit.
+/// Evenly spaced frequencies `k` of equal shapes: the sums beyond `k` are known, and the remainder modes have the first moment
+/// exactly and the second in the limit.
 #[test]
-fn compliance_beyond_the_last_mode_is_spread_as_shear_waves_spread_it() {
+fn compliance_beyond_the_last_mode_follows_the_law_of_shear_waves() {
     let mode = |k: usize| PointMode { omega_rad_s: k as f64, shape: 1.0 };
     let tail: Vec<PointMode> = (11..=400).map(mode).collect();
     let all: Vec<PointMode> = (11..=4_000_000).map(mode).collect();
@@ -68,7 +68,7 @@ fn block_moments(modes: &[PointsMode], i: usize, j: usize, order: i32) -> f64 {
 #[test]
 fn several_points_share_their_modes() {
     let beam = Beam { segments: vec![segment(0.6, 1.0, 1.0), segment(0.4, 0.4, 0.7)], ends: [End::Clamped, End::Free] };
-    // one twice, one on the clamp, one just beside another
+    // One twice, one at the clamp, one close to another.
     let places = [0.3, 0.8, 0.0, 0.3, 0.800_001, 1.0];
     let modes = beam.modes(400).unwrap();
     let seen = |k: usize| PointsMode {
@@ -84,7 +84,7 @@ fn several_points_share_their_modes() {
             for j in 0..places.len() {
                 let size = (block_moments(&tail, i, i, order) * block_moments(&tail, j, j, order)).sqrt();
                 let error = block_moments(&remainder, i, j, order) - block_moments(&tail, i, j, order);
-                // on the clamp both are rounding
+                // At the clamp both are rounding.
                 assert!(
                     i == 2 || j == 2 || error.abs() <= 1e-9 * size,
                     "moment {order} of {i}, {j}: {error:e} of {size:e}"
@@ -92,7 +92,7 @@ fn several_points_share_their_modes() {
             }
         }
     }
-    // one point alone: the same as the quadrature of its measure
+    // For a single point the result is the quadrature of its measure.
     let alone: Vec<PointMode> =
         tail.iter().map(|m| PointMode { omega_rad_s: m.omega_rad_s, shape: m.shapes[0] }).collect();
     let first = |m: &PointsMode| PointsMode { omega_rad_s: m.omega_rad_s, shapes: vec![m.shapes[0]] };
@@ -102,9 +102,9 @@ fn several_points_share_their_modes() {
     assert!((block[0].shapes[0].abs() / gauss[0].shape - 1.0).abs() < 1e-13);
 }
 
-/// Modes kept and remainder together have the whole static compliance, whatever the ends.
+/// Retained modes and remainder together have the whole static compliance, for any ends.
 #[test]
-fn a_beam_lacks_nothing() {
+fn a_beam_has_its_whole_compliance() {
     for left in ENDS {
         for right in ENDS {
             let beam = Beam { segments: vec![segment(0.6, 1.0, 1.0), segment(0.4, 0.4, 0.7)], ends: [left, right] };
@@ -128,8 +128,8 @@ fn a_beam_lacks_nothing() {
     }
 }
 
-/// Moments by the trend of the list alone against sums of frequencies that do grow as a power of their number: the first
-/// exactly, the others as well as an integral does for a sum.
+/// Moments by the trend of the list alone, compared with sums of frequencies that do grow as a power of their index: the first
+/// is exact, the others agree as an integral does with a sum.
 #[test]
 fn a_trend_of_listed_modes_gives_the_tail() {
     for (n, growth, count) in [(6, 2.0, 1), (20, 2.0, 4), (20, 1.0, 4), (40, 1.5, 3), (40, 0.8, 2)] {

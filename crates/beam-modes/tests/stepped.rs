@@ -1,4 +1,4 @@
-//! Stepped beams against published and multiple-precision figures, and under stress.
+//! Stepped beams compared with published and multiple-precision values, and extreme cases.
 
 mod common;
 use beam_modes::{Beam, End, RectangularSegment, Segment};
@@ -30,7 +30,7 @@ fn mabie_rogers_taper() {
     for row in rows(include_str!("data/tapered_cantilever_mabie_rogers1972.csv")) {
         let (ratio, mode, lambda): (f64, usize, f64) =
             (row[0].parse().unwrap(), row[1].parse().unwrap(), row[2].parse().unwrap());
-        // E = rho = h1 = b1 = L = 1
+        // E = rho = h1 = b1 = L = 1.
         let steps = (0..80).map(|i| {
             let to_tip = 1.0 - (f64::from(i) + 0.5) / 80.0;
             Segment::from(RectangularSegment {
@@ -84,8 +84,8 @@ fn five_hundred_modes_are_orthonormal() {
     assert!(found < 1e-12, "{found:e}");
 }
 
-/// Extreme contrasts, coincident frequencies (equal spans between heavy blocks), many segments: orthonormal, and the
-/// mode sum of the static compliance approaches the exact value from below.
+/// Extreme contrasts, coincident frequencies (equal spans between heavy blocks), many segments: the shapes are orthonormal, and
+/// the modal sum of the static compliance converges to the exact value from below.
 #[test]
 fn hard_chains() {
     let mut seed = 12345u64;

@@ -1,4 +1,4 @@
-//! Strings against what is known of them: frequencies, the static deflection, and a beam where stiffness is all.
+//! Strings compared with known results: frequencies, the static deflection, and the limit of a beam.
 
 use beam_modes::{Beam, End, Segment, TautString};
 
@@ -11,7 +11,7 @@ fn a_flexible_string_has_harmonics_and_a_stiff_one_fletcher_s() {
     let modes = c4(0.0).modes(50).unwrap();
     let first = modes.omega_rad_s()[0];
     assert!((first * 0.62 / std::f64::consts::PI / (670.0 * 0.62 / 3.93e-3f64).sqrt() - 1.0).abs() < 1e-15);
-    // 1 mm of steel wire: f_n = n f (1 + B n^2)^(1/2), B = pi^2 EI/(T L^2)
+    // 1 mm of steel wire: f_n = n f (1 + B n^2)^(1/2), B = pi^2 EI/(T L^2).
     let rigidity = 2e11 * std::f64::consts::PI * 1e-3f64.powi(4) / 64.0;
     let b = std::f64::consts::PI.powi(2) * rigidity / (670.0 * 0.62 * 0.62);
     for (n, (stiff, flexible)) in
@@ -23,7 +23,7 @@ fn a_flexible_string_has_harmonics_and_a_stiff_one_fletcher_s() {
     }
 }
 
-/// Against the sum over a million modes, and against the closed form without stiffness.
+/// Compared with the sum over a million modes, and with the closed form without stiffness.
 #[test]
 fn static_deflection_is_the_sum_over_modes() {
     for (rigidity, x_m) in [(0.0, 0.0744), (0.0098, 0.0744), (0.0098, 0.31), (5.0, 0.2), (1e-9, 0.6)] {
@@ -32,7 +32,7 @@ fn static_deflection_is_the_sum_over_modes() {
         let modes = string.modes(100_000).unwrap();
         let shapes = modes.shapes_at(x_m).unwrap();
         let sum: f64 = modes.omega_rad_s().iter().zip(&shapes).map(|(w, phi)| (phi / w).powi(2)).sum();
-        // sum over n > N of at most 2 L/(T pi^2 n^2)
+        // Sum over n > N of at most 2 L/(T pi^2 n^2).
         let rest = 2.0 * 0.62 / (670.0 * std::f64::consts::PI.powi(2) * 1e5);
         assert!(whole >= sum * (1.0 - 1e-12) && whole - sum < rest, "{rigidity} {x_m}: {whole} {sum}");
         if rigidity == 0.0 {
@@ -42,7 +42,7 @@ fn static_deflection_is_the_sum_over_modes() {
 }
 
 #[test]
-fn a_string_that_hardly_pulls_is_a_beam() {
+fn a_string_of_low_tension_is_a_beam() {
     let string =
         TautString { length_m: 1.0, tension_n: 1e-9, mass_per_length_kg_m: 1.0, flexural_rigidity_n_m2: 274.0 };
     let segment = Segment { length_m: 1.0, flexural_rigidity_n_m2: 274.0, mass_per_length_kg_m: 1.0 };

@@ -1,4 +1,4 @@
-//! Timoshenko beams: closed forms, multiple precision, limits, orthonormality, both spectra counted.
+//! Timoshenko beams: closed forms, multiple precision, limits, orthonormality, the count in both spectra.
 
 mod common;
 use beam_modes::{Beam, BeamSystem, End, Modes, Segment, ShearSection};
@@ -14,7 +14,7 @@ fn timoshenko(parts: &[(Segment, ShearSection)], ends: [End; 2]) -> BeamSystem {
     BeamSystem { shear: Some(sections), ..BeamSystem::from(Beam { segments, ends }) }
 }
 
-/// The two frequencies of a wave number, unit length and mass per length.
+/// The two frequencies of a wave number, for unit length and mass per length.
 fn frequencies(k: f64, rigidity: f64, section: ShearSection) -> [f64; 2] {
     let ShearSection { shear_rigidity_n: shear, rotary_inertia_kg_m: rotary } = section;
     let (sum, product) = (rigidity * k * k + shear + rotary * shear * k * k, shear * rigidity * k.powi(4));
@@ -22,8 +22,8 @@ fn frequencies(k: f64, rigidity: f64, section: ShearSection) -> [f64; 2] {
     [(product / rotary).sqrt() / high, high]
 }
 
-/// Sines and cosines are modes of a uniform beam whose ends are pinned or guided: five hundred of both spectra, and the
-/// mode of pure shear.
+/// Sines and cosines are modes of a uniform beam with pinned or guided ends: five hundred of both spectra, and the mode of pure
+/// shear.
 #[test]
 fn uniform_beams_with_pinned_and_guided_ends() {
     for (ends, shift) in [
@@ -32,7 +32,7 @@ fn uniform_beams_with_pinned_and_guided_ends() {
         ([End::Pinned, End::Guided], 0.5),
         ([End::Guided, End::Pinned], 0.5),
     ] {
-        // a beam ten times as long as thick, and a slender one
+        // A beam ten times as long as it is thick, and a slender one.
         for section in [shear(40.0, 1e-2), shear(4e6, 1e-7)] {
             let system = timoshenko(&[(segment(1.0, 1.0, 1.0), section)], ends);
             let cut_off = (section.shear_rigidity_n / section.rotary_inertia_kg_m).sqrt();
@@ -41,7 +41,7 @@ fn uniform_beams_with_pinned_and_guided_ends() {
             if ends == [End::Pinned; 2] {
                 exact.push(cut_off);
             }
-            // a guided beam moves as one, too
+            // A guided beam can also translate.
             exact.extend(vec![0.0; system.rigid_body_count().unwrap()]);
             exact.sort_by(f64::total_cmp);
             let modes = system.modes(500).unwrap();
@@ -69,7 +69,7 @@ fn multiple_precision_reference() {
         .map(|row| row[2].parse().unwrap())
         .collect();
     assert_eq!(reference.len(), 50);
-    // the cut-off of the first segment is at 632 rad/s
+    // The cut-off of the first segment is at 632 rad/s.
     for (n, (ours, theirs)) in modes.omega_rad_s().iter().zip(&reference).enumerate() {
         assert!((ours / theirs - 1.0).abs() < 1e-12, "mode {n}: {ours} {theirs}");
     }
@@ -149,10 +149,10 @@ fn shapes_are_orthonormal_with_rotary_inertia() {
     }
 }
 
-/// Green's function against the sum over the modes, whose tail falls as the inverse of their number: places apart from
-/// each other, where the terms alternate, and the law of the rest at one place.
+/// Green's function compared with the sum over the modes, whose tail decreases as the inverse of their number: for different
+/// locations, where the terms alternate, and the law of the rest at one location.
 #[test]
-fn static_compliance_is_what_the_modes_add_up_to() {
+fn static_compliance_is_the_sum_over_the_modes() {
     let parts = [(segment(0.6, 1.0, 1.0), shear(400.0, 1e-3)), (segment(0.4, 0.4, 0.6), shear(280.0, 4e-4))];
     for left in ENDS {
         for right in ENDS {
@@ -184,7 +184,7 @@ fn static_compliance_in_closed_form() {
     }
 }
 
-/// Shear rigidity to infinity and rotary inertia to zero.
+/// The limit of infinite shear rigidity and zero rotary inertia.
 #[test]
 fn the_limit_is_euler_bernoulli() {
     let segments = [segment(0.5, 1.0, 1.0), segment(0.2, 0.3, 0.6), segment(0.3, 2.0, 1.3)];
@@ -208,9 +208,9 @@ fn the_limit_is_euler_bernoulli() {
     }
 }
 
-/// A uniform beam is one however it is cut, and the same from its other end; five hundred modes each.
+/// A uniform beam does not depend on its division, nor on its direction; five hundred modes each.
 #[test]
-fn neither_cuts_nor_the_direction_matter() {
+fn neither_division_nor_direction_matters() {
     let section = shear(40.0, 1e-2);
     let whole = timoshenko(&[(segment(1.0, 1.0, 1.0), section)], [End::Clamped, End::Free]).modes(500).unwrap();
     let hair = shear(40.0 * (1.0 + 1e-15), 1e-2);
@@ -228,7 +228,7 @@ fn neither_cuts_nor_the_direction_matter() {
     }
 }
 
-/// The remainder of a Timoshenko beam, whose tail falls as `1/N`, has its whole compliance.
+/// The remainder of a Timoshenko beam, whose tail decreases as `1/N`, has its whole compliance.
 #[test]
 fn the_remainder_has_the_compliance_of_the_tail() {
     let system = timoshenko(&[(segment(1.0, 1.0, 1.0), shear(400.0, 1e-3))], [End::Pinned, End::Clamped]);

@@ -1,4 +1,4 @@
-//! Uniform beams against the textbook.
+//! Uniform beams compared with textbook results.
 
 mod common;
 use beam_modes::{Beam, End};
@@ -54,7 +54,7 @@ fn pinned_shapes_are_sines() {
 
 #[test]
 fn tip_of_a_free_end_is_two() {
-    // at a free end of a uniform beam of unit mass, |phi| = 2 for every elastic mode
+    // At a free end of a uniform beam of unit mass, |phi| = 2 for every elastic mode.
     for ends in [[End::Clamped, End::Free], [End::Free, End::Free]] {
         let modes = uniform(ends).modes(300).unwrap();
         for k in modes.rigid_body_count()..300 {
@@ -63,10 +63,10 @@ fn tip_of_a_free_end_is_two() {
     }
 }
 
-/// The closed form of one span and the counted search over many must agree; the pieces differ in the last digit of
-/// their rigidity, or they would be merged.
+/// The closed form of one span and the counted search over many must agree; the rigidities of the pieces differ in the last
+/// digit, because equal ones would be merged.
 #[test]
-fn cutting_changes_nothing() {
+fn division_changes_nothing() {
     let almost = 1.0 + 4.0 * f64::EPSILON;
     let cuts: [Vec<f64>; 4] =
         [vec![0.3, 0.7], vec![0.5, 0.5], vec![0.5, 0.001, 0.499], (0..100).map(|_| 0.01).collect()];

@@ -1,4 +1,4 @@
-//! What a force costs in the inner loop of a solver, and the restitution of a rigid striker at a wall.
+//! Time of a force in the inner loop of a solver, and of the restitution of a rigid striker at a wall.
 
 use contact_models::{
     ContactLaw, Felt, Flores, Hertz, HuntCrossley, Hysteretic, InvalidInput, KelvinVoigt, Law, Memory, Thornton,

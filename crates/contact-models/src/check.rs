@@ -1,24 +1,25 @@
-//! What a law promises to an integrator, tested along motions.
+//! Tests of the properties of a law on which an integrator relies, along motions.
 //!
 //! | promise | why an integrator needs it |
 //! |---|---|
 //! | numbers are finite everywhere | an iteration may step beyond a branch |
-//! | no pull within a branch | surfaces part where the law says so, and nowhere else |
+//! | no tension within a branch | surfaces separate where the law says so, and nowhere else |
 //! | the derivatives are those of the force | Newton's method and derivatives of impacts rest on them |
-//! | the force depends on the rate on all of a branch, as `per_rate_n_s_m` says, or nowhere on it | the rate is computed only where it matters |
-//! | a branch has an end of boundaries | all of them are watched |
-//! | the force is continuous from branch to branch, and zero at a release | events carry no impulse |
-//! | a branch is valid where it begins, and few follow each other between two instants | time goes on |
-//! | a complete contact returns no more work than it took | energy is not made |
+//! | the force depends on the rate on all of a branch, as stated by `per_rate_n_s_m`, or nowhere on it | the rate is computed
+//! only where it matters |
+//! | the boundaries of a branch are finite in number | all of them are watched |
+//! | the force is continuous from branch to branch, and zero at a release | events have no impulse |
+//! | a branch is valid where it begins, and few follow each other between two instants | time advances |
+//! | a complete contact returns no more work than it received | energy is not created |
 
 use crate::trace::{MOST_EVENTS, State, first_met, trace};
 use crate::{Boundary, Branch, ContactLaw, Force, MOST_BOUNDARIES, Memory, boundaries};
 
-/// A promise that a law has not kept, and where.
+/// A property that a law does not have, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{promise}, at a compression of {compression_m:e} m and a rate of {rate_m_s:e} m/s on {branch:?}")]
 pub struct Breach {
-    /// What was promised.
+    /// The property.
     pub promise: Promise,
     /// The branch; `None` between contacts.
     pub branch: Option<Branch>,
@@ -28,14 +29,14 @@ pub struct Breach {
     pub rate_m_s: f64,
 }
 
-/// The promise that a law has not kept.
+/// A property that a law does not have.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Promise {
     /// Force, derivatives and stored energy are finite numbers everywhere.
     #[error("the law gives a number that is not finite")]
     Finite,
-    /// The force never pulls within a branch.
+    /// There is no tension within a branch.
     #[error("the force pulls: {force_n:e} N")]
     Push {
         /// The force (N).
@@ -44,20 +45,20 @@ pub enum Promise {
     /// The derivatives are those of the force.
     #[error("a derivative is stated as {stated:e} where the force changes by {found:e}")]
     Derivative {
-        /// The derivative that the law states (N/m or N s/m).
+        /// The derivative from differences of the force.
         stated: f64,
         /// The one that differences of its force show.
         found: f64,
     },
-    /// A force that depends on the rate says so by its derivative, from the beginning of the branch on.
+    /// The derivative of a force that depends on the rate shows this from the beginning of the branch on.
     #[error(
         "the force depends on the rate, although the derivative that the law states here or earlier on the branch is zero"
     )]
     Rate,
-    /// The boundaries of a branch come to an end.
+    /// The number of boundaries of a branch is finite.
     #[error("a branch has more than {MOST_BOUNDARIES} boundaries")]
     Boundaries,
-    /// The force is continuous from one branch to the next, and zero where surfaces part.
+    /// The force is continuous from one branch to the next, and zero where surfaces separate.
     #[error("the force jumps from {before_n:e} N to {after_n:e} N where a branch ends")]
     Continuous {
         /// Force before (N).
@@ -71,33 +72,32 @@ pub enum Promise {
     /// Branches end: few follow each other between two instants.
     #[error("branches follow each other while time does not advance")]
     Settles,
-    /// Energy is stored or dissipated, never made.
+    /// Energy is stored or dissipated, never created.
     #[error("a complete contact returns {made_j:e} J more than it received")]
     Energy {
-        /// The energy made (J).
+        /// The energy created (J).
         made_j: f64,
     },
 }
 
-/// Relative step of differences, what they may miss of a derivative, and what rounding may leave of a force.
+/// Relative step of differences, their allowed error, and the allowed rounding of a force.
 const STEP: f64 = 1e-5;
 const DIFFERENCE: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
-/// What quadrature of the work may miss.
+/// Allowed error of the quadrature of the work.
 const WORK: f64 = 1e-7;
-/// Sizes of motions: well within what laws compute with.
+/// Range of the sizes of motions, well within the range of the laws.
 const LEAST: f64 = 1e-20;
 const MOST: f64 = 1e20;
-/// Motions that are tried, and instants between two changes of their acceleration.
+/// Number of motions, and of instants between two changes of their acceleration.
 const MOTIONS: u64 = 40;
 const INSTANTS: u32 = 40;
 
-/// Tries a law along motions of about this compression (m) and speed (m/s), which load and unload it in many orders. A law
-/// of one's own should pass before it is given to a solver. Both sizes are held within 1e-20 to 1e20; one that is not a number
-/// counts as 1.
+/// Tests a law along motions of about this compression (m) and speed (m/s), which load and unload it in many orders. Your own
+/// law should pass before it is used in a solver. Both sizes are limited to 1e-20 to 1e20; a NaN counts as 1.
 ///
 /// # Errors
-/// The first promise that is not kept.
+/// The first property that the law does not have.
 ///
 /// ```
 /// use contact_models::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Promise, Stage, check_contract};
@@ -135,8 +135,8 @@ pub fn check_contract(law: &dyn ContactLaw, compression_m: f64, speed_m_s: f64) 
     })
 }
 
-/// Tries a law along one motion, which gives compression (m) and rate (m/s) at a time (s), from a fresh surface. `times_s`
-/// increase, and resolve the motion's swings.
+/// Tests a law along one motion, which gives compression (m) and rate (m/s) at a time (s), from a fresh surface. `times_s`
+/// increase, and resolve the oscillations of the motion.
 ///
 /// # Errors
 /// As [`check_contract`].
@@ -151,7 +151,7 @@ pub fn check_contract_along(
         (sizes.0.max(xi.abs()), sizes.1.max(rate.abs()))
     };
     let sizes = times_s.iter().fold((0.0, 0.0), largest);
-    // whether the force on the branch depends on the rate, once there is a force
+    // Whether the force on the branch depends on the rate, once there is a force.
     let mut by_rate: Option<bool> = None;
     for pair in times_s.windows(2) {
         let (mut from, to) = (pair[0], pair[1]);
@@ -168,7 +168,7 @@ pub fn check_contract_along(
         }
         Place { law, branch: state.branch(), motion: motion(to), sizes }.holds(&mut by_rate)?;
     }
-    // what comes back of a contact is bound where it is over
+    // The energy of a contact is limited only when it is over.
     let Ok(path) = trace(&law, times_s, &motion) else { return Ok(()) };
     let largest = path.iter().map(|point| point.work_j.abs()).fold(f64::MIN_POSITIVE, f64::max);
     let mut dissipated = 0.0;
@@ -181,7 +181,7 @@ pub fn check_contract_along(
     Ok(())
 }
 
-/// A law somewhere on a motion.
+/// A law at a point of a motion.
 struct Place<'a> {
     law: &'a dyn ContactLaw,
     branch: Option<Branch>,
@@ -201,13 +201,13 @@ impl Place<'_> {
         self.require(sum.is_finite(), || Promise::Finite)
     }
 
-    /// What the force may miss by the rounding of where the motion is.
+    /// Allowed error of the force due to the rounding of compression and rate.
     fn rounding(&self, force: &Force) -> f64 {
         let (xi, rate) = self.sizes;
         ROUNDING * (force.force_n.abs() + force.per_compression_n_m.abs() * xi + force.per_rate_n_s_m.abs() * rate)
     }
 
-    /// The promises of a point within a branch, on which the force depends on the rate or not.
+    /// Tests at a point within a branch, on which the force depends on the rate or not.
     fn holds(&self, by_rate: &mut Option<bool>) -> Result<(), Breach> {
         let (Some(branch), (xi, rate)) = (self.branch, self.motion) else { return Ok(()) };
         let law = self.law;
@@ -233,7 +233,7 @@ impl Place<'_> {
 
     fn derivatives_are_those_of(&self, branch: &Branch, force: &Force) -> Result<(), Breach> {
         let (law, (xi, rate)) = (self.law, self.motion);
-        // away from the branch's ends and from where it began, by which powers may be anchored
+        // Away from the ends of the branch and from its beginning, where powers may have their origin.
         let ends: Vec<Boundary> = boundaries(law, branch).collect();
         let end = ends.iter().filter(|end| end.per_rate == 0.0 && end.per_compression > 0.0);
         let end = end.map(|end| end.level / end.per_compression).fold(0.0, f64::max);
@@ -242,7 +242,7 @@ impl Place<'_> {
         let room = |end: &Boundary| {
             end.margin(xi, rate) > 2.0 * (end.per_compression.abs() * by_xi + end.per_rate.abs() * by_rate)
         };
-        // nearer to its end a force is too small for its differences to tell
+        // Nearer to its end the force is too small for differences.
         let within = depth > 1e-3 * xi.abs() && by_rate > 0.0 && ends.iter().all(room);
         if !within {
             return Ok(());
@@ -260,7 +260,7 @@ impl Place<'_> {
         Ok(())
     }
 
-    /// The promises of a change from this branch to what follows.
+    /// Tests of a transition from this branch to the next.
     fn crosses_to(&self, next: &State) -> Result<(), Breach> {
         let (law, (xi, rate)) = (self.law, self.motion);
         let force = |branch: Option<Branch>| branch.map_or(Force::ZERO, |branch| law.force(&branch, xi, rate));
@@ -278,9 +278,9 @@ impl Place<'_> {
     }
 }
 
-/// A motion of piecewise constant acceleration that begins at first touch and ends well apart.
+/// A motion of piecewise constant acceleration that begins at first touch and ends with separate bodies.
 struct Motion {
-    /// Rates at whole multiples of `unit_s`, and the compressions there.
+    /// Rates at integer multiples of `unit_s`, and the compressions there.
     rates: Vec<f64>,
     compressions: Vec<f64>,
     unit_s: f64,
@@ -288,7 +288,7 @@ struct Motion {
 
 impl Motion {
     fn new(seed: u64, compression_m: f64, speed_m_s: f64) -> Motion {
-        // a linear congruential generator is random enough to load and unload in any order
+        // A linear congruential generator is random enough to load and unload in any order.
         let mut random = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
         let mut part = || {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -1,8 +1,8 @@
-//! What the elastic laws `F = k <xi>^n` have in common: one branch, nothing lost, released at `xi = 0`.
+//! The common part of the elastic laws `F = k <xi>^n`: one branch, no dissipation, released at `xi = 0`.
 
 use crate::range::bounded;
 
-/// What tells one of these laws from another.
+/// The differences between these laws.
 pub(crate) trait Conservative {
     /// Exponent `n`.
     fn exponent(&self) -> f64;
@@ -11,7 +11,7 @@ pub(crate) trait Conservative {
     fn curve(&self, compression_m: f64) -> (f64, f64);
 }
 
-/// The contract for a [`Conservative`] law.
+/// Implements the contract for a [`Conservative`] law.
 macro_rules! conservative_law {
     ($law:ty) => {
         impl $law {
@@ -56,7 +56,7 @@ pub(crate) fn stored_energy_j(law: &impl Conservative, compression_m: f64) -> f6
 /// `k <xi>^n` and its derivative with respect to `xi`, for `n >= 1`.
 pub(crate) fn power_of(k: f64, n: f64, compression_m: f64) -> (f64, f64) {
     let xi = bounded(compression_m).max(0.0);
-    // the square root is several times faster than a general power
+    // The square root is several times faster than a general power.
     let lower = if n == 1.5 { xi.sqrt() } else { xi.powf(n - 1.0) };
     (k * lower * xi, n * k * lower)
 }

@@ -1,26 +1,25 @@
-//! What the laws `F = k <xi>^n (1 + D xi_dot)` have in common.
+//! The common part of the laws `F = k <xi>^n (1 + D xi_dot)`.
 //!
-//! The viscous law of the thesis, Hunt-Crossley, Lankarani-Nikravesh and Flores differ only in
-//! how they choose the damping factor `D` (s/m). While surfaces part faster than `1/D` the
-//! formula would pull; there the force is zero ([`Stage::Slack`]).
+//! The viscous law of the thesis, Hunt-Crossley, Lankarani-Nikravesh and Flores differ only in the choice of the damping factor
+//! `D` (s/m). While surfaces separate faster than `1/D` the formula would give tension; there the force is zero
+//! ([`Stage::Slack`]).
 //!
-//! Against a wall the striker obeys `m v dv/dxi = -k xi^n (1 + D v)`. Separating the variables,
-//! the elastic side is the same on the way in and out, so that approach speed `v0` and rebound
-//! speed `e v0` satisfy, for any mass, stiffness and exponent (Marhefka and Orin, *IEEE Trans.
-//! Syst. Man Cybern. A* 29 (1999) 566),
+//! Against a wall the striker satisfies `m v dv/dxi = -k xi^n (1 + D v)`. After separation of the variables, the elastic side
+//! is the same for loading and unloading, so that approach speed `v0` and rebound speed `e v0` satisfy, for any mass, stiffness
+//! and exponent (Marhefka and Orin, *IEEE Trans. Syst. Man Cybern. A* 29 (1999) 566),
 //!
 //! ```text
 //! L(alpha) = L(-alpha e),   L(x) = x - ln(1 + x),   alpha = D v0.
 //! ```
 //!
-//! It follows that `alpha e < 1`: a free striker never reaches the tensile tail.
+//! It follows that `alpha e < 1`: a free striker never reaches tension.
 
 use crate::conservative::power_of;
 use crate::range::{bounded, require_positive, require_restitution};
 use crate::{After, Boundary, Branch, Force, Memory, Stage};
 use invalid_input::InvalidInput;
 
-/// What tells one of these laws from another.
+/// The differences between these laws.
 pub(crate) trait Damped {
     /// Stiffness `k` (N/m^n).
     fn stiffness(&self) -> f64;
@@ -34,7 +33,7 @@ pub(crate) trait Damped {
     fn damping_s_m(&self, approach_speed_m_s: f64) -> f64;
 }
 
-/// The contract for a [`Damped`] law. The branch's internal variable is `D`.
+/// Implements the contract for a [`Damped`] law. The branch's internal variable is `D`.
 macro_rules! damped_law {
     ($law:ty) => {
         impl $law {
@@ -70,10 +69,10 @@ macro_rules! damped_law {
 }
 pub(crate) use damped_law;
 
-/// Default approach speed (m/s) below which a damping factor that goes as `1/v0` stays constant.
+/// Default approach speed (m/s) below which a damping factor proportional to `1/v0` stays constant.
 pub(crate) const LOWEST_APPROACH_SPEED_M_S: f64 = 1e-6;
 
-/// The damping factor `D` (s/m) from a rule `alpha(e)`, with `e` and the speed checked.
+/// The damping factor `D` (s/m) from a rule `alpha(e)`, after a check of `e` and the speed.
 pub(crate) fn calibrated(e: f64, speed_m_s: f64, alpha: impl Fn(f64) -> f64) -> Result<f64, InvalidInput> {
     require_restitution("restitution", e)?;
     require_positive("speed_m_s", speed_m_s)?;
@@ -107,7 +106,7 @@ pub(crate) fn stored_energy_j(law: &impl Damped, compression_m: f64) -> f64 {
     elastic(law, compression_m).0 * bounded(compression_m).max(0.0) / (law.exponent() + 1.0)
 }
 
-/// The contact ends at `xi = 0`; between pressing and slack lies `1 + D xi_dot = 0`.
+/// The contact ends at `xi = 0`; the boundary between pressing and slack is `1 + D xi_dot = 0`.
 pub(crate) fn boundary(branch: &Branch, which: usize) -> Option<Boundary> {
     let side = if branch.stage == Stage::Slack { -1.0 } else { 1.0 };
     match which {
@@ -134,18 +133,18 @@ fn log_excess(x: f64) -> f64 {
     (2..=17).rev().fold(0.0, |sum, n| 1.0 / f64::from(n) - x * sum) * x * x
 }
 
-/// The restitution at a wall that belongs to `alpha = D v0`.
+/// The restitution at a wall for `alpha = D v0`.
 pub(crate) fn restitution(alpha: f64) -> f64 {
     if alpha < 1e-8 {
         return 1.0 - 2.0 / 3.0 * alpha;
     }
-    // With alpha e = 1 - exp(-w): L(-alpha e) = w - 1 + exp(-w), convex, so that Newton's
-    // iteration falls monotonically on w after its first step.
+    // With alpha e = 1 - exp(-w): L(-alpha e) = w - 1 + exp(-w), which is convex, so that Newton's iteration decreases
+    // monotonically towards w after its first step.
     let target = log_excess(alpha);
     let mut w = (2.0 * target).sqrt();
     for _ in 0..100 {
         let y = -(-w).exp_m1();
-        // below 1 the logarithm of 1 - y is w to rounding, and the series avoids w - y
+        // Below 1 the logarithm of 1 - y is w to rounding, and the series avoids w - y.
         let value = if y < 0.1 { log_excess(-y) } else { w - y };
         let step = (value - target) / y;
         w -= step;
@@ -158,7 +157,7 @@ pub(crate) fn restitution(alpha: f64) -> f64 {
 
 /// The `alpha = D v0` that gives the restitution `e` at a wall, `0 < e <= 1`.
 pub(crate) fn damping_ratio(e: f64) -> f64 {
-    // bisection on y = alpha e in (0, 1), where the residual falls through zero once
+    // Bisection on y = alpha e in (0, 1), where the residual decreases through zero once.
     let residual = |y: f64| log_excess(y / e) - log_excess(-y);
     let (mut low, mut high) = (0.0, 1.0);
     if e >= 1.0 {
@@ -174,7 +173,7 @@ pub(crate) fn damping_ratio(e: f64) -> f64 {
     0.5 * (low + high) / e
 }
 
-/// The share `L(alpha)/alpha^2` of `m v0^2` that the spring holds at the deepest compression, for a restitution `e`.
+/// The share `L(alpha)/alpha^2` of `m v0^2` that the spring stores at the maximum compression, for a restitution `e`.
 pub(crate) fn share_stored(e: f64) -> f64 {
     let alpha = damping_ratio(e);
     if alpha == 0.0 { 0.5 } else { log_excess(alpha) / (alpha * alpha) }

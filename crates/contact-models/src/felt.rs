@@ -6,19 +6,19 @@ use crate::range::{bounded, require_positive};
 use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage};
 use invalid_input::InvalidInput;
 
-/// `F = Q0 (u^p + alpha d(u^p)/dt)` while that pushes, with `u = <xi>`.
+/// `F = Q0 (u^p + alpha d(u^p)/dt)` where this is not negative, with `u = <xi>`.
 ///
-/// Source: A. Stulov, *Acta Mechanica* 169 (2004) 13, the three-parameter model of felt. It is the limit for contacts that
-/// last long against the relaxation time `tau0` of his hereditary law (*J. Acoust. Soc. Am.* 97 (1995) 2577),
-/// `F = F0 [u^p - (eps/tau0) int_0^t u^p(s) exp((s - t)/tau0) ds]`, with `Q0 = F0 (1 - eps)` and
-/// `alpha = tau0 eps/(1 - eps)`: with `tau0` near 10 microseconds and contacts of a millisecond, felt is of that kind.
-/// The hereditary law itself depends on the time since first touch, and is not among the laws here. Valid for
-/// piano hammers struck in playing, `p` between 2.5 and 5, `alpha` up to some 0.3 ms.
+/// Source: A. Stulov, *Acta Mechanica* 169 (2004) 13, the three-parameter model of felt. It is the limit of his hereditary law
+/// (*J. Acoust. Soc. Am.* 97 (1995) 2577) for contacts much longer than the relaxation time `tau0`,
+/// `F = F0 [u^p - (eps/tau0) int_0^t u^p(s) exp((s - t)/tau0) ds]`, with `Q0 = F0 (1 - eps)` and `alpha = tau0 eps/(1 - eps)`.
+/// Felt satisfies this condition, with `tau0` near 10 microseconds and contacts of a millisecond. The hereditary law itself
+/// depends on the time since first touch and is not among the laws of this crate. Valid for piano hammers struck in playing,
+/// with `p` between 2.5 and 5 and `alpha` up to some 0.3 ms.
 ///
-/// Tensile tail: while the hammer leaves, the formula would pull before the compression is gone. There the force is zero
-/// and the felt recovers behind the string (slack), as for [`KelvinVoigt`](crate::KelvinVoigt), which is this law with
-/// `p = 1`; the contact resumes where the formula pushes again, and ends at `xi = 0`. A striker at a wall obeys, in units
-/// of its speed and of the length `(m v^2 / Q0)^(1/(p+1))`, `x'' = -x^p - beta (x^p)'` with one number `beta`.
+/// Tension: while the hammer separates, the formula would give tension before the compression is zero. There the force is zero
+/// and the felt recovers behind the string (slack), as for [`KelvinVoigt`](crate::KelvinVoigt), which is this law with `p = 1`;
+/// the contact resumes where the formula is positive again, and ends at `xi = 0`. A striker at a wall satisfies, in units of
+/// its speed and of the length `(m v^2 / Q0)^(1/(p+1))`, `x'' = -x^p - beta (x^p)'` with one number `beta`.
 ///
 /// ```
 /// use contact_models::{Felt, Law};
@@ -44,12 +44,12 @@ impl Felt {
     /// The law with static stiffness `Q0` (N/m^p), exponent `p` and retardation time `alpha` (s).
     ///
     /// # Errors
-    /// A stiffness or time that is not positive (without it, use [`Power`](crate::Power)), an exponent outside 2 to 6.
+    /// A stiffness or time that is not positive (use [`Power`](crate::Power) instead), or an exponent outside 2 to 6.
     pub fn new(stiffness_n_m_n: f64, exponent: f64, retardation_time_s: f64) -> Result<Felt, InvalidInput> {
         Felt { stiffness_n_m_n, exponent, retardation_time_s }.validated()
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Felt::new`].
@@ -94,7 +94,7 @@ impl ContactLaw for Felt {
     }
 
     fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
-        // the force is Q0 u^(p-1) (u + alpha p u'), and pushes where the bracket is positive
+        // The force is Q0 u^(p-1) (u + alpha p u'), which is positive where the bracket is.
         recovering_boundary(branch, which, 1.0, self.retardation_time_s * self.exponent)
     }
 
@@ -105,15 +105,14 @@ impl ContactLaw for Felt {
 
 /// Rebound speed after `x'' = -x^p - beta (x^p)'`, `x(0) = 0`, `x'(0) = 1`, up to where the force vanishes.
 ///
-/// With much damping (`beta > 1`) lengths and times are `beta^(-1/p)` times as long, so that
-/// `y'' = -a y^p - b (y^p)'` with `a` and `b` of at most 1 in either case. As the force is `-y''`, the speed sought is
-/// the greatest of the rebound.
+/// With much damping (`beta > 1`) lengths and times are `beta^(-1/p)` times as long, so that `y'' = -a y^p - b (y^p)'` with `a`
+/// and `b` of at most 1 in either case. The force is `-y''`, so that the rebound speed is the maximum of the speed.
 fn rebound_of_felt(p: f64, beta: f64) -> f64 {
     let (a, b) = if beta <= 1.0 { (1.0, beta) } else { (beta.powf(-1.0 - 1.0 / p), 1.0) };
     if a < 1e-12 {
-        return a / p; // the speed at which creep of a compression of 1 begins
+        return a / p; // The speed at which creep from a compression of 1 begins.
     }
-    // w = y' + b y^p, so that no derivative of the power is needed
+    // w = y' + b y^p, so that no derivative of the power is needed.
     let slope = |[y, w]: [f64; 2]| {
         let power = y.max(0.0).powf(p);
         [w - b * power, -a * power]
@@ -130,7 +129,7 @@ fn rebound_of_felt(p: f64, beta: f64) -> f64 {
             state = next;
             h *= if error < 1e-17 { 2.0 } else { 1.1 };
         } else if h > 1e-9 {
-            h *= 0.5; // the speed is stationary at the end, so that this is near enough
+            h *= 0.5; // The speed is stationary at the end, so that this is close enough.
         } else {
             break;
         }
@@ -138,8 +137,8 @@ fn rebound_of_felt(p: f64, beta: f64) -> f64 {
     (-slope(state)[0]).clamp(0.0, 1.0)
 }
 
-/// A step by Gragg's modified midpoint rule with 2, 4, ... 12 parts, extrapolated to infinitely many, and an estimate of
-/// its error (E. Hairer, S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, 1993, II.9).
+/// A step by Gragg's modified midpoint rule with 2, 4, ... 12 parts, extrapolated to infinitely many, with an estimate of its
+/// error (E. Hairer, S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, 1993, II.9).
 fn extrapolated(slope: &impl Fn([f64; 2]) -> [f64; 2], start: [f64; 2], h: f64) -> ([f64; 2], f64) {
     const PARTS: [f64; 6] = [2.0, 4.0, 6.0, 8.0, 10.0, 12.0];
     let along = |from: [f64; 2], by: f64, s: [f64; 2]| [from[0] + by * s[0], from[1] + by * s[1]];

@@ -4,35 +4,33 @@ use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 use crate::range::{require_positive, require_restitution};
 use invalid_input::InvalidInput;
 
-/// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 8 (1 - e) / (5 e v0)` set anew by each
-/// contact's approach speed `v0`.
+/// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 8 (1 - e) / (5 e v0)` from the approach speed `v0` of each contact.
 ///
 /// Source: P. Flores, M. Machado, M. T. Silva and J. M. Martins, *Multibody Syst. Dyn.* 25 (2011) 357.
-/// Made for the whole range of restitutions, soft contacts included; what it gives at a wall, at any
-/// speed:
+/// It was proposed for the whole range of restitutions, soft contacts included. The restitution at a wall, at any speed, is:
 ///
-/// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
+/// | restitution required | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
 /// | obtained | 0.947 | 0.894 | 0.789 | 0.683 | 0.470 | 0.256 | 0.069 |
 ///
-/// Tensile tail: as for [`Viscous`](crate::Viscous). The rule stiffens without bound as `v0`
-/// falls, and a contact that is pressed on after a slow touch would be frozen; below
-/// `lowest_approach_speed_m_s` the damping grows no further.
+/// Tension: as for [`Viscous`](crate::Viscous). The damping would increase without bound as `v0` decreases, and a contact that
+/// continues to be pressed after a slow touch would not move any more; below `lowest_approach_speed_m_s` the damping is
+/// therefore constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Flores {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,
-    /// Restitution `e` that the damping is meant to give.
+    /// Restitution `e` that the damping is intended to give.
     pub restitution: f64,
-    /// Approach speed (m/s) below which `D` stays as it is there.
+    /// Approach speed (m/s) below which `D` is constant.
     pub lowest_approach_speed_m_s: f64,
 }
 
 impl Flores {
-    /// The law with stiffness `k_H` (N/m^1.5) and intended restitution; the damping is bounded
-    /// below an approach speed of 1e-6 m/s.
+    /// The law with stiffness `k_H` (N/m^1.5) and intended restitution; the damping is constant below an approach speed of 1e-6
+    /// m/s.
     ///
     /// # Errors
     /// A stiffness that is not positive, a restitution outside 0.001 to 1.
@@ -41,8 +39,8 @@ impl Flores {
         Flores { stiffness_n_m1_5, restitution, lowest_approach_speed_m_s }.validated()
     }
 
-    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest: what the law is told to be its
-    /// restitution is then another number, which makes up for the paper's approximation.
+    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest. The intended restitution of the law
+    /// is then another number, which corrects the paper's approximation.
     ///
     /// # Errors
     /// As [`Flores::new`].
@@ -52,7 +50,7 @@ impl Flores {
         Flores::new(stiffness_n_m1_5, 1.6 / (1.6 + damped::damping_ratio(restitution)))
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Flores::new`], and a lowest approach speed that is not positive.

@@ -7,10 +7,9 @@ use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2)` (thesis Eqs. 3.12 to 3.14).
 ///
-/// Source: H. Hertz, *J. reine angew. Math.* 92 (1882) 156; K. L. Johnson, *Contact Mechanics*
-/// (1985), ch. 4. Valid while the contact radius stays small against the bodies' radii, the
-/// material elastic, and the contact long against the travel of waves through the bodies.
-/// Tensile tail: none, the formula never pulls.
+/// Source: H. Hertz, *J. reine angew. Math.* 92 (1882) 156; K. L. Johnson, *Contact Mechanics* (1985), ch. 4. Valid while the
+/// contact radius is small compared with the bodies' radii, the material is elastic, and the contact lasts long compared with
+/// the travel of waves through the bodies. Tension: none.
 ///
 /// ```
 /// use contact_models::{Body, Hertz};
@@ -41,13 +40,12 @@ impl Hertz {
     /// is thesis Eq. 3.14, `k_H = 2 E sqrt(R) / (3 (1 - nu^2))`.
     ///
     /// # Errors
-    /// A body outside the range stated at [`Body`], or a pair that is rigid or not touching at
-    /// a point.
+    /// A body outside the range stated at [`Body`], or two bodies that are both rigid or do not touch at a point.
     pub fn from_bodies(first: &Body, second: &Body) -> Result<Hertz, InvalidInput> {
         Hertz::new(4.0 / 3.0 * effective_modulus_pa(first, second)? * effective_radius_m(first, second)?.sqrt())
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Hertz::new`].

@@ -6,15 +6,15 @@ use invalid_input::InvalidInput;
 
 /// `F = k <xi>^n (1 + D xi_dot)` with any exponent; `D` is the same for every contact.
 ///
-/// Source: K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440, where the damping is
-/// written `lambda xi^n xi_dot` with `lambda = D k`. Valid for light damping and smooth bodies.
-/// Tensile tail: as for [`Viscous`](crate::Viscous), which is this law with `n = 3/2`.
+/// Source: K. H. Hunt and F. R. E. Crossley, *J. Appl. Mech.* 42 (1975) 440, who write the damping as `lambda xi^n xi_dot` with
+/// `lambda = D k`. Valid for light damping and smooth bodies. Tension: as for [`Viscous`](crate::Viscous), which is this law
+/// with `n = 3/2`.
 ///
-/// Calibration: [`with_restitution`](HuntCrossley::with_restitution) is exact. The paper's own
-/// rule `D = 3 (1 - e) / (2 v0)`, [`with_restitution_first_order`](HuntCrossley::with_restitution_first_order),
-/// keeps the first order of `1 - e` and damps too little:
+/// Calibration: [`with_restitution`](HuntCrossley::with_restitution) is exact. The paper's own rule `D = 3 (1 - e) / (2 v0)`,
+/// [`with_restitution_first_order`](HuntCrossley::with_restitution_first_order), is of first order in `1 - e` and gives too
+/// little damping:
 ///
-/// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
+/// | restitution required | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
 /// | obtained | 0.952 | 0.909 | 0.833 | 0.768 | 0.663 | 0.581 | 0.516 |
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,7 +68,7 @@ impl HuntCrossley {
         HuntCrossley::new(stiffness_n_m_n, exponent, damping)
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`HuntCrossley::new`].

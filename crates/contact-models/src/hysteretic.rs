@@ -5,38 +5,35 @@ use crate::range::{LARGEST, SMALLEST, bounded, require_not_negative, require_pos
 use crate::{After, Boundary, Branch, ContactLaw, Force, Memory, Stage};
 use invalid_input::InvalidInput;
 
-/// `F = k_H <xi>^(3/2) (1 + theta)` (thesis Eq. 3.16), where the internal variable moves between
-/// `theta_m - beta` and `theta_m + beta`.
+/// `F = k_H <xi>^(3/2) (1 + theta)` (thesis Eq. 3.16), where the internal variable varies between `theta_m - beta` and
+/// `theta_m + beta`.
 ///
-/// Source: thesis Eqs. 3.16 and 3.17, after S. Biswas, P. Jana and A. Chatterjee, *Int. J. Mech.
-/// Sci.* 108-109 (2016) 61. As printed, Eq. 3.17 carries a factor `<xi>`, with which `K` would
-/// have the unit 1/m, nothing would be singular at `xi = 0`, and the stated parameters would give
-/// almost no dissipation instead of a restitution of 0.95. This crate reads it without that factor, for
+/// Source: thesis Eqs. 3.16 and 3.17, after S. Biswas, P. Jana and A. Chatterjee, *Int. J. Mech. Sci.* 108-109 (2016) 61. As
+/// printed, Eq. 3.17 has a factor `<xi>`, with which `K` would have the unit 1/m, nothing would be singular at `xi = 0`, and
+/// the stated parameters would give almost no dissipation instead of a restitution of 0.95. This crate omits the factor, for
 /// `xi > 0`:
 ///
 /// ```text
 /// theta' = K (theta_m + beta sign(xi') - theta) |xi'| / (xi + eps).
 /// ```
 ///
-/// Between reversals `theta` is then a function of `xi`, fixed by its value `theta_a` at the
-/// branch's anchor `xi_a`:
+/// Between reversals `theta` is then a function of `xi`, determined by its value `theta_a` at the branch's anchor `xi_a`:
 ///
 /// ```text
 /// loading    theta = theta_m + beta + (theta_a - theta_m - beta) ((xi_a + eps)/(xi + eps))^K
 /// unloading  theta = theta_m - beta + (theta_a - theta_m + beta) ((xi + eps)/(xi_a + eps))^K
 /// ```
 ///
-/// Every contact begins at `theta = theta_m + beta`, whatever went before: the thesis says so for
-/// each sub-impact (section 3.3.4, second footnote), and it is the limit of small `eps`, in which
-/// loading from `xi = 0` forgets `theta` at once. The first loading is therefore Hertz with
-/// stiffness `k_H (1 + theta_m + beta)`; to keep a given Hertz stiffness, divide it by that
-/// factor (by 4 in the thesis). Valid where damping does not depend on the rate and leaves no
-/// indentation. Tensile tail: none, `F = 0` only at `xi = 0`. For `eps -> 0` the restitution at a
-/// wall does not depend on the speed; with `eps` it falls slightly as the speed grows.
+/// Every contact begins at `theta = theta_m + beta`, independently of earlier contacts. The thesis states this for each
+/// sub-impact (section 3.3.4, second footnote), and it is the limit of small `eps`, in which loading from `xi = 0` removes the
+/// influence of the initial `theta` immediately. The first loading is therefore Hertz contact with stiffness
+/// `k_H (1 + theta_m + beta)`; to obtain a given Hertz stiffness, divide it by that factor (by 4 in the thesis). Valid where
+/// damping does not depend on the rate and leaves no indentation. Tension: none, `F = 0` only at `xi = 0`. For `eps -> 0` the
+/// restitution at a wall does not depend on the speed; with `eps` it decreases slightly as the speed grows.
 ///
-/// Complete contacts dissipate; single minor loops need not: while `theta < theta_m`, a small
-/// loop of loading and unloading raises `theta`, and gives back slightly more work than it took.
-/// The stored energy is a quadrature of some microseconds, the force a single power.
+/// Complete contacts dissipate energy; single minor loops need not: while `theta < theta_m`, a small loop of loading and
+/// unloading raises `theta`, and returns slightly more work than it received. The stored energy is a quadrature of some
+/// microseconds, the force a single power.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -54,11 +51,11 @@ pub struct Hysteretic {
 }
 
 impl Hysteretic {
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
-    /// A stiffness, `theta_m` or `K` that is not positive (`K` at most 1000), a negative `beta`
-    /// or `eps`, or `beta > 1 + theta_m`, with which the force would pull.
+    /// A stiffness, `theta_m` or `K` that is not positive (`K` at most 1000), a negative `beta` or `eps`, or
+    /// `beta > 1 + theta_m`, for which the force would be tensile.
     pub fn validated(self) -> Result<Hysteretic, InvalidInput> {
         require_positive("stiffness_n_m1_5", self.stiffness_n_m1_5)?;
         require_positive("theta_m", self.theta_m)?;
@@ -70,7 +67,7 @@ impl Hysteretic {
         Ok(self)
     }
 
-    /// The value that `theta` tends to on this branch.
+    /// The limit of `theta` on this branch.
     fn goal(&self, stage: Stage) -> f64 {
         self.theta_m + if stage == Stage::Unloading { -self.beta } else { self.beta }
     }
@@ -80,8 +77,8 @@ impl Hysteretic {
         xi + self.epsilon_m.max(SMALLEST)
     }
 
-    /// `theta` and its derivative with respect to `xi`. Before the anchor, where the branch is
-    /// not valid, the tangent continues it.
+    /// `theta` and its derivative with respect to `xi`. Before the anchor, where the branch is not valid, it is continued by
+    /// its tangent.
     fn theta(&self, branch: &Branch, xi: f64) -> (f64, f64) {
         let goal = self.goal(branch.stage);
         let [theta_a] = branch.internal.into();
@@ -131,7 +128,7 @@ impl ContactLaw for Hysteretic {
         if xi <= 0.0 {
             return 0.0;
         }
-        // unloading from here: 1 + theta = floor + excess ((s + eps)/(xi + eps))^K at s < xi
+        // Unloading from here: 1 + theta = floor + excess ((s + eps)/(xi + eps))^K at s < xi.
         let floor = 1.0 + self.goal(Stage::Unloading);
         let excess = 1.0 + self.theta(branch, xi).0 - floor;
         let eps = self.shifted(0.0);

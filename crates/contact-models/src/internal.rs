@@ -1,8 +1,8 @@
 //! The internal variables of a law.
 
-/// Values of a law's internal variables: numbers that the force depends on beside compression and rate. They change only
-/// where a branch begins. A law has up to [`Internal::MOST`] of them, and alone knows what they mean. Inside it they are an
-/// array, or a type of its own with conversions to and from one:
+/// Values of a law's internal variables: numbers that determine the force together with compression and rate. They change only
+/// where a branch begins. A law has up to [`Internal::MOST`] of them, and only the law knows their meaning. Within the law they
+/// are an array, or a type of its own with conversions in both directions:
 ///
 /// ```
 /// use contact_models::Internal;
@@ -29,17 +29,17 @@
 /// assert_eq!(Hardened::from(kept).back_force_n, 20.0);
 /// ```
 ///
-/// Numbers that a law does not use are zero. For derivatives of an impact a variable is shifted by a small part of its size,
-/// and where it is zero by a small part of one.
+/// Numbers that a law does not use are zero. For derivatives of an impact a variable is shifted by a small fraction of its
+/// size, or of one if it is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
 pub struct Internal([f64; Internal::MOST]);
 
 impl Internal {
-    /// So many numbers there is room for.
+    /// Largest number of internal variables.
     pub const MOST: usize = 6;
-    /// Of a law without internal variables.
+    /// For a law without internal variables.
     pub const NONE: Internal = Internal([0.0; Internal::MOST]);
 }
 

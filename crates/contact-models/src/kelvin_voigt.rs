@@ -4,15 +4,13 @@ use crate::range::{bounded, require_positive};
 use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage};
 use invalid_input::InvalidInput;
 
-/// `F = k xi + c xi_dot` while that pushes.
+/// `F = k xi + c xi_dot` where this is not negative.
 ///
-/// Source: T. Schwager and T. Poschel, *Granular Matter* 9 (2007) 465, who treat the end of the
-/// contact as done here. Valid as a simple model with a restitution that does not depend on the
-/// speed; its force jumps to `c v0` at first touch, which no material does. Tensile tail: the
-/// formula would pull before the compression is gone. There the force is zero and the surface
-/// recovers behind the striker (slack); the contact resumes where `k xi + c xi_dot` turns
-/// positive again, and ends at `xi = 0`. With `zeta = c / (2 sqrt(k m))` the restitution at a
-/// wall is
+/// Source: T. Schwager and T. Poschel, *Granular Matter* 9 (2007) 465, who treat the end of the contact in the same way. Valid
+/// as a simple model with a restitution that does not depend on the speed; its force jumps to `c v0` at first touch, which no
+/// material shows. Tension: the formula would give tension before the compression is zero. There the force is zero and the
+/// surface recovers behind the striker (slack); the contact resumes where `k xi + c xi_dot` is positive again, and ends at
+/// `xi = 0`. With `zeta = c / (2 sqrt(k m))` the restitution at a wall is
 ///
 /// ```text
 /// e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)),   beyond zeta = 1 with acosh and zeta^2 - 1.
@@ -36,8 +34,8 @@ impl KelvinVoigt {
         KelvinVoigt { stiffness_n_m, damping_n_s_m }.validated()
     }
 
-    /// The law whose restitution at a wall is `restitution` for a striker of this mass, at any
-    /// speed. The closed relation is solved to rounding.
+    /// The law whose restitution at a wall is `restitution` for a striker of this mass, at any speed. The closed relation is
+    /// solved to rounding.
     ///
     /// # Errors
     /// A restitution outside 0.001 to 1 or equal to 1, a stiffness or mass that is not positive.
@@ -49,7 +47,7 @@ impl KelvinVoigt {
         KelvinVoigt::new(stiffness_n_m, 2.0 * damping_ratio(restitution) * (stiffness_n_m * mass_kg).sqrt())
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`KelvinVoigt::new`].
@@ -65,7 +63,7 @@ impl KelvinVoigt {
     }
 }
 
-/// Half planes of a law that pushes where `per_compression xi + per_rate xi_dot > 0` and recovers elsewhere (slack).
+/// Half planes of a law that presses where `per_compression xi + per_rate xi_dot > 0` and recovers elsewhere (slack).
 pub(crate) fn recovering_boundary(
     branch: &Branch,
     which: usize,
@@ -77,13 +75,13 @@ pub(crate) fn recovering_boundary(
     match (branch.stage, which) {
         (Stage::Slack, 0) => Some(Boundary::compression_falls_to(0.0)),
         (Stage::Slack, 1) => formula(-1.0),
-        // the formula stops pushing before the compression is gone
+        // The formula becomes negative before the compression is zero.
         (Stage::Single, 0) => formula(1.0),
         _ => None,
     }
 }
 
-/// What follows at these boundaries.
+/// Transitions at these boundaries.
 pub(crate) fn cross_recovering(branch: &Branch, which: usize) -> After {
     match (branch.stage, which) {
         (Stage::Slack, 0) => After::Release(Memory::default()),
@@ -92,7 +90,7 @@ pub(crate) fn cross_recovering(branch: &Branch, which: usize) -> After {
     }
 }
 
-/// Restitution at a wall against the damping ratio `zeta`.
+/// Restitution at a wall as a function of the damping ratio `zeta`.
 fn restitution_at(zeta: f64) -> f64 {
     let root = ((1.0 - zeta).abs() * (1.0 + zeta)).sqrt();
     if root == 0.0 {
@@ -106,7 +104,7 @@ pub(crate) fn damping_ratio(restitution: f64) -> f64 {
     if restitution >= 1.0 {
         return 0.0;
     }
-    // bisection on zeta, of which the restitution is a falling function: e(0) = 1, e(20) < 0.001
+    // Bisection on zeta, of which the restitution is a decreasing function: e(0) = 1, e(20) < 0.001.
     let (mut low, mut high) = (0.0, 20.0);
     for _ in 0..200 {
         let zeta = 0.5 * (low + high);

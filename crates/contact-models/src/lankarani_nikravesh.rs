@@ -4,38 +4,37 @@ use crate::damped::{self, Damped, LOWEST_APPROACH_SPEED_M_S, damped_law};
 use crate::range::{require_positive, require_restitution};
 use invalid_input::InvalidInput;
 
-/// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 3 (1 - e^2) / (4 v0)` set anew by each
-/// contact's approach speed `v0`.
+/// `F = k_H <xi>^(3/2) (1 + D xi_dot)` with `D = 3 (1 - e^2) / (4 v0)` from the approach speed `v0` of each contact.
 ///
 /// Source: H. M. Lankarani and P. E. Nikravesh, *J. Mech. Des.* 112 (1990) 369.
-/// Valid for restitutions near 1: the rule comes from an energy balance that takes the loss as small
-/// and, as the restitution falls, damps ever too little (at a wall, any speed):
+/// Valid for restitutions near 1: the rule comes from an energy balance for small losses, and its damping is too small for
+/// lower restitutions (at a wall, at any speed):
 ///
-/// | restitution asked for | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
+/// | restitution required | 0.95 | 0.9 | 0.8 | 0.7 | 0.5 | 0.3 | 0.1 |
 /// |---|---|---|---|---|---|---|---|
 /// | obtained | 0.954 | 0.913 | 0.847 | 0.796 | 0.725 | 0.684 | 0.665 |
 ///
-/// Tensile tail: as for [`Viscous`](crate::Viscous). The rule stiffens without bound as `v0`
-/// falls, and a contact that is pressed on after a slow touch would be frozen; below
-/// `lowest_approach_speed_m_s` the damping grows no further.
+/// Tension: as for [`Viscous`](crate::Viscous). The damping would increase without bound as `v0` decreases, and a contact that
+/// continues to be pressed after a slow touch would not move any more; below `lowest_approach_speed_m_s` the damping is
+/// therefore constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct LankaraniNikravesh {
     /// Stiffness `k_H` (N/m^1.5).
     pub stiffness_n_m1_5: f64,
-    /// Restitution `e` that the damping is meant to give.
+    /// Restitution `e` that the damping is intended to give.
     pub restitution: f64,
-    /// Approach speed (m/s) below which `D` stays as it is there.
+    /// Approach speed (m/s) below which `D` is constant.
     pub lowest_approach_speed_m_s: f64,
 }
 
 impl LankaraniNikravesh {
-    /// The least restitution that the law can have, rounded up: its damping ends at `D v0 = 3/4`.
+    /// The lowest restitution of the law, rounded up: its damping is at most `D v0 = 3/4`.
     pub const LEAST_RESTITUTION: f64 = 0.663;
 
-    /// The law with stiffness `k_H` (N/m^1.5) and intended restitution; the damping is bounded
-    /// below an approach speed of 1e-6 m/s.
+    /// The law with stiffness `k_H` (N/m^1.5) and intended restitution; the damping is constant below an approach speed of 1e-6
+    /// m/s.
     ///
     /// # Errors
     /// A stiffness that is not positive, a restitution outside 0.001 to 1.
@@ -44,11 +43,11 @@ impl LankaraniNikravesh {
         LankaraniNikravesh { stiffness_n_m1_5, restitution, lowest_approach_speed_m_s }.validated()
     }
 
-    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest: what the law is told to be its
-    /// restitution is then another number, which makes up for the paper's approximation.
+    /// The law whose restitution at a wall is `restitution`, at any speed above the lowest. The intended restitution of the law
+    /// is then another number, which corrects the paper's approximation.
     ///
     /// # Errors
-    /// A stiffness that is not positive, a restitution that the law cannot reach, as its damping ends at `D v0 = 3/4`.
+    /// A stiffness that is not positive, or a restitution that the law cannot have, since its damping is at most `D v0 = 3/4`.
     pub fn with_restitution(stiffness_n_m1_5: f64, restitution: f64) -> Result<LankaraniNikravesh, InvalidInput> {
         require_restitution("restitution", restitution)?;
         // D v0 = 3 (1 - e^2) / 4, solved for e
@@ -58,7 +57,7 @@ impl LankaraniNikravesh {
         LankaraniNikravesh::new(stiffness_n_m1_5, squared.sqrt())
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`LankaraniNikravesh::new`], and a lowest approach speed that is not positive.

@@ -10,32 +10,32 @@ use crate::internal::Internal;
 pub struct Boundary {
     /// Coefficient of the compression.
     pub per_compression: f64,
-    /// Coefficient of the compression's rate (same unit as `per_compression` times seconds).
+    /// Coefficient of the rate of compression (same unit as `per_compression` times seconds).
     pub per_rate: f64,
-    /// The value at which the boundary is met.
+    /// The value at which the state is on the boundary.
     pub level: f64,
 }
 
 impl Boundary {
-    /// A boundary that is never met.
+    /// A boundary that is never reached.
     pub const NEVER: Boundary = Boundary { per_compression: 0.0, per_rate: 0.0, level: -1.0 };
 
-    /// The branch ends when the compression falls to `level_m`.
+    /// The branch ends when the compression decreases to `level_m`.
     pub const fn compression_falls_to(level_m: f64) -> Boundary {
         Boundary { per_compression: 1.0, per_rate: 0.0, level: level_m }
     }
 
-    /// The branch ends when the compression rises to `level_m`.
+    /// The branch ends when the compression increases to `level_m`.
     pub const fn compression_rises_to(level_m: f64) -> Boundary {
         Boundary { per_compression: -1.0, per_rate: 0.0, level: -level_m }
     }
 
-    /// The branch ends when the rate falls to `level_m_s` (0: end of loading).
+    /// The branch ends when the rate decreases to `level_m_s` (0: end of loading).
     pub const fn rate_falls_to(level_m_s: f64) -> Boundary {
         Boundary { per_compression: 0.0, per_rate: 1.0, level: level_m_s }
     }
 
-    /// The branch ends when the rate rises to `level_m_s` (0: end of unloading).
+    /// The branch ends when the rate increases to `level_m_s` (0: end of unloading).
     pub const fn rate_rises_to(level_m_s: f64) -> Boundary {
         Boundary { per_compression: 0.0, per_rate: -1.0, level: -level_m_s }
     }
@@ -46,55 +46,55 @@ impl Boundary {
     }
 }
 
-/// What kind of smooth piece a branch is: a name for its law to go by, and for those who read its branches.
+/// The kind of a smooth branch, by which the law distinguishes its branches and others can read them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Stage {
-    /// The law's only curve, valid for loading and unloading alike.
+    /// The only curve of the law, valid for loading and unloading alike.
     Single,
-    /// Compression grows on a curve that differs from unloading.
+    /// Compression increases on a curve that differs from unloading.
     Loading,
-    /// Compression falls on a curve that differs from loading.
+    /// Compression decreases on a curve that differs from loading.
     Unloading,
-    /// The law's formula would pull; the force is zero while the surfaces recover.
+    /// The formula would give tension; the force is zero while the surfaces recover.
     Slack,
-    /// A kind of the law's own, by a number that only the law reads.
+    /// A kind of branch of the law's own, by a number that only the law interprets.
     Own(u8),
 }
 
-/// One smooth piece of a law, with the numbers the law needs to evaluate it.
+/// One smooth branch of a law, with the numbers that the law needs to evaluate it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Branch {
-    /// The kind of piece.
+    /// The kind of branch.
     pub stage: Stage,
     /// Compression at which the branch began (m), where the law needs it.
     pub anchor_m: f64,
-    /// The law's internal variables, as far as they fix the branch; each law states their meaning.
+    /// The law's internal variables that determine the branch; each law states their meaning.
     pub internal: Internal,
 }
 
-/// What outlives a contact: all zero for a fresh surface.
+/// The variables that outlast a contact: all zero for a fresh surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Memory {
     /// Compression at which the surfaces touch (m): zero, or the permanent indentation.
     pub touch_m: f64,
-    /// The law's internal variables that last; each law states their meaning.
+    /// The law's internal variables that outlast a contact; each law states their meaning.
     pub internal: Internal,
 }
 
-/// What follows when a branch meets one of its boundaries.
+/// The transition when a branch reaches one of its boundaries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum After {
-    /// Contact goes on along another branch.
+    /// The contact continues on another branch.
     Continue(Branch),
-    /// The surfaces part, leaving this memory.
+    /// The surfaces separate, with this memory.
     Release(Memory),
 }
 
@@ -116,30 +116,30 @@ impl Force {
     pub const ZERO: Force = Force { force_n: 0.0, per_compression_n_m: 0.0, per_rate_n_s_m: 0.0 };
 }
 
-/// A force-compression law made of smooth branches.
+/// A force-compression law with smooth branches.
 pub trait ContactLaw {
-    /// The branch on which a contact begins, when surfaces with this memory meet at
-    /// `approach_speed_m_s` (the rate of compression at first touch, not negative).
+    /// The branch on which a contact begins if surfaces with this memory meet at `approach_speed_m_s` (the rate of compression
+    /// at first touch, not negative).
     fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch;
 
-    /// Force and derivatives on a branch. Outside the branch's boundaries it returns a finite,
-    /// continuous extension, so that an iteration may step over them. On a branch the force depends on the rate either
-    /// wherever it is not zero or nowhere, which an integrator sees from `per_rate_n_s_m`.
+    /// Force and derivatives on a branch. Outside the branch's boundaries it returns a finite, continuous extension, so that an
+    /// iteration may step over them. On a branch the force depends on the rate either wherever it is not zero or nowhere, which
+    /// an integrator takes from `per_rate_n_s_m`.
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force;
 
-    /// Energy (J) that the contact would give back if it were unloaded from here slowly and
-    /// without reversal until it releases. What the bodies put in beyond that is dissipated.
+    /// Energy (J) that the contact would return if it were unloaded from here slowly and without reversal until it releases.
+    /// The rest of the work of the bodies is dissipated.
     fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64;
 
-    /// The half planes within which the branch is valid, numbered from zero on: `None` after the last. A branch may begin on
-    /// one of them (unloading begins where the rate is zero): it is met when its margin falls below zero.
+    /// The half planes within which the branch is valid, numbered from zero: `None` after the last. A branch may begin on one
+    /// of them (unloading begins where the rate is zero): the boundary is reached when its margin becomes negative.
     fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary>;
 
-    /// What follows when boundary number `which` is met at this compression and rate.
+    /// The transition when boundary number `which` is reached at this compression and rate.
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After;
 }
 
-/// More boundaries than any branch has; a law that offers more has no end of them.
+/// Larger than the number of boundaries of any branch; a law with more would have no last boundary.
 pub const MOST_BOUNDARIES: usize = 256;
 
 /// All boundaries of a branch, in the order of their numbers, up to [`MOST_BOUNDARIES`].

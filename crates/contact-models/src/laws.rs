@@ -32,7 +32,7 @@ macro_rules! laws {
             }
         })*
 
-        /// The same expression for whichever law it is.
+        /// Evaluates the same expression for any of the laws.
         macro_rules! each {
             ($law:expr, $inner:ident => $value:expr) => {
                 match $law { $(Law::$variant($inner) => $value,)* }
@@ -74,17 +74,16 @@ laws! {
 }
 
 impl Law {
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
-    /// As the `new` of the law.
+    /// As for the `new` of the law.
     pub fn validated(self) -> Result<Law, InvalidInput> {
         each!(self, law => law.validated().map(Law::from))
     }
 
-    /// Rebound speed over approach speed of a rigid striker at an immovable wall covered by this
-    /// law (the thesis's `N = 0`), from closed or implicit relations, to rounding; of felt by integration, to about
-    /// 1e-12.
+    /// Rebound speed over approach speed of a rigid striker at an immovable wall covered by this law (the thesis's `N = 0`), to
+    /// rounding from closed or implicit relations; for felt by integration, to about 1e-12.
     ///
     /// # Errors
     /// A mass or speed that is not positive.

@@ -1,17 +1,15 @@
 //! Force-compression laws of contact for impact problems.
 //!
-//! A contact law turns the local compression `xi` (m, positive when the bodies press on each
-//! other) and its rate (m/s) into the normal force `F` (N). Laws with memory (hysteresis,
-//! plasticity, damping that depends on the speed of approach) are made of smooth *branches*:
-//! within a [`Branch`] the force is a smooth function of `(xi, xi_dot)`, and the branch is valid
+//! A contact law gives the normal force `F` (N) as a function of the local compression `xi` (m, positive when the bodies press
+//! on each other) and its rate (m/s). Laws with memory (hysteresis, plasticity, damping that depends on the speed of approach)
+//! consist of smooth *branches*: within a [`Branch`] the force is a smooth function of `(xi, xi_dot)`, and the branch is valid
 //! inside an intersection of half planes ([`Boundary`]), as many as the law needs. An integrator follows one branch until it
-//! meets a boundary, locates it, and asks the law what comes [`next`](ContactLaw::cross): another
-//! branch, or the release of the contact. No law has a kink inside a branch, so a high-order
-//! integrator keeps its order.
+//! reaches a boundary, locates it, and asks the law for the [next](ContactLaw::cross) branch or the release of the contact. No
+//! law has a kink inside a branch, so that an integrator keeps its high order.
 //!
-//! What a law knows beyond compression and rate are its *internal variables* ([`Internal`]): those that fix a branch stand in
-//! the [`Branch`], those that outlive a contact in the [`Memory`]. Both are small copies, so that an integrator may try a step
-//! and forget it.
+//! The state of a law besides compression and rate consists of its *internal variables* ([`Internal`]): those that determine a
+//! branch are in the [`Branch`], those that outlast a contact in the [`Memory`]. Both are small and copied, so that an
+//! integrator may try a step and reject it.
 //!
 //! | symbol | meaning | unit | thesis |
 //! |---|---|---|---|
@@ -22,7 +20,7 @@
 //! | `c`, `D` | damping factor, of one law or set at first touch | s/m | Eq. 3.15 |
 //! | `theta` | internal variable of the hysteretic law | 1 | Eq. 3.17 |
 //! | `theta_m`, `beta` | centre and half width of its range | 1 | Eq. 3.17 |
-//! | `K`, `eps` | how fast it follows `xi`; regularisation at `xi = 0` | 1, m | Eq. 3.17 |
+//! | `K`, `eps` | rate at which it follows `xi`; regularisation at `xi = 0` | 1, m | Eq. 3.17 |
 //! | `E*`, `R*` | effective modulus and radius of two bodies | Pa, m | Eq. 3.14, general |
 //! | `Q0`, `p`, `alpha` | static stiffness, exponent and retardation time of felt | N/m^p, 1, s | |
 //! | `p_y` | contact pressure at first yield | Pa | |
@@ -30,7 +28,7 @@
 //!
 //! # The laws
 //!
-//! | law | force | parameters | source | valid for | where the formula would pull |
+//! | law | force | parameters | source | valid for | where the formula gives tension |
 //! |---|---|---|---|---|---|
 //! | [`Hertz`] | `k_H xi^1.5` | `k_H`, or two bodies | Hertz 1882; thesis 3.12 | small contact, elastic | never does |
 //! | [`Viscous`] | `k_H xi^1.5 (1 + c xi')` | `k_H`, `c` | thesis 3.15 | `c xi'` well below 1 | slack |
@@ -44,23 +42,21 @@
 //! | [`Felt`] | `Q0 (xi^p + alpha d(xi^p)/dt)` | `Q0`, `p`, `alpha` | Stulov 2004 | piano hammers | slack |
 //! | [`Thornton`] | Hertz, line after yield, flattened Hertz back | `E*`, `R*`, `p_y` | Thornton 1997 | moderate plastic indentation | never does |
 //!
-//! *Slack* means that the surfaces recover without touching: the force is zero until the formula
-//! pushes again or the compression is gone. It is a branch of its own ([`Stage::Slack`]), and the
-//! force is continuous on the way in and out. [`Law`] holds any of them; it also gives the
-//! restitution of a rigid striker at a wall, [`Law::wall_restitution`], for any law. Between the
-//! energy put in and the energy [stored](ContactLaw::stored_energy_j) lies what the contact
-//! has dissipated. [`trace`] drives a law with a prescribed motion, and [`check_contract`] tests whether a law of one's own
-//! keeps what laws promise to an integrator.
+//! *Slack* means that the surfaces recover without touching: the force is zero until the formula is positive again or the
+//! compression is zero. It is a branch of its own ([`Stage::Slack`]), and the force is continuous at both of its ends. [`Law`]
+//! contains any of them; [`Law::wall_restitution`] is the restitution of a rigid striker at a wall, for any law. The difference
+//! between the work received and the [stored](ContactLaw::stored_energy_j) energy is what the contact has dissipated. [`trace`]
+//! evaluates a law along a prescribed motion, and [`check_contract`] tests whether your own law has the properties on which an
+//! integrator relies.
 //!
-//! Conversely, [`Wanted`] gives the parameters of a law for a wanted restitution, exactly and not by the papers'
+//! Conversely, [`Wanted`] gives the parameters of a law for a required restitution, exactly and not by the papers'
 //! approximations, and [`stepped_restitution`] the restitution of these parameters in an engine with a fixed step.
 //!
-//! The laws give the normal force of one contact, without friction and without adhesion (no law pulls). Waves in the
-//! bodies belong to the structure.
+//! The laws give the normal force of one contact, without friction and without adhesion (no law gives tension). Waves in the
+//! bodies are part of the structure.
 //!
-//! Parameters are checked by each law's `new`. Fields are public; after changing one,
-//! `validated` checks again. Checked laws give finite numbers for every finite compression and
-//! rate; beyond 1e30 (SI units) either counts as 1e30.
+//! Parameters are checked by each law's `new`. Fields are public; after a change, `validated` checks them again. Checked laws
+//! give finite numbers for every finite compression and rate; a value beyond 1e30 (SI units) counts as 1e30.
 //!
 //! ```
 //! use contact_models::{ContactLaw, Law, Memory, Viscous};

@@ -6,8 +6,8 @@ use invalid_input::InvalidInput;
 
 /// `F = k <xi>`.
 ///
-/// Source: textbook (W. Goldsmith, *Impact*, 1960, ch. 4). Valid for contacts whose area does not
-/// grow with the load, and as a penalty in place of a rigid stop. Tensile tail: none.
+/// Source: textbook (W. Goldsmith, *Impact*, 1960, ch. 4). Valid for contacts whose area does not grow with the load, and as a
+/// penalty in place of a rigid stop. Tension: none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -25,7 +25,7 @@ impl LinearSpring {
         LinearSpring { stiffness_n_m }.validated()
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`LinearSpring::new`].
@@ -41,7 +41,7 @@ impl Conservative for LinearSpring {
     }
 
     fn curve(&self, compression_m: f64) -> (f64, f64) {
-        // the continuation below zero pulls: linear, so that an iteration may step over the boundary
+        // The continuation below zero is linear and tensile, so that an iteration may step over the boundary.
         (self.stiffness_n_m * bounded(compression_m), self.stiffness_n_m)
     }
 }

@@ -63,8 +63,8 @@ pub fn effective_modulus_pa(first: &Body, second: &Body) -> Result<f64, InvalidI
 /// Effective radius `R*` (m): `1/R* = 1/R1 + 1/R2`.
 ///
 /// # Errors
-/// A radius of zero or NaN, or a pair that does not touch at a single point (two flats, or a
-/// ball in a seat that is not wider).
+/// A radius of zero or NaN, or two bodies that do not touch at a single point (two flats, or a ball in a seat that is not
+/// wider).
 pub fn effective_radius_m(first: &Body, second: &Body) -> Result<f64, InvalidInput> {
     let radius = 1.0 / (first.curvature_per_m()? + second.curvature_per_m()?);
     let holds = radius > 0.0 && radius <= LARGEST;

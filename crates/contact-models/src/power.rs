@@ -6,11 +6,11 @@ use invalid_input::InvalidInput;
 
 /// `F = k <xi>^n` with any exponent from 1 to 6.
 ///
-/// Source: textbook (W. Goldsmith, *Impact*, 1960, ch. 4); for the felt of piano hammers, T. Yanagisawa and
-/// K. Nakamura, *J. Acoust. Soc. Jpn.* 40 (1984) 725, and A. Chaigne and A. Askenfelt, *J. Acoust. Soc. Am.* 95 (1994)
-/// 1112, with `n` from 2 to 5. [`Hertz`](crate::Hertz) is `n = 3/2`, [`LinearSpring`](crate::LinearSpring) `n = 1`; a blunt
-/// tip, flatter than a sphere, has `n` below 3/2, a cone `n = 2`. Valid where loading and unloading follow one curve;
-/// [`Felt`](crate::Felt) adds what felt loses. Tensile tail: none, the formula never pulls.
+/// Source: textbook (W. Goldsmith, *Impact*, 1960, ch. 4); for the felt of piano hammers, T. Yanagisawa and K. Nakamura, *J.
+/// Acoust. Soc. Jpn.* 40 (1984) 725, and A. Chaigne and A. Askenfelt, *J. Acoust. Soc. Am.* 95 (1994) 1112, with `n` from 2 to
+/// 5. [`Hertz`](crate::Hertz) is `n = 3/2`, [`LinearSpring`](crate::LinearSpring) is `n = 1`; a blunt tip, flatter than a
+/// sphere, has `n` below 3/2, and a cone `n = 2`. Valid if loading and unloading follow one curve; [`Felt`](crate::Felt)
+/// includes the losses of felt. Tension: none.
 ///
 /// ```
 /// use contact_models::{ContactLaw, Memory, Power};
@@ -39,7 +39,7 @@ impl Power {
         Power { stiffness_n_m_n, exponent }.validated()
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Power::new`].

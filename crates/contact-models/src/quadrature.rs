@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(NonZeroUsize::MIN.saturating_add(11)));
 
-/// `int_from^to f`, where `f` may begin or end like a power 3/2, as contact forces do: the cubic
-/// `from + (to - from) s^2 (3 - 2 s)` makes that a smooth function of `s`.
+/// `int_from^to f`, where `f` may begin or end like a power 3/2, as contact forces do: the substitution
+/// `from + (to - from) s^2 (3 - 2 s)` makes it a smooth function of `s`.
 pub(crate) fn between_events(from: f64, to: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let length = to - from;
     RULE.integrate(0.0, 1.0, |s| 6.0 * s * (1.0 - s) * f(from + length * s * s * (3.0 - 2.0 * s))) * length
@@ -16,8 +16,8 @@ pub(crate) fn between_events(from: f64, to: f64, mut f: impl FnMut(f64) -> f64) 
 /// `int_0^1 u^(3/2) ((u + rho) / (1 + rho))^k du` to rounding (times `k` where that is large), for
 /// `k, rho >= 0`.
 ///
-/// Panels shrink geometrically towards the singularity at zero, and slowly enough that the power
-/// is smooth on each; the sum ends when what is left cannot change it.
+/// Panels shrink geometrically towards the singularity at zero, slowly enough that the power is smooth on each; the sum ends
+/// when the remainder cannot change it.
 pub(crate) fn power_moment(rho: f64, k: f64) -> f64 {
     let power = |u: f64| ((u + rho) / (1.0 + rho)).powf(k);
     let shrink = (-std::f64::consts::LN_2 / (0.25 * k).max(1.0)).exp();
@@ -47,7 +47,7 @@ mod tests {
             }
         }
         for k in [0.01, 0.4, 4.0, 37.0, 1000.0] {
-            // a power k multiplies the rounding of its base by k
+            // A power k multiplies the rounding of its base by k.
             assert!((power_moment(0.0, k) * (2.5 + k) - 1.0).abs() < 1e-15 * (10.0 + k), "{k}");
         }
     }

@@ -1,13 +1,13 @@
-//! What an engine with a fixed step makes of a law.
+//! The restitution of a law in an engine with a fixed step.
 //!
-//! Physics engines step a contact with the semi-implicit Euler rule: with `xi` and `v` the compression and its rate,
+//! Physics engines integrate a contact by the semi-implicit Euler rule: with `xi` and `v` the compression and its rate,
 //!
 //! ```text
 //! v <- v - h F(xi, v) / m,   xi <- xi + h v.                                      (1)
 //! ```
 //!
-//! The contact is noticed in the first step that ends with `xi > 0`, somewhere between nothing and `h v0` deep. Where in
-//! that range is chance, so that one law has many restitutions at one step.
+//! The contact is detected in the first step that ends with `xi > 0`, at a depth between 0 and `h v0`. This depth is a matter
+//! of chance, so that one law has many restitutions for one step.
 
 use crate::{After, ContactLaw, Law, Memory, boundaries};
 
@@ -16,7 +16,7 @@ use invalid_input::InvalidInput;
 
 /// Phases of the first touch within a step, evenly spaced.
 const PHASES: u32 = 64;
-/// Longest contact that is followed (steps).
+/// Longest contact that is computed (steps).
 const MOST_STEPS: u32 = 100_000;
 
 /// Restitutions of a law at a fixed step, over all phases of the first touch within a step.
@@ -24,18 +24,18 @@ const MOST_STEPS: u32 = 100_000;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Stepped {
-    /// The least.
+    /// The smallest.
     pub lowest: f64,
     /// Their mean.
     pub mean: f64,
-    /// The greatest; above 1 the step adds energy.
+    /// The largest; above 1 the step adds energy.
     pub highest: f64,
     /// Steps with contact, on average.
     pub steps: f64,
 }
 
-/// Rebound speed over approach speed of a rigid striker at a wall, by the semi-implicit Euler rule (1) with a fixed step.
-/// Zero where a striker has not left after 100,000 steps.
+/// Rebound speed over approach speed of a rigid striker at a wall, by the semi-implicit Euler rule (1) with a fixed step. It is
+/// zero if the striker has not separated after 100,000 steps.
 ///
 /// # Errors
 /// A mass, speed or step that is not positive.
@@ -55,12 +55,12 @@ pub fn stepped_restitution(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64)
     Ok(found)
 }
 
-/// Restitution and number of steps of a contact that is noticed at this depth.
+/// Restitution and number of steps of a contact that is detected at this depth.
 fn rebound(law: &Law, mass_kg: f64, speed_m_s: f64, step_s: f64, depth_m: f64) -> (f64, u32) {
     let mut branch = law.touch(&Memory::default(), speed_m_s);
     let (mut xi, mut v) = (depth_m, speed_m_s);
     for step in 0..MOST_STEPS {
-        // a step may pass a branch or two
+        // A step may cross several branches.
         for _ in 0..4 {
             let met = boundaries(law, &branch).position(|boundary| boundary.margin(xi, v) < 0.0);
             let Some(which) = met else { break };

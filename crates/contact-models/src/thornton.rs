@@ -6,8 +6,8 @@ use crate::{After, Boundary, Branch, ContactLaw, Force, Internal, Memory, Stage}
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
-/// Hertz up to yield, a straight line beyond, and Hertz with a flattened radius on the way back,
-/// which leaves a permanent indentation.
+/// Hertz up to yield, a straight line beyond, and Hertz with a larger radius on unloading, which leaves a permanent
+/// indentation.
 ///
 /// Source: C. Thornton, *J. Appl. Mech.* 64 (1997) 383. With `E*`, `R*` and the contact pressure
 /// `p_y` at which yield begins:
@@ -19,12 +19,11 @@ use std::f64::consts::PI;
 ///               delta = 3 F_max / (4 E* a),  a^2 = (2 F_max + F_y) / (2 pi p_y)
 /// ```
 ///
-/// The unloading line is Hertz's law of Thornton's radius
-/// `R_p = (4 E* / (3 F_max)) a^3`, written in what the branch knows. Force and slope are
-/// continuous at first yield. Contact after release begins at the indentation `xi_p`, follows the
-/// last unloading line and yields further beyond `xi_max`. Valid for moderate plastic
-/// deformation without hardening or rate effects; the indentation belongs to one spot, so that
-/// every contact of a striker with this memory is at the same place. Tensile tail: none.
+/// The unloading line is Hertz's law for Thornton's radius `R_p = (4 E* / (3 F_max)) a^3`, expressed by the variables of the
+/// branch. Force and slope are continuous at first yield. Contact after release begins at the indentation `xi_p`, follows the
+/// last unloading line, and yields again beyond `xi_max`. Valid for moderate plastic deformation without hardening or rate
+/// effects; the indentation belongs to one point, so that every contact of a striker with this memory is at the same location.
+/// Tension: none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -58,7 +57,7 @@ impl Thornton {
         Thornton::new(effective_modulus_pa(first, second)?, effective_radius_m(first, second)?, yield_pressure_pa)
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Thornton::new`].
@@ -98,14 +97,14 @@ impl Thornton {
         self.yield_force_n() + self.plastic_slope() * (xi - self.yield_compression_m())
     }
 
-    /// What is recovered on unloading from this largest compression, `delta` (m).
+    /// Compression that is recovered on unloading from this largest compression, `delta` (m).
     fn recovery(&self, xi_max: f64) -> f64 {
         let force = self.loading_force(xi_max);
         let a = ((2.0 * force + self.yield_force_n()) / (2.0 * PI * self.yield_pressure_pa)).sqrt();
         0.75 * force / (self.effective_modulus_pa * a)
     }
 
-    /// The elastic line through the loading line's point at `xi_max`; up to first yield, Hertz.
+    /// The elastic line through the point of the loading line at `xi_max`; up to first yield, Hertz.
     fn elastic(&self, xi_max: f64) -> Branch {
         let xi_y = self.yield_compression_m();
         let anchor_m = if xi_max > xi_y { (xi_max - self.recovery(xi_max)).max(0.0) } else { 0.0 };
@@ -128,8 +127,8 @@ impl Thornton {
 }
 
 impl ContactLaw for Thornton {
-    /// On an elastic branch (`Single`) the anchor is the indentation `xi_p` and the internal variable the
-    /// largest compression so far, at least `xi_y`. The same two numbers make the memory.
+    /// On an elastic branch (`Single`) the anchor is the indentation `xi_p` and the internal variable is the largest
+    /// compression so far, at least `xi_y`. The memory consists of the same two numbers.
     fn touch(&self, memory: &Memory, _approach_speed_m_s: f64) -> Branch {
         let [xi_max] = memory.internal.into();
         self.elastic(bounded(xi_max))

@@ -1,17 +1,17 @@
-//! A law driven by a prescribed motion.
+//! Evaluates a law along a prescribed motion.
 
 use crate::quadrature::between_events;
 use crate::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use invalid_input::InvalidInput;
 
-/// The contact at one moment of a prescribed motion.
+/// The contact at one instant of a prescribed motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct TracePoint {
     /// Time (s).
     pub time_s: f64,
-    /// Compression `xi` (m), negative while the surfaces are apart.
+    /// Compression `xi` (m), negative while the surfaces are separate.
     pub compression_m: f64,
     /// Rate of compression (m/s).
     pub rate_m_s: f64,
@@ -23,11 +23,11 @@ pub struct TracePoint {
     pub stored_energy_j: f64,
 }
 
-/// Changes of branch followed between two neighbouring times. A law offers few branches at one place; the bound only
-/// excludes a law that never settles.
+/// Largest number of changes of branch between two neighbouring times. A law has few branches at one state; the limit only
+/// excludes a law that changes them forever.
 pub(crate) const MOST_EVENTS: usize = 32;
 
-/// A contact on its way.
+/// A contact during its motion.
 #[derive(Clone, Copy)]
 pub(crate) enum State {
     Apart(Memory),
@@ -35,7 +35,7 @@ pub(crate) enum State {
 }
 
 impl State {
-    /// Its branch while the surfaces touch.
+    /// Its branch while the surfaces are in contact.
     pub fn branch(&self) -> Option<Branch> {
         match self {
             State::Apart(_) => None,
@@ -43,7 +43,7 @@ impl State {
         }
     }
 
-    /// The half planes within which the state lasts.
+    /// The half planes within which the state is valid.
     pub fn boundaries(&self, law: &impl ContactLaw) -> Vec<Boundary> {
         match self {
             State::Apart(memory) => vec![Boundary::compression_rises_to(memory.touch_m)],
@@ -69,16 +69,16 @@ impl State {
     }
 }
 
-/// Follows a law along a prescribed motion, which gives compression (m) and its rate (m/s) at a
-/// time (s), from a fresh surface. The result has a point at each of `times_s` and one just after
-/// each change of branch in between, located to rounding.
+/// Evaluates a law along a prescribed motion, which gives compression (m) and its rate (m/s) at a time (s), from a fresh
+/// surface. The result has a point at each of `times_s` and one just after each change of branch in between, located to
+/// rounding.
 ///
-/// Between two neighbouring times the motion should meet a branch's end at most once, as it does
-/// when the times resolve its swings. Work is integrated by a 12-point Gauss rule on each piece, which
-/// allows for forces that begin and end as a power 3/2.
+/// Between two neighbouring times the motion should reach the end of a branch at most once, as it does if the times resolve its
+/// oscillations. Work is integrated by a 12-point Gauss rule on each piece, with a substitution for forces that begin and end
+/// as a power 3/2.
 ///
 /// # Errors
-/// Times that are not finite or do not increase; a motion that is not finite.
+/// Times that are not finite or do not increase, or a motion that is not finite.
 ///
 /// ```
 /// use contact_models::{LinearSpring, trace};
@@ -155,7 +155,7 @@ pub(crate) fn first_met(
             continue;
         }
         let (mut low, mut high) = (start, if beyond(boundary, start) { start } else { end });
-        // to the rounding of the interval
+        // Located to the rounding of the interval.
         for _ in 0..54 {
             let middle = low + 0.5 * (high - low);
             *(if beyond(boundary, middle) { &mut high } else { &mut low }) = middle;

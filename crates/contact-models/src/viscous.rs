@@ -6,11 +6,10 @@ use invalid_input::InvalidInput;
 
 /// `F = k_H <xi>^(3/2) (1 + c xi_dot)` (thesis Eq. 3.15), `c` the same for every contact.
 ///
-/// Valid for light damping: the thesis assumes, and checks, `|c xi_dot| < 1`. Tensile tail:
-/// where surfaces part faster than `1/c` the force is zero (slack) until they part more slowly
-/// or the compression is gone; a striker at a wall never gets there. Restitution falls with the
-/// speed, as `1 - (2/3) c v0` for small `c v0`. The thesis's `c = 0.08` s/m gives 0.9494 at
-/// 1 m/s.
+/// Valid for light damping: the thesis assumes, and checks, `|c xi_dot| < 1`. Tension: while surfaces separate faster than
+/// `1/c` the force is zero (slack), until they separate more slowly or the compression is zero; a striker at a wall never
+/// reaches this state. The restitution decreases with the speed, as `1 - (2/3) c v0` for small `c v0`. The thesis's `c = 0.08`
+/// s/m gives 0.9494 at 1 m/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -39,7 +38,7 @@ impl Viscous {
         Viscous::new(stiffness_n_m1_5, damped::calibrated(restitution, speed_m_s, damped::damping_ratio)?)
     }
 
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// As [`Viscous::new`].

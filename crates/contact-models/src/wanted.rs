@@ -1,26 +1,26 @@
-//! From a wanted restitution to the parameters of a law.
+//! Parameters of a law from a required restitution.
 //!
-//! Two bodies that meet head on obey the law of one striker at a wall, whose mass is their reduced mass
+//! Two bodies that collide centrally satisfy the equation of one striker at a wall, whose mass is their reduced mass
 //!
 //! ```text
 //! m = m_1 m_2 / (m_1 + m_2).                                                      (1)
 //! ```
 //!
-//! The damping follows from the restitution alone, by the exact relation of each law, and the stiffness from how deep
-//! the bodies may press. With `alpha = D v0` and `L(x) = x - ln(1 + x)` the deepest compression of the laws
-//! `k xi^n (1 + D xi')` is that at which the rate is zero,
+//! The damping follows from the restitution alone, by the exact relation of each law, and the stiffness from the maximum
+//! compression. With `alpha = D v0` and `L(x) = x - ln(1 + x)` the maximum compression of the laws `k xi^n (1 + D xi')` is that
+//! at which the rate is zero,
 //!
 //! ```text
 //! k xi_m^(n+1) / (n+1) = m v0^2 L(alpha) / alpha^2,                               (2)
 //! ```
 //!
-//! and of spring and dashpot, with `omega^2 = k/m` and `zeta = c / (2 m omega)`, from their linear equation of motion,
+//! and for spring and dashpot, with `omega^2 = k/m` and `zeta = c / (2 m omega)`, from their linear equation of motion,
 //!
 //! ```text
 //! omega xi_m = v0 exp(-zeta acos(zeta) / sqrt(1 - zeta^2)) = v0 sqrt(e).          (3)
 //! ```
 //!
-//! MuJoCo states the same spring and dashpot per unit of mass. Its force never pulls, so that it ends before the gap
+//! MuJoCo states the same spring and dashpot per unit of mass. Its force is never tensile, so that it ends before the gap
 //! opens, and with a constant impedance (`solimp` with two equal first numbers) the contact has
 //!
 //! ```text
@@ -28,7 +28,7 @@
 //! e = exp(-2 zeta acos(zeta) / sqrt(1 - zeta^2)).                                 (5)
 //! ```
 //!
-//! The field's formula `e = exp(-pi zeta / sqrt(1 - zeta^2))` lets the dashpot pull until the gap opens
+//! The usual formula `e = exp(-pi zeta / sqrt(1 - zeta^2))` lets the dashpot pull until the gap opens
 //! ([`damping_ratio_if_it_pulled`]).
 
 use crate::{Flores, HuntCrossley, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring};
@@ -37,18 +37,18 @@ use crate::range::{require_positive, require_restitution};
 use crate::{damped, kelvin_voigt};
 use invalid_input::InvalidInput;
 
-/// What a contact shall do.
+/// Requirements on a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Wanted {
-    /// Speed of parting over speed of approach, from 0.001 to 1.
+    /// Speed of separation over speed of approach, from 0.001 to 1.
     pub restitution: f64,
     /// Mass of the striker, or [reduced mass](reduced_mass_kg) of two bodies (kg).
     pub mass_kg: f64,
     /// Speed of approach (m/s).
     pub speed_m_s: f64,
-    /// How deep the bodies press (m).
+    /// Maximum compression of the bodies (m).
     pub compression_m: f64,
 }
 
@@ -57,17 +57,17 @@ pub struct Wanted {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Solref {
-    /// `timeconst` (s); infinite without damping, where only the direct form can say so.
+    /// `timeconst` (s); infinite without damping, which only the direct form can represent.
     pub time_constant_s: f64,
     /// `dampratio`.
     pub damping_ratio: f64,
-    /// Stiffness per mass (1/s^2), which the direct form of `solref` takes with a minus sign.
+    /// Stiffness per mass (1/s^2), which has a minus sign in the direct form of `solref`.
     pub stiffness_per_s2: f64,
-    /// Damping per mass (1/s), likewise.
+    /// Damping per mass (1/s), with a minus sign too.
     pub damping_per_s: f64,
 }
 
-/// The mass that stands for two bodies (1). One of them may be immovable: its mass is infinite.
+/// The reduced mass of two bodies (1). One of them may be immovable: its mass is infinite.
 ///
 /// # Errors
 /// A mass that is not positive; two immovable bodies.
@@ -83,8 +83,8 @@ pub fn reduced_mass_kg(first_kg: f64, second_kg: f64) -> Result<f64, InvalidInpu
     Ok(1.0 / (1.0 / first_kg + 1.0 / second_kg))
 }
 
-/// The damping ratio that the field's formula `e = exp(-pi zeta / sqrt(1 - zeta^2))` gives, of a dashpot that pulls until
-/// the gap opens.
+/// The damping ratio from the usual formula `e = exp(-pi zeta / sqrt(1 - zeta^2))`, for a dashpot that pulls until the gap
+/// opens.
 ///
 /// # Errors
 /// A restitution outside 0.001 to 1.
@@ -94,7 +94,7 @@ pub fn damping_ratio_if_it_pulled(restitution: f64) -> Result<f64, InvalidInput>
     Ok(decrement / std::f64::consts::PI.hypot(decrement))
 }
 
-/// The damping ratio of spring and dashpot that do not pull, for a restitution (5).
+/// The damping ratio of spring and dashpot that do not pull, from a restitution (5).
 ///
 /// # Errors
 /// A restitution outside 0.001 to 1.
@@ -104,7 +104,7 @@ pub fn damping_ratio(restitution: f64) -> Result<f64, InvalidInput> {
 }
 
 impl Wanted {
-    /// The wish itself if it is in range.
+    /// The requirements if they are in range.
     ///
     /// # Errors
     /// A restitution outside 0.001 to 1; a mass, speed or compression that is not positive.
@@ -119,7 +119,7 @@ impl Wanted {
     /// Spring and dashpot; without losses the [`LinearSpring`].
     ///
     /// # Errors
-    /// As [`Wanted::validated`]; a stiffness that comes out beyond what the crate takes.
+    /// As [`Wanted::validated`]; a resulting stiffness beyond the range of the crate.
     pub fn kelvin_voigt(&self) -> Result<Law, InvalidInput> {
         let Solref { stiffness_per_s2, damping_per_s, .. } = self.solref()?;
         let (stiffness, damping) = (stiffness_per_s2 * self.mass_kg, damping_per_s * self.mass_kg);
@@ -129,7 +129,7 @@ impl Wanted {
         KelvinVoigt::new(stiffness, damping).map(Law::from)
     }
 
-    /// Spring and dashpot as MuJoCo takes them.
+    /// Spring and dashpot in the form of MuJoCo.
     ///
     /// # Errors
     /// As [`Wanted::validated`].
@@ -162,10 +162,10 @@ impl Wanted {
         Flores::with_restitution(self.damped_stiffness(1.5)?, self.restitution)
     }
 
-    /// Lankarani and Nikravesh's law, which reaches down to a restitution of 0.663.
+    /// Lankarani and Nikravesh's law, whose lowest restitution is 0.663.
     ///
     /// # Errors
-    /// As [`Wanted::kelvin_voigt`]; a restitution below what the law can reach.
+    /// As [`Wanted::kelvin_voigt`]; a restitution below the range of the law.
     pub fn lankarani_nikravesh(&self) -> Result<LankaraniNikravesh, InvalidInput> {
         LankaraniNikravesh::with_restitution(self.damped_stiffness(1.5)?, self.restitution)
     }

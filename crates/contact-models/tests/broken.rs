@@ -1,4 +1,4 @@
-//! Laws that break their contract, each in one way, and what is told of them.
+//! Laws that each break their contract in one way, and the error that reports it.
 
 use contact_models::{
     After, Boundary, Branch, ContactLaw, Force, Internal, LinearSpring, Memory, Promise, Stage, check_contract,
@@ -51,7 +51,7 @@ impl ContactLaw for Broken {
                 let force_n = spring.force_n + per_rate_n_s_m * rate_m_s.clamp(-1.0, 1.0);
                 Force { force_n, per_compression_n_m, per_rate_n_s_m }
             }
-            // on the way back it pushes harder, and keeps to that way
+            // The force is larger on unloading, and the branch is kept.
             Broken::MakesEnergy if unloads => {
                 let [deepest] = branch.internal.into();
                 let root = (xi * deepest).sqrt();
@@ -95,7 +95,7 @@ impl ContactLaw for Broken {
 }
 
 #[test]
-fn each_fault_is_named() {
+fn each_error_is_named() {
     let told = |law: Broken| check_contract(&law, 1e-5, 1.0).map_err(|breach| breach.promise);
     assert_eq!(told(Broken::Nothing), Ok(()));
     assert!(matches!(told(Broken::Pulls), Err(Promise::Continuous { .. })));
@@ -111,7 +111,7 @@ fn each_fault_is_named() {
     assert!(message.contains("depends on the rate") && message.contains("Loading"), "{message}");
 }
 
-/// Whatever sizes are asked for, the answer comes: a spring keeps its promises on all of them.
+/// The test ends for any sizes: a spring has the required properties on all of them.
 #[test]
 fn any_size_is_answered() {
     let spring = LinearSpring::new(STIFFNESS).unwrap();

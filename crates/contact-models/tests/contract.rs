@@ -1,4 +1,4 @@
-//! What every law promises to an integrator, along random motions.
+//! The properties of every law on which an integrator relies, along random motions.
 
 mod common;
 
@@ -10,15 +10,14 @@ use proptest::test_runner::RngSeed;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, rng_seed: RngSeed::Fixed(31617), ..ProptestConfig::default() })]
 
-    /// The promises that a law of one's own can be tried for hold for every law here.
+    /// Every law of the crate passes the test that is meant for your own laws.
     #[test]
-    fn promises(law in laws(), motion in motions()) {
+    fn required_properties(law in laws(), motion in motions()) {
         let kept = check_contract_along(&law, &motion.times(), |t| motion.at(t));
         prop_assert!(kept.is_ok(), "{law:?} {}", kept.unwrap_err());
     }
 
-    /// The force is finite for every finite compression and rate, and continuous across the
-    /// boundaries of its branch.
+    /// The force is finite for every finite compression and rate, and continuous across the boundaries of its branch.
     #[test]
     fn extension(law in laws(), motion in motions(), xi in prop_oneof![-3.0..3.0_f64, any::<f64>()],
                  v in prop_oneof![-9.0..9.0_f64, any::<f64>()]) {
@@ -34,7 +33,7 @@ proptest! {
         for crossing in &walk.crossings {
             let (branch, xi, v) = (crossing.branch_before, crossing.compression_m, crossing.rate_m_s);
             let here = law.force(&branch, xi, v);
-            // steep where much damped, and where a hysteretic branch begins right at zero
+            // The force is steep if the damping is large, and where a hysteretic branch begins at zero.
             let steepness = here.per_compression_n_m.abs() + here.per_rate_n_s_m.abs();
             let here = here.force_n;
             for (dxi, dv) in [(1e-10, 0.0), (-1e-10, 0.0), (0.0, 1e-10), (0.0, -1e-10)] {
@@ -44,7 +43,7 @@ proptest! {
         }
     }
 
-    /// Whatever is asked of a law from outside gives finite numbers.
+    /// A law gives finite numbers for any arguments.
     #[test]
     fn any_memory_and_approach(law in laws(), touch in any::<f64>(), internal in any::<f64>(), speed in any::<f64>(),
                                xi in any::<f64>(), v in any::<f64>()) {
@@ -55,8 +54,8 @@ proptest! {
         prop_assert!(numbers.iter().all(|number| number.is_finite()), "{law:?} {branch:?} {force:?}");
     }
 
-    /// Work done on a contact is stored or dissipated, never made. Conservative laws dissipate
-    /// nothing; the hysteretic law is only bound over complete contacts.
+    /// Work done on a contact is stored or dissipated, never created. Conservative laws dissipate nothing; the hysteretic law
+    /// is only tested over complete contacts.
     #[test]
     fn energy(law in laws(), motion in motions()) {
         let path = trace(&law, &motion.times(), |t| motion.at(t)).unwrap();
@@ -81,10 +80,10 @@ proptest! {
         prop_assert_eq!(path.last().unwrap().stored_energy_j, 0.0);
     }
 
-    /// The stored energy is what a slow unloading returns.
+    /// The stored energy is the energy that a slow unloading returns.
     #[test]
     fn stored_energy(law in laws(), motion in motions()) {
-        // follow the motion for a while, then let go slowly; rate laws forget their damping
+        // Follow the motion for a while, then unload slowly, so that the damping of laws with a rate vanishes.
         let slow = 1e-9;
         for state in walk(&law, &motion).states.iter().step_by(37) {
             let returned = common::unload(&law, state, slow);
@@ -94,7 +93,7 @@ proptest! {
     }
 }
 
-/// The random motions reach every kind of branch of every law.
+/// The random motions visit every kind of branch of every law.
 #[test]
 fn random_motions_reach_every_stage() {
     use contact_models::Stage;
@@ -127,9 +126,9 @@ fn random_motions_reach_every_stage() {
     }
 }
 
-/// On the scales of impacts, by the motions of the library.
+/// The same on the scales of impacts, by the motions of the library.
 #[test]
-fn laws_keep_their_promises_on_any_scale() {
+fn laws_have_the_required_properties_on_any_scale() {
     use proptest::strategy::ValueTree;
     use proptest::test_runner::TestRunner;
     let mut runner = TestRunner::deterministic();

@@ -52,7 +52,7 @@ fn parameters_of_every_law() {
         assert_eq!(field(Hysteretic { epsilon_m: bad, ..HYSTERETIC }.validated()), "epsilon_m");
     }
     assert_eq!(field(Hysteretic { beta: 2.7, ..HYSTERETIC }.validated()), "beta");
-    // the ends of the range of exponents
+    // The ends of the range of exponents.
     for (exponent, power, felt) in [(0.99, false, false), (1.0, true, false), (1.99, true, false), (2.0, true, true)] {
         assert_eq!((Power::new(1.0, exponent).is_ok(), Felt::new(1.0, exponent, 1.0).is_ok()), (power, felt));
     }
@@ -77,7 +77,7 @@ fn wall_restitution_needs_a_striker() {
     }
 }
 
-/// The corners of the range of parameters, and of mass and speed.
+/// The limits of the ranges of parameters, mass and speed.
 #[test]
 fn extremes_stay_finite() {
     use contact_models::ContactLaw;
@@ -133,12 +133,12 @@ fn extremes_stay_finite() {
 #[test]
 fn pairs_of_bodies() {
     let steel = |radius_m: f64| Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m };
-    // two equal balls: half the radius; against rigid: twice the modulus of a like pair
+    // Two equal balls have half the radius; against a rigid one, twice the modulus of equal bodies.
     assert!((effective_radius_m(&steel(0.02), &steel(0.02)).unwrap() - 0.01).abs() < 1e-16);
     let like = effective_modulus_pa(&steel(0.02), &steel(0.02)).unwrap();
     let rigid = effective_modulus_pa(&steel(0.02), &Body::rigid(f64::INFINITY)).unwrap();
     assert!((rigid / like - 2.0).abs() < 1e-15);
-    // a ball in a wider seat
+    // A ball in a wider seat.
     assert!((effective_radius_m(&steel(0.02), &steel(-0.04)).unwrap() - 0.04).abs() < 1e-16);
     for (first, second) in [(0.02, -0.02), (0.04, -0.02), (f64::INFINITY, f64::INFINITY), (0.0, 1.0), (f64::NAN, 1.0)] {
         assert_eq!(field(effective_radius_m(&steel(first), &steel(second))), "radius_m");
@@ -159,7 +159,7 @@ fn motions_that_cannot_be_followed() {
     assert_eq!(field(trace(&law, &[0.0, 1.0], |t| (t / 0.0, 0.0))), "compression_m");
     assert_eq!(field(trace(&law, &[0.0, 1.0], |_| (0.0, f64::INFINITY))), "rate_m_s");
     assert!(trace(&law, &[], |_| (0.0, 0.0)).unwrap().is_empty());
-    // a rate that is not the compression's makes nonsense, but an end
+    // A rate that is not that of the compression gives a meaningless result, but ends.
     let thornton = Thornton::new(1.0, 1.0, 0.1).unwrap();
     let path = trace(&thornton, &[0.0, 1.0, 2.0, 3.0], |t| (t - 1.5, -1.0)).unwrap();
     assert!(path.len() >= 4 && path.iter().all(|point| point.force_n.is_finite()));

@@ -1,9 +1,9 @@
-//! Permanent indentation: what a plastic contact leaves behind.
+//! Permanent indentation after a plastic contact.
 
 use contact_models::{Hertz, Thornton, trace};
 use std::f64::consts::PI;
 
-/// Presses of the given depths, each back to a gap, in unit time.
+/// Presses to the given depths, each back to a gap, in unit time.
 fn presses<'a>(depths: &'a [f64]) -> (Vec<f64>, impl Fn(f64) -> (f64, f64) + 'a) {
     let times = (0..=200 * depths.len() as u32).map(|i| f64::from(i) / 200.0).collect();
     let motion = |t: f64| {
@@ -15,7 +15,7 @@ fn presses<'a>(depths: &'a [f64]) -> (Vec<f64>, impl Fn(f64) -> (f64, f64) + 'a)
 }
 
 #[test]
-fn a_second_lighter_press_is_elastic_and_a_deeper_one_yields_further() {
+fn a_second_lighter_press_is_elastic_and_a_deeper_one_yields_again() {
     let law = Thornton::new(1.0, 1.0, 0.3).unwrap();
     let (times, motion) = presses(&[1.5, 1.4, 1.5, 2.5]);
     let path = trace(&law, &times, motion).unwrap();
@@ -27,7 +27,7 @@ fn a_second_lighter_press_is_elastic_and_a_deeper_one_yields_further() {
     assert!((lost(2.0) - lost(1.0)).abs() < 1e-12, "a lighter press loses nothing");
     assert!((lost(3.0) - lost(2.0)).abs() < 1e-12, "an equal press loses nothing");
     assert!(lost(4.0) > lost(3.0) + 0.05);
-    // the loading line does not remember in how many presses it was followed
+    // The loading line does not depend on the number of presses by which it was followed.
     let (times, motion) = presses(&[2.5]);
     let once = trace(&law, &times, motion).unwrap();
     assert!((lost(4.0) - once.last().unwrap().work_j).abs() < 1e-9);
@@ -47,7 +47,7 @@ fn elastic_lines_are_hertz() {
 
     let xi_max = 5.0 * law.yield_compression_m();
     let After::Continue(loading) = law.cross(&touch, 1, law.yield_compression_m(), 1.0) else { panic!() };
-    // force and slope are continuous at yield
+    // Force and slope are continuous at yield.
     let (before, after) =
         (law.force(&touch, law.yield_compression_m(), 0.0), law.force(&loading, law.yield_compression_m(), 0.0));
     assert!((before.force_n / after.force_n - 1.0).abs() < 1e-14);

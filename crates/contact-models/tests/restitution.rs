@@ -1,5 +1,5 @@
-//! Restitution at a wall: closed relations against step-by-step integration, and what the
-//! published calibrations achieve.
+//! Restitution at a wall: closed relations compared with step-by-step integration, and the restitutions of the published
+//! calibrations.
 
 mod common;
 
@@ -11,7 +11,7 @@ fn wall(law: impl Into<Law>, speed_m_s: f64) -> f64 {
     law.into().wall_restitution(BALL_MASS_KG, speed_m_s).unwrap()
 }
 
-/// Every law, weakly and strongly dissipating where it can be, with the time its contact lasts.
+/// Every law with weak and, where possible, strong dissipation, with the duration of its contact.
 fn cases() -> Vec<(Law, f64)> {
     let t = 6e-5;
     let omega = (1e8 / BALL_MASS_KG).sqrt();
@@ -59,7 +59,7 @@ fn closed_relations_agree_with_integration() {
 
 /// The tables in the documentation of the three laws.
 #[test]
-fn what_the_published_rules_achieve() {
+fn restitutions_of_the_published_rules() {
     let targets = [0.95, 0.9, 0.8, 0.7, 0.5, 0.3, 0.1];
     let hunt_crossley = [0.952, 0.909, 0.833, 0.768, 0.663, 0.581, 0.516];
     let lankarani_nikravesh = [0.954, 0.913, 0.847, 0.796, 0.725, 0.684, 0.665];
@@ -75,7 +75,7 @@ fn what_the_published_rules_achieve() {
 }
 
 #[test]
-fn exact_calibrations_return_their_target() {
+fn exact_calibrations_have_the_required_restitution() {
     for e in [0.001, 0.01, 0.1, 0.5, 0.9, 0.99, 0.9999, 1.0 - 1e-8, 1.0] {
         for speed in [1e-3, 1.0, 30.0] {
             let viscous = wall(Viscous::with_restitution(K_H, e, speed).unwrap(), speed);
@@ -88,12 +88,12 @@ fn exact_calibrations_return_their_target() {
             }
         }
     }
-    // critical damping, where the closed form is a limit
+    // Critical damping, where the closed form is a limit.
     let critical = KelvinVoigt::new(1e8, 2.0 * (1e8 * BALL_MASS_KG).sqrt()).unwrap();
     assert!((wall(critical, 1.0) - (-2.0_f64).exp()).abs() < 1e-7);
 }
 
-/// Below the lowest approach speed the damping stays, so that slow impacts bounce better.
+/// Below the lowest approach speed the damping is constant, so that slow impacts have a higher restitution.
 #[test]
 fn damping_by_approach_speed_is_bounded() {
     let law = LankaraniNikravesh { lowest_approach_speed_m_s: 0.1, ..LankaraniNikravesh::new(K_H, 0.5).unwrap() };
@@ -101,12 +101,12 @@ fn damping_by_approach_speed_is_bounded() {
     assert!(wall(law, 0.01) > 0.9 && wall(law, 1e-20) <= 1.0);
 }
 
-/// Felt that hardly damps loses what its dashpot takes along the elastic course,
-/// `1 - e = beta p int x^(p-1) |x'| dx` over the way in and out; felt that damps very much lets its striker creep back.
+/// Felt with very little damping loses the work of its dashpot along the elastic motion, `1 - e = beta p int x^(p-1) |x'| dx`
+/// over loading and unloading; with very much damping the striker creeps back.
 #[test]
 fn felt_at_the_ends_of_its_range() {
     let (p, mass, speed) = (2.0, 1.0, 1.0);
-    // x'^2 = 1 - 2 x^3/3 at p = 2: int_0^xm 2 x sqrt(1 - 2 x^3/3) dx = (3/2)^(2/3) (2/3) B(2/3, 3/2), twice
+    // x'^2 = 1 - 2 x^3/3 at p = 2: int_0^xm 2 x sqrt(1 - 2 x^3/3) dx = (3/2)^(2/3) (2/3) B(2/3, 3/2), twice.
     let lost = 2.0 * 1.5_f64.powf(2.0 / 3.0) * (2.0 / 3.0) * 1.1087612396699105;
     for beta in [1e-9, 1e-6, 1e-4] {
         let e = Law::from(Felt::new(1.0, p, beta).unwrap()).wall_restitution(mass, speed).unwrap();

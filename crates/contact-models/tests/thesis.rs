@@ -10,7 +10,7 @@ const K_H: f64 = 1.7945e10;
 fn hertz_stiffness_of_the_steel_ball_on_the_beam() {
     let ball = Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m: 0.015 };
     let law = Hertz::from_bodies(&ball, &Body::flat(2e11, 0.3)).unwrap();
-    // Eq. 3.14 itself, and the five digits of Eq. 3.20
+    // Eq. 3.14 itself, and the five digits of Eq. 3.20.
     let eq_3_14 = 2.0 * 2e11 * 0.015_f64.sqrt() / (3.0 * (1.0 - 0.09));
     assert!((law.stiffness_n_m1_5 / eq_3_14 - 1.0).abs() < 1e-15);
     assert!((law.stiffness_n_m1_5 - K_H).abs() < 0.5e6);
@@ -36,12 +36,12 @@ fn hysteretic_restitution_at_the_wall() {
     let limit = ((1.2 / 2.5 + 2.8 / 2.9_f64) / 1.6).sqrt();
     assert!((restitution(0.0, 1.0) - limit).abs() < 1e-14);
     assert!((restitution(0.0, 0.3) - limit).abs() < 1e-14);
-    // Fig. 3.8: close to 0.95, decreasing very slightly with increasing velocity
+    // Fig. 3.8: close to 0.95, decreasing very slightly with increasing velocity.
     let [slow, middle, fast] = [0.6, 0.9, 1.2].map(|speed| restitution(5e-8, speed));
     assert!(slow > middle && middle > fast && fast > limit && slow < limit + 1e-3);
 }
 
-/// Fig. 3.2: the closed form of `theta` against Eq. 3.17 integrated in time.
+/// Fig. 3.2: the closed form of `theta` compared with Eq. 3.17 integrated in time.
 #[test]
 fn hysteresis_loops_satisfy_the_differential_equation() {
     let (theta_m, beta, k_bar, eps) = (1.6, 1.4, 4.0, 1e-4);
@@ -63,7 +63,7 @@ fn hysteresis_loops_satisfy_the_differential_equation() {
         for i in 0..steps {
             let t = pair[0] + f64::from(i) * h;
             if motion(t).0 <= 0.0 {
-                theta = theta_m + beta; // every contact starts afresh
+                theta = theta_m + beta; // Every contact starts anew.
                 continue;
             }
             reversals += i32::from(motion(t).1 * motion(t + h).1 < 0.0);
@@ -76,17 +76,17 @@ fn hysteresis_loops_satisfy_the_differential_equation() {
         let force = point.compression_m.max(0.0).powf(1.5) * (1.0 + theta);
         assert!((point.force_n - force).abs() < 1e-6, "t = {}: {} {force}", pair[1], point.force_n);
     }
-    // the motion has minor loops, and theta uses its range
+    // The motion has minor loops, and theta covers its range.
     assert!(reversals >= 4 && lowest < theta_m - 0.99 * beta, "{reversals} {lowest}");
 }
 
-/// What the law's documentation says of minor loops: below `theta_m` they return more work than
-/// they take, while complete contacts lose energy.
+/// The statement on minor loops in the documentation of the law: below `theta_m` they return more work than they receive, while
+/// complete contacts lose energy.
 #[test]
 fn minor_loops_of_the_hysteretic_law() {
     let law =
         Hysteretic { stiffness_n_m1_5: 1.0, theta_m: 1.6, beta: 1.4, k_bar: 4.0, epsilon_m: 0.0 }.validated().unwrap();
-    // from each of these compressions to the next in unit time, along half a cosine
+    // From each of these compressions to the next in unit time, along half a cosine.
     let turns = [-0.1, 1.0, 0.5, 0.55, 0.5, -0.1];
     let motion = |t: f64| {
         let i = (t as usize).min(turns.len() - 2);

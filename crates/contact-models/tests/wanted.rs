@@ -1,4 +1,4 @@
-//! Laws made for a wanted restitution, against step-by-step integration, and what engines with a fixed step make of them.
+//! Laws for a required restitution, compared with step-by-step integration, and their restitutions with a fixed step.
 
 mod common;
 
@@ -22,7 +22,7 @@ fn laws(wanted: &Wanted) -> Vec<Law> {
 }
 
 #[test]
-fn every_law_gives_what_was_wanted() {
+fn every_law_has_the_required_restitution() {
     for restitution in [0.05, 0.25, 0.5, 0.7, 0.95, 1.0] {
         let wanted = Wanted { restitution, ..WANTED };
         let laws = laws(&wanted);
@@ -36,16 +36,16 @@ fn every_law_gives_what_was_wanted() {
     }
 }
 
-/// The deepest compression by integration: the speed is zero where it is reached.
+/// The maximum compression by integration, where the speed is zero.
 #[test]
-fn bodies_press_as_deep_as_was_wanted() {
+fn bodies_have_the_required_compression() {
     use contact_models::{ContactLaw, Memory};
     for restitution in [0.05, 0.5, 0.95, 1.0] {
         for law in laws(&Wanted { restitution, ..WANTED }) {
             let branch = law.touch(&Memory::default(), WANTED.speed_m_s);
             let (mut xi, mut v, h) = (0.0, WANTED.speed_m_s, 1e-8);
             while v > 0.0 {
-                // the midpoint rule
+                // The midpoint rule.
                 let acceleration = |xi: f64, v: f64| -law.force(&branch, xi, v).force_n / WANTED.mass_kg;
                 let middle = (xi + 0.5 * h * v, v + 0.5 * h * acceleration(xi, v));
                 (xi, v) = (xi + h * middle.1, v + h * acceleration(middle.0, middle.1));
@@ -55,9 +55,9 @@ fn bodies_press_as_deep_as_was_wanted() {
     }
 }
 
-/// Two free bodies, integrated as such, part as the reduced mass says.
+/// Two free bodies, integrated as such, separate as one body of the reduced mass.
 #[test]
-fn two_bodies_are_one_of_their_reduced_mass() {
+fn two_bodies_are_equivalent_to_their_reduced_mass() {
     use contact_models::{ContactLaw, Memory};
     let (first, second) = (0.3, 0.6);
     let wanted = Wanted { mass_kg: reduced_mass_kg(first, second).unwrap(), ..WANTED };
@@ -81,7 +81,7 @@ fn two_bodies_are_one_of_their_reduced_mass() {
     assert!(((s[3] - s[1]) / wanted.speed_m_s - 0.5).abs() < 1e-9, "{}", (s[3] - s[1]) / wanted.speed_m_s);
 }
 
-/// MuJoCo's numbers: what the field's formula yields, and that the two forms of `solref` are the same contact.
+/// MuJoCo's numbers: the result of the usual formula, and the two forms of `solref` as the same contact.
 #[test]
 fn solref_of_mujoco() {
     for (asked, obtained) in [(0.25, 0.361), (0.5, 0.550), (0.75, 0.763)] {
@@ -89,7 +89,7 @@ fn solref_of_mujoco() {
         let law = KelvinVoigt::new(1e4, 2.0 * zeta * (1e4_f64 * 0.2).sqrt()).unwrap();
         let found = Law::from(law).wall_restitution(0.2, 1.0).unwrap();
         assert!((found - obtained).abs() < 5e-4, "{asked}: {found}");
-        // the formula as it is written for atan2
+        // The formula as it is written for atan2.
         let z: f64 = damping_ratio(asked).unwrap();
         let root = (1.0 - z * z).sqrt();
         let exponent = z / root * (std::f64::consts::PI - (2.0 * z * root).atan2(1.0 - 2.0 * z * z));
@@ -103,9 +103,10 @@ fn solref_of_mujoco() {
     assert_eq!((elastic.damping_per_s, elastic.time_constant_s), (0.0, f64::INFINITY));
 }
 
-/// With ever smaller steps an engine comes to the law, in first order; the mean over the places of first touch in second.
+/// As the steps become smaller, an engine converges to the law with first order; the mean over the depths of first touch with
+/// second order.
 #[test]
-fn an_engine_approaches_the_law() {
+fn an_engine_converges_to_the_law() {
     let wanted = Wanted { restitution: 0.6, ..WANTED };
     for law in laws(&wanted) {
         let miss = |step_s| stepped_restitution(&law, wanted.mass_kg, wanted.speed_m_s, step_s).unwrap();
@@ -117,17 +118,17 @@ fn an_engine_approaches_the_law() {
     }
 }
 
-/// One step by hand: the first is deep enough to push the striker out at once.
+/// One step computed by hand: the first is deep enough to push the striker out at once.
 #[test]
 fn a_step_as_long_as_the_contact() {
     let law = Law::from(contact_models::LinearSpring::new(1.0).unwrap());
-    // m = 1, v = 1, h = 1.9: at depth d the speed becomes 1 - 1.9 d, then the compression d + 1.9 (1 - 1.9 d)
+    // m = 1, v = 1, h = 1.9: at depth d the speed becomes 1 - 1.9 d, then the compression d + 1.9 (1 - 1.9 d).
     let found = stepped_restitution(&law, 1.0, 1.0, 1.9).unwrap();
     assert!(found.highest > 1.5 && found.steps < 3.0, "{found:?}");
 }
 
 #[test]
-fn wishes_out_of_range() {
+fn requirements_out_of_range() {
     let field = |wanted: Wanted| wanted.kelvin_voigt().unwrap_err().field;
     for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         assert_eq!(field(Wanted { restitution: bad, ..WANTED }), "restitution");
@@ -142,13 +143,13 @@ fn wishes_out_of_range() {
     assert_eq!(reduced_mass_kg(1.0, 0.0).unwrap_err().field, "mass_kg");
     assert_eq!(reduced_mass_kg(f64::INFINITY, f64::INFINITY).unwrap_err().field, "mass_kg");
     assert_eq!(WANTED.hunt_crossley(0.5).unwrap_err().field, "exponent");
-    // what Lankarani and Nikravesh cannot give
+    // Restitutions below the range of Lankarani and Nikravesh.
     let least = Law::from(LankaraniNikravesh::new(1.0, 0.001).unwrap()).wall_restitution(1.0, 1.0).unwrap();
     assert!((least - 0.663).abs() < 5e-5, "{least}");
     assert!(LankaraniNikravesh::with_restitution(1.0, least + 1e-9).is_ok());
     let fault = LankaraniNikravesh::with_restitution(1.0, 0.66).unwrap_err();
     assert!(fault.to_string().contains("0.663"), "{fault}");
-    // and the corners of the rest
+    // Limits of the other ranges.
     for restitution in [0.001, 1.0] {
         assert!(Flores::with_restitution(1.0, restitution).is_ok());
         assert!(HuntCrossley::with_restitution(1.0, 1.5, restitution, 1.0).is_ok());

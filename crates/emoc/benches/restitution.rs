@@ -1,4 +1,4 @@
-//! What a restitution costs: the closed form (target: 20 ns a call), and the quadratic programs.
+//! Time of a restitution by the closed form (target: 20 ns per call), and by the quadratic programs.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use emoc::{Coefficients, Contact, Friction, Impact, Mode, Parameters, Problem, SingleImpact, Site, Solver};
@@ -25,7 +25,7 @@ fn closed_form(c: &mut Criterion) {
     c.bench_function("reduced", |b| b.iter(|| black_box(single(50)).solve_reduced()));
 }
 
-/// Two strikers with friction on a vibrating structure, alone and as one of a sequence.
+/// Two strikers with friction on a vibrating structure, alone and as one impact of a sequence.
 fn contact_problem(c: &mut Criterion) {
     for n in [5, 50] {
         let contact = Contact {

@@ -1,5 +1,5 @@
-//! The problem of Fig. 5.1: a ball falls on one end of a rod that rests on a table, and the other end lifts off a
-//! contact where nothing was approaching, so that no coefficient of restitution can describe it.
+//! The problem of Fig. 5.1: a ball falls on one end of a rod that rests on a table, and the other end lifts off a contact that
+//! was not closing, which no coefficient of restitution can describe.
 //!
 //! A uniform rod (1 kg, 1 m) lies on two supports, a quarter of its length from the left end and at the right end.
 //! A ball of 0.2 kg falls on the left end at 1 m/s. Three rules are compared, for two restitutions.
@@ -9,10 +9,10 @@
 use emoc::{Coefficients, Contact, Friction, Mode, Problem, Solution, Solver, lcp};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // velocities: ball (upwards), rod's centre (upwards), rod's rotation (anticlockwise); length 1 m
+    // Velocities: ball (upwards), rod's centre (upwards), rod's rotation (anticlockwise); the length is 1 m.
     let mass = [0.2, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 / 12.0];
     let falling = [-1.0, 0.0, 0.0];
-    // opening velocities: ball - left end, left support (x = -1/4), right support (x = 1/2)
+    // Opening velocities: ball - left end, left support (x = -1/4), right support (x = 1/2).
     let jacobian = [1.0, -1.0, 0.5, 0.0, 1.0, -0.25, 0.0, 1.0, 0.5];
 
     let mut solver = Solver::new();
@@ -24,8 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         print("least energy (Todorov)", Some(&solver.least_energy(&problem)?));
         print("EMOC", Some(&solver.solve(&problem)?));
 
-        // the same with two bending modes of the rod, free between its ends (shapes at -1/2, -1/4, 1/2), seen
-        // from the ball's contact with the opposite sign: there the rod is the body below
+        // The same with two bending modes of the free rod (shapes at -1/2, -1/4, 1/2). They have the opposite sign at the
+        // ball's contact, where the rod is the lower body.
         let bending = |left: f64, support: f64, right: f64| Mode { rate: 0.0, shape: vec![left, -support, -right] };
         let modes = vec![bending(2.0, -0.20, 2.0), bending(2.0, -1.32, -2.0)];
         let problem = Problem::from_bodies(vec![contact; 3], &mass, &jacobian, &falling, modes)?;

@@ -1,15 +1,15 @@
-//! The last digits of a quadratic program: equations on a guessed active set, accepted only with proof.
+//! The last digits of a quadratic program: linear equations on an estimated active set, accepted only with proof.
 //!
-//! If the rows that hold with equality at the minimum are known, the minimum solves linear equations,
+//! If the rows that are equalities at the minimum are known, the minimum solves linear equations,
 //!
 //! ```text
 //! [ H  A^T ] [ x      ]   [ -linear ]
 //! [ A   0  ] [ lambda ] = [  bound  ]
 //! ```
 //!
-//! and `x` is *the* minimum if it satisfies the other rows and no `lambda` is negative, since the program is
-//! convex. So a guess costs little, cannot deceive, and may come from an interior-point iterate (whose digits
-//! it completes, also where the iteration stalled) or from the previous problem of a sequence.
+//! and `x` is *the* minimum if it satisfies the other rows and no `lambda` is negative, since the program is convex. An
+//! estimate of the active set therefore costs little and cannot give a wrong result. It comes from an interior-point iterate
+//! (which it completes to the last digits, even if the iteration stalled) or from the previous problem of a sequence.
 
 use crate::program::Program;
 use alloc::vec;
@@ -19,20 +19,20 @@ use clarabel::qdldl::{QDLDLFactorisation, QDLDLSettings};
 
 /// Relative tolerance on rows, signs of multipliers and the equations themselves.
 const TOLERANCE: f64 = 1e-11;
-/// Diagonal shift that makes the equations factorable whatever the guess; refinement takes it out again.
+/// Diagonal shift that makes the equations factorable for any estimate; iterative refinement removes its effect.
 const SHIFT: f64 = 1e-8;
-/// Guesses corrected before giving up.
+/// Largest number of corrections of the estimate.
 const CORRECTIONS: usize = 30;
 const REFINEMENTS: usize = 30;
 
-/// A proven minimiser and the rows active there.
+/// A proven minimiser and its active rows.
 pub(crate) struct Proven {
     pub(crate) x: Vec<f64>,
     pub(crate) active: Vec<bool>,
 }
 
-/// Minimises from a guess of the active rows; `None` if no proof was reached. The guess is corrected at first
-/// in all wrong rows together, which is a Newton method and quick, then in the worst one only, which rarely cycles.
+/// Minimises from an estimate of the active rows; `None` if no proof was reached. The estimate is first corrected in all wrong
+/// rows at once, which is a Newton method and quick, and then in the worst one only, which rarely cycles.
 pub(crate) fn minimise(program: &Program, guess: &[bool]) -> Option<Proven> {
     let n = program.linear.len();
     let mut active = guess.to_vec();
@@ -54,8 +54,8 @@ pub(crate) fn minimise(program: &Program, guess: &[bool]) -> Option<Proven> {
     None
 }
 
-/// Rows outside the active set that are violated, relative to their largest term, and rows inside it whose
-/// multiplier is negative, relative to the largest multiplier.
+/// Rows outside the active set that are violated, relative to their largest term, and rows inside it with a negative
+/// multiplier, relative to the largest multiplier.
 fn wrong_rows(program: &Program, active: &[bool], places: &[usize], x: &[f64], lambda: &[f64]) -> Vec<(usize, f64)> {
     let mut excess: Vec<f64> = program.bounds.iter().map(|bound| -bound).collect();
     let mut size: Vec<f64> = program.bounds.iter().map(|bound| bound.abs()).collect();
@@ -70,7 +70,7 @@ fn wrong_rows(program: &Program, active: &[bool], places: &[usize], x: &[f64], l
     violated.chain(pulling).filter(|&(_, by)| by > TOLERANCE).collect()
 }
 
-/// `x` and the multipliers of the rows at `places`; `None` unless the equations hold.
+/// `x` and the multipliers of the rows at `places`; `None` unless the equations are satisfied.
 fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
     let n = program.linear.len();
     let size = n + places.len();
@@ -95,7 +95,7 @@ fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
     for _ in 0..REFINEMENTS {
         factor.solve(&mut residual);
         let trial: Vec<f64> = solution.iter().zip(&residual).map(|(x, dx)| x + dx).collect();
-        // backward error: what is left of each equation over its largest term
+        // Backward error: the residual of each equation over its largest term.
         residual.copy_from_slice(&right);
         let mut terms: Vec<f64> = right.iter().map(|r| r.abs()).collect();
         for &(i, j, a) in &entries {
@@ -123,7 +123,7 @@ fn solve_equations(program: &Program, places: &[usize]) -> Option<Vec<f64>> {
     (holds && solution.iter().all(|x| x.is_finite())).then_some(solution)
 }
 
-/// Scales rows and columns alike until their largest entries are near 1 (Ruiz 2001), and returns the scale.
+/// Scales rows and columns by the same factors until their largest entries are near 1 (Ruiz 2001), and returns the factors.
 fn equilibrate(entries: &mut [(usize, usize, f64)], size: usize) -> Vec<f64> {
     let mut scale = vec![1.0; size];
     for _ in 0..8 {
@@ -143,7 +143,7 @@ fn equilibrate(entries: &mut [(usize, usize, f64)], size: usize) -> Vec<f64> {
     scale
 }
 
-/// `L D L^T` of the equations, shifted to be quasidefinite: up in `x`, down in the multipliers.
+/// `L D L^T` of the equations, shifted to be quasidefinite: positive in `x`, negative in the multipliers.
 fn factor(entries: &[(usize, usize, f64)], n: usize, size: usize) -> Option<QDLDLFactorisation<f64>> {
     let mut shifted = entries.to_vec();
     shifted.extend((0..size).map(|i| (i, i, if i < n { SHIFT } else { -SHIFT })));

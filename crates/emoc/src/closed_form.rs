@@ -23,10 +23,9 @@ pub struct Coefficients<T = f64> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Branch {
-    /// The restitution inequality (6.6) alone: `e = ebar / (1 + Z)`. The outward inequality is slack,
-    /// or only just met.
+    /// The restitution inequality (6.6) alone: `e = ebar / (1 + Z)`. The outward inequality is not active, or only just.
     Basic,
-    /// Both inequalities: `e = ebar (beta_0 + beta_1) / (1 + beta_0)`, whatever `Z`.
+    /// Both inequalities: `e = ebar (beta_0 + beta_1) / (1 + beta_0)`, for any `Z`.
     Outward,
 }
 
@@ -46,25 +45,25 @@ impl fmt::Display for Branch {
     }
 }
 
-/// The solution of P_0, made dimensionless with the speed of approach `u = -v_i`.
+/// The solution of P_0, in units of the speed of approach `u = -v_i`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Rebound<T = f64> {
     /// `e = v_f / u`, from 0 to `ebar`.
     pub restitution: T,
-    /// `y = -sum phi_k a_k' / u`: speed at which the structure's point recoils, over `u`. Equal to
-    /// `ebar - e`, computed without cancellation.
+    /// `y = -sum phi_k a_k' / u`: recoil speed of the structure's point over `u`. It equals `ebar - e`, computed without
+    /// cancellation.
     pub recoil: T,
     /// Which inequalities determine it.
     pub branch: Branch,
-    /// `1/(1+Z) - (beta_0+beta_1)/(1+beta_0)`: not negative on the basic branch, negative on the outward
-    /// one, and zero at the kink, where the restitution has one derivative a side.
+    /// `1/(1+Z) - (beta_0+beta_1)/(1+beta_0)`: not negative on the basic branch, negative on the outward one, and zero at the
+    /// kink, where the restitution has a different derivative on each side.
     pub kink_margin: T,
 }
 
 impl<T: Real> Rebound<T> {
-    /// Share of the striker's kinetic energy that ends up in the modes: `y^2 / Z`.
+    /// Share of the striker's kinetic energy that the modes receive: `y^2 / Z`.
     ///
     /// ```
     /// let coefficients = emoc::Coefficients { ebar: 1.0, beta0: 0.0, beta1: 0.0 };
@@ -97,19 +96,19 @@ impl<T: Real> Rebound<T> {
     }
 }
 
-/// Partial derivatives of the restitution in what the closed form takes. At the kink they are those of the
-/// branch reported.
+/// Partial derivatives of the restitution with respect to the arguments of the closed form. At the kink they are those of the
+/// reported branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CoefficientGradient<T = f64> {
-    /// In `ebar`.
+    /// With respect to `ebar`.
     pub per_ebar: T,
-    /// In `beta_0`.
+    /// With respect to `beta_0`.
     pub per_beta0: T,
-    /// In `beta_1`.
+    /// With respect to `beta_1`.
     pub per_beta1: T,
-    /// In `Z`.
+    /// With respect to `Z`.
     pub per_z: T,
 }
 
@@ -141,7 +140,7 @@ impl<T: Real> Coefficients<T> {
         Ok(self.rebound_unchecked(z))
     }
 
-    /// The closed form itself, for numbers known to be in range.
+    /// The closed form, for numbers that are known to be in range.
     #[inline]
     pub(crate) fn rebound_unchecked(&self, z: T) -> Rebound<T> {
         let one = T::ONE;
@@ -149,7 +148,7 @@ impl<T: Real> Coefficients<T> {
         let outward = (self.beta0 + self.beta1) / (one + self.beta0);
         let kink_margin = basic - outward;
         let (branch, share, recoil) = if kink_margin >= T::ZERO {
-            // z/(1+z) without a division, without cancellation for small z and without overflow for large
+            // z/(1+z) without a division, without cancellation for small z, and without overflow for large z.
             (Branch::Basic, basic, if z < one { z * basic } else { one - basic })
         } else {
             (Branch::Outward, outward, (one - self.beta1) / (one + self.beta0))
@@ -157,7 +156,7 @@ impl<T: Real> Coefficients<T> {
         Rebound { restitution: self.ebar * share, recoil: self.ebar * recoil, branch, kink_margin }
     }
 
-    /// The rebound and its derivatives in the coefficients and in `Z`.
+    /// The rebound and its derivatives with respect to the coefficients and `Z`.
     ///
     /// ```
     /// let coefficients = emoc::Coefficients { ebar: 1.0, beta0: 0.0, beta1: 0.0 };
@@ -198,7 +197,7 @@ pub(crate) fn sum_of_squares<T: Real>(phi: &[T]) -> Result<T, InvalidInput> {
     let mut sum = T::ZERO;
     for (index, &phi_k) in phi.iter().enumerate() {
         sum = sum + phi_k * phi_k;
-        // false for NaN and for overflow alike
+        // False both for NaN and for overflow.
         let finite = sum <= T::MAX;
         require(finite, ("phi", index), phi_k, "finite mode shapes whose sum of squares is finite")?;
     }

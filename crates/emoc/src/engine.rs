@@ -1,4 +1,4 @@
-//! The solution of quadratic programs, one after the other.
+//! The solution of a sequence of quadratic programs.
 
 use crate::active_set;
 use crate::program::{Entry, Program};
@@ -13,25 +13,24 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 #[derive(Debug, Clone)]
 pub(crate) struct Minimum {
     pub(crate) x: Vec<f64>,
-    /// Whether its active rows prove it to the last digits; else it is what the interior point gave.
+    /// Whether its active rows prove it to the last digits; otherwise it is the interior-point iterate.
     pub(crate) proven: bool,
 }
 
-/// Why there is no minimum to report.
+/// The reason why there is no minimum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Failure {
-    /// No point satisfies the rows.
+    /// No point satisfies all rows.
     Infeasible,
     /// The objective has no lower bound.
     Unbounded,
-    /// The solver stopped early, for the reason named.
+    /// The solver stopped early, for this reason.
     Stopped(&'static str),
 }
 
-/// Solves programs one after the other. While the pattern stays the same it first tries the rows that were
-/// active last time, which costs one factorisation instead of an iteration; failing that, Clarabel runs with
-/// its ordering, symbolic factorisation and memory kept. Its own iteration starts anew each time, as an
-/// interior-point method must.
+/// Solves programs one after the other. While the pattern stays the same it first tries the rows that were active last time,
+/// which costs one factorisation instead of an iteration. If that fails, Clarabel runs and reuses its ordering, symbolic
+/// factorisation and memory. Its iteration starts anew each time, as an interior-point method must.
 #[derive(Default)]
 pub(crate) struct Engine {
     kept: Option<Kept>,
@@ -43,11 +42,11 @@ struct Kept {
     active: Option<Vec<bool>>,
 }
 
-/// Column starts and row indices.
+/// Starts of the columns, and row indices.
 type Pattern = (Vec<usize>, Vec<usize>);
 
 impl Engine {
-    /// The minimiser: proven on its active rows where possible, else as Clarabel leaves it.
+    /// The minimiser: proven on its active rows if possible, otherwise Clarabel's result.
     pub(crate) fn minimise(&mut self, program: &Program) -> Result<Minimum, Failure> {
         let n = program.linear.len();
         let hessian = columns(n, n, &program.hessian);
@@ -61,7 +60,8 @@ impl Engine {
             let updated = kept.solver.update_data(&hessian.nzval, &program.linear, &rows.nzval, &program.bounds);
             if updated.is_ok() {
                 kept.solver.solve();
-                // the scaling kept may not suit the new numbers: only a solution counts, else start afresh
+                // The previous scaling may not suit the new numbers: only a solution counts, otherwise the solver is set up
+                // again.
                 if kept.solver.solution.status == SolverStatus::Solved {
                     return kept.finish(program);
                 }
@@ -76,7 +76,7 @@ impl Engine {
             Ok(Kept { pattern: pattern.clone(), solver: Box::new(solver), active: None })
         };
         match self.kept.insert(run(1e-12)?).finish(program) {
-            // with less asked of it, it can tell a minimum from infeasibility
+            // With a lower accuracy required, it can distinguish a minimum from infeasibility.
             Err(Failure::Stopped(_)) => self.kept.insert(run(1e-8)?).finish(program),
             result => result,
         }
@@ -84,8 +84,8 @@ impl Engine {
 }
 
 impl Kept {
-    /// Completes what Clarabel found on the rows whose multiplier exceeds their slack; where it stalled too far
-    /// off for that, from no row at all.
+    /// Completes Clarabel's result on the rows whose multiplier exceeds their slack; if it stalled too early for that, starting
+    /// without any active row.
     fn finish(&mut self, program: &Program) -> Result<Minimum, Failure> {
         let found = &self.solver.solution;
         let guess: Vec<bool> = found.z.iter().zip(&found.s).map(|(z, s)| z > s).collect();
@@ -107,7 +107,7 @@ impl Kept {
     }
 }
 
-/// One thread, no output, no change of the pattern; "almost solved" means a thousandth of the digits lost.
+/// One thread, no output, no change of the pattern; for "almost solved" a thousand times the tolerance is allowed.
 fn settings(tolerance: f64) -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
@@ -123,7 +123,7 @@ fn settings(tolerance: f64) -> DefaultSettings<f64> {
     }
 }
 
-/// Entries as compressed columns, zeros kept.
+/// Entries as compressed columns; zeros are stored.
 fn columns(rows: usize, columns: usize, entries: &[Entry]) -> CscMatrix<f64> {
     let mut sorted = entries.to_vec();
     sorted.sort_unstable_by_key(|&(row, column, _)| (column, row));

@@ -1,4 +1,4 @@
-//! Energy minimisation under outward constraints for several contacts and a structure already vibrating.
+//! Energy minimisation under outward constraints for several contacts and a structure that vibrates already.
 
 use crate::engine::Engine;
 use crate::scaled::Scaled;
@@ -7,11 +7,11 @@ use alloc::vec;
 use core::fmt;
 use invalid_input::InvalidInput;
 
-/// Why a contact problem has no solution to report.
+/// The reason why a contact problem has no solution.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// The input is outside the model's range.
+    /// The input is outside the range of the model.
     Invalid(InvalidInput),
     /// The quadratic program's solver stopped without a solution, for numbers at the limits of its precision.
     Stopped(&'static str),
@@ -34,12 +34,12 @@ impl From<InvalidInput> for SolveError {
     }
 }
 
-/// Solves impacts at several contacts. Keep one for a sequence of impacts of the same kind (the same friction at
-/// the same number of contacts, the same number of modes): it then starts from the rows that were active last
-/// time, and while these stay the same, one factorisation replaces the iteration and proves the result. Where
-/// they have changed too much, Clarabel runs with its ordering, symbolic factorisation and memory kept; an
-/// interior-point iteration itself has no warm start. Solutions differ from those of a new solver by rounding, or
-/// near the tolerance where no proof was reached; impulses that `W` leaves undetermined may differ.
+/// Solves impacts at several contacts. Reuse one solver for a sequence of impacts of the same kind (the same friction at the
+/// same number of contacts, the same number of modes): it then starts from the rows that were active last time, and while these
+/// stay the same, one factorisation replaces the iteration and proves the result. If they have changed too much, Clarabel runs
+/// and reuses its ordering, symbolic factorisation and memory; an interior-point iteration itself has no warm start. Solutions
+/// differ from those of a new solver by rounding, or, if no proof was reached, by about the tolerance; impulses that `W` does
+/// not determine may differ.
 #[derive(Default)]
 pub struct Solver {
     emoc: Engine,
@@ -60,19 +60,19 @@ impl Solver {
 
     /// Least kinetic energy under the outward constraints of each closing contact.
     ///
-    /// The energy does not grow and no contact closes afterwards, whatever the coefficients: where the rebound
-    /// demanded cannot be had, all demands are lowered together ([`Outcome::Relaxed`]).
+    /// The energy does not grow and no contact closes afterwards, for any coefficients: if the demanded rebound cannot be
+    /// reached, all demands are lowered together ([`Outcome::Relaxed`]).
     pub fn solve(&mut self, problem: &Problem) -> Result<Solution, SolveError> {
         problem.validate()?;
         let Some(scaled) = Scaled::new(problem)? else { return Ok(unchanged(problem)) };
-        // what the least-energy impact attains is within reach whatever was demanded
+        // The result of the least-energy impact is always feasible.
         let reference = scaled.least_energy(&mut self.least_energy)?;
         let attained = scaled.attained(&reference);
         match scaled.attempt(&mut self.emoc, &attained, 1.0) {
             Ok(point) if scaled.admissible(&point) => return Ok(scaled.solution(Outcome::Solved, &point)),
             _ => {}
         }
-        // The set of shares that can be met is an interval from 0, as rows and energy are convex: halve it.
+        // The set of feasible shares is an interval from 0, since rows and energy are convex, and is found by bisection.
         let (mut met, mut too_much) = (0.0, 1.0);
         let mut best = reference;
         for _ in 0..HALVINGS {
@@ -85,8 +85,8 @@ impl Solver {
         Ok(scaled.solution(Outcome::Relaxed { share: met }, &best))
     }
 
-    /// Todorov's impact (thesis 5.3): the least kinetic energy that impulses within the friction cones can
-    /// reach, the modes taking the impulse at once. No rebound is demanded, and without friction there is none.
+    /// Todorov's impact (thesis 5.3): the minimum of the kinetic energy over impulses within the friction cones, where the
+    /// modes take up the impulse instantaneously. No rebound is demanded, and without friction there is none.
     pub fn least_energy(&mut self, problem: &Problem) -> Result<Solution, SolveError> {
         problem.validate()?;
         let Some(scaled) = Scaled::new(problem)? else { return Ok(unchanged(problem)) };
@@ -95,7 +95,7 @@ impl Solver {
     }
 }
 
-/// Halvings of the share: it is found to 1e-6.
+/// Number of bisections of the share, which is found to 1e-6.
 const HALVINGS: usize = 20;
 
 fn unchanged(problem: &Problem) -> Solution {

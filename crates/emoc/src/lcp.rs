@@ -12,9 +12,9 @@ use invalid_input::InvalidInput;
 pub enum Lcp {
     /// `z >= 0` with `w = M z + q >= 0` and `z . w = 0`.
     Solved(Vec<f64>),
-    /// The method left along a ray. For a positive semidefinite `M` this proves that no solution exists.
+    /// The method ended on a ray. For a positive semidefinite `M` this proves that no solution exists.
     Ray,
-    /// No end after `50 (n + 1)` pivots, which only rounding can cause.
+    /// There was no end after `50 (n + 1)` pivots, which only rounding can cause.
     PivotLimit,
 }
 
@@ -49,9 +49,9 @@ pub fn solve(m: &[f64], q: &[f64]) -> Result<Lcp, InvalidInput> {
     Ok(Tableau::new(m, q).run())
 }
 
-/// Impulses that part every contact at no less than `ebar` times its speed of approach, with equality where
-/// there is an impulse (thesis 5.2.1): Newton's restitution for simultaneous impacts as a linear
-/// complementarity problem. Friction is left out, and the modes take the impulse at once.
+/// Impulses that open every contact at no less than `ebar` times its speed of approach, with equality if there is an impulse
+/// (thesis 5.2.1): Newton's restitution for simultaneous impacts as a linear complementarity problem. Friction is neglected,
+/// and the modes take up the impulse instantaneously.
 ///
 /// With unequal `ebar` the energy can grow; [`Solution::energy_change_j`] shows it. `Ok(None)` if the demands
 /// contradict each other, as between two walls.
@@ -69,7 +69,7 @@ pub fn newton_impact(problem: &Problem) -> Result<Option<Solution>, InvalidInput
             m[a * n + b] = combined[i * d + j];
         }
     }
-    // q is the opening velocity minus the demanded one before any impulse
+    // q is the opening velocity before any impulse minus the demanded one.
     let Lcp::Solved(p) = solve(&m, &q)? else { return Ok(None) };
     let mut impulse = vec![0.0; d];
     for (&i, p) in normals.iter().zip(&p) {
@@ -110,7 +110,7 @@ impl Tableau {
 
     fn run(mut self) -> Lcp {
         let n = self.n;
-        // z_0 enters for the most negative q, which makes every right-hand side non-negative
+        // z_0 enters for the most negative q, which makes every right-hand side non-negative.
         let mut leaving = 0;
         for i in 1..n {
             if self.rows[i][2 * n + 1] < self.rows[leaving][2 * n + 1] {
@@ -124,7 +124,7 @@ impl Tableau {
             if left == 2 * n {
                 return Lcp::Solved(self.solution());
             }
-            // the complement of what left must enter
+            // The complement of the leaving variable must enter.
             entering = if left < n { left + n } else { left - n };
             match self.ratio_test(entering) {
                 Some(row) => leaving = row,

@@ -10,8 +10,7 @@
 //! (m v_f^2 + sum a_k'^2) / 2                                   (6.4)
 //! ```
 //!
-//! under the conditions that the impulse `m (v_f + u)` bounds what each mode can have taken up, and that the bodies
-//! separate:
+//! under the conditions that the impulse `m (v_f + u)` limits the change of each mode, and that the bodies separate:
 //!
 //! ```text
 //! |a_k'| <= phi_k m (v_f + u)                                  (6.5, fundamental)
@@ -26,16 +25,15 @@
 //! e = v_f / u = ebar max( 1/(1+Z), (beta_0+beta_1)/(1+beta_0) ),      Z = m sum phi_k^2.
 //! ```
 //!
-//! # Why
+//! # Derivation
 //!
-//! In short, with `x = v_f/u` and `y = -sum phi_k a_k'/u`, the speed at which the contact point recoils:
+//! In short, with `x = v_f/u` and the recoil speed of the contact point `y = -sum phi_k a_k'/u`:
 //!
-//! 1. For a given `y >= 0` the modal energy is least for `a_k' = -phi_k y u / sum phi^2` (Cauchy and Schwarz), and
-//!    the same choice makes `sum phi_k |a_k'|` least; a negative `y` only costs energy. So P_0 is a problem in
-//!    `(x, y)`: least `x^2 + y^2/Z` with `x + y >= ebar`, `x - beta_0 y >= beta_1 ebar`, `0 <= y <= Z (1+x)`.
-//! 2. On `x + y = ebar` alone the least energy is at `x = ebar/(1+Z)`. If the outward inequality holds there, that
-//!    is the solution; if not, both hold with equality, which gives the second term, and the multipliers of
-//!    both are positive.
+//! 1. For a given `y >= 0` the modal energy is smallest for `a_k' = -phi_k y u / sum phi^2` (Cauchy and Schwarz), and the same
+//!    choice minimises `sum phi_k |a_k'|`; a negative `y` only costs energy. So P_0 is a problem in `(x, y)`: minimise `x^2 +
+//!    y^2/Z` with `x + y >= ebar`, `x - beta_0 y >= beta_1 ebar`, `0 <= y <= Z (1+x)`.
+//! 2. On `x + y = ebar` alone the energy is smallest at `x = ebar/(1+Z)`. If this satisfies the outward inequality, it is the
+//!    solution; if not, both are equalities, which gives the second term, and the multipliers of both are positive.
 //! 3. In either case `y <= ebar Z/(1+Z) < Z (1+x)`: the fundamental inequalities (6.5) are never active.
 //!
 //! Every step is in `docs/emoc-closed-form.md` of the repository. The tests compare the closed form with P_1
@@ -59,14 +57,13 @@
 //! | `y` | recoil of the structure's point over `u` | 1 | |
 //! | `W` | inverse of the contact inertia `M_C` | 1/kg | 5.1 |
 //!
-//! # What is where
+//! # Items
 //!
 //! - [`Coefficients::rebound`]: the closed form. [`Parameters::rebound`]: the three-parameter form of chapter 7, for
 //!   an [`Impact`] at a [`Site`]. Both in `f64` or `f32`, without allocation, with derivatives, and with the
 //!   [`Branch`] of the maximum that is active. The restitution is continuous and has a kink where both terms are
 //!   equal ([`Rebound::kink_margin`] is zero); nowhere else.
-//! - [`MovingImpact::rebound`]: the same for a structure that moves already, in two nested bisections, without
-//!   allocation.
+//! - [`MovingImpact::rebound`]: the same for a structure that moves already, by two nested bisections, without allocation.
 //! - `ScatteredLaw` (feature `scatter`): the distribution of the restitution about the law, and draws from it by a uniform random
 //!   number, for physics engines.
 //! - [`newton_restitution`]: a constant coefficient at the contact points, for comparison.
@@ -75,16 +72,15 @@
 //!   vibrates already, friction; `Solver::least_energy` is Todorov's rule (5.3). `SingleImpact`: P_1 and its
 //!   reduced form as quadratic programs.
 //!
-//! Without features the crate depends on no third party and needs neither `std` nor an allocator. `qp` (default) brings
-//! `alloc`, `std` and [Clarabel](https://docs.rs/clarabel); `scatter` brings [libm](https://docs.rs/libm), which needs
-//! neither.
+//! Without features the crate has no dependency and needs neither `std` nor an allocator. `qp` (default) adds `alloc`, `std`
+//! and [Clarabel](https://docs.rs/clarabel); `scatter` adds [libm](https://docs.rs/libm), which needs neither.
 //!
 //! # Limits
 //!
-//! The closed form is for one contact and a structure at rest; [`MovingImpact`] for one contact and any motion. Contact
-//! law, speed and frequencies do not enter, so the number of modes takes the role of the duration of the contact: they
-//! should reach somewhat beyond the frequencies that it excites. With three parameters for a structure the law follows
-//! averages over location and mass. On the beams of the thesis its error against resolved impacts is 0.05 to 0.08 (rms),
+//! The closed form applies to one contact and a structure at rest, [`MovingImpact`] to one contact and any motion. Contact law,
+//! speed and frequencies are not arguments, so that the number of modes takes the role of the duration of the contact: the
+//! modes should reach somewhat beyond the frequencies that it excites. With three parameters for a structure the law follows
+//! averages over location and mass. On the beams of the thesis its error compared with resolved impacts is 0.05 to 0.08 (rms),
 //! and up to 0.3 for single ones.
 //!
 //! # Several contacts
@@ -100,20 +96,19 @@
 //!      |a_k' - a_k'(0)| <= sum_j (|shape_kj| + mu_j |shape_kj,t|) p_j   6.5
 //! ```
 //!
-//! For one striker and a structure at rest this is P_1. With a structure that vibrates, or bodies that touch each
-//! other in several locations, the demands on the right can exceed the available energy. Then all demands are lowered
-//! by a common share `s`, `(1-s)` times what the least-energy impact attains plus `s` times what was demanded, with
-//! the largest `s` (to 1e-6) at which the energy does not grow. At `s = 0` that impact itself is feasible,
-//! so that there always is such an `s`.
+//! For one striker and a structure at rest this is P_1. With a structure that vibrates, or bodies that touch each other in
+//! several locations, the demands on the right can exceed the available energy. Then all demands are lowered by a common share
+//! `s`, to `(1-s)` times the values of the least-energy impact plus `s` times the demands, with the largest `s` (to 1e-6) at
+//! which the energy does not grow. Such an `s` always exists, because the least-energy impact itself is feasible at `s = 0`.
 //!
-//! Clarabel's iterate is completed on its active rows, where optimality is then proven by signs; a sequence starts
-//! from the rows of its last solution and needs no iteration while these stay the same.
+//! Clarabel's iterate is completed on its active rows, where the signs of the multipliers then prove optimality. A sequence
+//! starts from the rows of its last solution and needs no iteration while these stay the same.
 #![cfg_attr(
     feature = "qp",
     doc = r#"
 ```
 use emoc::{Coefficients, Contact, Friction, Mode, Problem, Solver};
-// two strikers of 0.2 kg meet a structure with one mode that moves towards them
+// Two strikers of 0.2 kg meet a structure with one mode that moves towards them.
 let contact = Contact {
     friction: Friction::None,
     coefficients: Coefficients { ebar: 0.9, beta0: 0.2, beta1: 0.1 },
@@ -178,7 +173,7 @@ pub use scatter::{Scatter, ScatteredLaw};
 #[cfg(feature = "qp")]
 pub use single::{SingleImpact, SingleSolution};
 
-/// Runs the example of the readme.
+/// Runs the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

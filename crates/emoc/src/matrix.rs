@@ -1,4 +1,4 @@
-//! The little dense linear algebra that the contact problem needs, on slices, row by row.
+//! Dense linear algebra for the contact problem, on slices, row by row.
 
 use crate::require::require;
 use alloc::vec::Vec;
@@ -78,9 +78,9 @@ pub(crate) fn solve_factored(f: &[f64], n: usize, x: &mut [f64]) {
     }
 }
 
-/// Checks that `W` is symmetric and positive semidefinite and that `v` lies in its range, by elimination with
-/// the largest diagonal entry as pivot until only rounding is left of `W`; then nothing may be left of `v`, or no more than
-/// goes with what is left of `W`.
+/// Checks that `W` is symmetric and positive semidefinite and that `v` is in its range, by elimination with the largest
+/// diagonal entry as pivot until only rounding remains of `W`. The remainder of `v` must then be zero, or no larger than is
+/// consistent with the remainder of `W`.
 pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidInput> {
     let n = v.len();
     require_symmetric("inverse_inertia_per_kg", w, n)?;
@@ -88,7 +88,7 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
     let fastest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let (mut w, mut v) = (w.to_vec(), v.to_vec());
     let mut left: Vec<usize> = (0..n).collect();
-    // `v.W^-1.v` of what has been eliminated
+    // `v.W^-1.v` of the eliminated part.
     let mut energy = 0.0;
     while !left.is_empty() {
         let mut place = 0;
@@ -120,7 +120,7 @@ pub(crate) fn symmetric_consistent(w: &[f64], v: &[f64]) -> Result<(), InvalidIn
                 return Err(InvalidInput::new((field, i * n + j), w[i * n + j], allowed));
             }
         }
-        // `W = B B^T` and `v = B u` let `v_i^2` be `W_ii u.u`, however small
+        // With `W = B B^T` and `v = B u`, `v_i^2` is at most `W_ii u.u`, however small.
         let unexplained = v[i] * v[i] > 100.0 * w[i * n + i].max(0.0) * energy;
         if v[i].abs() > 100.0 * ROUNDING * fastest && unexplained {
             let allowed = "velocities in the range of inverse_inertia_per_kg (an immovable body does not move)";

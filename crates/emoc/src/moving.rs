@@ -11,38 +11,38 @@
 //!      |a_k' - a_k'(0)|            <= |phi_k| p                                        (3)
 //! ```
 //!
-//! For a given `p` the Lagrangian parts into the modes. What (1) and (2) ask of mode `k` is `-s phi_k` with one number
-//! `s >= 0` for all modes, the difference of the two multipliers, and (3) holds it within its range:
+//! For a given `p` the Lagrangian separates into the modes. The speed of mode `k` that (1) and (2) demand is `-s phi_k` with
+//! one number `s >= 0` for all modes, the difference of the two multipliers, and (3) restricts it to its range:
 //!
 //! ```text
 //! a_k'(s, p) = the nearest to -s phi_k from a_k'(0) - |phi_k| p to a_k'(0) + |phi_k| p.   (4)
 //! ```
 //!
-//! The left side of (1) grows with `s`, so that the least `s` that meets it is found by bisection. This `s` also makes
-//! `sum |phi_k a_k'|` least, as no mode leaves zero further than (1) needs. What remains is a problem in `p` alone. A greater
-//! `p` widens every range and raises `v`, so that whether (1) can be met, and whether (2) is met, changes once at most;
-//! and the least energy for a given `p` is a convex function with the slope
+//! The left side of (1) grows with `s`, so that bisection finds the smallest `s` that satisfies it. This `s` also minimises
+//! `sum |phi_k a_k'|`, because no mode moves further from zero than (1) requires. The remaining problem has the only unknown
+//! `p`. A larger `p` widens every range and raises `v`, so that each of (1) and (2) changes from infeasible to feasible at most
+//! once; and the smallest energy for a given `p` is a convex function with the slope
 //!
 //! ```text
 //! v - s/m - sum |phi_k| |a_k' + s phi_k|.                                             (5)
 //! ```
 //!
-//! The solution is the least `p` at which (1) can be met, (2) is met and (5) is not negative: a bisection again. If the
-//! energy then grows, or numbers run out, all demands are lowered by a common share, as for several contacts.
+//! The solution is the smallest `p` at which (1) is feasible, (2) is satisfied and (5) is not negative, found by bisection
+//! again. If the energy then grows, or numbers overflow, all demands are lowered by a common share, as for several contacts.
 
 use crate::Coefficients;
 use crate::require::{require, require_positive};
 use invalid_input::InvalidInput;
 
-/// Share of the energy at hand by which rounding may exceed it.
+/// Share of the available energy by which rounding may exceed it.
 const ENERGY_ROUNDING: f64 = 1e-10;
-/// Halvings of the share that demands are lowered by.
+/// Number of bisections of the share by which demands are lowered.
 const SHARE_HALVINGS: usize = 20;
-/// Halvings and doublings of a number until it is certain to rounding.
+/// Number of halvings and doublings after which a number is accurate to rounding.
 const HALVINGS: usize = 2200;
-/// Largest number that is taken.
+/// Largest number that is accepted.
 const LARGEST: f64 = 1e60;
-/// Impulse beyond which none is looked for, and which no product of the program overflows with.
+/// Largest impulse that is searched for, at which no product of the program overflows.
 const FARTHEST: f64 = 1e200;
 
 /// A striker that meets a structure at one point.
@@ -71,12 +71,12 @@ pub struct MovingRebound {
     pub impulse_n_s: f64,
     /// The number `s` of (4), from which the modal speeds follow.
     pub level: f64,
-    /// Share of the demands that could be had: 1 unless the energy would grow.
+    /// Share of the demands that was met: 1 unless the energy would grow.
     pub share: f64,
 }
 
 impl MovingImpact<'_> {
-    /// The impact of least energy under the outward constraints. Where the two are not closing, nothing happens.
+    /// The impact of least energy under the outward constraints. If the bodies are not closing, nothing happens.
     ///
     /// ```
     /// use emoc::{Coefficients, MovingImpact};
@@ -92,8 +92,8 @@ impl MovingImpact<'_> {
     /// ```
     ///
     /// # Errors
-    /// A mass that is not positive, coefficients out of range, a number that is not finite or beyond 1e60, lists that
-    /// differ in length.
+    /// A mass that is not positive, coefficients out of range, a number that is not finite or beyond 1e60, or lists of
+    /// different length.
     pub fn rebound(&self) -> Result<MovingRebound, InvalidInput> {
         self.validate()?;
         let inverse_inertia = 1.0 / self.mass_kg + self.phi.iter().map(|phi| phi * phi).sum::<f64>();
@@ -102,8 +102,7 @@ impl MovingImpact<'_> {
             let velocity_m_s = self.velocity_m_s;
             return Ok(MovingRebound { velocity_m_s, impulse_n_s: 0.0, level: 0.0, share: 1.0 });
         }
-        // the impact without demands, in which every mode takes the whole impulse: what is within reach whatever was
-        // demanded
+        // The impact without demands, in which every mode takes up the whole impulse, is always feasible.
         let plastic = Point { impulse: closing / inverse_inertia, level: f64::MAX };
         let Coefficients { ebar, beta1, .. } = self.coefficients;
         let demanded = [ebar * closing, beta1 * ebar * closing];
@@ -118,7 +117,7 @@ impl MovingImpact<'_> {
         let (best, share) = match attempt(1.0) {
             Some(point) => (point, 1.0),
             None => {
-                // the shares that can be had reach from 0 up to one
+                // The feasible shares are those from 0 up to a limit.
                 let (mut best, mut met, mut too_much) = (plastic, 0.0, 1.0);
                 for _ in 0..SHARE_HALVINGS {
                     let share = 0.5 * (met + too_much);
@@ -134,10 +133,10 @@ impl MovingImpact<'_> {
         Ok(MovingRebound { velocity_m_s: self.velocity(impulse_n_s), impulse_n_s, level, share })
     }
 
-    /// Modal speed after the impact of mode `k` (kg^1/2 m/s), zero beyond the last.
+    /// Modal speed after the impact of mode `k` (kg^1/2 m/s); zero beyond the last mode.
     ///
-    /// These are the speeds of least energy that the law works with. What the structure is left with is more: of an
-    /// impulse that lasts as long as the force of a contact, every mode below takes its part.
+    /// These are the speeds of least energy in the law. The structure has more energy after a real impact: every lower mode
+    /// takes up its part of an impulse that lasts as long as the contact force.
     pub fn modal_rate(&self, rebound: &MovingRebound, k: usize) -> f64 {
         let point = Point { impulse: rebound.impulse_n_s, level: rebound.level };
         self.modes().nth(k).map_or(0.0, |(phi, rate)| point.rate(phi, rate))
@@ -172,7 +171,7 @@ impl MovingImpact<'_> {
 
     fn energy(&self, point: &Point) -> f64 {
         let v = self.velocity(point.impulse);
-        // without impulse (3) leaves every mode as it is
+        // Without impulse (3) does not allow a mode to change.
         let modes: f64 = self.modes().map(|(phi, rate)| point.rate(phi, rate)).map(|a| a * a).sum();
         0.5 * (self.mass_kg * v * v + modes)
     }
@@ -194,7 +193,7 @@ impl MovingImpact<'_> {
         self.velocity(point.impulse) - point.level / self.mass_kg - self.modes().map(held).sum::<f64>()
     }
 
-    /// The least energy for demands on (1) and (2); none if numbers run out.
+    /// The smallest energy for the demands (1) and (2); `None` if numbers overflow.
     fn solve(&self, opening: f64, outward: f64) -> Option<Point> {
         let enough = |impulse: f64| {
             let point = self.at(impulse, opening)?;
@@ -224,21 +223,21 @@ impl MovingImpact<'_> {
         Some(best)
     }
 
-    /// The least level at which (1) is met with this impulse; none if it cannot be.
+    /// The smallest level at which (1) is satisfied with this impulse; `None` if there is none.
     fn at(&self, impulse: f64, opening: f64) -> Option<Point> {
         let met = |level: f64| self.opening(&Point { impulse, level }) >= opening;
         if met(0.0) {
             return Some(Point { impulse, level: 0.0 });
         }
-        // from here on every mode is at the end of its range
+        // From here on every mode is at the end of its range.
         let end = |(phi, rate): (f64, f64)| if phi == 0.0 { 0.0 } else { impulse - rate / phi };
         let (mut low, mut high) = (0.0, self.modes().map(end).fold(0.0, f64::max));
         if !met(high) {
             return None;
         }
         for _ in 0..HALVINGS {
-            // (1) is straight between the ends of ranges: where both ends of the search lie in one piece, the secant is
-            // exact, and it is tried once before each halving
+            // (1) is linear between the ends of ranges: if both ends of the search are in one piece, the secant is exact, and
+            // it is tried once before each halving.
             let [below, above] = [low, high].map(|level| self.opening(&Point { impulse, level }) - opening);
             let secant = low - below * ((high - low) / (above - below));
             for level in [secant, 0.5 * (low + high)] {
@@ -254,7 +253,7 @@ impl MovingImpact<'_> {
     }
 }
 
-/// An impulse and a level, which state all speeds.
+/// An impulse and a level, which determine all speeds.
 #[derive(Clone, Copy)]
 struct Point {
     impulse: f64,

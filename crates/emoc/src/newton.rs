@@ -1,15 +1,15 @@
-//! Newton's restitution at the contact points, with the modes struck by a single impulse.
+//! Newton's restitution at the contact points, with the modes excited by a single impulse.
 
 use crate::Real;
 use crate::require::{require_fraction, require_non_negative};
 use invalid_input::InvalidInput;
 
-/// Net restitution when the striker and a structure at rest exchange one impulse after which the contact
-/// points part at `restitution` times the speed of approach: `(restitution - Z) / (1 + Z)`.
+/// Net restitution if the striker and a structure at rest exchange one impulse after which the contact points separate at
+/// `restitution` times the speed of approach: `(restitution - Z) / (1 + Z)`.
 ///
-/// This is what a constant coefficient means once modes are there (generalised momentum balance, thesis 5.1).
-/// From `Z > restitution` on the striker goes on towards the structure, so that further sub-impacts must
-/// follow, which this rule does not see. For a rigid structure (`Z = 0`) it is the constant itself.
+/// This is the meaning of a constant coefficient for a structure with modes (generalised momentum balance, thesis 5.1). For `Z
+/// > restitution` the striker continues towards the structure, so that further sub-impacts must follow, which this rule does
+/// not describe. For a rigid structure (`Z = 0`) it is the constant itself.
 ///
 /// ```
 /// assert_eq!(emoc::newton_restitution(0.8, 0.0)?, 0.8);

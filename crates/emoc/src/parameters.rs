@@ -5,7 +5,7 @@ use crate::require::{require_fraction, require_non_negative, require_positive};
 use crate::{Coefficients, Real, Rebound};
 use invalid_input::InvalidInput;
 
-/// What the model needs to know of a location on a structure: three numbers out of its mode shapes there.
+/// The three numbers of a location on a structure that the model uses, from its mode shapes there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -19,8 +19,8 @@ pub struct Site<T = f64> {
 }
 
 impl<T: Real> Site<T> {
-    /// From mass-normalised mode shapes `phi_k(b)` (kg^-1/2), slowest mode first. Signs do not matter.
-    /// Without modes the structure is rigid and immovable. An error if a shape is not finite.
+    /// From mass-normalised mode shapes `phi_k(b)` (kg^-1/2), lowest mode first. Signs do not matter. Without modes the
+    /// structure is rigid and immovable. An error if a shape is not finite.
     pub fn new(phi: &[T]) -> Result<Site<T>, InvalidInput> {
         let first = phi.first().map_or(T::ZERO, |&phi_1| phi_1 * phi_1);
         Ok(Site { sum_phi_squared_per_kg: sum_of_squares(phi)?, first_phi_squared_per_kg: first, modes: phi.len() })
@@ -65,7 +65,7 @@ impl<T: Real> Impact<T> {
 
 /// The fitted parameters `mu_0`, `alpha_0`, `alpha_1` and the notional restitution (thesis 7.1).
 ///
-/// The thesis takes the three as positive; 0 is allowed here and means its limit.
+/// The thesis defines the three as positive; 0 is allowed here and means the limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -81,28 +81,28 @@ pub struct Parameters<T = f64> {
 }
 
 impl<T: Real> Default for Parameters<T> {
-    /// All 1: what the thesis suggests where nothing has been fitted (7.3).
+    /// All equal to 1, which the thesis suggests if nothing has been fitted (7.3).
     fn default() -> Self {
         Parameters { mu0: T::ONE, alpha0: T::ONE, alpha1: T::ONE, notional_restitution: T::ONE }
     }
 }
 
-/// Partial derivatives of the restitution in the parameters and in the striker's mass (`Z`, `S_0` and `S_1`
-/// all grow with it). Exact on either side of the kink where [`Rebound::kink_margin`] is zero; at it they are
-/// those of the branch reported.
+/// Partial derivatives of the restitution with respect to the parameters and the striker's mass (`Z`, `S_0` and `S_1` are
+/// proportional to it). They are exact on either side of the kink, where [`Rebound::kink_margin`] is zero; at the kink they are
+/// those of the reported branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct ParameterGradient<T = f64> {
-    /// In `mu_0`.
+    /// With respect to `mu_0`.
     pub per_mu0: T,
-    /// In `alpha_0`.
+    /// With respect to `alpha_0`.
     pub per_alpha0: T,
-    /// In `alpha_1`.
+    /// With respect to `alpha_1`.
     pub per_alpha1: T,
-    /// In the notional restitution `e`.
+    /// With respect to the notional restitution `e`.
     pub per_notional_restitution: T,
-    /// In the mass (1/kg).
+    /// With respect to the mass (1/kg).
     pub per_mass_per_kg: T,
 }
 
@@ -137,7 +137,7 @@ impl<T: Real> Parameters<T> {
         })
     }
 
-    /// Rebound of an impact on a structure at rest. Allocates nothing.
+    /// Rebound of an impact on a structure at rest, without allocation.
     ///
     /// ```
     /// use emoc::{Impact, Parameters, Site};
@@ -170,7 +170,7 @@ impl<T: Real> Parameters<T> {
 
         let e = self.notional_restitution;
         let (t, x0, x1) = (self.mu0 * impact.z, self.alpha0 * impact.s0, self.alpha1 * impact.s1);
-        // the mass acts through t, x_0, x_1 and Z, each proportional to it
+        // The mass enters through t, x_0, x_1 and Z, each proportional to it.
         let per_log_mass = -per.per_ebar * e * dip_log_slope(t)
             + per.per_beta0 * saturate_log_slope(x0)
             + per.per_beta1 * saturate_log_slope(x1)
@@ -186,8 +186,8 @@ impl<T: Real> Parameters<T> {
     }
 }
 
-/// `g(t) = t / (t^2 + t + 1)`, so that `ebar = e (1 - g(mu_0 Z))` is Eq. 7.5. Where `t^2` overflows, `g` is
-/// less than any rounding of 1.
+/// `g(t) = t / (t^2 + t + 1)`, so that `ebar = e (1 - g(mu_0 Z))` is Eq. 7.5. If `t^2` overflows, `g` is below the rounding of
+/// 1.
 #[inline]
 fn dip<T: Real>(t: T) -> T {
     let square = t * (T::ONE + t);
@@ -203,7 +203,7 @@ fn dip_slope<T: Real>(t: T) -> T {
     factor * (one - r * r) / (sum * sum)
 }
 
-/// `t g'(t)`, also for a `t` that has overflowed.
+/// `t g'(t)`, also if `t` has overflowed.
 #[inline]
 fn dip_log_slope<T: Real>(t: T) -> T {
     let one = T::ONE;
@@ -212,7 +212,7 @@ fn dip_log_slope<T: Real>(t: T) -> T {
     factor * (one - r * r) / (sum * sum)
 }
 
-/// `x / (1 + x)`, Eqs. 7.6 and 7.7, also for an `x` that has overflowed.
+/// `x / (1 + x)`, Eqs. 7.6 and 7.7, also if `x` has overflowed.
 #[inline]
 fn saturate<T: Real>(x: T) -> T {
     if x <= T::MAX { x / (T::ONE + x) } else { T::ONE }

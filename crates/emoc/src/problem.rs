@@ -1,4 +1,4 @@
-//! Several contacts at once, posed in the space of the contacts.
+//! Several contacts at once, in contact coordinates.
 
 use crate::Coefficients;
 use crate::matrix::{self, symmetric_consistent};
@@ -7,12 +7,12 @@ use alloc::vec::Vec;
 use core::fmt;
 use invalid_input::InvalidInput;
 
-/// Friction at a contact, which also says how many coordinates the contact has.
+/// Friction at a contact, which also determines its number of coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Friction {
-    /// None: one coordinate, along the normal.
+    /// No friction: one coordinate, along the normal.
     None,
     /// Coulomb friction in a plane: two coordinates, normal and tangent; `|tau| <= mu p`.
     Planar {
@@ -70,12 +70,12 @@ pub struct Mode {
     pub shape: Vec<f64>,
 }
 
-/// Strikers that meet a structure in one or more contacts at the same time.
+/// Strikers that meet a structure at one or more contacts at the same time.
 ///
-/// The contact coordinates of all contacts are stacked, contact by contact, normal first. In each, a
-/// positive velocity of the striker leads away from the structure, and the structure's own velocity
-/// `sum_k shape_k a_k'` counts in the same direction, so that the contact opens at
-/// `g = velocity - sum_k shape_k a_k'`. Every contact listed is closed at the moment of impact.
+/// The contact coordinates of all contacts are stacked, contact by contact, normal first. In each, a positive velocity of the
+/// striker points away from the structure, and the structure's own velocity `sum_k shape_k a_k'` counts in the same direction,
+/// so that the contact opens at `g = velocity - sum_k shape_k a_k'`. Every contact in the list is closed at the instant of
+/// impact.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -85,18 +85,18 @@ pub struct Problem {
     /// `W`, the inverse of the contact inertia `M_C` of Eq. 5.1 (1/kg): impulses `P` change the strikers'
     /// contact velocities by `W P`. Symmetric, positive semidefinite, row by row.
     pub inverse_inertia_per_kg: Vec<f64>,
-    /// Velocities of the strikers' contact points before the impact (m/s), which lie in the range of `W`.
+    /// Velocities of the strikers' contact points before the impact (m/s), which must be in the range of `W`.
     pub velocity_m_s: Vec<f64>,
     /// The structure's modes; none for a rigid one.
     pub modes: Vec<Mode>,
 }
 
 impl Problem {
-    /// Poses the problem of bodies with `n` velocities, an `n` by `n` mass matrix, and the Jacobian (one row
-    /// of `n` a contact coordinate) that turns those velocities into contact velocities: `W = J M^-1 J^T`.
+    /// The problem of bodies with `n` velocities, an `n` by `n` mass matrix, and the Jacobian (one row of `n` per contact
+    /// coordinate) that maps those velocities to contact velocities: `W = J M^-1 J^T`.
     ///
-    /// An error if the mass matrix is not symmetric and positive definite, a size does not fit, or a number is
-    /// not finite.
+    /// Returns an error if the mass matrix is not symmetric and positive definite, a size does not match, or a number is not
+    /// finite.
     pub fn from_bodies(
         contacts: Vec<Contact>,
         mass_matrix: &[f64],
@@ -132,7 +132,7 @@ impl Problem {
         coordinates(&self.contacts)
     }
 
-    /// Place of each contact's normal among the contact coordinates.
+    /// Index of each contact's normal among the contact coordinates.
     pub fn normals(&self) -> Vec<usize> {
         let mut place = 0;
         let mut normals = Vec::with_capacity(self.contacts.len());
@@ -143,8 +143,8 @@ impl Problem {
         normals
     }
 
-    /// Checks sizes, ranges, that `W` is symmetric and positive semidefinite, and that the velocities lie in
-    /// its range: outside it an immovable body would be moving, with energy without end.
+    /// Checks sizes, ranges, that `W` is symmetric and positive semidefinite, and that the velocities are in its range;
+    /// otherwise an immovable body would move, with infinite energy.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         for (index, contact) in self.contacts.iter().enumerate() {
             let within = |error: InvalidInput| error.at(index).within("contacts");
@@ -167,7 +167,7 @@ impl Problem {
         symmetric_consistent(&self.inverse_inertia_per_kg, &self.velocity_m_s)
     }
 
-    /// Velocity at which each contact coordinate opens, for strikers' velocities and modal speeds.
+    /// Velocity at which each contact coordinate opens, from the strikers' velocities and the modal speeds.
     pub(crate) fn opening(&self, velocity: &[f64], rates: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut opening = velocity.to_vec();
         for (mode, rate) in self.modes.iter().zip(rates) {
@@ -202,7 +202,7 @@ impl Problem {
         }
     }
 
-    /// Modal speeds when the impulses act on the structure at once: `a_k' + sum_j shape_kj (-P_j)`.
+    /// Modal speeds if the impulses act on the structure instantaneously: `a_k' + sum_j shape_kj (-P_j)`.
     pub(crate) fn struck_rates(&self, impulse: &[f64]) -> Vec<f64> {
         self.modes.iter().map(|mode| mode.rate - matrix::dot(&mode.shape, impulse)).collect()
     }
@@ -222,7 +222,7 @@ impl Problem {
     }
 }
 
-/// How a solution came about.
+/// The kind of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -230,13 +230,12 @@ impl Problem {
 pub enum Outcome {
     /// No contact is closing: nothing happens.
     NoImpact,
-    /// The model's inequalities hold as stated.
+    /// The model's inequalities are satisfied as stated.
     Solved,
-    /// The rebound demanded is not to be had: it would take energy that is not there, bodies are wedged, or the
-    /// numbers are beyond the solver. All demands were lowered by a common share, between the least-energy impact
-    /// (0) and those stated (1).
+    /// The demanded rebound is not possible: it would need more energy than is available, bodies are wedged, or the numbers are
+    /// beyond the solver. All demands were lowered by a common share, between the least-energy impact (0) and those stated (1).
     Relaxed {
-        /// The share kept, 0 to 1.
+        /// The share of the demands, 0 to 1.
         share: f64,
     },
 }
@@ -256,7 +255,7 @@ impl fmt::Display for Outcome {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Solution {
-    /// How it came about.
+    /// Kind of the solution.
     pub outcome: Outcome,
     /// Impulses on the strikers in the contact coordinates (N s). Not unique where `W` is singular.
     pub impulse_n_s: Vec<f64>,
@@ -266,7 +265,7 @@ pub struct Solution {
     pub opening_m_s: Vec<f64>,
     /// Modal speeds of the structure (kg^1/2 m/s).
     pub modal_rate: Vec<f64>,
-    /// Kinetic energy after minus before (J), the strikers' and the structure's together.
+    /// Kinetic energy after minus before (J), of strikers and structure together.
     pub energy_change_j: f64,
 }
 
@@ -274,7 +273,7 @@ fn coordinates(contacts: &[Contact]) -> usize {
     contacts.iter().map(|contact| contact.friction.coordinates()).sum()
 }
 
-/// The rows of a matrix with `n` columns; none when it has no column.
+/// The rows of a matrix with `n` columns; none if it has no column.
 fn rows(matrix: &[f64], n: usize) -> core::slice::ChunksExact<'_, f64> {
     matrix.chunks_exact(n.max(1))
 }

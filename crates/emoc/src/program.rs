@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 
 /// Minimise `x^T H x / 2 + linear . x` subject to `row . x <= bound` for every row.
 ///
-/// Zero coefficients are kept as entries: the pattern then depends on the kind of problem alone, and a
-/// solver set up for one problem can take the numbers of the next.
+/// Zero coefficients are stored as entries: the pattern then depends on the kind of problem only, and a solver that was set up
+/// for one problem can be used with the numbers of the next.
 #[derive(Debug, Default)]
 pub(crate) struct Program {
     pub(crate) linear: Vec<f64>,
@@ -15,7 +15,7 @@ pub(crate) struct Program {
     pub(crate) bounds: Vec<f64>,
 }
 
-/// Row, column, value; of the symmetric `H` only the upper triangle.
+/// Row, column and value; of the symmetric `H` only the upper triangle.
 pub(crate) type Entry = (usize, usize, f64);
 
 impl Program {
@@ -23,7 +23,7 @@ impl Program {
         Program { linear: vec![0.0; variables], ..Program::default() }
     }
 
-    /// Adds `h x_i x_j` to `x^T H x`'s symmetric matrix: one call a pair, `i <= j`.
+    /// Adds `h x_i x_j` to `x^T H x`, with one call per pair, `i <= j`.
     pub(crate) fn quadratic(&mut self, i: usize, j: usize, h: f64) {
         self.hessian.push((i, j, h));
     }
@@ -32,7 +32,7 @@ impl Program {
         self.linear[i] = c;
     }
 
-    /// Multiplies the objective, which changes the unit of energy and not the minimiser.
+    /// Multiplies the objective, which changes the unit of energy but not the minimiser.
     pub(crate) fn scale_objective(&mut self, factor: f64) {
         self.linear.iter_mut().for_each(|c| *c *= factor);
         self.hessian.iter_mut().for_each(|entry| entry.2 *= factor);

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `f64` or `f32`: what the closed form needs is the four operations and comparison.
+/// `f64` or `f32`: the closed form needs only the four operations and comparison.
 pub trait Real:
     Copy
     + PartialOrd

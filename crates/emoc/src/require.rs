@@ -1,9 +1,9 @@
-//! Passes what is in range, and reports the field otherwise. Written so that a comparison with NaN reports it.
+//! Accepts values in range, and reports the field otherwise. The comparisons are written so that NaN is reported.
 
 use crate::Real;
 use invalid_input::{InvalidInput, Path};
 
-/// Passes when `holds`.
+/// Succeeds if `holds`.
 #[inline]
 pub(crate) fn require<T: Real>(
     holds: bool,
@@ -14,19 +14,19 @@ pub(crate) fn require<T: Real>(
     InvalidInput::unless(holds, field, value.to_f64(), allowed)
 }
 
-/// Passes a finite number not less than zero.
+/// Accepts a finite number not less than zero.
 #[inline]
 pub(crate) fn require_non_negative<T: Real>(field: &'static str, value: T) -> Result<(), InvalidInput> {
     require(value >= T::ZERO && value <= T::MAX, field, value, "a finite number not less than 0")
 }
 
-/// Passes a finite number greater than zero.
+/// Accepts a finite number greater than zero.
 #[inline]
 pub(crate) fn require_positive<T: Real>(field: &'static str, value: T) -> Result<(), InvalidInput> {
     require(value > T::ZERO && value <= T::MAX, field, value, "a finite number greater than 0")
 }
 
-/// Passes a number from zero to one.
+/// Accepts a number from zero to one.
 #[inline]
 pub(crate) fn require_fraction<T: Real>(field: &'static str, value: T) -> Result<(), InvalidInput> {
     require(value >= T::ZERO && value <= T::ONE, field, value, "a number from 0 to 1")

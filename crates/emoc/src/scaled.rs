@@ -1,4 +1,4 @@
-//! The quadratic programs of a contact problem, in units in which everything is of order one.
+//! The quadratic programs of a contact problem, in units in which all numbers are of order one.
 
 use crate::engine::{Engine, Failure};
 use crate::program::Program;
@@ -7,11 +7,11 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 use invalid_input::InvalidInput;
 
-/// Share of the energy at hand by which a numerical solution may exceed it.
+/// Share of the available energy by which a numerical solution may exceed it.
 const ENERGY_ROUNDING: f64 = 1e-10;
-/// Speed, over the fastest one, at which a contact may close numerically.
+/// Speed, relative to the fastest one, at which a contact may close numerically.
 const CLOSING_ROUNDING: f64 = 1e-9;
-/// Impulse, over what stops the fastest contact by itself, from which on bodies count as wedged.
+/// Impulse, relative to the one that stops the fastest contact by itself, above which bodies count as wedged.
 const WEDGED: f64 = 1e6;
 /// Share of the impulses between wedged bodies, which cancel, that may be missing at a contact.
 const WEDGED_ROUNDING: f64 = 1e-11;
@@ -24,18 +24,18 @@ pub(crate) struct Point {
     rate_changes: Vec<f64>,
 }
 
-/// What the left-hand sides of the demands amount to at some point, one number a contact.
+/// The left-hand sides of the demands at some point, one number per contact.
 pub(crate) struct Attained {
     opening: Vec<f64>,
     outward: Vec<f64>,
 }
 
-/// The problem with velocities over the fastest one and inverse inertias over the largest one. Modes out of
-/// reach of every contact are left out: they keep their speed, and would leave the program without interior.
+/// The problem with velocities relative to the fastest one and inverse inertias relative to the largest one. Modes that no
+/// contact excites are omitted: they do not change their speed, and with them the feasible set would have no interior.
 pub(crate) struct Scaled<'a> {
     stated: &'a Problem,
     problem: Problem,
-    /// Places of the modes kept.
+    /// Indices of the modes that are not omitted.
     kept: Vec<usize>,
     normals: Vec<usize>,
     /// Speed at which each contact closes before the impact, 0 if it opens.
@@ -76,7 +76,7 @@ impl<'a> Scaled<'a> {
             velocity_m_s: stated.velocity_m_s.iter().map(|v| v / speed).collect(),
             modes,
         };
-        // the truncated modes still move the contact points a little: that counts in how fast they close
+        // The omitted modes still move the contact points a little, which changes the closing speeds.
         let closing = normals.iter().map(|&i| (-opening[i] / speed).max(0.0)).collect();
         Ok(Some(Scaled { stated, problem, kept, normals, closing, speed, root }))
     }
@@ -99,7 +99,7 @@ impl<'a> Scaled<'a> {
         let impulse = engine.minimise(&program)?.x;
         let struck = self.problem.struck_rates(&impulse);
         let rate_changes = struck.iter().zip(&self.problem.modes).map(|(rate, mode)| rate - mode.rate).collect();
-        // between wedged bodies the least energy may be out of reach of any finite impulse
+        // Between wedged bodies the least energy may need an infinite impulse.
         let point = Point { impulse, rate_changes };
         let pressing = point.impulse.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
         let solution = self.state(&point);
@@ -119,7 +119,7 @@ impl<'a> Scaled<'a> {
         let (d, n) = (v.len(), modes.len());
         let (x, c) = (d, d + n);
         let mut p1 = Program::new(d + 2 * n);
-        // change of energy: P.W P/2 + v.P + sum (a + x)^2/2, half of the sum in c as in Eq. 6.8
+        // Change of energy: P.W P/2 + v.P + sum (a + x)^2/2, half of the sum in c as in Eq. 6.8.
         for i in 0..d {
             p1.linear(i, v[i]);
             for j in i..d {
@@ -137,10 +137,10 @@ impl<'a> Scaled<'a> {
         for (place, (&i, contact)) in self.normals.iter().zip(contacts).enumerate() {
             let demand = contact.coefficients.ebar * self.closing[place];
             let after = (0..d).map(|j| (j, w[i * d + j]));
-            // Eq. 6.9: g_i + (W P)_i - sum shape x >= ebar u; without approach it forbids interpenetration
+            // Eq. 6.9: g_i + (W P)_i - sum shape x >= ebar u; without approach it prevents interpenetration.
             let modal = modes.iter().enumerate().map(|(k, mode)| (x + k, -mode.shape[i]));
             p1.at_least(after.clone().chain(modal), lowered(demand, attained.opening[place]) - before[i]);
-            // Eq. 6.10, for closing contacts only; a row of zeros keeps the pattern for the others
+            // Eq. 6.10, for closing contacts only; a row of zeros keeps the pattern the same for the others.
             let acts = if self.closing[place] > 0.0 { 1.0 } else { 0.0 };
             let beta0 = contact.coefficients.beta0;
             let modal = modes.iter().enumerate().map(|(k, mode)| (c + k, -acts * beta0 * mode.shape[i].abs()));
@@ -151,7 +151,7 @@ impl<'a> Scaled<'a> {
         for (k, mode) in modes.iter().enumerate() {
             p1.at_most([(x + k, 1.0), (c + k, -1.0)], -mode.rate); // 6.11
             p1.at_most([(x + k, -1.0), (c + k, -1.0)], mode.rate); // 6.12
-            // 6.13: no mode changes by more than the impulses can give
+            // 6.13: no mode changes by more than the impulses can cause.
             p1.at_most(self.reach(mode).chain([(x + k, 1.0)]), 0.0);
             p1.at_most(self.reach(mode).chain([(x + k, -1.0)]), 0.0);
         }
@@ -191,7 +191,7 @@ impl<'a> Scaled<'a> {
         }
     }
 
-    /// What the demands of Eqs. 6.9 and 6.10 find at a point.
+    /// Left-hand sides of Eqs. 6.9 and 6.10 at a point.
     pub(crate) fn attained(&self, point: &Point) -> Attained {
         let solution = self.state(point);
         let buzz = |i: usize| -> f64 {
@@ -204,8 +204,8 @@ impl<'a> Scaled<'a> {
         Attained { opening: self.normals.iter().map(|&i| solution.opening_m_s[i]).collect(), outward }
     }
 
-    /// Whether a numerical solution is what it should be: no energy gained and no contact closing beyond rounding,
-    /// and no impulses that only cancel each other up to rounding, as between wedged bodies.
+    /// Whether a numerical solution is valid: energy does not grow and no contact closes beyond rounding, and there are no
+    /// impulses that only cancel each other up to rounding, as between wedged bodies.
     pub(crate) fn admissible(&self, point: &Point) -> bool {
         let solution = self.state(point);
         let modes: f64 = self.problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();

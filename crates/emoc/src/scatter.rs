@@ -1,4 +1,4 @@
-//! The law with its scatter: a restitution as nature would draw it.
+//! The law with its scatter: restitutions drawn from a distribution.
 //!
 //! Impacts with the same three numbers `Z`, `S_0`, `S_1` have different restitutions, because the order and the times of their
 //! sub-impacts differ. Their distribution is taken as logistic in the logarithm of the odds `e/(1-e)` about that of the law,
@@ -9,9 +9,10 @@
 //! s = s_0 + s_1 (z_s Z)^2 / (1 + (z_s Z)^2)                                                (3)
 //! ```
 //!
-//! with the law's restitution `m` as the median, both over the notional restitution. It lies between 0 and 1 by itself, its quantiles
-//! (2) are closed, and it narrows of itself where `m` comes near 1: at a small `Z` a single contact leaves nothing to chance
-//! but a share of `1 - e`. At a `Z` above `1/z_s` sub-impacts follow each other, and the scatter grows from `s_0` to `s_0 + s_1`.
+//! with the law's restitution `m` as the median, both divided by the notional restitution. Its values are between 0 and 1, its
+//! quantiles (2) have a closed form, and it becomes narrow as `m` approaches 1: at a small `Z` a single contact leaves only a
+//! share of `1 - e` to chance. At a `Z` above `1/z_s` sub-impacts follow each other, and the scatter grows from `s_0` to `s_0 +
+//! s_1`.
 
 use crate::require::{require, require_fraction, require_non_negative, require_positive};
 use crate::{Impact, Parameters};
@@ -26,7 +27,7 @@ pub struct ScatteredLaw {
     pub law: Parameters,
     /// `s_0`, the scatter of a single contact; greater than 0.
     pub single: f64,
-    /// `s_1`, what repeated contacts add; not negative.
+    /// `s_1`, the addition by repeated contacts; not negative.
     pub repeated: f64,
     /// `z_s`, the inverse of the `Z` at which half of that is added; not negative.
     pub onset: f64,
@@ -41,14 +42,14 @@ pub struct Scatter {
     pub median_share: f64,
     /// The scale `s` in the logarithm of the odds.
     pub scale: f64,
-    /// The notional restitution, the greatest that can be drawn.
+    /// The notional restitution, the largest that can be drawn.
     pub notional_restitution: f64,
 }
 
 impl ScatteredLaw {
-    /// Fitted to the beams of thesis chapter 4 (converged modes, steel balls at 1 m/s, Hertzian contact), with 50 modes in
-    /// the law: the law to all beams at once, the scatter to each as the others predict it. See
-    /// `docs/scatter-of-the-law.md` of the repository.
+    /// Fitted to the beams of thesis chapter 4 (converged modes, steel balls at 1 m/s, Hertz contact), with 50 modes in the
+    /// law: the law to all beams at once, the scatter to each beam as the others predict it. See `docs/scatter-of-the-law.md`
+    /// of the repository.
     pub const BEAMS: ScatteredLaw = ScatteredLaw {
         law: Parameters { mu0: 0.312, alpha0: 2.41, alpha1: 0.492, notional_restitution: 1.0 },
         single: 0.079,
@@ -80,7 +81,7 @@ impl ScatteredLaw {
     pub fn rebound(&self, impact: &Impact) -> Result<Scatter, InvalidInput> {
         self.validate()?;
         let notional_restitution = self.law.notional_restitution;
-        // of the shape alone, so that a notional restitution of 0 is no exception
+        // Computed from the shape alone, so that a notional restitution of 0 needs no exception.
         let shape = Parameters { notional_restitution: 1.0, ..self.law };
         let median_share = shape.rebound(impact)?.restitution;
         let x = self.onset * impact.z;
@@ -91,8 +92,8 @@ impl ScatteredLaw {
 }
 
 impl Scatter {
-    /// The restitution that belongs to a number that is uniform from 0 to 1, ends included: equation (2). It grows with the
-    /// number, so that `draw(0.5)` is the median and `draw(p)` the quantile of a share `p`.
+    /// The restitution for a number that is uniform from 0 to 1, ends included: equation (2). It increases with the number, so
+    /// that `draw(0.5)` is the median and `draw(p)` the quantile at `p`.
     pub fn draw(&self, uniform: f64) -> Result<f64, InvalidInput> {
         require_fraction("uniform", uniform)?;
         let against = libm::pow((1.0 - uniform) / uniform, self.scale);
@@ -100,13 +101,13 @@ impl Scatter {
         let share = match (m > 0.0, m < 1.0) {
             (false, _) => 0.0,
             (_, false) => 1.0,
-            // the power may overflow, and is then more than any odds
+            // The power may overflow, and then exceeds any odds.
             _ => 1.0 / (1.0 + (1.0 - m) / m * against),
         };
         Ok(self.notional_restitution * share)
     }
 
-    /// The interval that holds the restitution with a probability `level`, as likely below it as above.
+    /// The central interval that contains the restitution with probability `level`.
     pub fn interval(&self, level: f64) -> Result<[f64; 2], InvalidInput> {
         require_fraction("level", level)?;
         Ok([self.draw(0.5 * (1.0 - level))?, self.draw(0.5 * (1.0 + level))?])
@@ -118,7 +119,7 @@ impl Scatter {
         let x = restitution / self.notional_restitution;
         let m = self.median_share;
         Ok(match (x > 0.0, x < 1.0) {
-            // all is at 0 where the median is
+            // The whole probability is at 0 if the median is.
             (false, _) => f64::from(u8::from(restitution == 0.0 && (m == 0.0 || self.notional_restitution == 0.0))),
             (_, false) => 1.0,
             _ if m == 0.0 => 1.0,
@@ -128,13 +129,13 @@ impl Scatter {
     }
 
     /// The natural logarithm of the probability density at a restitution strictly between 0 and the notional one; minus
-    /// infinity where nothing is drawn.
+    /// infinity where the density is zero.
     pub fn log_density(&self, restitution: f64) -> f64 {
         let (x, m) = (restitution / self.notional_restitution, self.median_share);
         if !(x > 0.0 && x < 1.0 && m > 0.0 && m < 1.0) {
             return f64::NEG_INFINITY;
         }
-        // of the logistic distribution in the logarithm of the odds, symmetric about 0
+        // Of the logistic distribution in the logarithm of the odds, symmetric about 0.
         let t = libm::fabs(libm::log(x / (1.0 - x)) - libm::log(m / (1.0 - m))) / self.scale;
         let logistic = -t - 2.0 * libm::log1p(libm::exp(-t)) - libm::log(self.scale);
         logistic - libm::log(x * (1.0 - x)) - libm::log(self.notional_restitution)

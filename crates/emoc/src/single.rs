@@ -8,7 +8,7 @@ use crate::{Coefficients, SolveError};
 use alloc::vec::Vec;
 use invalid_input::InvalidInput;
 
-/// One striker and a structure at rest, as chapter 6 poses it. The speed of approach is the unit of velocity.
+/// One striker and a structure at rest, as in chapter 6. The speed of approach is the unit of velocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SingleImpact<'a> {
     /// Mass `m` of the striker (kg).
@@ -19,7 +19,7 @@ pub struct SingleImpact<'a> {
     pub coefficients: Coefficients<f64>,
 }
 
-/// What a quadratic program found for a [`SingleImpact`].
+/// The solution of a [`SingleImpact`] by a quadratic program.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -28,15 +28,15 @@ pub struct SingleSolution {
     pub restitution: f64,
     /// Modal speeds over the speed of approach, `a_k'/u` (kg^1/2).
     pub modal_rates_per_speed: Vec<f64>,
-    /// Kinetic energy after the impact over that before: `e^2 + sum a_k'^2 / (m u^2)`.
+    /// Kinetic energy after the impact over that before it: `e^2 + sum a_k'^2 / (m u^2)`.
     pub energy_ratio: f64,
 }
 
 impl SingleImpact<'_> {
     /// Solves P_1 (Eqs. 6.8 to 6.13) with Clarabel: `2 N + 1` variables.
     ///
-    /// Modes that the contact does not reach (`phi_k = 0`) stay at rest and are left out; the program would
-    /// have no interior with them.
+    /// Modes that the contact does not excite (`phi_k = 0`) stay at rest and are omitted; with them the feasible set would have
+    /// no interior.
     pub fn solve_full(&self) -> Result<SingleSolution, SolveError> {
         let z = self.moderated_mass_ratio()?;
         let Coefficients { ebar, beta0, beta1 } = self.coefficients;
@@ -77,7 +77,7 @@ impl SingleImpact<'_> {
         let z = self.moderated_mass_ratio()?;
         let Coefficients { ebar, beta0, beta1 } = self.coefficients;
         let (e, y) = (0, 1);
-        // units: ebar for e, ebar sqrt(Z/(1+Z)) for y
+        // Units: ebar for e, ebar sqrt(Z/(1+Z)) for y.
         let unit = (z / (1.0 + z)).sqrt();
         let mut reduced = Program::new(2);
         reduced.quadratic(e, e, 1.0 + z);
@@ -108,9 +108,9 @@ impl SingleImpact<'_> {
     }
 }
 
-/// Solves a program whose energy is in units of `m u^2 / 2 (1+Z)`, and if that brings no proof, of `m u^2 / 2`.
-/// The first suits the basic branch, where the striker's energy is the smaller part; the second the outward
-/// branch, where the modes' is. Up to `Z` near 1e6 it makes no difference.
+/// Solves a program whose energy is in units of `m u^2 / 2 (1+Z)`, and if that gives no proof, of `m u^2 / 2`. The first suits
+/// the basic branch, where the striker's energy is the smaller part; the second suits the outward branch, where the energy of
+/// the modes is. Up to `Z` near 1e6 there is no difference.
 fn minimise(mut program: Program, z: f64) -> Result<Vec<f64>, SolveError> {
     let first = Engine::default().minimise(&program);
     if let Ok(Minimum { x, proven: true }) = first {

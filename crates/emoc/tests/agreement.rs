@@ -18,14 +18,14 @@ fn assert_agreement(impact: &SingleImpact) {
     let mut rates = vec![0.0; impact.phi.len()];
     closed.modal_rates(1.0, impact.phi, &mut rates).unwrap();
     let energy = closed.restitution.powi(2) + closed.modal_energy_fraction(z);
-    // with beta_1 = 1 more rows are active at the minimum than there are variables, no active set proves it, and
-    // the interior point's own floor shows
+    // With beta_1 = 1 more rows are active at the minimum than there are variables, no active set proves it, and the error is
+    // that of the interior-point method.
     let floor = if impact.coefficients.beta1 == 1.0 { 1e-9 * (1.0 + z).sqrt() } else { 2e-12 };
     for solution in [impact.solve_full().unwrap(), impact.solve_reduced().unwrap()] {
         assert!((solution.restitution - closed.restitution).abs() < floor, "{impact:?}\n{solution:?}\n{closed:?}");
         assert!((solution.energy_ratio - energy).abs() < 50.0 * floor, "{impact:?}\n{solution:?}\n{energy}");
         for (found, rate) in solution.modal_rates_per_speed.iter().zip(&rates) {
-            // the energy is flat in a mode, so its speed has half the digits that the tolerances give the energy
+            // The energy is flat in a mode, so that its speed has half the digits of the energy.
             assert!((found - rate).abs() < 1e-6 * impact.mass_kg.sqrt(), "{impact:?}\n{solution:?}\n{rates:?}");
         }
     }
@@ -70,7 +70,7 @@ fn quadratic_programs_agree_with_the_closed_form_in_degenerate_cases() {
             }
             assert_agreement(&SingleImpact { mass_kg: 1.0, phi: &vec![0.0; phi.len()], coefficients });
         }
-        // the kink, to the last digit: 1/(1+Z) = (beta_0+beta_1)/(1+beta_0)
+        // The kink, to the last digit: 1/(1+Z) = (beta_0+beta_1)/(1+beta_0).
         if beta0 + beta1 > 0.0 {
             let z = (1.0 - beta1) / (beta0 + beta1);
             assert_agreement(&SingleImpact { mass_kg: z.max(1e-12), phi: &[0.6, 0.8], coefficients });
@@ -96,7 +96,7 @@ fn p0_with_all_signs(impact: &SingleImpact) -> Vec<f64> {
     }
     for k in 0..n {
         for sign in [1.0, -1.0] {
-            // 6.5 with v_i = -1
+            // 6.5 with v_i = -1.
             rows.push((row(phi[k] * m, &|j| if j == k { sign } else { 0.0 }), -phi[k] * m));
         }
     }

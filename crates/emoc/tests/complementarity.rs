@@ -1,4 +1,4 @@
-//! Lemke's method against the definition, and the baseline against known impacts.
+//! Lemke's method compared with the definition, and the baseline compared with known impacts.
 #![cfg(feature = "alloc")]
 
 mod common;
@@ -24,7 +24,7 @@ fn random_problems_are_solved_to_the_definition() {
                 m[i * n + j] = (0..rank).map(|k| factor[i * rank + k] * factor[j * rank + k]).sum();
             }
         }
-        // q = -M x + y with x >= 0, y > 0 has a solution even where M is singular
+        // q = -M x + y with x >= 0, y > 0 has a solution even if M is singular.
         let x: Vec<f64> = (0..n).map(|_| random.range(-1.0, 1.0).max(0.0)).collect();
         let q: Vec<f64> =
             (0..n).map(|i| random.range(0.01, 1.0) - (0..n).map(|j| m[i * n + j] * x[j]).sum::<f64>()).collect();
@@ -45,7 +45,7 @@ fn a_problem_without_solution_ends_on_a_ray() {
 }
 
 #[test]
-fn one_striker_rebounds_as_the_formula_says() {
+fn one_striker_rebounds_by_the_formula() {
     let mut random = Random(7);
     for _ in 0..500 {
         let (mass, e) = (random.log_range(1e-3, 1e3), random.range(0.0, 1.0));

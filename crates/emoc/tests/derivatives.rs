@@ -1,4 +1,4 @@
-//! The analytic derivatives against differences, the ranges of the restitution, and single precision.
+//! Analytic derivatives compared with differences, the ranges of the restitution, and single precision.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn gradients_are_those_of_differences_on_both_branches() {
         let e = |p: Parameters<f64>, mass: f64| p.rebound(&Impact::new(mass, &site).unwrap()).unwrap().restitution;
         let (rebound, gradient) = p.rebound_with_gradient(&Impact::new(mass, &site).unwrap()).unwrap();
         if rebound.kink_margin.abs() < 0.02 {
-            continue; // differences must not straddle the kink
+            continue; // Differences must not cross the kink.
         }
         seen[usize::from(rebound.branch == Branch::Outward)] += 1;
         let notional = p.notional_restitution;
@@ -135,11 +135,11 @@ fn limits_of_the_three_parameter_form() {
     let site = Site::new(&[1.0, 0.5]).unwrap();
     let e = |p: &Parameters<f64>, mass| p.rebound(&Impact::new(mass, &site).unwrap()).unwrap().restitution;
     let p = Parameters::default();
-    // Eq. 7.4: 1 at both ends of Z, 2/3 at Z = 1/mu_0
+    // Eq. 7.4: 1 at both ends of Z, 2/3 at Z = 1/mu_0.
     assert!((e(&p, 1e-12) - 1.0).abs() < 1e-11 && (e(&p, 1e12) - 1.0).abs() < 1e-11);
     let coefficients = p.coefficients(&Impact::new(0.8, &site).unwrap()).unwrap();
     assert!((coefficients.ebar - 2.0 / 3.0).abs() < 1e-15);
-    // a structure without modes is rigid
+    // A structure without modes is rigid.
     let rigid = Site::new(&[]).unwrap();
     let p = Parameters { notional_restitution: 0.6, ..p };
     assert_eq!(p.rebound(&Impact::new(1.0, &rigid).unwrap()).unwrap().restitution, 0.6);

@@ -1,4 +1,4 @@
-//! Several contacts at once: energy never grows, no contact closes, whatever the parameters.
+//! Several contacts at once: energy never grows and no contact closes, for any parameters.
 #![cfg(feature = "qp")]
 
 mod common;
@@ -74,9 +74,9 @@ fn one_striker_on_a_structure_at_rest_is_the_closed_form() {
     }
 }
 
-/// Asserts what the model promises for any input: energy, interpenetration, friction cones, momentum.
+/// Asserts the properties that hold for any input: energy, interpenetration, friction cones, momentum.
 fn assert_physical(problem: &Problem, solution: &Solution) {
-    // wedged bodies are pressed with impulses that cancel each other, and rounding grows with those
+    // Wedged bodies are pressed by impulses that cancel each other, and rounding grows with those.
     let pressing = solution.impulse_n_s.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
     let rounding = 1e-8 + 1e-10 * pressing;
     let modes: f64 = problem.modes.iter().map(|mode| mode.rate * mode.rate).sum();
@@ -115,11 +115,11 @@ fn energy_never_grows_and_nothing_interpenetrates() {
             assert_physical(&problem, &solver.least_energy(&problem).unwrap());
         }
     }
-    // each of the three outcomes is exercised
+    // Each of the three outcomes occurs.
     assert!(counts.iter().all(|count| *count > 20), "{counts:?}");
 }
 
-/// Where the demands are met as stated, they are met.
+/// Demands that are reported as met are met.
 #[test]
 fn the_outward_constraints_hold_where_the_outcome_says_so() {
     let mut random = Random(13);
@@ -158,7 +158,7 @@ fn the_outward_constraints_hold_where_the_outcome_says_so() {
     }
 }
 
-/// Two strikers on a structure that vibrates already, against brute force over all signs and active sets.
+/// Two strikers on a vibrating structure, compared with an enumeration of all signs and active sets.
 #[test]
 fn a_vibrating_structure_agrees_with_enumeration() {
     let mut random = Random(16);
@@ -180,7 +180,7 @@ fn a_vibrating_structure_agrees_with_enumeration() {
         if solution.outcome != Outcome::Solved {
             continue;
         }
-        // variables: the strikers' velocities and the modal speeds
+        // Variables are the strikers' velocities and the modal speeds.
         let mut rows = Vec::new();
         for i in 0..2 {
             let own = |j: usize| if i == j { 1.0 } else { 0.0 };
@@ -289,7 +289,7 @@ fn a_sequence_gives_what_single_solutions_give() {
 
 #[test]
 fn wedged_bodies_rest() {
-    // one body between two walls: both contacts cannot open
+    // One body between two walls: not both contacts can open.
     let problem = |ebar| Problem {
         contacts: vec![frictionless(Coefficients { ebar, beta0: 0.0, beta1: 0.0 }); 2],
         inverse_inertia_per_kg: vec![1.0, -1.0, -1.0, 1.0],
@@ -302,13 +302,13 @@ fn wedged_bodies_rest() {
     assert!(stuck.velocity_m_s.iter().all(|v| v.abs() < 1e-5) && stuck.energy_change_j < -0.49);
     let plastic = solver.solve(&problem(0.0)).unwrap();
     assert!(plastic.velocity_m_s.iter().all(|v| v.abs() < 1e-8), "{plastic:?}");
-    // the complementarity problem finds a contradiction
+    // The complementarity problem is infeasible.
     assert_eq!(emoc::lcp::newton_impact(&problem(1.0)).unwrap(), None);
 }
 
 #[test]
 fn a_ball_on_a_table_with_friction_stops_sliding_within_its_cone() {
-    // point mass 1 kg falling at 1 m/s and sliding at 0.3 m/s
+    // A point mass of 1 kg falls at 1 m/s and slides at 0.3 m/s.
     let problem = |friction| Problem {
         contacts: vec![Contact { friction, coefficients: Coefficients { ebar: 0.5, beta0: 0.0, beta1: 0.0 } }],
         inverse_inertia_per_kg: vec![1.0, 0.0, 0.0, 1.0],
@@ -328,7 +328,7 @@ fn nothing_happens_where_no_contact_closes() {
     problem.velocity_m_s = vec![0.2];
     let solution = Solver::new().solve(&problem).unwrap();
     assert_eq!((solution.outcome, solution.velocity_m_s[0]), (Outcome::NoImpact, 0.2));
-    // nor without contacts or bodies at all
+    // The same without contacts or bodies.
     let empty = Problem { contacts: vec![], inverse_inertia_per_kg: vec![], velocity_m_s: vec![], modes: vec![] };
     assert_eq!(Solver::new().solve(&empty).unwrap().outcome, Outcome::NoImpact);
 }
@@ -357,7 +357,7 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     );
     let pyramid = Friction::Spatial { coefficient: 0.1, facets: 2 };
     assert_eq!(field(&|p| p.contacts[0].friction = pyramid), "contacts[0].friction.facets");
-    // an immovable body that moves
+    // An immovable body that moves.
     assert_eq!(field(&|p| p.inverse_inertia_per_kg[0] = 0.0), "velocity_m_s[0]");
     let bodies = |mass: &[f64]| Problem::from_bodies(good().contacts, mass, &[1.0], &[-1.0], vec![]);
     assert_eq!(bodies(&[0.0]).unwrap_err().field, "mass_matrix");

@@ -1,4 +1,4 @@
-//! What breaks codes for the net restitution, each case with what is to come of it.
+//! Cases that are difficult for codes of the net restitution, each with its expected result.
 #![cfg(feature = "qp")]
 
 use emoc::{Coefficients, Contact, Friction, Mode, Outcome, Problem, SingleImpact, SolveError, Solver};
@@ -17,30 +17,30 @@ fn single(mass_kg: f64, phi: &[f64], coefficients: Coefficients<f64>) -> Problem
     }
 }
 
-/// The closed form, the quadratic programs and the general solver at the ends of every range: `(Z, ebar, beta0, beta1)`
-/// and the restitution.
+/// The closed form, the quadratic programs and the general solver at the ends of every range: `(Z, ebar, beta0, beta1)` and the
+/// restitution.
 #[test]
 fn ends_of_the_ranges() {
     let table = [
-        // Z = 0: nothing vibrates, whatever the outward inequality says
+        // Z = 0: nothing vibrates, for any outward inequality.
         (0.0, 1.0, 0.0, 0.0, 1.0),
         (0.0, 0.7, 0.5, 0.3, 0.7),
-        // Z = 1e12: all that is left is what the outward inequality demands
+        // Z = 1e12: only the rebound that the outward inequality demands remains.
         (1e12, 1.0, 0.0, 0.0, 1e-12),
         (1e12, 0.9, 0.5, 0.0, 0.3),
         (1e12, 0.9, 0.0, 0.25, 0.225),
-        // beta1 = 1: the striker alone must show the whole rebound
+        // beta1 = 1: the striker alone must have the whole rebound.
         (3.0, 0.8, 0.0, 1.0, 0.8),
         (3.0, 0.8, 2.0, 1.0, 0.8),
         (1e12, 0.8, 0.3, 1.0, 0.8),
-        // ebar = 0: nothing is demanded
+        // ebar = 0: nothing is demanded.
         (3.0, 0.0, 0.4, 0.6, 0.0),
         (0.0, 0.0, 0.0, 1.0, 0.0),
         (1e12, 0.0, 1.0, 1.0, 0.0),
-        // at the kink both terms are equal: 1/(1+Z) = (beta0+beta1)/(1+beta0)
+        // At the kink both terms are equal: 1/(1+Z) = (beta0+beta1)/(1+beta0).
         (1.0, 1.0, 0.0, 0.5, 0.5),
         (3.0, 1.0, 1.0 / 3.0, 0.0, 0.25),
-        // an outward weight beyond all bounds
+        // An unbounded outward weight.
         (3.0, 0.6, 1e12, 0.0, 0.6 * (1.0 - 1.0 / (1.0 + 1e12))),
     ];
     let mut solver = Solver::new();
@@ -55,7 +55,7 @@ fn ends_of_the_ranges() {
         let phi = [(0.36 * z).sqrt(), -(0.64 * z).sqrt()];
         let impact = SingleImpact { mass_kg: 1.0, phi: &phi, coefficients };
         for found in [impact.solve_reduced(), impact.solve_full()] {
-            // degenerate vertices (beta1 = 1) reach fewer digits; extremes may be given up, never answered wrongly
+            // Degenerate vertices (beta1 = 1) have fewer digits; extreme cases may fail, but never give a wrong result.
             match found {
                 Ok(found) => assert!((found.restitution - expected).abs() < 1e-6, "{z} {coefficients:?} {found:?}"),
                 Err(SolveError::Stopped(_)) => assert!(z > 1e6 || beta0 > 1e6, "{z} {coefficients:?}"),
@@ -67,7 +67,7 @@ fn ends_of_the_ranges() {
                 assert!((solution.velocity_m_s[0] - expected).abs() < 1e-6, "{z} {coefficients:?} {solution:?}");
             }
             Ok(solution) => {
-                // demands lowered together: said, and still without gain of energy
+                // Demands that are lowered together are reported, without gain of energy.
                 assert!(z > 1e6 || beta0 > 1e6, "{z} {coefficients:?} {solution:?}");
                 assert!(solution.energy_change_j <= 1e-8, "{solution:?}");
             }
@@ -79,7 +79,7 @@ fn ends_of_the_ranges() {
 
 /// Modes with a node at the contact, none at all, and a hundred equal ones.
 #[test]
-fn modes_without_part() {
+fn modes_with_zero_shape() {
     let c = coefficients(0.9, 0.3, 0.1);
     let mut solver = Solver::new();
     let expected = c.rebound(2.0).unwrap().restitution;
@@ -99,12 +99,12 @@ fn modes_without_part() {
     }
 }
 
-/// Programs whose optimum is not unique, or that have no point at all as stated.
+/// Programs whose optimum is not unique, or that are infeasible as stated.
 #[test]
 fn degenerate_and_infeasible_programs() {
     let mut solver = Solver::new();
     let c = coefficients(0.8, 0.2, 0.1);
-    // the same contact written down twice or five times: impulses are not unique, velocities are
+    // The same contact twice or five times: impulses are not unique, velocities are.
     let once = solver.solve(&single(1.0, &[1.2, -0.4], c)).unwrap();
     for copies in [2, 5] {
         let contact = Contact { friction: Friction::None, coefficients: c };
@@ -122,8 +122,8 @@ fn degenerate_and_infeasible_programs() {
         let whole: f64 = solution.impulse_n_s.iter().sum();
         assert!((whole - once.impulse_n_s[0]).abs() < 1e-7, "{copies}: {solution:?}");
     }
-    // A body between two walls that both close: the rebound from each would press it into the other. No velocity
-    // satisfies that; the demands are lowered until one does.
+    // A body between two walls that both close: the rebound from each would press it into the other. No velocity satisfies both
+    // demands, which are lowered until one does.
     let elastic = Contact { friction: Friction::None, coefficients: coefficients(1.0, 0.0, 0.0) };
     let mode = Mode { rate: 1.0, shape: vec![1.0, 1.0] };
     let wedged = Problem {
@@ -135,26 +135,26 @@ fn degenerate_and_infeasible_programs() {
     let solution = solver.solve(&wedged).unwrap();
     assert!(solution.opening_m_s.iter().all(|g| *g >= -1e-7), "{solution:?}");
     assert!(solution.energy_change_j <= 1e-8, "{solution:?}");
-    // nothing closes, nothing happens
+    // Nothing closes, nothing happens.
     let mut leaving = single(1.0, &[1.0], c);
     leaving.velocity_m_s[0] = 1.0;
     assert_eq!(solver.solve(&leaving).unwrap().outcome, Outcome::NoImpact);
-    // no contact at all
+    // No contact at all.
     let none = Problem { contacts: vec![], inverse_inertia_per_kg: vec![], velocity_m_s: vec![], modes: vec![] };
     assert_eq!(solver.solve(&none).unwrap().outcome, Outcome::NoImpact);
-    // an immovable body that moves is no problem that can be posed
+    // An immovable body that moves is not a valid problem.
     let mut immovable = single(1.0, &[1.0], c);
     immovable.inverse_inertia_per_kg[0] = 0.0;
     assert!(matches!(solver.solve(&immovable), Err(SolveError::Invalid(_))));
 }
 
-/// A point of almost no mobility: its velocity may be as small as its mobility allows, and no larger.
+/// A point of almost no mobility: its velocity may be as large as its mobility allows, and no larger.
 #[test]
 fn a_point_that_hardly_moves() {
     let mut solver = Solver::new();
     let contact = Contact { friction: Friction::None, coefficients: coefficients(0.5, 0.2, 0.1) };
     for hair in [1e-3, 1e-5, 3e-6, 1e-6] {
-        // W = B B^T, v = B u with B = [[1, 0], [1, hair]] and u = (-1, 0.7)
+        // W = B B^T, v = B u with B = [[1, 0], [1, hair]] and u = (-1, 0.7).
         let mut problem = Problem {
             contacts: vec![contact; 2],
             inverse_inertia_per_kg: vec![1.0, 1.0, 1.0, 1.0 + hair * hair],
@@ -183,10 +183,10 @@ fn twelve_decades_of_mass() {
     }
 }
 
-/// What must not change the net restitution: a mode written as two that share its shape squared, the signs and the order of
-/// the modes, and modes without part in it, each for one contact and for two of them on one structure.
+/// Changes that must not affect the net restitution: a mode replaced by two that share its squared shape, the signs and the
+/// order of the modes, and modes with zero shape, each for one contact and for two on one structure.
 #[test]
-fn modes_written_otherwise() {
+fn equivalent_lists_of_modes() {
     let mut solver = Solver::new();
     let shapes = [[1.2, 0.3], [-0.4, 0.9], [0.7, -0.5]];
     let problem = |contacts: usize, shapes: &[[f64; 2]]| Problem {

@@ -1,4 +1,4 @@
-//! The header for C against the crate, where there is a compiler for C.
+//! The C header compared with the crate, if there is a C compiler.
 
 mod common;
 
@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 
 const LINE: usize = 9;
 
-/// The compiler that `CC` names, or the system's.
+/// The compiler named by `CC`, or that of the system.
 fn compiler() -> Option<String> {
     let named = std::env::var("CC").ok();
     let found =
@@ -19,7 +19,7 @@ fn compiler() -> Option<String> {
     named.into_iter().chain(["cc", "gcc", "clang"].map(str::to_owned)).find(found)
 }
 
-/// One case as the program in C reads it, and the numbers that it should print.
+/// One case as the C program reads it, and the numbers that it should print.
 fn case(random: &mut Random) -> (String, [f64; LINE]) {
     let n = 1 + random.below(20);
     let phi: Vec<f64> = (0..n).map(|_| random.range(-2.0, 2.0)).collect();
@@ -53,7 +53,7 @@ fn case(random: &mut Random) -> (String, [f64; LINE]) {
     (text, [0.0, restitution, velocity_m_s, impulse_n_s, share, speeds, amplitude, rate, half_sine])
 }
 
-/// A ringing mode that begins with amplitude 0.3 and rate -2, by the classical Runge-Kutta method.
+/// A vibrating mode that starts with amplitude 0.3 and rate -2, by the classical Runge-Kutta method.
 fn rung(omega: f64, damping_ratio: f64, time_s: f64) -> (f64, f64) {
     let slope = |(a, b): (f64, f64)| (b, -omega * (2.0 * damping_ratio * b + omega * a));
     let along = |s: (f64, f64), h: f64, k: (f64, f64)| (s.0 + h * k.0, s.1 + h * k.1);
@@ -70,7 +70,7 @@ fn rung(omega: f64, damping_ratio: f64, time_s: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_header_answers_as_the_crate() {
+fn the_header_agrees_with_the_crate() {
     let Some(compiler) = compiler() else {
         eprintln!("no compiler for C: the header is not tested");
         return;

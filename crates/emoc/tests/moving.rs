@@ -1,5 +1,5 @@
-//! One striker and a structure that moves: nested bisections against the quadratic program of several contacts, and against
-//! the closed form where the structure is at rest.
+//! One striker and a moving structure: nested bisections compared with the quadratic program of several contacts, and with the
+//! closed form for a structure at rest.
 #![cfg(feature = "qp")]
 
 mod common;
@@ -82,9 +82,9 @@ fn a_structure_at_rest_gives_the_closed_form() {
     });
 }
 
-/// What the law promises: the bodies part, no energy is gained, no mode changes by more than the impulse can give.
+/// Properties of the law: the bodies separate, energy does not grow, no mode changes by more than the impulse can cause.
 #[test]
-fn the_promises_hold() {
+fn the_properties_hold() {
     each_random(5, 3000, 2.0, |impact| {
         let found = impact.rebound().unwrap();
         let rates: Vec<f64> = (0..impact.phi.len()).map(|k| impact.modal_rate(&found, k)).collect();
@@ -100,7 +100,7 @@ fn the_promises_hold() {
 }
 
 #[test]
-fn corners_and_faults() {
+fn limits_and_errors() {
     let coefficients = Coefficients { ebar: 0.9, beta0: 0.2, beta1: 0.1 };
     let sound = MovingImpact { mass_kg: 1.0, velocity_m_s: -1.0, coefficients, phi: &[1.0], rates: &[0.0] };
     let field = |impact: MovingImpact| impact.rebound().unwrap_err().field;
@@ -113,7 +113,7 @@ fn corners_and_faults() {
     }
     assert_eq!(field(MovingImpact { mass_kg: 0.0, ..sound }), "mass_kg");
     assert_eq!(field(MovingImpact { rates: &[], ..sound }), "rates.len()");
-    // a rigid structure
+    // A rigid structure.
     let rigid = MovingImpact { phi: &[], rates: &[], ..sound }.rebound().unwrap();
     assert!((rigid.velocity_m_s - 0.9).abs() < 1e-15);
     for mass_kg in [1e-60, 1.0, 1e60] {

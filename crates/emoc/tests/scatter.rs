@@ -1,4 +1,4 @@
-//! The scatter of the law: its closed forms against each other, and its edges.
+//! The scatter of the law: its closed forms compared with each other, and limits.
 #![cfg(feature = "scatter")]
 
 use emoc::{Impact, Parameters, Scatter, ScatteredLaw, Site};
@@ -18,7 +18,7 @@ fn probability_is_the_inverse_of_the_draw_and_density_its_derivative() {
                 assert!(e > 0.0 && e < notional_restitution);
                 let below = |e: f64| scatter.probability_below(e).unwrap();
                 assert!((below(e) - uniform).abs() < 1e-9, "{scatter:?} {uniform}");
-                // relative to the distance from the nearer end
+                // Relative to the distance from the nearer end.
                 let step = 1e-6 * e.min(notional_restitution - e);
                 let slope = (below(e + step) - below(e - step)) / (2.0 * step);
                 assert!((scatter.log_density(e) - slope.ln()).abs() < 1e-4, "{scatter:?} {uniform}");
@@ -28,7 +28,7 @@ fn probability_is_the_inverse_of_the_draw_and_density_its_derivative() {
 }
 
 #[test]
-fn the_median_is_the_law_and_the_interval_holds_its_share() {
+fn the_median_is_the_law_and_the_interval_contains_its_share() {
     for mass_kg in [1e-3, 0.03, 0.5, 20.0] {
         let impact = impact(mass_kg);
         let scatter = ScatteredLaw::BEAMS.rebound(&impact).unwrap();
@@ -37,7 +37,7 @@ fn the_median_is_the_law_and_the_interval_holds_its_share() {
         let [low, high] = scatter.interval(0.8).unwrap();
         let within = scatter.probability_below(high).unwrap() - scatter.probability_below(low).unwrap();
         assert!((within - 0.8).abs() < 1e-12);
-        // as many draws
+        // The same share of draws.
         let draws = (0..1000).map(|k| scatter.draw((f64::from(k) + 0.5) / 1000.0).unwrap());
         assert_eq!(draws.filter(|e| (low..=high).contains(e)).count(), 800);
     }
@@ -60,17 +60,17 @@ fn nothing_leaves_the_range_and_nothing_is_not_a_number() {
             }
         }
     }
-    // a held point gives everything back
+    // A fixed point returns the whole speed.
     let rigid = Impact::new(1.0, &Site::new(&[0.0]).unwrap()).unwrap();
     let scatter = ScatteredLaw::BEAMS.rebound(&rigid).unwrap();
     assert_eq!([0.0, 0.5, 1.0].map(|u| scatter.draw(u).unwrap()), [1.0; 3]);
-    // and a Z beyond all bounds is no fault
+    // An unbounded Z is not an error.
     let heavy = Impact { mass_kg: 1.0, z: f64::MAX, s0: f64::MAX, s1: f64::MAX };
     assert!(ScatteredLaw::BEAMS.rebound(&heavy).unwrap().scale.is_finite());
 }
 
 #[test]
-fn faults_are_named() {
+fn errors_name_the_field() {
     let scatter = ScatteredLaw::BEAMS.rebound(&impact(0.1)).unwrap();
     for uniform in [-0.1, 1.1, f64::NAN] {
         assert_eq!(scatter.draw(uniform).unwrap_err().field, "uniform");

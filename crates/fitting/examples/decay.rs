@@ -5,7 +5,7 @@
 use fitting::{FitError, Method, Parameter, Problem, Settings, fit};
 
 fn main() -> Result<(), FitError> {
-    // amplitude 2, rate 0.7 and offset 0.3, with errors up to 0.02 from a golden-ratio sequence
+    // Amplitude 2, rate 0.7 and offset 0.3, with errors up to 0.02 from a golden-ratio sequence.
     let times: Vec<f64> = (0..60).map(|i| 0.1 * f64::from(i)).collect();
     let error = |i: usize| 0.02 * (2.0 * (i as f64 * 0.618_033_988_749_894_9).fract() - 1.0);
     let readings: Vec<f64> = times.iter().enumerate().map(|(i, t)| 2.0 * (-0.7 * t).exp() + 0.3 + error(i)).collect();

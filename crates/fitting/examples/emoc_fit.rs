@@ -1,5 +1,5 @@
-//! Fits the three parameters of the EMOC law to 300 synthetic impacts on a pinned beam, with intervals,
-//! cross-validation, and what the kinks of the law do.
+//! Fits the three parameters of the EMOC law to 300 synthetic impacts on a pinned beam, with intervals, cross-validation, and
+//! the effect of the kinks of the law.
 //!
 //! `cargo run --release -p fitting --example emoc_fit`
 
@@ -8,7 +8,7 @@ mod emoc_data;
 use fitting::{Method, Parameter, Problem, Settings, bootstrap, cross_validate, fit, k_folds};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // 12 masses at 25 locations, restitutions of mu_0 = 0.7, alpha_0 = 3, alpha_1 = 0.2 with an error of 0.05
+    // 12 masses at 25 locations; the restitutions belong to mu_0 = 0.7, alpha_0 = 3, alpha_1 = 0.2 with an error of 0.05.
     let data = emoc_data::impacts([0.7, 3.0, 0.2], 0.05);
     let problem = Problem {
         parameters: vec![

@@ -1,4 +1,4 @@
-//! How far the residuals determine the coordinates.
+//! The covariance of the coordinates from the residuals.
 
 use crate::objective::Objective;
 use nalgebra::DMatrix;
@@ -18,7 +18,7 @@ impl Objective<'_> {
         }
         let scaled = DMatrix::from_fn(m, n, |i, j| jacobian[(i, j)] / lengths[j]);
         let factor = (scaled.transpose() * &scaled).cholesky()?;
-        // the square of a pivot is the share of a column that the others cannot imitate
+        // The square of a pivot is the share of a column that is independent of the others.
         if factor.l_dirty().diagonal().iter().any(|pivot| pivot * pivot < 1e-12) {
             return None;
         }

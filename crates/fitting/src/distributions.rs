@@ -1,6 +1,7 @@
-//! Tail probabilities and quantiles by which a misfit is judged.
+//! Tail probabilities and quantiles for tests of a misfit.
 
-/// Probability that a chi-square variable with `freedom` degrees of freedom exceeds `value`, to some 1e-11; 1 for no freedom.
+/// Probability that a chi-square variable with `freedom` degrees of freedom exceeds `value`, to about 1e-11; 1 if `freedom` is
+/// 0.
 ///
 /// ```
 /// // two degrees of freedom: exp(-x/2)
@@ -16,7 +17,7 @@ pub fn chi_square_tail(value: f64, freedom: usize) -> f64 {
     }
 }
 
-/// Probability that Fisher's variable with these degrees of freedom exceeds `value`; 1 where one of them is 0.
+/// Probability that Fisher's variable with these degrees of freedom exceeds `value`; 1 if one of them is 0.
 ///
 /// ```
 /// // one and many degrees: the square of a normal variable
@@ -30,9 +31,9 @@ pub fn fisher_tail(value: f64, above: usize, below: usize) -> f64 {
     if value.is_infinite() { 0.0 } else { puruspe::betai(0.5 * b, 0.5 * a, b / (b + a * value)) }
 }
 
-/// `t` such that Student's variable with `freedom` degrees lies within `-t..t` with probability `level` (0 to 1):
-/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. The degrees of freedom are at least 1 and need not be a whole number.
-/// `None` stands for a standard deviation that is known: the normal variable.
+/// `t` such that Student's variable with `freedom` degrees of freedom is within `-t..t` with probability `level` (0 to 1):
+/// `I_x(f/2, 1/2) = 1 - level` at `x = f/(f + t^2)`. The degrees of freedom are at least 1 and need not be an integer. `None`
+/// stands for a known standard deviation, that is the normal variable.
 ///
 /// ```
 /// assert!((fitting::two_sided_quantile(0.95, None) - 1.959964).abs() < 1e-6);
@@ -51,7 +52,7 @@ mod tests {
 
     #[test]
     fn student_quantiles_are_those_of_the_tables() {
-        // exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables
+        // Exact: tan(pi level / 2) for one degree; level sqrt(2/(1 - level^2)) for two; the rest from tables.
         let level: f64 = 0.95;
         let exact =
             [(1, (0.5 * std::f64::consts::PI * level).tan()), (2, level * (2.0 / (1.0 - level * level)).sqrt())];

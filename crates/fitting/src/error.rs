@@ -6,7 +6,7 @@ use invalid_input::InvalidInput;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// The input is not usable.
+    /// The input is not valid.
     #[error(transparent)]
     Invalid(#[from] InvalidInput),
     /// The model gave NaN, an infinity or a number beyond 1e100 at every starting point.

@@ -8,7 +8,7 @@ use crate::random::halton;
 use crate::report::Residuals;
 use crate::{gradient_method, simplex};
 
-/// Fits the parameters. The same input gives the same bits.
+/// Fits the parameters. The same input gives the same result to the last bit.
 ///
 /// ```
 /// use fitting::{Parameter, Problem, Settings, fit};
@@ -34,13 +34,13 @@ pub fn fit(problem: &Problem, settings: &Settings) -> Result<Fit, FitError> {
     fit_weighted(problem, settings, None)
 }
 
-/// The fit with a weight for each residual; those of weight 0 count neither in the sum nor in the report.
+/// The fit with a weight for each residual. Residuals of weight 0 count neither in the sum nor in the report.
 pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Option<&[f64]>) -> Result<Fit, FitError> {
     let objective = Objective::new(problem, weights);
     let mut buffer = vec![0.0; problem.count];
     let mut starts = Vec::with_capacity(settings.starts);
     let mut best: Option<(Vec<f64>, f64, Outcome)> = None;
-    // where a start leads needs few digits; the best one is then followed to the end
+    // Few digits suffice to see where a start leads; only the best one is continued to the end.
     let scouting = Settings { tolerance: settings.tolerance.max(1e-5), ..*settings };
     for from in starting_points(&objective, settings, &mut buffer) {
         let (u, outcome) = search(&objective, &scouting, &from, &mut buffer);
@@ -72,7 +72,7 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     }
     let covariance = objective.covariance(&u, value, weights);
     let parameters = objective.parameters(&u);
-    // residuals without weights, of the points that took part
+    // Residuals without weights, of the points that took part.
     (problem.residuals)(&parameters, &mut buffer);
     let residuals: Vec<f64> = match weights {
         None => buffer,
@@ -92,7 +92,8 @@ pub(crate) fn fit_weighted(problem: &Problem, settings: &Settings, weights: Opti
     })
 }
 
-/// The parameters' own start, then points of the sequence: the first, or of the candidates those with the least sum.
+/// The starting point of the parameters, then points of the sequence: the first ones, or those of the candidates with the
+/// smallest sum.
 fn starting_points(objective: &Objective, settings: &Settings, buffer: &mut [f64]) -> Vec<Vec<f64>> {
     let point = |index| starting_point(objective.problem, index);
     let more = settings.starts - 1;
@@ -101,12 +102,12 @@ fn starting_points(objective: &Objective, settings: &Settings, buffer: &mut [f64
     }
     let mut candidates: Vec<(f64, Vec<f64>)> =
         (1..=settings.candidates).map(point).map(|u| (objective.sum_of_squares(&u, buffer), u)).collect();
-    // the sort is stable: of equal ones the first of the sequence
+    // The sort is stable: among equal candidates the first of the sequence is used.
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
     std::iter::once(point(0)).chain(candidates.into_iter().take(more).map(|(_, u)| u)).collect()
 }
 
-/// The parameters' own start, then Halton's points over the search intervals.
+/// The starting point of the parameters, then Halton's points over the search intervals.
 fn starting_point(problem: &Problem, index: usize) -> Vec<f64> {
     let place = |(dimension, parameter): (usize, &Parameter)| {
         if index == 0 {
@@ -132,7 +133,7 @@ fn search(objective: &Objective, settings: &Settings, from: &[f64], buffer: &mut
     (u, if converged { Outcome::Converged } else { Outcome::LimitReached })
 }
 
-/// The simplex method with first steps of a `share` of each search interval.
+/// The simplex method with first steps of this `share` of each search interval.
 fn simplex_search(
     objective: &Objective,
     settings: &Settings,

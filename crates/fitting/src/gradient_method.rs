@@ -1,4 +1,4 @@
-//! Levenberg-Marquardt, by the crate of that name (a port of MINPACK's `lmder`).
+//! Levenberg-Marquardt, by the crate `levenberg-marquardt` (a port of MINPACK's `lmder`).
 
 use crate::objective::Objective;
 use crate::problem::Settings;
@@ -37,7 +37,7 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Adapter<'_> {
     }
 }
 
-/// The point reached from `start`, and whether the method's own tests say that it is a minimum.
+/// The point reached from `start`, and whether it is a minimum by the tests of the method.
 pub(crate) fn minimise(objective: &Objective, start: &[f64], settings: &Settings) -> (Vec<f64>, bool) {
     let patience = (settings.max_evaluations / (start.len() + 1)).max(1);
     let method = LevenbergMarquardt::new()
@@ -46,7 +46,7 @@ pub(crate) fn minimise(objective: &Objective, start: &[f64], settings: &Settings
         .with_gtol(settings.tolerance)
         .with_patience(patience);
     let (adapter, report) = method.minimize(Adapter { objective, u: DVector::from_column_slice(start) });
-    // "no improvement possible" is the end that tolerances near rounding lead to
+    // Tolerances near rounding end with "no improvement possible".
     let ended = matches!(report.termination, TerminationReason::NoImprovementPossible(_));
     (adapter.u.as_slice().to_vec(), report.termination.was_successful() || ended)
 }

@@ -1,4 +1,4 @@
-//! What observations say about parameters: covariance, directions that they do not determine, further observations.
+//! The information of observations about parameters: covariance, undetermined directions, further observations.
 //!
 //! With `J` the Jacobian of residuals of unit variance in the coordinates `u`,
 //!
@@ -6,17 +6,17 @@
 //! M = J^T J,        C = M^-1,        M v_k = v_k / s_k^2.
 //! ```
 //!
-//! Along the unit vector `v_k` the coordinates are known with the standard deviation `s_k`: where it is large, the
-//! observations do not determine the combination. A further observation with the row `a` of its Jacobian gives
-//! `M + a^T a`, and the volume of the confidence region shrinks by `sqrt(det M / det(M + a^T a))`.
+//! Along the unit vector `v_k` the coordinates have the standard deviation `s_k`: if it is large, the observations do not
+//! determine this combination. A further observation with the row `a` of its Jacobian gives `M + a^T a`, and the volume of the
+//! confidence region shrinks by `sqrt(det M / det(M + a^T a))`.
 
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// Entries of `M` below this share of the largest are rounding.
+/// Entries of `M` below this share of the largest count as rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// The information `M = J^T J` that observations hold about coordinates.
+/// The information `M = J^T J` of observations about coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Information {
     matrix: DMatrix<f64>,
@@ -29,15 +29,15 @@ pub struct Information {
 pub struct Direction {
     /// Unit vector; its largest entry is positive.
     pub vector: Vec<f64>,
-    /// Standard deviation along it; infinite where the observations say nothing.
+    /// Standard deviation along it; infinite if the observations contain no information.
     pub standard_deviation: f64,
 }
 
 impl Information {
-    /// From the Jacobian of residuals of unit variance, row by row, in `n` coordinates.
+    /// The information from the Jacobian of residuals of unit variance, row by row, in `n` coordinates.
     ///
     /// # Errors
-    /// No coordinate, rows that are no multiple of `n` numbers, or a number that is not finite.
+    /// There is no coordinate, the rows are not a multiple of `n` numbers, or a number is not finite.
     ///
     /// ```
     /// // two readings of the sum of two coordinates tell nothing of their difference
@@ -60,8 +60,8 @@ impl Information {
         Ok(Information { matrix: jacobian.transpose() * jacobian })
     }
 
-    /// The same with a normal prior on each coordinate, of the standard deviation given for it; what is not positive
-    /// or lacks is no prior.
+    /// The same with a normal prior on each coordinate, given by its standard deviation. Without a positive standard deviation
+    /// there is no prior.
     #[must_use]
     pub fn with_prior(mut self, standard_deviations: &[f64]) -> Information {
         for (j, sd) in standard_deviations.iter().enumerate().take(self.matrix.nrows()) {
@@ -72,7 +72,7 @@ impl Information {
         self
     }
 
-    /// With the information of further rows, which must have as many numbers each.
+    /// The information with further rows, which must have as many numbers each.
     ///
     /// # Errors
     /// As [`Information::of`].
@@ -81,7 +81,7 @@ impl Information {
         Ok(Information { matrix: &self.matrix + further.matrix })
     }
 
-    /// The directions that the observations determine each by itself, the worst known first.
+    /// The directions that the observations determine independently, the least certain first.
     pub fn directions(&self) -> Vec<Direction> {
         let eigen = SymmetricEigen::new(self.matrix.clone());
         let largest = eigen.eigenvalues.iter().fold(0.0f64, |most, value| most.max(*value));
@@ -101,7 +101,7 @@ impl Information {
         found
     }
 
-    /// The covariance `C`, row by row; `None` where a direction is not determined.
+    /// The covariance `C`, row by row; `None` if a direction is not determined.
     pub fn covariance(&self) -> Option<Vec<f64>> {
         let directions = self.directions();
         if directions.iter().any(|direction| direction.standard_deviation.is_infinite()) {
@@ -114,11 +114,11 @@ impl Information {
         Some((0..n * n).map(|k| entry(k / n, k % n)).collect())
     }
 
-    /// Standard deviation of each coordinate, the others unknown; infinite where it is not determined.
+    /// Standard deviation of each coordinate if the others are unknown too; infinite if it is not determined.
     pub fn standard_deviations(&self) -> Vec<f64> {
         let directions = self.directions();
         let of = |j: usize| -> f64 {
-            // an undetermined direction matters to the coordinates that have a part in it
+            // An undetermined direction affects the coordinates that have a component along it.
             let share = |d: &Direction| if d.vector[j].abs() > 1e-7 { d.vector[j] * d.standard_deviation } else { 0.0 };
             directions.iter().map(|d| share(d).powi(2)).sum::<f64>().sqrt()
         };

@@ -1,4 +1,4 @@
-//! How well the parameters are known.
+//! Intervals of the parameters.
 
 use crate::distributions::two_sided_quantile;
 use crate::error::FitError;
@@ -20,14 +20,13 @@ pub struct Interval {
 }
 
 impl Fit {
-    /// Intervals that each hold their parameter with probability `level` (0 to 1, for instance 0.95), one by one:
-    /// `u +- t se(u)` in the transformed coordinate, so that a positive parameter keeps a positive interval. Here
-    /// `se` comes from `s^2 (J^T J)^-1` with `s^2` the sum of squares over `m - n`, and `t` from Student's
-    /// distribution with `m - n` degrees of freedom.
+    /// Intervals that each contain their parameter with probability `level` (0 to 1, for instance 0.95): `u +- t se(u)` in the
+    /// transformed coordinate, so that the interval of a positive parameter is positive. `se` comes from `s^2 (J^T J)^-1` with
+    /// `s^2` the sum of squares over `m - n`, and `t` from Student's distribution with `m - n` degrees of freedom.
     ///
-    /// **Assumed:** residuals that are independent, of equal variance and normal, and a model that is close to
-    /// linear within the interval and has no kink there. Where the misfit is the model's own, as with a law of few
-    /// parameters, residuals are not independent and the intervals too narrow; see [`bootstrap`] and
+    /// **Assumptions:** the residuals are independent, normal and of equal variance, and the model is close to linear within
+    /// the interval and has no kink there. If the misfit is that of the model itself, as with a law of few parameters,
+    /// residuals are not independent and the intervals are too narrow; see [`bootstrap`] and
     /// [`cross_validate`](crate::cross_validate).
     ///
     /// `Ok(None)` if the residuals do not determine the parameters (singular `J^T J`, or `m = n`).
@@ -52,10 +51,10 @@ impl Fit {
     }
 }
 
-/// Percentile intervals from refits to residuals drawn with replacement (Efron and Tibshirani 1993, ch. 13), each
-/// started at the fit. It needs no normal residuals and no linear model, but independent ones.
+/// Percentile intervals from refits to residuals drawn with replacement (Efron and Tibshirani 1993, ch. 13), each started at
+/// the fit. The residuals must be independent; they need not be normal, nor the model linear.
 ///
-/// The same `seed` gives the same bits. Refits whose model is not finite are left out.
+/// The same `seed` gives the same result to the last bit. Refits whose model is not finite are omitted.
 pub fn bootstrap(
     problem: &Problem,
     settings: &Settings,
@@ -77,7 +76,7 @@ pub fn bootstrap(
     }
     let mut local = Problem { parameters: problem.parameters.clone(), ..*problem };
     for (parameter, &found) in local.parameters.iter_mut().zip(&fit.parameters) {
-        // a fit may have run to the edge of its range, where no search can start
+        // A fit may end at the edge of its range, where no search can start.
         let moved = crate::Parameter { start: found, ..parameter.clone() };
         if moved.validate().is_ok() {
             *parameter = moved;

@@ -3,13 +3,13 @@
 use crate::problem::Problem;
 use std::cell::Cell;
 
-/// What stands in for a residual that is not finite, or larger: a step there is always rejected.
+/// Replaces a residual that is not finite, or larger; a step to such a point is always rejected.
 pub(crate) const HUGE: f64 = 1e100;
 
 /// Weighted residuals `sqrt(w_i) r_i(p(u))` and their Jacobian in `u`.
 pub(crate) struct Objective<'a> {
     pub(crate) problem: &'a Problem<'a>,
-    /// Square roots of the weights; 1 where absent. A residual of weight 0 is left out.
+    /// Square roots of the weights, or 1. A residual of weight 0 is omitted.
     root_weights: Option<Vec<f64>>,
     pub(crate) evaluations: Cell<usize>,
     pub(crate) jacobians: Cell<usize>,
@@ -25,10 +25,10 @@ impl<'a> Objective<'a> {
         self.problem.parameters.iter().zip(u).map(|(parameter, &u)| parameter.outward(u)).collect()
     }
 
-    /// Writes the residuals. Numbers beyond reason become [`HUGE`]; `false` if there were any.
+    /// Writes the residuals. Numbers that are too large become [`HUGE`]; `false` if there were any.
     pub(crate) fn residuals(&self, u: &[f64], residuals: &mut [f64]) -> bool {
         self.evaluations.set(self.evaluations.get() + 1);
-        // whatever the closure does not write counts as not finite
+        // Residuals that the closure does not write count as not finite.
         residuals.fill(f64::NAN);
         (self.problem.residuals)(&self.parameters(u), residuals);
         let mut sound = true;
@@ -50,8 +50,8 @@ impl<'a> Objective<'a> {
         if self.residuals(u, residuals) { residuals.iter().map(|r| r * r).sum() } else { f64::INFINITY }
     }
 
-    /// Writes `d r_i / d u_j` at `i * n + j`; analytic where given, else by central differences. Entries that are
-    /// not finite become 0, which leaves their parameter out of the step.
+    /// Writes `d r_i / d u_j` at `i * n + j`, analytic if given, otherwise by central differences. Entries that are not finite
+    /// become 0, which excludes their parameter from the step.
     pub(crate) fn jacobian(&self, u: &[f64], jacobian: &mut [f64]) {
         self.jacobians.set(self.jacobians.get() + 1);
         let n = u.len();

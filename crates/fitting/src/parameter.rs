@@ -1,9 +1,9 @@
-//! Parameters and the coordinates in which they are sought.
+//! Parameters and their unrestricted coordinates.
 
 use invalid_input::InvalidInput;
 
-/// The numbers that a parameter may take. A restricted parameter is sought in a coordinate `u` without
-/// restriction, so that no method can leave the range.
+/// The numbers that a parameter may have. A restricted parameter is represented by a coordinate `u` without restriction, so
+/// that no method can leave the range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -21,12 +21,12 @@ pub enum Range {
     },
 }
 
-/// A parameter: where it may lie and where to look for it.
+/// A parameter with its range and the interval that is searched.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Parameter {
-    /// Name, for messages.
+    /// Name in messages.
     pub name: String,
     /// First starting point.
     pub start: f64,
@@ -37,7 +37,7 @@ pub struct Parameter {
     pub search: (f64, f64),
 }
 
-/// Largest `|u|` of a transformed coordinate: `exp` neither overflows nor vanishes.
+/// Largest `|u|` of a transformed coordinate, at which `exp` neither overflows nor vanishes.
 const LARGEST: f64 = 690.0;
 
 impl Parameter {
@@ -51,7 +51,7 @@ impl Parameter {
         Parameter { name: name.into(), start, range: Range::Positive, search }
     }
 
-    /// Checks that the numbers are finite and the start and the search interval lie in the range.
+    /// Checks that the numbers are finite and that the start and the search interval are within the range.
     pub fn validate(&self) -> Result<(), InvalidInput> {
         let field = |part: &str| format!("parameter {} {part}", self.name);
         if let Range::Between { low, high } = self.range

@@ -5,22 +5,21 @@ use crate::report::Residuals;
 use invalid_input::InvalidInput;
 use std::fmt;
 
-/// Residuals as a function of the parameters: reads the parameters, writes every residual.
+/// Residuals as a function of the parameters: reads the parameters and writes every residual.
 pub type ResidualsFn<'a> = dyn Fn(&[f64], &mut [f64]) + 'a;
 
-/// Least squares over a closure: find the parameters that make the sum of squared residuals least.
+/// Least squares for a closure: find the parameters that minimise the sum of squared residuals.
 ///
-/// A residual that is NaN, infinite or beyond 1e100 marks parameters at which the model does not exist; the search
-/// stays away from them.
+/// A residual that is NaN, infinite or beyond 1e100 marks parameters at which the model does not exist; the search avoids them.
 #[derive(Clone)]
 pub struct Problem<'a> {
-    /// The parameters, in the order in which the closures take them.
+    /// The parameters, in the order that the closures use.
     pub parameters: Vec<Parameter>,
     /// Number of residuals `m`, at least as many as parameters.
     pub count: usize,
     /// Writes the `m` residuals at the given parameters (in their own units, not transformed).
     pub residuals: &'a ResidualsFn<'a>,
-    /// Writes the derivative of residual `i` in parameter `j` at `i * n + j`; central differences if absent.
+    /// Writes the derivative of residual `i` with respect to parameter `j` at `i * n + j`; central differences if absent.
     pub jacobian: Option<&'a ResidualsFn<'a>>,
 }
 
@@ -33,7 +32,7 @@ impl fmt::Debug for Problem<'_> {
     }
 }
 
-/// How to search.
+/// The method of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -43,8 +42,8 @@ pub enum Method {
     LevenbergMarquardt,
     /// The simplex method from every start: needs no derivative, slow, for few parameters.
     Simplex,
-    /// Levenberg-Marquardt from every start, then the simplex method from the best point, for residuals with
-    /// kinks: the first can stop at a kink, the second goes on along it.
+    /// Levenberg-Marquardt from every start, then the simplex method from the best point, for residuals with kinks: the first
+    /// can stop at a kink, the second continues along it.
     Both,
 }
 
@@ -64,14 +63,14 @@ pub struct Settings {
     /// Number of starting points: the parameters' own, then a Halton sequence over their search intervals (in the
     /// transformed coordinates). Default 8.
     pub starts: usize,
-    /// Points of the sequence at which the sum of squares is evaluated to choose the starting points from: those where it
-    /// is least. Default 0: the first of the sequence, whatever they are worth. Worth it where evaluating costs little
-    /// beside searching, and the sum of squares has many minima.
+    /// Number of points of the sequence at which the sum of squares is evaluated to choose as starting points those where it is
+    /// smallest. Default 0: the first points of the sequence are used. More is useful if an evaluation costs little compared
+    /// with a search and the sum of squares has many minima.
     pub candidates: usize,
-    /// Relative change in the sum of squares and in the parameters at which a search ends, from 1e-15 to 0.1.
-    /// Default 1e-10. The search from each start ends at 1e-5 already, and the best goes on from there.
+    /// Relative change of the sum of squares and of the parameters at which a search ends, from 1e-15 to 0.1. Default 1e-10.
+    /// The search from each start ends at 1e-5 already, and the best one is continued.
     pub tolerance: f64,
-    /// Evaluations of the residuals that one search may take, those for differences aside. Default 2000.
+    /// Largest number of evaluations of the residuals in one search, without those for differences. Default 2000.
     pub max_evaluations: usize,
 }
 
@@ -89,10 +88,10 @@ impl Default for Settings {
 pub enum Outcome {
     /// At a minimum, by the method's own tests.
     Converged,
-    /// At the limit of evaluations; the parameters are the best seen.
+    /// At the limit of evaluations; the parameters are the best found.
     #[cfg_attr(feature = "serde", serde(rename = "limit reached"))]
     LimitReached,
-    /// The model was not finite at the starting point, so that nothing was searched.
+    /// The model was not finite at the starting point, so that there was no search.
     #[cfg_attr(feature = "serde", serde(rename = "not finite"))]
     NonFinite,
 }
@@ -103,18 +102,18 @@ invalid_input::names!(Outcome, "outcome", {
     NonFinite: "not finite",
 });
 
-/// One starting point and what became of it.
+/// One starting point and the end of its search.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Start {
     /// The starting point.
     pub from: Vec<f64>,
-    /// Where its search ended, to about five digits.
+    /// The end of its search, to about five digits.
     pub parameters: Vec<f64>,
     /// Sum of squares there.
     pub sum_of_squares: f64,
-    /// How it ended.
+    /// Reason for the end.
     pub outcome: Outcome,
 }
 
@@ -127,17 +126,17 @@ pub struct Fit {
     pub parameters: Vec<f64>,
     /// Sum of squared residuals.
     pub sum_of_squares: f64,
-    /// How the search ended that found them.
+    /// How the search that found them ended.
     pub outcome: Outcome,
     /// The residuals.
     pub residuals: Vec<f64>,
     /// Their summary.
     pub report: Residuals,
-    /// Every starting point. How many end at the same place tells how much the minimum can be trusted.
+    /// Every starting point. The number of them that end at the same place shows how reliable the minimum is.
     pub starts: Vec<Start>,
-    /// Evaluations of the residuals in all.
+    /// Total number of evaluations of the residuals.
     pub evaluations: usize,
-    /// Evaluations of the Jacobian in all.
+    /// Total number of evaluations of the Jacobian.
     pub jacobians: usize,
     /// Covariance of the transformed coordinates, row by row; see [`Fit::intervals`].
     pub(crate) covariance: Option<Vec<f64>>,

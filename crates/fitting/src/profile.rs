@@ -1,9 +1,9 @@
-//! The likelihood profile: how far one parameter can go while the others follow.
+//! The likelihood profile: how far one parameter can change if the others are adjusted.
 //!
-//! `S_j(u)` is the least sum of squares with the coordinate `u_j` held at `u`. For normal errors of unit variance the
-//! interval `S_j(u) <= S + z^2` holds the parameter with the probability of `|normal| <= z`, to a higher order than the
-//! covariance does and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u` for a linear model,
-//! so that a secant finds the ends in few steps.
+//! `S_j(u)` is the smallest sum of squares with the coordinate `u_j` fixed at `u`. For normal errors of unit variance the
+//! interval `S_j(u) <= S + z^2` contains the parameter with the probability of `|normal| <= z`, to a higher order than the
+//! interval from the covariance and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u`
+//! for a linear model, so that a secant finds the ends in few steps.
 
 use crate::gradient_method;
 use crate::objective::{HUGE, Objective};
@@ -11,11 +11,12 @@ use crate::parameter::{Parameter, Range};
 use crate::problem::{Method, Problem, ResidualsFn, Settings};
 use invalid_input::InvalidInput;
 
-/// Doublings of the step after which an end is taken to be open.
+/// Number of doublings of the step after which an end counts as open.
 const MOST_DOUBLINGS: usize = 6;
-/// An end further than this in a transformed coordinate, a factor of 3000, is open, too: far out, models cost much and mean little.
+/// An end beyond this change of a transformed coordinate, a factor of 3000, also counts as open: models far out cost much and
+/// have little meaning.
 const FURTHEST: f64 = 8.0;
-/// Steps of the secant towards an end, and how near `zeta` comes to its limit, relative to it.
+/// Steps of the secant towards an end, and the relative distance of `zeta` from its limit at which it ends.
 const MOST_SECANTS: usize = 12;
 const NEAR: f64 = 3e-3;
 
@@ -24,23 +25,23 @@ const NEAR: f64 = 3e-3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Profile {
-    /// Values of the parameter, rising, and the least sum of squares with it held there.
+    /// Values of the parameter, ascending, with the smallest sum of squares for each.
     pub points: Vec<(f64, f64)>,
-    /// Lower end of the interval; `None` if the sum of squares does not rise so far, as far as the model exists.
+    /// Lower end of the interval; `None` if the sum of squares does not rise enough as far as the model exists.
     pub low: Option<f64>,
     /// Upper end, likewise.
     pub high: Option<f64>,
-    /// Parameters with a smaller sum of squares than those of the fit, if the search came upon any: the fit is then
-    /// no minimum, and the profile ends where they were met.
+    /// Parameters with a smaller sum of squares than those of the fit, if the search found any: the fit is then not a minimum,
+    /// and the profile ends where they were found.
     pub better: Option<Vec<f64>>,
 }
 
-/// Follows the profile of parameter number `j` from a minimum at `parameters` with the sum of squares `least` until it
-/// has risen by `rise`. `step` is the first step in the transformed coordinate, about the half-width that the
-/// covariance suggests. Settings give tolerance and limit of the searches, which start where the last one ended.
+/// Follows the profile of parameter number `j` from a minimum at `parameters` with the sum of squares `least` until it has
+/// risen by `rise`. `step` is the first step in the transformed coordinate, about the half-width that the covariance suggests.
+/// The settings give tolerance and limit of the searches, which start where the last one ended.
 ///
 /// # Errors
-/// A problem that cannot be fitted, a parameter that is not there, a rise or step that is not positive.
+/// A problem that cannot be fitted, a parameter number out of range, a rise or step that is not positive.
 ///
 /// ```
 /// use fitting::{Parameter, Problem, Settings, profile};
@@ -96,7 +97,7 @@ impl Walk<'_> {
         let parameter = &self.problem.parameters[self.j];
         let origin = parameter.inward(parameters[self.j]);
         let mut at = parameters.to_vec();
-        // (distance, zeta) on both sides of the limit
+        // (distance, zeta) on both sides of the limit.
         let (mut inside, mut reach) = ((0.0, 0.0), step);
         let mut outside = None;
         for _ in 0..=MOST_DOUBLINGS {
@@ -105,7 +106,7 @@ impl Walk<'_> {
             }
             let zeta = self.zeta(&mut at, origin + reach)?;
             if zeta.is_infinite() {
-                // as far as the model exists, the sum of squares has not risen enough
+                // The sum of squares has not risen enough as far as the model exists.
                 return None;
             }
             if zeta >= limit {
@@ -120,7 +121,7 @@ impl Walk<'_> {
             if (outside.1 - limit).abs() <= NEAR * limit {
                 break;
             }
-            // the secant where zeta is a number on both sides, halfway otherwise
+            // The secant if zeta is a number on both sides, halfway otherwise.
             let share = (limit - inside.1) / (outside.1 - inside.1);
             let share = if outside.1.is_finite() { share.clamp(0.05, 0.95) } else { 0.5 };
             let reach = inside.0 + share * (outside.0 - inside.0);
@@ -136,8 +137,8 @@ impl Walk<'_> {
         Some(parameter.outward(origin + outside.0))
     }
 
-    /// `zeta` with the coordinate held at `u`; the others start at `at` and are left where they end. Infinite where the
-    /// model does not exist; `None` after a smaller sum of squares than the least has been met.
+    /// `zeta` with the coordinate fixed at `u`. The others start at `at`, and `at` returns their end. Infinite if the model
+    /// does not exist; `None` after a sum of squares below `least` has been found.
     fn zeta(&mut self, at: &mut [f64], u: f64) -> Option<f64> {
         let (j, problem) = (self.j, self.problem);
         at[j] = problem.parameters[j].outward(u);
@@ -185,7 +186,7 @@ impl Walk<'_> {
         }
         at.copy_from_slice(&whole(&objective.parameters(&end)));
         self.points.push((held, value));
-        // a fit to the end of its tolerance may be beaten by rounding
+        // A fit may be improved by rounding within its tolerance.
         if value < self.least - 1e-3 - 1e-6 * self.least {
             self.better = Some(at.to_vec());
             return None;

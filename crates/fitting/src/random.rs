@@ -1,6 +1,6 @@
-//! Points that fill a box evenly, and seeded random numbers.
+//! Points that cover a box evenly, and seeded random numbers.
 
-/// SplitMix64 (Steele, Lea and Flood 2014), written out so that a seed always means the same numbers.
+/// SplitMix64 (Steele, Lea and Flood 2014), implemented here so that a seed always gives the same numbers.
 pub(crate) struct Random(u64);
 
 impl Random {
@@ -16,12 +16,12 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// An index below `n`, each as likely as the other up to `n / 2^64`. `n` is at least 1.
+    /// An index below `n`; all are equally likely up to `n / 2^64`. `n` is at least 1.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
     }
 
-    /// Fisher and Yates.
+    /// A shuffle by the method of Fisher and Yates.
     pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
         for i in (1..items.len()).rev() {
             items.swap(i, self.below(i + 1));

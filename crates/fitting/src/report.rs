@@ -1,11 +1,11 @@
 //! Summary of a set of residuals.
 
-/// How large residuals are.
+/// Size of residuals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Residuals {
-    /// How many.
+    /// Number of residuals.
     pub count: usize,
     /// Mean, with sign: the bias.
     pub mean: f64,
@@ -28,7 +28,7 @@ impl Residuals {
         let n = count.max(1) as f64;
         let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
         sizes.sort_by(f64::total_cmp);
-        // the smallest magnitude that at least this share of them do not exceed
+        // The smallest magnitude that at least this share of them do not exceed.
         let quantile = |share: f64| match count {
             0 => 0.0,
             _ => sizes[((share * n).ceil() as usize).clamp(1, count) - 1],

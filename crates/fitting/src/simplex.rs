@@ -1,9 +1,9 @@
 //! The simplex method of Nelder and Mead (1965) for objectives with kinks.
 //!
-//! Written here because it is short and the ready-made ones fit badly: `argmin`'s has no restart and brings ten
-//! further packages, and the COBYLA crates are machine translations of C full of `unsafe`. Coefficients depend on
-//! the dimension as proposed by Gao and Han (Comput. Optim. Appl. 51:259, 2012); restarts with a fresh simplex undo
-//! the collapse that the method is known for.
+//! It is implemented here because it is short and the available ones do not fit: `argmin`'s has no restart and depends on ten
+//! further packages, and the COBYLA crates are machine translations of C full of `unsafe`. The coefficients depend on the
+//! dimension as proposed by Gao and Han (Comput. Optim. Appl. 51:259, 2012); restarts with a new simplex prevent the collapse
+//! for which the method is known.
 
 /// Where the simplex ended.
 pub(crate) struct Found {
@@ -14,7 +14,7 @@ pub(crate) struct Found {
 
 type Vertex = (Vec<f64>, f64);
 
-/// Minimises `f` from `start` with first steps `steps`. Infinite values of `f` are walls.
+/// Minimises `f` from `start` with first steps `steps`. The search avoids infinite values of `f`.
 pub(crate) fn minimise(
     f: &mut dyn FnMut(&[f64]) -> f64,
     start: &[f64],
@@ -47,7 +47,7 @@ fn run(
 ) -> (Vertex, bool) {
     let n = steps.len();
     let dimension = n as f64;
-    // reflection 1; expansion, contraction and shrinkage
+    // Reflection is 1; expansion, contraction and shrinkage.
     let expansion = 1.0 + 2.0 / dimension;
     let contraction = 0.75 - 0.5 / dimension;
     let shrinkage = if n > 1 { 1.0 - 1.0 / dimension } else { 0.5 };
@@ -104,8 +104,8 @@ fn run(
     (vertices.swap_remove(0), false)
 }
 
-/// Whether all vertices agree: in value to `tolerance`, or in place to its square root (where values are flat to
-/// rounding). A kink ends by the first, a smooth minimum by either.
+/// Whether all vertices agree: in value to `tolerance`, or in position to its square root (where values are flat to rounding).
+/// A search that ends at a kink meets the first condition, one at a smooth minimum either.
 fn is_small(vertices: &[Vertex], tolerance: f64) -> bool {
     let (best, worst) = (&vertices[0], &vertices[vertices.len() - 1]);
     let place = vertices.iter().flat_map(|vertex| vertex.0.iter().zip(&best.0));

@@ -1,4 +1,4 @@
-//! How well a fit predicts data that it has not seen.
+//! How well a fit predicts data that were omitted from it.
 
 use crate::error::FitError;
 use crate::fit::fit_weighted;
@@ -7,7 +7,7 @@ use crate::random::Random;
 use crate::report::Residuals;
 use invalid_input::InvalidInput;
 
-/// One group left out.
+/// One omitted group.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -16,31 +16,31 @@ pub struct Fold {
     pub label: usize,
     /// The parameters fitted to all other groups.
     pub parameters: Vec<f64>,
-    /// How that fit ended.
+    /// The outcome of that fit.
     pub outcome: Outcome,
-    /// Residuals of the data fitted.
+    /// Residuals of the fitted data.
     pub fitted: Residuals,
-    /// Residuals of the group left out.
+    /// Residuals of the omitted group.
     pub predicted: Residuals,
 }
 
-/// The result of leaving out one group after the other.
+/// The result of omitting one group after the other.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct CrossValidation {
-    /// One entry a group, in the order of the labels.
+    /// One entry per group, in the order of the labels.
     pub folds: Vec<Fold>,
-    /// Each residual as predicted without its group.
+    /// Each residual as predicted by the fit without its group.
     pub residuals: Vec<f64>,
     /// Their summary.
     pub report: Residuals,
 }
 
-/// Labels for `folds`-fold cross-validation: a shuffled deal of `count` residuals into groups whose sizes differ
-/// by one at most. The same `seed` gives the same labels.
+/// Labels for `folds`-fold cross-validation: `count` residuals are distributed at random over groups whose sizes differ by at
+/// most one. The same `seed` gives the same labels.
 ///
-/// An error unless `2 <= folds <= count`.
+/// Returns an error unless `2 <= folds <= count`.
 pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, InvalidInput> {
     if folds < 2 || folds > count {
         return Err(InvalidInput::new("folds", folds, "2 to the number of residuals"));
@@ -50,8 +50,8 @@ pub fn k_folds(count: usize, folds: usize, seed: u64) -> Result<Vec<usize>, Inva
     Ok(labels)
 }
 
-/// Fits to all groups but one and predicts that one, for every group. `labels` holds one label for each residual: from
-/// [`k_folds`], or from the data (a beam, a rod) to leave out what belongs together.
+/// Fits to all groups but one and predicts that one, for every group. `labels` has one label for each residual, from
+/// [`k_folds`] or from the data (a beam, a rod) to omit residuals that belong together.
 ///
 /// ```
 /// use fitting::{Parameter, Problem, Settings, cross_validate};

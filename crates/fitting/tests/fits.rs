@@ -1,4 +1,4 @@
-//! Fits against certified values and closed forms, and input that tries to break them.
+//! Fits compared with certified values and closed forms, and invalid input.
 
 use fitting::*;
 
@@ -45,7 +45,7 @@ fn certified_parameters_and_standard_deviations_are_found() {
             assert!((found.parameters[0] / 2.3894212918e2 - 1.0).abs() < 1e-6, "{method:?} {:?}", found.parameters);
             assert!((found.parameters[1] / 5.5015643181e-4 - 1.0).abs() < 1e-6);
             assert!((found.sum_of_squares / 1.2455138894e-1 - 1.0).abs() < 1e-9);
-            // certified standard deviations 2.7070075241 and 7.2668688436e-6; t = 2.178812830 at 12 degrees
+            // Certified standard deviations are 2.7070075241 and 7.2668688436e-6; t = 2.178812830 at 12 degrees.
             let intervals = found.intervals(0.95).unwrap().unwrap();
             for (j, deviation) in [(0, 2.7070075241), (1, 7.2668688436e-6)] {
                 let relative = deviation / found.parameters[j];
@@ -79,7 +79,7 @@ fn a_kinked_minimum_is_found_without_derivatives() {
         },
         jacobian: None,
     };
-    // at a = 0.3 the sum is 1 + |0.3 - b| + 0.01 (b - 3)^2, whose slope in b is 1 - 0.054 > 0 to the right of 0.3
+    // At a = 0.3 the sum is 1 + |0.3 - b| + 0.01 (b - 3)^2, whose slope in b is 1 - 0.054 > 0 to the right of 0.3.
     let least = 1.0 + 0.01 * 2.7 * 2.7;
     for method in [Method::Simplex, Method::Both] {
         let found = fit(&problem, &Settings { method, ..Settings::default() }).unwrap();
@@ -89,7 +89,7 @@ fn a_kinked_minimum_is_found_without_derivatives() {
 }
 
 #[test]
-fn several_starts_find_the_deeper_of_two_minima() {
+fn several_starts_find_the_lower_of_two_minima() {
     // (p^2 - 4)^2 + (p - 1)^2 / 4: a local minimum near -2, the least near 2
     let problem = Problem {
         parameters: vec![Parameter::free("p", -3.0, (-4.0, 4.0))],
@@ -107,7 +107,7 @@ fn several_starts_find_the_deeper_of_two_minima() {
 
 #[test]
 fn ranges_hold_at_the_boundary() {
-    // the least squares lie outside both ranges; the fit stays within
+    // The least-squares solution is outside both ranges; the fit stays within them.
     let problem = Problem {
         parameters: vec![
             Parameter::positive("p", 1.0, (0.1, 10.0)),
@@ -150,7 +150,7 @@ fn wild_closures_give_outcomes_or_errors() {
                 0..=2 => assert_eq!(found, Err(FitError::NonFiniteModel { starts: 8 })),
                 _ => assert!(found.is_ok_and(|found| found.parameters[0].is_finite())),
             }
-            // a Jacobian that is nonsense must not break anything either
+            // A meaningless Jacobian must not cause a panic either.
             for jacobian in [&(|_: &[f64], j: &mut [f64]| j.fill(f64::NAN)) as &ResidualsFn, &|_, _| ()] {
                 let problem = Problem { parameters: parameter(), count: 4, residuals, jacobian: Some(jacobian) };
                 assert_eq!(fit(&problem, &settings).is_err(), case <= 2);
@@ -180,8 +180,8 @@ fn undetermined_parameters_have_no_intervals() {
 }
 
 #[test]
-fn intervals_cover_as_often_as_they_say() {
-    // straight line, 20 points, uniform errors: 95 % intervals should hold the slope in about 95 of 100 cases
+fn intervals_cover_as_often_as_stated() {
+    // For a straight line, 20 points and uniform errors, 95 % intervals should contain the slope in about 95 of 100 cases.
     let mut random = 12345_u64;
     let mut uniform = || {
         random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -221,7 +221,7 @@ fn cross_validation_predicts_each_residual_once_and_without_its_group() {
         for i in (0..14).filter(|&i| labels[i] == fold.label) {
             assert_eq!(all[i], result.residuals[i]);
         }
-        // the same fit, made by hand on the other twelve
+        // The same fit to the other twelve, made directly.
         let kept: Vec<usize> = (0..14).filter(|&i| labels[i] != fold.label).collect();
         let by_hand = Problem {
             count: 12,
@@ -268,7 +268,7 @@ fn bad_input_names_field_value_and_what_is_allowed() {
 }
 
 #[test]
-fn the_report_of_residuals_is_what_it_says() {
+fn the_report_of_residuals_is_right() {
     let report = Residuals::of(&[-3.0, 1.0, 2.0, 0.0]);
     assert_eq!((report.count, report.mean, report.max_abs, report.median_abs), (4, 0.0, 3.0, 1.0));
     assert!((report.rms - 3.5_f64.sqrt()).abs() < 1e-15);

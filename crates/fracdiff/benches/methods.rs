@@ -1,5 +1,5 @@
-//! Time of every method on the linear analogue of the infinite beam, to about 1e-6 (or its floor), and of the parts
-//! whose cost grows with the length of the past.
+//! Time of every method on the linear analogue of the infinite beam, to about 1e-6 (or its floor), and time of the parts whose
+//! cost grows with the length of the past.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fracdiff::{Collocation, Convolution, Method, test_problems};

@@ -1,4 +1,4 @@
-//! Solving to a requested accuracy, with settings of the program's choice.
+//! Solves problems to a requested accuracy, with settings that the crate chooses.
 
 use crate::collocation::Collocation;
 use crate::ivp::InitialValueProblem;
@@ -7,44 +7,44 @@ use crate::problem::Volterra;
 use crate::solution::{Solution, Stop};
 use invalid_input::InvalidInput;
 
-/// A solution with what is known of its error.
+/// A solution with an estimate of its error.
 #[derive(Debug, Clone)]
 pub struct Estimated {
     /// The solution.
     pub solution: Solution,
-    /// Estimated error of its values at any time, relative to the largest magnitude that the component of the solution
-    /// has: three times the largest difference from a coarser solution, and 2 % of the tolerance
-    /// that both were given. Infinite if the two ended for different reasons.
+    /// Estimated error of its values at any time, relative to the largest magnitude of the component of the solution: three
+    /// times the largest difference from a coarser solution, and 2 % of the tolerance that both were given. It is infinite if
+    /// the two ended for different reasons.
     pub error: f64,
     /// The method chosen, with its settings.
     pub method: Method,
 }
 
-/// Most times that the settings are tightened.
+/// Largest number of times that the settings are tightened.
 const ROUNDS: usize = 5;
-/// The least tolerance that collocation takes.
+/// The smallest tolerance that collocation accepts.
 const SMALLEST: f64 = 1e-14;
-/// What the tolerance of a panel leaves open where two solutions agree by accident, as at the end of a contact that
-/// both resolve to the same extent.
+/// Share of a panel's tolerance that is added to the estimate, since two solutions may agree by accident, as at the end of a
+/// contact that both resolve to the same extent.
 const ACCIDENT: f64 = 0.02;
-/// What rounding may hide of a difference between two solutions, relative to their size.
+/// Difference between two solutions, relative to their size, that rounding can hide.
 const ROUNDING: f64 = 3e-14;
 /// Points of a panel at which two solutions are compared, besides its end.
 const PLACES: [f64; 3] = [0.03, 0.35, 0.75];
 
 impl Volterra<'_> {
-    /// Solves the problem on `[0, t_end]` to a tolerance, from 1e-12 to 0.1: the error allowed in any value, relative
-    /// to the largest magnitude of its component.
+    /// Solves the problem on `[0, t_end]` to a tolerance from 1e-12 to 0.1. The tolerance is the error allowed in any value,
+    /// relative to the largest magnitude of its component.
     ///
-    /// The method is always [`Collocation`], with as many nodes as the tolerance is worth and a first panel of a third
-    /// of a segment. It is solved twice, the second time with more nodes on other panels; the difference is the
-    /// estimate, the finer solution the answer. While the estimate is above the tolerance, both are tightened, a few
-    /// times; where that was in vain the estimate says so. Of methods of low order a run with few steps costs less, but
-    /// to know its error takes a second run with more, and then it costs no less (`docs/performance-other.md`).
+    /// The method is always [`Collocation`], with more nodes for smaller tolerances and a first panel of a third of a segment.
+    /// The problem is solved a second time with more nodes on other panels: the difference gives the estimate, and the finer
+    /// solution is returned. While the estimate is above the tolerance, both are tightened, a few times; if that does not
+    /// suffice, the estimate shows it. A single run of a method of low order with few steps costs less, but its error is only
+    /// known from a second run with more steps, and then it costs no less (`docs/performance-other.md`).
     ///
-    /// The estimate is of values: the time of an event errs by the error of its function over its rate. What happens
-    /// between the nodes of both solutions alone, such as a pulse much shorter than the interval, is seen by neither:
-    /// state its times as [`breaks`](Self::breaks).
+    /// The estimate applies to values. The error of the time of an event is the error of its function divided by its rate.
+    /// Neither solution sees what happens only between the nodes of both, such as a pulse much shorter than the interval: state
+    /// its times as [`breaks`](Self::breaks).
     ///
     /// ```
     /// let problem = fracdiff::Volterra::scalar(|_| 1.0, |_, y| y, &[(0.5, -1.0)]);
@@ -57,12 +57,12 @@ impl Volterra<'_> {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for a problem that no run could start from, or a tolerance out of range.
+    /// [`InvalidInput`] for a problem that no run can start from, or a tolerance out of range.
     pub fn solve_to(&self, tolerance: f64, t_end: f64) -> Result<Estimated, InvalidInput> {
         let allowed = (1e-12..=0.1).contains(&tolerance);
         InvalidInput::unless(allowed, "tolerance", tolerance, "a number from 1e-12 to 0.1")?;
         let segments = 1 + self.breaks.iter().filter(|&&t| t > 0.0 && t < t_end).count();
-        // fewer nodes for fewer digits; 3 nodes more and a shorter first panel for the finer one of the two
+        // Fewer nodes for larger tolerances; the finer solution has 3 more nodes and a shorter first panel.
         let nodes = 6 + (-0.75 * tolerance.log10()) as usize;
         let first_panel = |share: f64| Some(share * t_end / segments as f64).filter(|&length| length > 0.0);
         let mut asked = tolerance;
@@ -80,7 +80,7 @@ impl Volterra<'_> {
         Ok(best)
     }
 
-    /// Two solutions, and their difference.
+    /// Two solutions and their difference.
     fn estimated(
         &self,
         nodes: usize,
@@ -107,13 +107,13 @@ impl InitialValueProblem<'_> {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for a problem that no run could start from, or a tolerance out of range.
+    /// [`InvalidInput`] for a problem that no run can start from, or a tolerance out of range.
     pub fn solve_to(&self, tolerance: f64, t_end: f64) -> Result<Estimated, InvalidInput> {
         self.volterra()?.solve_to(tolerance, t_end)
     }
 }
 
-/// Largest difference of two solutions where both are known, relative to the size of each component of the second.
+/// Largest difference between two solutions where both are known, relative to the size of each component of the second.
 fn difference(coarse: &Solution, fine: &Solution) -> Result<f64, InvalidInput> {
     let same_end = match (coarse.stop, fine.stop) {
         (Stop::EndReached, Stop::EndReached) => true,

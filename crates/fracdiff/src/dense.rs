@@ -1,4 +1,4 @@
-//! Values of a solution between the ends of its steps: local polynomials in `t`, or a panel's own polynomial in `x`.
+//! Values of a solution between the ends of its steps, by local polynomials in `t` or a panel's own polynomial in `x`.
 
 use crate::quadrature::Interpolation;
 
@@ -14,7 +14,7 @@ pub(crate) struct Dense {
 enum Kind {
     /// Lagrange interpolation of this degree on neighbouring grid points of one segment.
     Grid { degree: usize, segment_starts: Vec<usize> },
-    /// One polynomial a panel.
+    /// One polynomial per panel.
     Panels { interpolation: Interpolation, panels: Vec<PanelValues>, panel_of_time: Vec<usize> },
 }
 
@@ -51,7 +51,7 @@ impl Dense {
         &self.values
     }
 
-    /// Opens a segment of a grid: the next point pushed is its first.
+    /// Starts a segment of a grid; the next point pushed is its first.
     pub fn begin_segment(&mut self) {
         if let Kind::Grid { segment_starts, .. } = &mut self.kind {
             segment_starts.push(self.times.len());
@@ -63,7 +63,7 @@ impl Dense {
         self.values.extend_from_slice(y);
     }
 
-    /// Appends a panel from `t[0]` to `t[1]`; the first of a segment comes with the value at the start.
+    /// Appends a panel from `t[0]` to `t[1]`; the first of a segment includes the value at the start.
     pub fn push_panel(&mut self, t: [f64; 2], start: Option<&[f64]>, panel: PanelValues) {
         let Kind::Panels { interpolation, panels, panel_of_time } = &mut self.kind else { return };
         if let Some(start) = start {
@@ -81,7 +81,7 @@ impl Dense {
         panels.push(panel);
     }
 
-    /// Cuts the solution at `t`, inside the last step or panel.
+    /// Truncates the solution at `t`, inside the last step or panel.
     pub fn truncate(&mut self, t: f64) {
         let mut y = vec![0.0; self.unknowns];
         if self.eval(t, &mut y) {
@@ -97,7 +97,7 @@ impl Dense {
         if !(t >= first && t <= last) {
             return false;
         }
-        // The first point at or after t: at a break, the one that closes the earlier segment.
+        // The first point at or after t; at a break, the one that ends the earlier segment.
         let right = self.times.partition_point(|&s| s < t);
         if self.times[right] == t {
             out.copy_from_slice(&self.values[right * self.unknowns..(right + 1) * self.unknowns]);

@@ -1,4 +1,4 @@
-//! Newton's method for the implicit equations of a step, a starting block or a collocation panel.
+//! Newton's method for the implicit equations of a step, a starting block, or a collocation panel.
 
 use crate::system::{Fault, Pair, System};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
@@ -15,7 +15,7 @@ pub(crate) struct Block<'b> {
     pub weights: &'b [Vec<f64>],
 }
 
-/// The values of solution (`points x unknowns`) and density (`points x densities`) at the points of a block.
+/// The values of the solution (`points x unknowns`) and the density (`points x densities`) at the points of a block.
 #[derive(Debug, Clone)]
 pub(crate) struct Stage {
     pub y: Vec<f64>,
@@ -24,7 +24,7 @@ pub(crate) struct Stage {
 
 /// Solves the block from the guess in `stage.y`.
 ///
-/// The Jacobian is formed by differences and kept while the iteration contracts by ten or more.
+/// The Jacobian is formed by differences and reused while each iteration reduces the step by a factor of ten or more.
 pub(crate) fn solve(system: &mut System<'_, '_>, block: &Block<'_>, stage: &mut Stage) -> Result<(), Fault> {
     let at = block.times[block.times.len() - 1];
     densities(system, block.times, &stage.y, &mut stage.f)?;
@@ -43,14 +43,14 @@ pub(crate) fn solve(system: &mut System<'_, '_>, block: &Block<'_>, stage: &mut 
         residual = damped_step(system, block, stage, &step, residual.amax())?;
         let scale = stage.y.iter().chain(block.rhs).fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
         let size = step.amax() / scale;
-        // The first step tells nothing about the contraction.
+        // The first step contains no information about the contraction.
         let rate = previous.map_or(1.0, |before| size / before);
-        // Differences leave the Jacobian with errors of 1e-8, and no contraction faster than that is believed.
+        // The errors of the differenced Jacobian are about 1e-8, so no faster contraction is assumed.
         let remaining = if rate < 0.5 { size * rate.max(1e-8) } else { size };
         if remaining <= 4.0 * f64::EPSILON {
             return Ok(());
         }
-        // Rounding in the residual may keep the last step above the bound: it no longer shrinks.
+        // Rounding of the residual may keep the last step above the bound; the step then no longer decreases.
         if previous.is_some() && size <= 1e-12 && rate >= 0.5 {
             return Ok(());
         }
@@ -125,7 +125,7 @@ fn newton_matrix(system: &mut System<'_, '_>, block: &Block<'_>, stage: &Stage) 
             shifted[c] = y[c] + h;
             let mut h = shifted[c] - y[c];
             if system.density(block.times[j], &shifted, &mut moved).is_err() {
-                // The other side may lie inside the domain of the density.
+                // The domain of the density may lie on the other side.
                 shifted[c] = y[c] - h;
                 h = shifted[c] - y[c];
                 system.density(block.times[j], &shifted, &mut moved)?;

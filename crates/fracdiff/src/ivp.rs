@@ -7,7 +7,8 @@ use invalid_input::InvalidInput;
 use libm::tgamma;
 use std::fmt;
 
-/// The left-hand side and start of one equation: `D^order y + sum of coefficient D^lower y = rhs`, Caputo derivatives.
+/// The left-hand side and initial values of one equation: `D^order y + sum of coefficient D^lower y = rhs`, with Caputo
+/// derivatives.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -50,8 +51,8 @@ impl Equation {
         Ok(())
     }
 
-    /// Powers `(factor, exponent)` of `t` that the initial values put into the Volterra equation: the Taylor
-    /// polynomial, and of each lower term the integral of the polynomial that its derivative does not see.
+    /// Powers `(factor, exponent)` of `t` by which the initial values enter the Volterra equation: the Taylor polynomial, and
+    /// for each lower term the integral of the part of the polynomial that its derivative annihilates.
     fn forcing(&self) -> Vec<(f64, f64)> {
         let power = |k: usize, raise: f64, factor: f64| {
             let exponent = k as f64 + raise;
@@ -65,9 +66,9 @@ impl Equation {
     }
 }
 
-/// A system of fractional differential equations of any orders, one [`Equation`] an unknown.
+/// A system of fractional differential equations of any orders, one [`Equation`] per unknown.
 ///
-/// Relaxation `D^(1/2) y = -y`, `y(0) = 1`, whose solution is the Mittag-Leffler function `E_(1/2)(-sqrt t)`:
+/// An example is the relaxation `D^(1/2) y = -y`, `y(0) = 1`, whose solution is the Mittag-Leffler function `E_(1/2)(-sqrt t)`:
 ///
 /// ```
 /// use fracdiff::{Collocation, Equation, InitialValueProblem, Method};
@@ -79,7 +80,7 @@ impl Equation {
 pub struct InitialValueProblem<'a> {
     /// Left-hand sides and initial values.
     pub equations: Vec<Equation>,
-    /// `rhs(t, y)`: fills one value an equation.
+    /// `rhs(t, y)`: writes one value per equation.
     pub rhs: Density<'a>,
     /// Times at which the right-hand side may jump or have a kink in `t`, see [`Volterra::breaks`].
     pub breaks: Vec<f64>,
@@ -120,11 +121,11 @@ impl<'a> InitialValueProblem<'a> {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for orders or initial values that do not fit.
+    /// [`InvalidInput`] for orders and initial values that do not match.
     pub fn volterra(&self) -> Result<Volterra<'_>, InvalidInput> {
         let d = self.equations.len();
         let mut terms = Vec::new();
-        // Densities: the right-hand sides, then every unknown that has lower terms.
+        // Densities are the right-hand sides, then every unknown that has lower terms.
         let mut copied = Vec::new();
         for (i, equation) in self.equations.iter().enumerate() {
             equation.check().map_err(|fault| fault.at(i).within("equations"))?;
@@ -167,7 +168,7 @@ impl<'a> InitialValueProblem<'a> {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for a problem or settings that no run could start from.
+    /// [`InvalidInput`] for a problem or settings that no run can start from.
     pub fn solve(&self, method: &Method, t_end: f64) -> Result<Solution, InvalidInput> {
         self.volterra()?.solve(method, t_end)
     }

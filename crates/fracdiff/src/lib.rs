@@ -1,4 +1,4 @@
-//! Fractional derivatives and weakly singular Volterra equations: methods side by side, with events.
+//! Fractional derivatives and weakly singular Volterra equations: six methods for one type of problem, with events.
 //!
 //! # The problem
 //!
@@ -8,9 +8,9 @@
 //! y_i(t) = g_i(t) + sum over terms of  c int_0^t (t-s)^(a-1) f_k(s, y(s)) ds ,     0 <= t <= t_end,
 //! ```
 //!
-//! weakly singular where an order `a` is below 1. Any number of terms may integrate one component `f_k` (sums of
-//! kernels, `a = 1` and `a = 2` among them) and stand in one equation. Fractional differential equations
-//! `D^b y + sum of a_k D^(b_k) y = f(t, y)` with Caputo derivatives of any orders are reduced to it by `I^b`
+//! They are weakly singular if an order `a` is below 1. Any number of terms may integrate one component `f_k` (sums of kernels,
+//! `a = 1` and `a = 2` among them), and one equation may contain several terms. Fractional differential equations `D^b y + sum
+//! of a_k D^(b_k) y = f(t, y)` with Caputo derivatives of any orders are reduced to such a system by `I^b`
 //! ([`InitialValueProblem`]):
 //!
 //! ```text
@@ -30,7 +30,7 @@
 //! | `A`, `B`, `c` | matrices of the Galerkin recipe | [`DasChatterjee`] | thesis Eq. A.1 |
 //! | `q` | mapping `t - t0 = x^q` of panels | [`Collocation::mapping`] | |
 //!
-//! Times and values are in whatever units the problem is posed in.
+//! Times and values have the units of the problem.
 //!
 //! # The methods
 //!
@@ -45,30 +45,30 @@
 //!
 //! [`Volterra::solve_to`] chooses the settings for a requested accuracy and estimates the error.
 //!
-//! *Convolution methods* replace the integral by `h^a sum_j w_(n-j) f_j` on equal steps. Gruenwald-Letnikov: `w` are the
-//! coefficients of `(1-z)^-a`. L1: those of the inverse of the L1 formula for the derivative of the fractional order,
-//! times trapezoidal rules for the whole part of `a`. Trapezoidal: exact integrals of the piecewise linear interpolant,
-//! with corrections on the first few values that make the rule exact for the powers `t^(j a)` below 1 with which the
-//! density starts (Lubich 1986).
+//! *Convolution methods* replace the integral by `h^a sum_j w_(n-j) f_j` on equal steps. For Gruenwald-Letnikov, `w` are the
+//! coefficients of `(1-z)^-a`; for L1, those of the inverse of the L1 formula for the derivative of the fractional order, times
+//! trapezoidal rules for the integer part of `a`. The trapezoidal method integrates the piecewise linear interpolant exactly,
+//! with corrections for the first few values that make the rule exact for the powers `t^(j a)` below 1 with which the density
+//! starts (Lubich 1986).
 //!
-//! *Fading states*: `t^(a-1) ~ t^m sum_l w_l exp(-r_l t)` turns the past into states that obey ordinary differential
-//! equations. The sum is a quadrature of the Laplace integral of the kernel ([`ExponentialSum`]), accurate beyond one
-//! step, or the Galerkin projection of Das and Chatterjee ([`DasChatterjee`]), which approximates the kernel everywhere.
+//! *Decaying states*: `t^(a-1) ~ t^m sum_l w_l exp(-r_l t)` replaces the past by states that satisfy ordinary differential
+//! equations. The sum is a quadrature of the Laplace integral of the kernel ([`ExponentialSum`]), accurate beyond one step, or
+//! the Galerkin projection of Das and Chatterjee ([`DasChatterjee`]), which approximates the kernel everywhere.
 //!
-//! *Collocation*: on a panel of `x = (t - t0)^(1/q)`, `t0` the last break, the density is a polynomial through
-//! Gauss-Legendre nodes. Kernels are integrated by Gauss-Jacobi rules that carry the singularity exactly:
-//! `t_i - s = (x_i - x) Q(x_i, x)` with a positive, smooth `Q`. Past panels are Gauss sums, on dyadic pieces where they
-//! are near. Panels are halved until the last Legendre coefficients are negligible, so that they enclose a kink
-//! of the density (the end of a contact) ever more closely.
+//! *Collocation*: on a panel of `x = (t - t0)^(1/q)`, `t0` the last break, the density is a polynomial through Gauss-Legendre
+//! nodes. Kernels are integrated by Gauss-Jacobi rules that represent the singularity exactly: `t_i - s = (x_i - x) Q(x_i, x)`
+//! with a positive, smooth `Q`. The contributions of past panels are Gauss sums, on dyadic pieces where they are near. Panels
+//! are halved until the last Legendre coefficients are negligible, so that they enclose a kink of the density (the end of a
+//! contact) ever more closely.
 //!
 //! # Limits
 //!
-//! Kernels are sums of powers and orders are constant. Newton's method solves dense systems: tens of unknowns, not
-//! thousands. A solution that blows up ends early, and [`Solution::stop`] says where and why.
+//! Kernels are sums of powers, and orders are constant. Newton's method solves dense systems of tens of unknowns, not
+//! thousands. If a solution blows up, the run ends early, and [`Solution::stop`] states where and why.
 //!
 //! # Example
 //!
-//! A ball on a stand-in for an infinite beam, `x = t - int [(t-s) + sqrt(t-s)] x ds`, until it lifts off:
+//! A ball on a simplified infinite beam, `x = t - int [(t-s) + sqrt(t-s)] x ds`, until it lifts off:
 //!
 //! ```
 //! use fracdiff::{Collocation, Event, Method, Stop, Volterra};

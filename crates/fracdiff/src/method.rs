@@ -8,7 +8,7 @@ use crate::solution::Solution;
 use invalid_input::InvalidInput;
 use std::fmt;
 
-/// A method with its settings; all solve the same [`Volterra`] problem. The crate root compares them.
+/// A method with its settings. All methods solve the same [`Volterra`] problem; the documentation of the crate compares them.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -20,7 +20,7 @@ pub enum Method {
     L1(Convolution),
     /// Product-integration trapezoidal rule (implicit fractional Adams) with starting corrections: second order.
     Trapezoidal(Convolution),
-    /// Product-integration trapezoidal rule on a graded mesh, the past kept as a sum of exponentials: second order.
+    /// Product-integration trapezoidal rule on a graded mesh, with the past as a sum of exponentials: second order.
     SumOfExponentials(SumOfExponentials),
     /// Galerkin internal states of Das and Chatterjee in place of the kernel.
     GalerkinStates(GalerkinStates),
@@ -64,12 +64,12 @@ impl fmt::Display for Method {
 impl Volterra<'_> {
     /// Solves the problem on `[0, t_end]` and ends exactly at `t_end`.
     ///
-    /// What the run met on its way (a terminal event, a value that is not finite, a limit) is the
-    /// [`stop`](Solution::stop) of the solution, which then reaches as far as it could be computed.
+    /// If a run ends early (at a terminal event, at a value that is not finite, or at a limit), the [`stop`](Solution::stop) of
+    /// the solution states the reason, and the solution reaches as far as it could be computed.
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for a problem or settings that no run could start from.
+    /// [`InvalidInput`] for a problem or settings that no run can start from.
     pub fn solve(&self, method: &Method, t_end: f64) -> Result<Solution, InvalidInput> {
         method.run(self, t_end)
     }

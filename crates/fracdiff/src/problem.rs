@@ -7,18 +7,18 @@ use std::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Term {
-    /// The component of `y` in whose equation the term stands.
+    /// The component of `y` in whose equation the term appears.
     pub unknown: usize,
     /// The component of the density that the term integrates.
     pub density: usize,
     /// Order of the integral, 0.01 to 16; below 1 the kernel is singular.
     pub order: f64,
-    /// Factor of the kernel, without a Gamma function in it.
+    /// Factor of the kernel, without a Gamma function.
     pub coefficient: f64,
 }
 
 impl Term {
-    /// The Riemann-Liouville integral `factor * I^order f_density`, which has `1/Gamma(order)` in its kernel.
+    /// The Riemann-Liouville integral `factor * I^order f_density`, whose kernel includes `1/Gamma(order)`.
     pub fn riemann_liouville(unknown: usize, density: usize, order: f64, factor: f64) -> Term {
         Term { unknown, density, order, coefficient: factor / libm::tgamma(order) }
     }
@@ -42,10 +42,10 @@ invalid_input::names!(Direction, "direction", { Any: "any", Rising: "rising", Fa
 
 /// A function of time and solution whose sign changes are located.
 ///
-/// Signs are compared at the ends of steps, or at the ends and nodes of panels; two sign changes between neighbours of
-/// these are not seen. A change that is seen is located on the solution to rounding.
+/// Signs are compared at the ends of steps, or at the ends and nodes of panels; two sign changes between neighbouring points
+/// are not detected. A detected change is located on the solution to rounding.
 pub struct Event<'a> {
-    /// The function `e(t, y)`. A value of exactly 0 belongs to neither sign, so a start at 0 is no event.
+    /// The function `e(t, y)`. A value of exactly 0 has neither sign, so a start at 0 is no event.
     pub function: EventFunction<'a>,
     /// Which sign changes count.
     pub direction: Direction,
@@ -54,12 +54,12 @@ pub struct Event<'a> {
 }
 
 impl<'a> Event<'a> {
-    /// An event that is located while the solution goes on.
+    /// An event that is located while the run continues.
     pub fn new(function: impl Fn(f64, &[f64]) -> f64 + 'a) -> Self {
         Event { function: Box::new(function), direction: Direction::Any, terminal: false }
     }
 
-    /// Counts sign changes of one direction alone.
+    /// Counts sign changes of one direction only.
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self
@@ -114,8 +114,8 @@ pub struct Volterra<'a> {
     pub forcing: Forcing<'a>,
     /// `f(t, y)`: fills `densities` values.
     pub density: Density<'a>,
-    /// Times at which `g` or `f` may jump or have a kink in `t`. Every method steps onto them, and the
-    /// functions are never evaluated at such a time itself but on its two sides.
+    /// Times at which `g` or `f` may jump or have a kink in `t`. Every method steps onto them. The functions are never
+    /// evaluated at such a time itself, but on its two sides.
     pub breaks: Vec<f64>,
     /// Events to locate.
     pub events: Vec<Event<'a>>,

@@ -19,9 +19,8 @@ impl Rule {
 
     /// Gauss-Jacobi rule for `integral_0^1 u^exponent f(u) du`, `exponent > -1`, nodes ascending.
     ///
-    /// The number of nodes is rounded up to an even one: the library rule places the middle node of an
-    /// odd rule at the centre, which holds for symmetric weights alone. The weights are scaled to their
-    /// exact sum `1/(exponent + 1)`.
+    /// The number of nodes is rounded up to an even one: the library places the middle node of an odd rule at the centre, which
+    /// is right for symmetric weights only. The weights are scaled to their exact sum `1/(exponent + 1)`.
     pub fn jacobi(count: usize, exponent: f64) -> Rule {
         let degree = NonZeroUsize::new(count.max(2).next_multiple_of(2)).unwrap_or(NonZeroUsize::MIN);
         let symmetric = FiniteAboveNegOneF64::default();
@@ -86,7 +85,7 @@ impl Interpolation {
         out.iter_mut().for_each(|v| *v /= sum);
     }
 
-    /// The larger of the last two Legendre coefficients of nodal values: what the panel fails to resolve.
+    /// The larger of the last two Legendre coefficients of nodal values, a measure of what the panel does not resolve.
     pub fn tail(&self, values: impl Fn(usize) -> f64) -> f64 {
         let n = self.nodes.len();
         let coefficient = |k: usize| (0..n).map(|j| self.to_legendre[k * n + j] * values(j)).sum::<f64>().abs();

@@ -1,11 +1,11 @@
-//! Watches a growing solution for events.
+//! Searches a growing solution for events.
 
 use crate::dense::Dense;
 use crate::problem::{Direction, Event, Volterra};
 use crate::solution::{Counts, EventHit, Solution, Stop};
 use crate::system::System;
 
-/// The solution so far and the sign each event function last had.
+/// The solution so far and the last sign of each event function.
 pub(crate) struct Recorder<'p, 'a> {
     problem: &'p Volterra<'a>,
     pub dense: Dense,
@@ -19,8 +19,8 @@ impl<'p, 'a> Recorder<'p, 'a> {
         Recorder { problem, dense, last: vec![None; problem.events.len()], hits: Vec::new() }
     }
 
-    /// Looks at the event functions at the given times, ascending, all inside the solution so far.
-    /// An error is the reason to stop; the solution then ends at the terminal event.
+    /// Evaluates the event functions at the given times, ascending, all inside the solution so far. An error is the reason to
+    /// stop; the solution then ends at the terminal event.
     pub fn scan(&mut self, times: impl IntoIterator<Item = f64>) -> Result<(), Stop> {
         if self.problem.events.is_empty() {
             return Ok(());
@@ -74,11 +74,11 @@ fn counts(direction: Direction, rising: bool) -> bool {
     }
 }
 
-/// The sign change between two times: the secant rule with the Illinois correction, inside a bracket that is halved
+/// Locates the sign change between two times by the secant rule with the Illinois correction, inside a bracket that is halved
 /// whenever three steps have not halved it.
 fn locate(event: &Event<'_>, dense: &Dense, (mut a, mut fa): (f64, f64), (mut b, mut fb): (f64, f64)) -> f64 {
     let mut y = vec![0.0; dense.unknowns()];
-    // Magnitudes at the two ends, which the Illinois correction leaves alone.
+    // Magnitudes at the two ends, without the Illinois correction.
     let (mut size_a, mut size_b) = (fa.abs(), fb.abs());
     let mut width = b - a;
     let mut moved_right_end = None;

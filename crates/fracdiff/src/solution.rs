@@ -1,4 +1,4 @@
-//! The solution: values at any time, events, what stopped the run and what it cost.
+//! The solution: values at any time, events, the reason for stopping, and the cost.
 
 use crate::dense::Dense;
 use invalid_input::InvalidInput;
@@ -57,11 +57,11 @@ pub struct EventHit {
     pub t: f64,
     /// The solution there.
     pub y: Vec<f64>,
-    /// Whether the function went from negative to positive.
+    /// Whether the function changed from negative to positive.
     pub rising: bool,
 }
 
-/// What a run cost.
+/// The cost of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -72,9 +72,9 @@ pub struct Counts {
     pub newton_iterations: u64,
     /// Steps or panels taken.
     pub steps: u64,
-    /// Panels tried and found too long.
+    /// Panels that were tried and were too long.
     pub rejected: u64,
-    /// Numbers held to represent the past at the end of the run (not counting the solution's own samples).
+    /// Number of values that represent the past at the end of the run (not counting the solution's own samples).
     pub history_values: u64,
 }
 
@@ -91,11 +91,12 @@ pub struct Solution {
 }
 
 impl Solution {
-    /// The solution at a time in `[0, end_time]`. Where it jumps (at a break of the forcing) the value before the jump.
+    /// The solution at a time in `[0, end_time]`. Where it jumps (at a break of the forcing), this is the value before the
+    /// jump.
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`] for a time outside the range solved.
+    /// [`InvalidInput`] for a time outside the solution.
     pub fn at(&self, t: f64) -> Result<Vec<f64>, InvalidInput> {
         let mut y = vec![0.0; self.unknowns()];
         if self.dense.eval(t, &mut y) {
@@ -105,7 +106,7 @@ impl Solution {
         }
     }
 
-    /// Ends of the steps or panels, ascending from 0; a break point stands twice, with the values of its two sides.
+    /// Ends of the steps or panels, ascending from 0; a break point appears twice, with the values of its two sides.
     pub fn times(&self) -> &[f64] {
         self.dense.times()
     }
@@ -120,7 +121,7 @@ impl Solution {
         self.dense.unknowns()
     }
 
-    /// The time reached: the final time asked for, unless the run stopped before.
+    /// The time reached: the requested final time, unless the run stopped before.
     pub fn end_time(&self) -> f64 {
         self.dense.times().last().copied().unwrap_or(0.0)
     }

@@ -1,10 +1,10 @@
-//! A checked problem as the methods see it: counted evaluations, segments between breaks, kernels by order.
+//! A checked problem in the form that the methods use: counted evaluations, segments between breaks, kernels by order.
 
 use crate::problem::Volterra;
 use crate::solution::Stop;
 use invalid_input::InvalidInput;
 
-/// Largest number of unknowns or densities: a bound on memory, far above what the dense Newton systems can serve.
+/// Largest number of unknowns or densities. It limits memory and is far above what the dense Newton systems can solve.
 const MOST_COMPONENTS: usize = 2000;
 
 /// All terms of one (unknown, density) pair: the kernel `sum of coefficient * t^(orders[index] - 1)`.
@@ -23,7 +23,7 @@ impl Pair {
     }
 }
 
-/// A stretch of time inside which forcing and density are smooth functions of `t`.
+/// A time interval inside which forcing and density are smooth functions of `t`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Segment {
     pub start: f64,
@@ -42,7 +42,7 @@ impl Segment {
         self.start * (1.0 - 4.0 * f64::EPSILON)
     }
 
-    /// `t` moved off a break point into the segment, by a few units in the last place.
+    /// `t` moved from a break point into the segment, by a few units in the last place.
     pub fn inside(&self, t: f64) -> f64 {
         if self.start_is_break && t <= self.start {
             self.start * (1.0 + 4.0 * f64::EPSILON)
@@ -150,7 +150,7 @@ fn segments(breaks: &[f64], t_end: f64) -> Result<Vec<Segment>, InvalidInput> {
     }
     let mut inner: Vec<f64> = breaks.iter().copied().filter(|&t| t > 0.0 && t < t_end).collect();
     inner.sort_by(f64::total_cmp);
-    // Breaks closer to each other than rounding are one break.
+    // Breaks that are closer to each other than rounding are one break.
     inner.dedup_by(|b, a| *b - *a <= 64.0 * f64::EPSILON * *b);
     inner.retain(|&t| t_end - t > 64.0 * f64::EPSILON * t_end);
     let mut bounds = vec![0.0];
@@ -167,7 +167,7 @@ fn segments(breaks: &[f64], t_end: f64) -> Result<Vec<Segment>, InvalidInput> {
         .collect())
 }
 
-/// Checks a number of steps, and that the samples of the solution and the density fit into a sensible memory.
+/// Checks the number of steps, and that the samples of the solution and the density fit into a reasonable memory.
 pub(crate) fn require_steps(steps: usize, system: &System<'_, '_>) -> Result<usize, InvalidInput> {
     InvalidInput::unless((1..=1 << 22).contains(&steps), "steps", steps, "a number from 1 to 4194304")?;
     let samples = steps * (system.unknowns + system.densities);

@@ -2,7 +2,7 @@
 //!
 //! Reference values were computed with 50 digits and are exact to the last digit printed.
 
-// The references keep the digits they were computed to.
+// The reference values have all the digits that were computed.
 #![allow(clippy::excessive_precision)]
 
 use crate::collocation::Collocation;
@@ -13,7 +13,7 @@ use crate::problem::{Term, Volterra};
 use libm::tgamma;
 use std::f64::consts::PI;
 
-/// A problem with one unknown and what is known of its solution.
+/// A problem with one unknown and its known values.
 #[derive(Debug)]
 pub struct TestProblem {
     /// Short name.
@@ -43,7 +43,7 @@ pub const RIGID_CONTACT_END: f64 = 3.2180654597190430845;
 /// Largest compression of [`rigid_contact`].
 pub const RIGID_CONTACT_LARGEST: f64 = 1.0933620739432780564;
 
-/// Every problem of the library.
+/// Every problem of the module.
 pub fn all() -> Vec<TestProblem> {
     vec![
         relaxation(),
@@ -57,7 +57,7 @@ pub fn all() -> Vec<TestProblem> {
     ]
 }
 
-/// Every method of the crate, those on steps with this many of them, in the order of [`Method`].
+/// Every method of the crate, in the order of [`Method`]; those with steps have this many.
 pub fn every_method(steps: usize) -> Vec<Method> {
     vec![
         Method::GrunwaldLetnikov(Convolution { steps }),
@@ -162,7 +162,7 @@ pub fn rigid_contact() -> TestProblem {
     }
 }
 
-/// A given force `(t(1-t))^(3/2)` up to `t = 1`, none after: `y = int sqrt(t-s) force ds`, a test of memory alone.
+/// A given force `(t(1-t))^(3/2)` up to `t = 1`, none after: `y = int sqrt(t-s) force ds`, a test of the memory alone.
 pub fn manufactured_contact() -> TestProblem {
     let force = |t: f64, _: f64| (t * (1.0 - t)).max(0.0).powf(1.5);
     TestProblem {
@@ -178,9 +178,9 @@ pub fn manufactured_contact() -> TestProblem {
     }
 }
 
-/// A Hertzian ball on an infinite beam, `x = t - int [(t-s) + sqrt(t-s)] sqrt(S) max(x, 0)^(3/2) ds` (thesis Eqs. 2.7 in
-/// units that leave `S` alone). It has no closed solution and is not among [`all`]; with `S = 15` the ball separates
-/// four times and stays in contact after (thesis Fig. 2.3).
+/// A Hertzian ball on an infinite beam, `x = t - int [(t-s) + sqrt(t-s)] sqrt(S) max(x, 0)^(3/2) ds` (thesis Eqs. 2.7 in units
+/// in which only `S` remains). It has no closed solution and is not among [`all`]; with `S = 15` the ball separates four times
+/// and then stays in contact (thesis Fig. 2.3).
 pub fn ball_on_beam(s: f64) -> Volterra<'static> {
     Volterra::scalar(|t| t, move |_, x| s.sqrt() * x.max(0.0).powf(1.5), &[(2.0, -1.0), (1.5, -1.0)])
 }

@@ -30,7 +30,7 @@ fn error(problem: &TestProblem, method: &Method, t_end: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Asserts the order measured between two numbers of steps that are 4 times apart.
+/// Asserts the order measured between two numbers of steps that differ by a factor of 4.
 fn assert_order(problem: TestProblem, method: fn(usize) -> Method, steps: usize, order: std::ops::Range<f64>) {
     let t_end = problem.end_before(20.0);
     let errors = [error(&problem, &method(steps), t_end), error(&problem, &method(4 * steps), t_end)];
@@ -62,7 +62,7 @@ fn l1_has_order_one_for_singular_and_two_minus_order_for_smooth_solutions() {
 #[test]
 fn trapezoidal_is_second_order() {
     for problem in test_problems::all() {
-        // The load of manufactured contact ends like (1-t)^(3/2) inside few steps: a little above order 2 at first.
+        // The load of manufactured contact ends like (1-t)^(3/2) within few steps, so that the order is first a little above 2.
         assert_order(problem, trapezoidal, 1000, 1.85..2.45);
     }
 }
@@ -80,10 +80,10 @@ fn galerkin_states_reach_the_floor_of_their_kernel() {
         Method::GalerkinStates(GalerkinStates { states, beta1: -beta, beta2: beta, steps: 4000, grading: 2.0 })
     };
     let problem = test_problems::relaxation();
-    // The thesis's settings: second order down to a floor near 1.5e-7.
+    // With the thesis's settings: second order down to a floor near 1.5e-7.
     let thesis = error(&problem, &Method::GalerkinStates(GalerkinStates { steps: 4000, ..Default::default() }), 1.0);
     assert!((5e-8..4e-7).contains(&thesis), "{thesis}");
-    // Fewer states in a narrower band do worse.
+    // Fewer states in a narrower band are less accurate.
     let errors = [error(&problem, &method(8, 1.2), 1.0), error(&problem, &method(16, 1.6), 1.0), thesis];
     println!("{errors:?}");
     assert!(errors[0] > 3.0 * errors[1] && errors[1] > 3.0 * errors[2], "{errors:?}");
@@ -96,7 +96,7 @@ fn collocation_reaches_twelve_digits() {
         let found = error(&problem, &Method::Collocation(Collocation::default()), t_end);
         println!("{:22} {found:e}", problem.name);
         let largest = problem.reference.iter().map(|r| r.1.abs()).fold(0.0, f64::max);
-        // Two kinks in the density of rigid contact (t = 0 and the end of contact) cost it one digit.
+        // Two kinks in the density of rigid contact (t = 0 and the end of contact) cost one digit.
         let allowed = if problem.name == "rigid-contact" { 2e-11 } else { 1e-12 };
         assert!(found < allowed * largest, "{}: {found:e}", problem.name);
     }

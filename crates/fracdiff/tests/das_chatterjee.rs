@@ -1,8 +1,8 @@
-//! The recipe of thesis A.1 as it is used there: an ordinary differential equation with the matrices A, B and c and the
-//! regularisation eps, against the solution known in closed form.
+//! The method of thesis A.1 as it is used there: an ordinary differential equation with the matrices A, B and c and the
+//! regularisation eps, compared with the known solution.
 //!
-//! Eq. A.2 is printed with the driver `c y'`. The equation to be solved, `D^(3/2) y = -Gamma(3/2) f`, is of order
-//! `1 + 1/2`, so by Eq. A.1 (n = 2) the driver is `c y''`, and it is taken so here.
+//! Eq. A.2 is printed with the right-hand side `c y'`. The equation to be solved, `D^(3/2) y = -Gamma(3/2) f`, is of order `1 +
+//! 1/2`, so that by Eq. A.1 (n = 2) the right-hand side is `c y''`, which is used here.
 
 use fracdiff::{DasChatterjee, test_problems};
 use nalgebra::{DMatrix, DVector};

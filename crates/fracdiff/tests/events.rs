@@ -20,7 +20,7 @@ fn first_zero_of_the_linear_beam_to_thirteen_digits() {
     println!("{:e}", hit.t - LINEAR_BEAM_ZERO.0);
     assert!((hit.t - LINEAR_BEAM_ZERO.0).abs() < 1e-13, "{}", hit.t);
     assert!(!hit.rising && hit.y[0].abs() < 1e-14);
-    // the solution ends there, and its slope is the known one
+    // The solution ends there, and its slope is the known one.
     assert_eq!(solution.end_time(), hit.t);
     assert!(solution.at(hit.t + 1e-9).is_err());
     let h = 1e-3;
@@ -69,7 +69,7 @@ fn every_zero_of_a_cosine_and_their_directions() {
 fn separation_of_a_rigid_contact() {
     let problem = test_problems::rigid_contact().volterra.with_event(Event::new(|_, y| y[0]));
     let solution = problem.solve(&collocation(), 5.0).unwrap();
-    // x(0) = 0 is a start, not an event
+    // x(0) = 0 is a start, not an event.
     assert_eq!(solution.events.len(), 1);
     let hit = &solution.events[0];
     assert!((hit.t - RIGID_CONTACT_END).abs() < 1e-11, "{:e}", hit.t - RIGID_CONTACT_END);
@@ -101,14 +101,14 @@ fn four_separations_of_a_ball_on_an_infinite_beam() {
         assert_eq!(solution.stop, Stop::EndReached);
         solution.events
     };
-    // separation and contact in turn, and sustained contact after the fourth (thesis Fig. 2.3)
+    // Separation and contact alternate, with sustained contact after the fourth (thesis Fig. 2.3).
     let (fine, coarse) = (events(1e-12), events(1e-9));
     assert_eq!((fine.len(), coarse.len()), (8, 8));
     assert!(fine.iter().enumerate().all(|(i, hit)| hit.rising == (i % 2 == 1)));
     for (a, b) in fine.iter().zip(&coarse) {
         assert!((a.t / b.t - 1.0).abs() < 1e-6, "{} {}", a.t, b.t);
     }
-    // the first separation by an independent method, extrapolated from its second order
+    // The first separation by an independent method, extrapolated from second order.
     let first = |steps| {
         let problem = test_problems::ball_on_beam(15.0).with_event(Event::new(|_, y| y[0]).terminal());
         problem.solve(&Method::Trapezoidal(Convolution { steps }), 2.0).unwrap().events[0].t

@@ -1,4 +1,4 @@
-//! Stated errors must cover the true ones, over random problems with known solutions. The seed is fixed.
+//! Stated errors must cover the true ones, in random problems with known solutions. The seed is fixed.
 
 use fracdiff::{Equation, InitialValueProblem, Volterra, operators, test_problems};
 use libm::tgamma;
@@ -6,19 +6,19 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-/// The same row of random values on every machine.
+/// The same sequence of random values on every machine.
 fn draw<T>(strategy: impl Strategy<Value = T>, count: usize) -> Vec<T> {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[19; 32]);
     let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
     (0..count).map(|_| strategy.new_tree(&mut runner).unwrap().current()).collect()
 }
 
-/// How well stated errors cover true ones.
+/// Counts how well stated errors cover true ones.
 #[derive(Default, Debug)]
 struct Coverage {
     cases: usize,
     covered: usize,
-    /// Largest error over stated error, and what it belongs to.
+    /// Largest ratio of true to stated error, and the problem in which it occurs.
     worst: (f64, String),
 }
 
@@ -41,7 +41,7 @@ impl Coverage {
 
 const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-4, 1e-7, 1e-10];
 
-/// Every test problem at every tolerance: covered, and as good as asked for.
+/// In every test problem, at every tolerance, the stated error covers the true one and is within the tolerance.
 #[test]
 fn the_test_problems() {
     for problem in test_problems::all() {
@@ -66,7 +66,7 @@ fn manufactured_initial_value_problems() {
     let cases = draw((0.2..1.0f64, 0.1..0.9f64, -1.0..1.0f64, 0.0..2.0f64, powers, 0..5usize, 0.3..3.0f64), 120);
     for case in cases {
         let (order, share, lower, cubic, powers, which, end) = case.clone();
-        // exponents no less than the order, as solutions of such equations have them
+        // Exponents are not below the order, as in the solutions of such equations.
         let powers: Vec<(f64, f64)> = powers.into_iter().map(|(w, p)| (w, order + p)).collect();
         let sum = |t: f64, a: f64| -> f64 {
             powers.iter().map(|(w, p)| w * tgamma(p + 1.0) / tgamma(p + 1.0 - a) * t.powf(p - a)).sum()
@@ -113,7 +113,7 @@ fn manufactured_volterra_equations() {
         let error = times.fold(0.0_f64, |a, t| a.max((found.solution.at(t).unwrap()[0] - exact(t)).abs()));
         coverage.note(error, found.error, || format!("{case:?}"));
     }
-    // a few end undecided, and say so
+    // A few runs end undecided, and report it.
     coverage.assert(76);
 }
 

@@ -7,7 +7,7 @@ use fracdiff::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// The library's list, with collocation kept from going on for long.
+/// The library's list, with a limit on the number of panels of collocation.
 fn every_method(steps: usize) -> Vec<Method> {
     let mut methods = test_problems::every_method(steps);
     for method in &mut methods {
@@ -150,7 +150,7 @@ fn extreme_scales_of_time_and_value() {
 
 #[test]
 fn values_between_the_finest_steps_are_finite() {
-    // graded so strongly after a late break that the first steps vanish against t
+    // The mesh is graded so strongly after a late break that the first steps are below the rounding of t.
     let problem = Volterra::scalar(|_| 1.0, |_, y| y, &[(0.5, -1.0)]).with_breaks(&[1e3]);
     for method in [
         Method::SumOfExponentials(SumOfExponentials { steps: 4000, grading: 8.0, tolerance: 1e-6 }),
@@ -199,7 +199,7 @@ proptest! {
         .with_breaks(&breaks)
         .with_event(Event::new(|t, y| y[0] - t));
         let solution = problem.solve(&every_method(60)[which], t_end);
-        // a Galerkin order outside its range is refused, anything else runs
+        // A Galerkin order outside its range is rejected; everything else runs.
         if let Ok(solution) = solution {
             assert_finite(&solution);
             prop_assert!(solution.events.iter().all(|e| e.t.is_finite()));

@@ -56,7 +56,7 @@ fn a_nonlinear_system_of_mixed_orders() {
 
 #[test]
 fn orders_above_two() {
-    // D^(5/2) y = t^(1/2) Gamma(4)/Gamma(3/2) gives y = t^3 with zero start, t^3 + 1 + t + t^2/2 with ones
+    // D^(5/2) y = t^(1/2) Gamma(4)/Gamma(3/2) has the solution t^3 with zero initial values, and t^3 + 1 + t + t^2/2 with ones.
     let problem = InitialValueProblem::new(vec![Equation::new(2.5, &[1.0, 1.0, 1.0])], |t, _, f| {
         f[0] = tgamma(4.0) / tgamma(1.5) * t.sqrt()
     });
@@ -73,13 +73,14 @@ fn orders_above_two() {
 
 #[test]
 fn a_discontinuous_load_keeps_the_order_of_every_method() {
-    // D^(1/2) y = -y + [t > 0.37]: break not on any natural grid point
+    // D^(1/2) y = -y + [t > 0.37]: the break is not a natural grid point.
     let problem = InitialValueProblem::new(vec![Equation::new(0.5, &[1.0])], |t, y, f| {
         f[0] = -y[0] + if t > 0.37 { 1.0 } else { 0.0 }
     })
     .with_breaks(&[0.37]);
     let exact = problem.solve(&collocation(), 1.0).unwrap().at(1.0).unwrap()[0];
-    // linear: the relaxation and its step response, by the Mittag-Leffler function erfcx(sqrt t)
+    // The equation is linear: the solution is the relaxation and its step response, by the Mittag-Leffler function erfcx(sqrt
+    // t).
     let known = puruspe::erfcx(1.0) + 1.0 - puruspe::erfcx(0.63f64.sqrt());
     assert!((exact - known).abs() < 1e-13, "{exact} {known}");
     let order = |method: fn(usize) -> Method| {
@@ -98,8 +99,8 @@ fn a_discontinuous_load_keeps_the_order_of_every_method() {
 
 #[test]
 fn fast_history_equals_direct_sums() {
-    // 63 steps are summed directly, 64 and more by transforms; the same grid twice through a break at the middle
-    // would hide nothing: compare with the recursion written out.
+    // 63 steps are summed directly, 64 and more by transforms. A comparison of both on the same grid, with a break in the
+    // middle, would not find common errors; the reference is therefore the recursion written out.
     let (steps, order) = (777usize, 0.5);
     let solution = test_problems::abel().volterra.solve(&Method::GrunwaldLetnikov(Convolution { steps }), 2.0).unwrap();
     let h: f64 = 2.0 / steps as f64;
@@ -134,7 +135,7 @@ fn rerun_is_identical_to_the_last_bit() {
 
 #[test]
 fn terms_of_one_pair_add_up() {
-    // one term of weight 1 against two of weight 1/2
+    // One term of weight 1 against two of weight 1/2.
     let term = |coefficient| Term { unknown: 0, density: 0, order: 0.5, coefficient };
     let solve = |terms: Vec<Term>| {
         let problem = Volterra { terms, ..Volterra::scalar(|_| 1.0, |_, y| y * y, &[]) };

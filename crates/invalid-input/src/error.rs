@@ -1,4 +1,4 @@
-//! The error itself.
+//! The error.
 
 use core::fmt::{self, Display, Formatter};
 
@@ -9,14 +9,14 @@ use crate::value::{Text, Value};
 /// Longest path that a message shows (characters).
 const LONGEST_PATH: usize = 90;
 
-/// An input that cannot be used: where it stands, the value found there, and what would be allowed.
+/// An input that cannot be used: its path, its value, and what would be allowed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InvalidInput {
-    /// Where it stands; empty where the whole is meant. It can be compared with a text.
+    /// The path of the input; empty if the whole input is meant. It can be compared with a text.
     pub field: Path,
-    /// The value found there; `None` where the field is missing.
+    /// The value; `None` if the field is missing.
     pub value: Option<Value>,
-    /// What would be allowed. A field that has no place where it stands is told to be `left out`.
+    /// What would be allowed. For a field that does not apply this begins with `left out`.
     pub allowed: Text,
 }
 
@@ -31,7 +31,7 @@ impl InvalidInput {
         InvalidInput { field: field.into(), value: None, allowed: allowed.into() }
     }
 
-    /// Passes when `ok` holds, and reports the field otherwise.
+    /// Succeeds if `ok` holds, and otherwise reports the field.
     ///
     /// # Errors
     /// If `ok` does not hold.
@@ -45,7 +45,7 @@ impl InvalidInput {
         if ok { Ok(()) } else { Err(InvalidInput::new(field, value, allowed)) }
     }
 
-    /// Passes a finite number greater than zero.
+    /// Accepts a finite number greater than zero.
     ///
     /// # Errors
     /// If it is anything else.
@@ -55,28 +55,28 @@ impl InvalidInput {
         InvalidInput::unless(ok, field, value, "a finite number greater than 0").map(|()| value)
     }
 
-    /// Passes a finite number.
+    /// Accepts a finite number.
     ///
     /// # Errors
-    /// If it is anything else.
+    /// If the number is not finite.
     #[inline]
     pub fn require_finite(field: impl Into<Path>, value: f64) -> Result<f64, InvalidInput> {
         InvalidInput::unless(value.is_finite(), field, value, "a finite number").map(|()| value)
     }
 
-    /// The same fault, seen from an object that holds the field's object at `parent`.
+    /// The same error, for an object that contains the field's object at `parent`.
     #[must_use]
     pub fn within(self, parent: impl Into<Path>) -> InvalidInput {
         InvalidInput { field: self.field.within(parent), ..self }
     }
 
-    /// The same fault, seen from a list that holds the field's object at `index`.
+    /// The same error, for a list that contains the field's object at `index`.
     #[must_use]
     pub fn at(self, index: usize) -> InvalidInput {
         self.within(Step::Index(index))
     }
 
-    /// The same fault seen from the object at the field `parent`, if it stands there: the inverse of
+    /// The same error as seen from the object at the field `parent`, if the path begins there; the inverse of
     /// [`InvalidInput::within`].
     #[must_use]
     pub fn without(self, parent: &str) -> InvalidInput {
@@ -87,19 +87,19 @@ impl InvalidInput {
         }
     }
 
-    /// The same fault in a file, or in another place that is no field.
+    /// The same error in a file, or in another place that is not a field.
     #[must_use]
     pub fn in_place(self, place: impl Into<Text>) -> InvalidInput {
         self.within(Step::Place(place.into()))
     }
 
-    /// The same fault in a line of a file or table, from 1.
+    /// The same error in a line of a file or table, from 1.
     #[must_use]
     pub fn in_line(self, line: u64) -> InvalidInput {
         self.within(Step::Line(line))
     }
 
-    /// The same fault under another name.
+    /// The same error under another name of the field.
     #[must_use]
     pub fn under(self, field: impl Into<Path>) -> InvalidInput {
         InvalidInput { field: field.into(), ..self }
@@ -108,7 +108,7 @@ impl InvalidInput {
 
 impl Display for InvalidInput {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        // names and values may come from files and hold anything
+        // Names and values may come from files and contain any characters.
         if self.field.is_empty() {
             f.write_str("the input")?;
         } else {
@@ -117,7 +117,7 @@ impl Display for InvalidInput {
         let allowed = printable(&self.allowed);
         match &self.value {
             Some(value) => {
-                // a field that has to go is told so; of any other it is told what would be allowed
+                // A field that does not apply has to be removed; for any other the message states what would be allowed.
                 let verdict = if self.allowed.starts_with("left out") { "must be" } else { "is not allowed:" };
                 write!(f, " = {} {verdict} {allowed}", cut(printable(value), LONGEST_VALUE))
             }

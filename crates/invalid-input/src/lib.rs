@@ -1,7 +1,7 @@
-//! One error for input that cannot be used: where it stands, its value, and what would be allowed.
+//! One error for input that cannot be used: its path, its value, and what would be allowed.
 //!
-//! Whoever checks a number knows its name; whoever holds the object in which the number stands puts the object's name in
-//! front. The path of a field is therefore a list of typed [`Step`]s that grows from the inside out:
+//! A function that checks a number knows its name; the caller that has the object with this number prepends the object's name.
+//! The path of a field is therefore a list of typed [`Step`]s that grows from the inside out:
 //!
 //! ```
 //! use invalid_input::InvalidInput;
@@ -14,10 +14,10 @@
 //! assert_eq!(fault.to_string(), "strikers[2].mass_kg = NaN is not allowed: a finite number greater than 0");
 //! ```
 //!
-//! Without the feature `alloc` the crate needs neither `std` nor an allocator. Names are then literals, and a path keeps its
-//! three innermost steps.
+//! Without the feature `alloc` the crate needs neither `std` nor an allocator. Names are then literals, and a path consists of
+//! its three innermost steps.
 #![no_std]
-// without an allocator a literal is a text already
+// Without an allocator a literal is a text already.
 #![cfg_attr(not(feature = "alloc"), allow(clippy::useless_conversion))]
 
 #[cfg(feature = "alloc")]

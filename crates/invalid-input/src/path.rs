@@ -1,4 +1,4 @@
-//! Where an input stands.
+//! The path of an input.
 
 use core::fmt::{self, Display, Formatter, Write};
 
@@ -29,10 +29,10 @@ type Steps = alloc::vec::Vec<Step>;
 #[cfg(not(feature = "alloc"))]
 type Steps = inline::Steps;
 
-/// The way to an input, from the outermost object inwards, as in `structure.segments[0].length_m`.
+/// The path of an input, from the outermost object inwards, as in `structure.segments[0].length_m`.
 ///
-/// It is made of a name, of a name and an index, of those and a name within the entry, or of a list of names, and it equals
-/// the text that it is shown as:
+/// It can be made from a name, from a name and an index, from these and a name within the entry, or from a list of names, and
+/// it equals the text that it is displayed as:
 ///
 /// ```
 /// use invalid_input::Path;
@@ -51,12 +51,12 @@ impl Path {
         &self.0
     }
 
-    /// Whether the path leads nowhere: the whole input is meant.
+    /// Whether the path is empty: the whole input is meant.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Name of the outermost field; none where an index or a place comes first.
+    /// Name of the outermost field; `None` if an index or a place comes first.
     pub fn first(&self) -> Option<&str> {
         match self.0.first() {
             Some(Step::Field(name)) => Some(name),
@@ -64,7 +64,7 @@ impl Path {
         }
     }
 
-    /// Name of the innermost field; none where an index or a place comes last.
+    /// Name of the innermost field; `None` if an index or a place comes last.
     pub fn last(&self) -> Option<&str> {
         match self.0.last() {
             Some(Step::Field(name)) => Some(name),
@@ -72,12 +72,12 @@ impl Path {
         }
     }
 
-    /// Whether the path leads into a file or a table.
+    /// Whether the path goes through a file or a table.
     pub fn has_place(&self) -> bool {
         self.0.iter().any(Step::is_place)
     }
 
-    /// This path seen from an object that holds it at `parent`.
+    /// This path, for an object that contains its object at `parent`.
     #[must_use]
     pub fn within(&self, parent: impl Into<Path>) -> Path {
         parent.into().0.iter().chain(self.0.iter()).cloned().collect()
@@ -124,7 +124,7 @@ impl PartialEq<alloc::string::String> for Path {
     }
 }
 
-/// What is left of a text after that which is written.
+/// The part of a text that has not been matched yet.
 struct Rest<'a>(&'a str);
 
 impl Write for Rest<'_> {
@@ -196,7 +196,7 @@ impl<T: Into<Path>, U: Into<Path>> From<(T, usize, U)> for Path {
 mod inline {
     use super::Step;
 
-    /// A name, an index in it, and a name in that; a longer path forgets its outermost steps.
+    /// A name, an index in it, and a name in that; a longer path loses its outermost steps.
     const MOST: usize = 3;
     const NOTHING: Step = Step::Index(0);
 

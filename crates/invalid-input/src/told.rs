@@ -1,4 +1,4 @@
-//! What a message repeats of the input: short, and without characters that steer a terminal.
+//! The parts of an input that a message repeats: short, and without characters that control a terminal.
 
 use core::fmt::{self, Display, Formatter, Write};
 
@@ -6,8 +6,8 @@ use core::fmt::{self, Display, Formatter, Write};
 pub const LONGEST_VALUE: usize = 60;
 const DOTS: &str = "...";
 
-/// A text that cannot steer a terminal: control characters other than line breaks and tabs, and characters that turn
-/// the direction of writing, are shown by their number.
+/// A text that cannot control a terminal: control characters other than line breaks and tabs, and characters that change the
+/// direction of writing, are shown by their number.
 ///
 /// ```
 /// assert_eq!(invalid_input::printable("a\u{1b}[2J").to_string(), "a\\u{1b}[2J");
@@ -16,7 +16,7 @@ pub fn printable(text: impl Display) -> impl Display {
     Printable(text)
 }
 
-/// A text cut to at most so many characters. Cutting it again changes nothing.
+/// A text truncated to at most this many characters. Truncating it again changes nothing.
 ///
 /// ```
 /// assert_eq!(invalid_input::cut("0.123456789", 8).to_string(), "0.123...");
@@ -48,7 +48,7 @@ impl<T: Display> Display for Cut<T> {
 /// Number of characters of a text.
 pub(crate) fn count(text: impl Display) -> usize {
     let mut count = Count(0);
-    // counting cannot fail; a `Display` that does has written what counts
+    // Counting cannot fail; a `Display` that fails has written the characters that are counted.
     let _ = write!(count, "{text}");
     count.0
 }
@@ -62,7 +62,7 @@ impl Write for Count {
     }
 }
 
-/// Passes the first characters and drops the rest.
+/// Passes on the first characters and drops the rest.
 struct First<'a, 'b> {
     out: &'a mut Formatter<'b>,
     left: usize,

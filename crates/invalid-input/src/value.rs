@@ -1,24 +1,24 @@
-//! The value that was found.
+//! The value of an input.
 
 use core::fmt::{self, Display, Formatter, Write};
 
 use crate::told;
 
-/// A text: a literal, or with the feature `alloc` one that was made at run time.
+/// A text: a literal, or with the feature `alloc` one made at run time.
 #[cfg(feature = "alloc")]
 pub type Text = alloc::string::String;
-/// A text: a literal, or with the feature `alloc` one that was made at run time.
+/// A text: a literal, or with the feature `alloc` one made at run time.
 #[cfg(not(feature = "alloc"))]
 pub type Text = &'static str;
 
-/// A longer decimal is shown with a power of ten.
+/// A decimal number longer than this is shown with a power of ten.
 const LONGEST_DECIMAL: usize = 20;
 
 /// A value that cannot be used.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Value {
-    /// A number. A huge or tiny one is shown by its power of ten, not by all its zeros.
+    /// A number. A very large or small one is shown with its power of ten, not with all its zeros.
     Number(f64),
     /// A whole number.
     Count(u64),
@@ -43,7 +43,7 @@ impl Display for Value {
     }
 }
 
-/// Writes the sign of a positive exponent too, as JSON has it.
+/// Writes the sign of a positive exponent too, as in JSON.
 struct Signed<'a, 'b>(&'a mut Formatter<'b>);
 
 impl Write for Signed<'_, '_> {

@@ -1,4 +1,4 @@
-//! What a fault says, and how its path grows.
+//! The text of an error, and how its path grows.
 
 use invalid_input::{InvalidInput, Path, Step, Value, cut, printable};
 
@@ -15,22 +15,22 @@ fn a_path_grows_from_the_inside_out() {
 }
 
 #[test]
-fn places_stand_before_the_fields_within_them() {
+fn places_come_before_the_fields_within_them() {
     let fault = InvalidInput::missing("mass_kg", "a number").in_line(3).in_place("data.csv");
     assert_eq!(fault.to_string(), "data.csv, line 3, mass_kg is missing: a number");
     assert_eq!(fault.field.first(), None);
 }
 
 #[test]
-fn a_field_that_has_to_go_is_told_so() {
+fn a_field_that_does_not_apply_must_be_left_out() {
     let fault = InvalidInput::new(["contact", "restitution"], 0.5, "left out: the law is hertz");
     assert_eq!(fault.to_string(), "contact.restitution = 0.5 must be left out: the law is hertz");
     assert_eq!(fault.within(Path::default()).field.first(), Some("contact"));
 }
 
 #[test]
-fn steps_say_what_a_text_would_not() {
-    // a name of the user's may hold what a path is written with
+fn steps_distinguish_what_a_text_would_not() {
+    // A name given by the user may contain the characters by which a path is written.
     let path = Path::from_iter([Step::Field("a.b[0]".into()), Step::Index(1)]);
     assert_eq!(path, "a.b[0][1]");
     assert_eq!(path.steps().len(), 2);
@@ -55,7 +55,7 @@ fn numbers_are_short() {
 }
 
 #[test]
-fn messages_are_short_and_cannot_steer_a_terminal() {
+fn messages_are_short_and_cannot_control_a_terminal() {
     let long = "9".repeat(400);
     let fault = InvalidInput::new(format!("a\u{1b}{long}"), long.clone(), "less");
     let told = fault.to_string();
@@ -69,7 +69,7 @@ fn messages_are_short_and_cannot_steer_a_terminal() {
 }
 
 #[test]
-fn a_parent_can_be_taken_away() {
+fn a_parent_can_be_removed() {
     let fault = InvalidInput::new(("segments", 0, "length_m"), 0_usize, "more");
     let within = fault.clone().within("structure");
     assert_eq!(within.clone().without("segments"), within);

@@ -1,7 +1,7 @@
-//! Cholesky's factor of a block tridiagonal matrix.
+//! Cholesky factorisation of a block tridiagonal matrix.
 //!
-//! With diagonal blocks `D_t` and the blocks `E_t` below them, `D_t - F_(t-1) F_(t-1)^T = L_t L_t^T` and
-//! `F_t = E_t L_t^(-T)`. Everything is a product of small dense matrices.
+//! With diagonal blocks `D_t` and the blocks `E_t` below them, `D_t - F_(t-1) F_(t-1)^T = L_t L_t^T` and `F_t = E_t L_t^(-T)`.
+//! All operations are products of small dense matrices.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::Llt;
@@ -9,15 +9,15 @@ use faer::{Accum, Mat, MatMut, Par, Side};
 
 /// The factor `L` of `A = L L^T`.
 pub(super) struct Factor {
-    /// Where each block begins, and the size of the matrix.
+    /// Start of each block, and the size of the matrix.
     starts: Vec<usize>,
     diagonal: Vec<Mat<f64>>,
     below: Vec<Mat<f64>>,
 }
 
 impl Factor {
-    /// The factor of the matrix with these entries, each given as row, column and value; what lies outside of the blocks and
-    /// above the diagonal ones is passed over. `None` if the matrix is not positive definite.
+    /// The factor of the matrix with these entries, each given as row, column and value; entries outside of the blocks and
+    /// above the diagonal ones are ignored. `None` if the matrix is not positive definite.
     pub fn new(starts: Vec<usize>, entries: impl Iterator<Item = (usize, usize, f64)>) -> Option<Factor> {
         let sizes: Vec<usize> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let group: Vec<usize> = sizes.iter().enumerate().flat_map(|(t, size)| vec![t; *size]).collect();
@@ -44,7 +44,7 @@ impl Factor {
         Some(Factor { starts, diagonal, below })
     }
 
-    /// `L^(-1) x` in place of every column `x`.
+    /// Replaces every column `x` by `L^(-1) x`.
     pub fn solve(&self, mut x: MatMut<'_, f64>) {
         for t in 0..self.diagonal.len() {
             let (before, after) = x.as_mut().split_at_row_mut(self.starts[t]);
@@ -57,7 +57,7 @@ impl Factor {
         }
     }
 
-    /// `L^(-T) x` in place of every column `x`.
+    /// Replaces every column `x` by `L^(-T) x`.
     pub fn solve_transposed(&self, mut x: MatMut<'_, f64>) {
         for t in (0..self.diagonal.len()).rev() {
             let (before, after) = x.as_mut().split_at_row_mut(self.starts[t + 1]);
@@ -75,7 +75,7 @@ impl Factor {
 mod tests {
     use super::*;
 
-    /// `A x` from the solution, for a matrix of blocks of three sizes.
+    /// Compares `A x` with the right-hand side, for a matrix with blocks of three sizes.
     #[test]
     fn a_solution_solves() {
         let entry = |p: usize, q: usize| if p == q { 4.0 + p as f64 } else { 1.0 / (1.0 + p as f64 + q as f64) };

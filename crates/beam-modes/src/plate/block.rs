@@ -1,7 +1,7 @@
 //! One block of Ritz's problem: the products of the functions of two classes.
 //!
-//! Each function shares an integral with a few neighbours only. So stiffness and mass are sparse, and with the functions
-//! along the plate in groups, each as long as the group before it reaches, they are block tridiagonal.
+//! Each function has a nonzero integral with only a few neighbours. Stiffness and mass are therefore sparse, and block
+//! tridiagonal if the functions along the plate are grouped so that each group contains all neighbours of the one before it.
 
 use super::band::Factor;
 use super::lanczos::largest;
@@ -9,7 +9,7 @@ use super::line::Products;
 use super::modes::Product;
 use faer::{Mat, MatMut};
 
-/// What rounding may change in a frequency, as a share of it.
+/// Relative change of a frequency by rounding.
 const ROUNDING: f64 = 1e-11;
 
 /// An entry of stiffness and mass, made dimensionless by `D` and by the mass.
@@ -20,14 +20,14 @@ struct Entry {
     mass: f64,
 }
 
-/// A rigid-body motion in the block: which product of functions, its coefficient, and the mass times the motion.
+/// A rigid-body motion in the block: the product of functions, its coefficient, and the mass times the motion.
 pub(super) struct Rigid {
     pub row: usize,
     pub size: f64,
     pub momentum: Vec<f64>,
 }
 
-/// A mode that was found, with its dimensionless frequency.
+/// A computed mode with its dimensionless frequency.
 pub(super) struct Found {
     pub omega: f64,
     pub change: f64,
@@ -36,16 +36,17 @@ pub(super) struct Found {
 
 pub(super) struct Block {
     pub classes: [usize; 2],
-    /// The products of functions, by their numbers.
+    /// The products of functions, by their indices.
     pub pairs: Vec<[usize; 2]>,
     pub rigid: Vec<Rigid>,
     entries: Vec<Entry>,
-    /// Of the stiffness with rigid-body motions held, rows and columns times `scale`: its diagonal is 1.
+    /// The factor of the stiffness with rigid-body motions constrained and rows and columns multiplied by `scale`, which makes
+    /// its diagonal 1.
     factor: Factor,
     scale: Vec<f64>,
 }
 
-/// The numbers of the functions, among `functions`, with which each has an integral.
+/// The indices of the functions, among `functions`, with which each has a nonzero integral.
 fn neighbours(products: &Products, functions: &[usize]) -> Vec<Vec<usize>> {
     let Products { values, slopes, curvatures, mixed } = products;
     let shares = |i: usize, k: usize| {
@@ -56,9 +57,9 @@ fn neighbours(products: &Products, functions: &[usize]) -> Vec<Vec<usize>> {
 }
 
 impl Block {
-    /// The block of the functions of two classes, for the square of width over length, Poisson's ratio, and the rigid-body
-    /// motions as products of functions with their coefficients. `None` if the stiffness is not positive definite in
-    /// double precision.
+    /// The block of the functions of two classes, from the square of width over length, Poisson's ratio, and the rigid-body
+    /// motions as products of functions with their coefficients. `None` if the stiffness is not positive definite in double
+    /// precision.
     pub fn new(
         classes: [usize; 2],
         functions: [&[usize]; 2],
@@ -93,8 +94,8 @@ impl Block {
                 Rigid { row, size, momentum }
             })
             .collect();
-        // a stiffness of the plate's own order holds the rigid-body motions, which share an integral with the neighbours of
-        // the first functions only
+        // A stiffness of the order of the plate's own constrains the rigid-body motions, which have nonzero integrals with the
+        // neighbours of the first functions only.
         let held = 10.0 * ratio.min(1.0 / ratio);
         let moved = |Rigid { momentum, .. }: &Rigid| -> Vec<(usize, f64)> {
             momentum.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect()
@@ -113,7 +114,7 @@ impl Block {
         Some(Block { classes, pairs, rigid, entries, factor, scale })
     }
 
-    /// How many elastic modes the block has.
+    /// Number of elastic modes of the block.
     pub fn elastic_count(&self) -> usize {
         self.pairs.len() - self.rigid.len().min(self.pairs.len())
     }
@@ -128,7 +129,8 @@ impl Block {
         let mode = |k: usize| {
             let mut shape: Vec<f64> = (0..n).map(|p| vectors[(p, k)] * self.scale[p]).collect();
             let largest = shape.iter().fold(0.0, |best: f64, c| if c.abs() > best.abs() { *c } else { best });
-            // Lanczos knows an eigenvalue to a share of the largest one; the quotient of the shape is better
+            // The error of a Lanczos eigenvalue is relative to the largest one; Rayleigh's quotient of the shape is more
+            // accurate.
             let [stiffness, mass] = self.energies(&shape);
             let square = stiffness / mass;
             let size = largest.signum() / mass.sqrt();
@@ -155,7 +157,7 @@ impl Block {
         [stiff, heavy]
     }
 
-    /// `L^(-1) M L^(-T) x` in place of columns, `L` Cholesky's factor of the stiffness and `M` the mass without the
+    /// Replaces columns `x` by `L^(-1) M L^(-T) x`, with `L` the Cholesky factor of the stiffness and `M` the mass without the
     /// rigid-body motions, whose `1/omega^2` is then zero.
     fn flexibility(&self, mut columns: MatMut<'_, f64>) {
         self.factor.solve_transposed(columns.as_mut());
@@ -181,7 +183,7 @@ impl Block {
         self.factor.solve(columns);
     }
 
-    /// The work of a load, given by its work on every product of functions, on the static deflection that it causes.
+    /// The work of a load, given by its work on every product of functions, on its own static deflection.
     pub fn work(&self, load: &[f64]) -> f64 {
         let mut scaled = Mat::from_fn(load.len(), 1, |p, _| load[p] * self.scale[p]);
         self.factor.solve(scaled.as_mut());
@@ -189,8 +191,8 @@ impl Block {
     }
 }
 
-/// Where the groups of products begin, from the neighbours of the functions along the plate and the number of those across:
-/// the first function, and then as many as the group before reaches.
+/// Starts of the groups of products, from the neighbours of the functions along the plate and the number of those across: the
+/// first group is the first function, each further one contains the neighbours of the group before.
 fn groups(along: &[Vec<usize>], width: usize) -> Vec<usize> {
     let (mut starts, mut begin, mut end) = (vec![0], 0, 1);
     while begin < along.len() {

@@ -1,32 +1,32 @@
-//! What a plate is made of and how it is held.
+//! Material, dimensions and boundary conditions of a plate.
 
 use crate::location::require_on;
 use invalid_input::InvalidInput;
 
-/// How an edge of a plate is held.
+/// The boundary condition at an edge of a plate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Edge {
-    /// Neither displacement nor slope.
+    /// Zero displacement and slope.
     Clamped,
-    /// No displacement, no moment (simply supported).
+    /// Zero displacement and moment (simply supported).
     Pinned,
-    /// No moment, no shear force.
+    /// Zero moment and shear force.
     Free,
 }
 
 invalid_input::names!(Edge, "edge", { Clamped: "clamped", Pinned: "pinned", Free: "free" });
 
-/// The theory by which a plate bends.
+/// The theory of bending.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PlateTheory {
-    /// Thin plate: normals stay normal, and carry no inertia of rotation.
+    /// Thin plate: normals stay normal, and there is no rotary inertia.
     Kirchhoff,
-    /// Shear and rotary inertia, for a plate pinned along all edges, with this shear coefficient `kappa`. A point load
+    /// Shear and rotary inertia, for a plate that is pinned along all edges, with this shear coefficient `kappa`. A point load
     /// has no finite static deflection in this theory: it grows as the logarithm of the highest wave number.
     Mindlin {
         /// Shear coefficient; see [`Plate::shear_coefficient`].
@@ -52,7 +52,7 @@ pub enum PlateTheory {
 ///     theory: PlateTheory::Kirchhoff,
 /// };
 /// let modes = plate.modes(10)?;
-/// // 3.4711 sqrt(D/(rho h))/a^2 for a square; the wider plate is stiffer across
+/// // 3.4711 sqrt(D/(rho h))/a^2 for a square; a wider plate is stiffer across
 /// assert!(modes.omega_rad_s()[0] > 100.0 && modes.rigid_body_count() == 0);
 /// let tip = modes.shapes_at(0.4, 0.15)?;
 /// let sum: f64 = modes.omega_rad_s().iter().zip(&tip).map(|(omega, phi)| (phi / omega).powi(2)).sum();
@@ -77,13 +77,13 @@ pub struct Plate {
     pub density_kg_m3: f64,
     /// The edges at `x = 0`, `x = length_m`, `y = 0`, `y = width_m`.
     pub edges: [Edge; 4],
-    /// Which theory.
+    /// The theory of bending.
     pub theory: PlateTheory,
 }
 
 impl Plate {
-    /// The shear coefficient of a plate that follows elasticity best at long and at short waves, `5/(6 - nu)`
-    /// (N. G. Stephen, *J. Sound Vib.* 202 (1997) 539).
+    /// The shear coefficient of a plate that agrees best with elasticity for long and short waves, `5/(6 - nu)` (N. G. Stephen,
+    /// *J. Sound Vib.* 202 (1997) 539).
     pub fn shear_coefficient(poissons_ratio: f64) -> f64 {
         5.0 / (6.0 - poissons_ratio)
     }
@@ -103,8 +103,7 @@ impl Plate {
         self.mass_per_area_kg_m2() * self.length_m * self.width_m
     }
 
-    /// How many independent ways the plate has to move without bending: 3 if it is free, 1 if a single edge is pinned and
-    /// the others free.
+    /// Number of rigid-body motions: 3 if the plate is free, 1 if a single edge is pinned and the others are free.
     pub fn rigid_body_count(&self) -> usize {
         let count = |edge: Edge| self.edges.iter().filter(|here| **here == edge).count();
         match (count(Edge::Clamped), count(Edge::Pinned)) {
@@ -121,8 +120,8 @@ impl Plate {
     /// Accepts a plate that can be computed.
     ///
     /// # Errors
-    /// A length, modulus or density that is not positive, a Poisson's ratio out of range, Mindlin's theory for a plate
-    /// that is not pinned all round, or a plate whose length and width are in a ratio beyond 10,000.
+    /// A length, modulus or density that is not positive, a Poisson's ratio out of range, Mindlin's theory for a plate that is
+    /// not pinned along all edges, or a ratio of length and width beyond 10,000.
     pub fn checked(&self) -> Result<(), InvalidInput> {
         for (field, value) in [
             ("length_m", self.length_m),

@@ -1,27 +1,27 @@
-//! The largest eigenvalues of a symmetric matrix that is known by its products alone.
+//! The largest eigenvalues of a symmetric matrix that is given by its products only.
 //!
-//! Block Lanczos (G. H. Golub and R. Underwood, *Mathematical Software III* (1977) 361) with full orthogonalisation: the
-//! space of the products of powers of the matrix with a few vectors, and Rayleigh's and Ritz's eigenvectors in it. With
-//! blocks of eight vectors, eigenvalues of multiplicity up to eight are found like single ones. The eigenvalues `1/omega^2`
-//! of a plate fall so fast that a space of little more than twice the wanted number of dimensions holds them to
-//! all digits; the residual of every eigenvector is known without a product, and the space grows until it is small.
+//! Block Lanczos iteration (G. H. Golub and R. Underwood, *Mathematical Software III* (1977) 361) with full orthogonalisation:
+//! the space of the products of powers of the matrix with a few vectors, and the Rayleigh-Ritz eigenvectors in it. With blocks
+//! of eight vectors, eigenvalues of multiplicity up to eight are found like simple ones. The eigenvalues `1/omega^2` of a plate
+//! decrease so fast that a space of little more than twice the requested number of dimensions contains them to all digits. The
+//! residual of every eigenvector is known without a product, and the space grows until it is small.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::solvers::{Llt, SelfAdjointEigen};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
 
-/// Vectors that the matrix is applied to at a time.
+/// Number of vectors in a block.
 const WIDTH: usize = 8;
-/// Largest residual of an eigenvector, as a share of its eigenvalue.
+/// Largest residual of an eigenvector, relative to its eigenvalue.
 const RESIDUAL: f64 = 1e-11;
 
-/// The `wanted` largest eigenvalues, in descending order, and their orthonormal eigenvectors, of a symmetric matrix with
-/// `rows` rows, which `apply` puts in place of columns. `None` if an eigenvalue cannot be computed.
+/// The `wanted` largest eigenvalues, in descending order, and their orthonormal eigenvectors, of a symmetric matrix with `rows`
+/// rows; `apply` replaces columns by their products with the matrix. `None` if an eigenvalue cannot be computed.
 pub(super) fn largest(rows: usize, wanted: usize, apply: impl Fn(MatMut<'_, f64>)) -> Option<(Vec<f64>, Mat<f64>)> {
     let wanted = wanted.min(rows);
     let mut steps = (2 * wanted).div_ceil(WIDTH) + 8;
     let mut space = Space::new(rows);
-    // a space of most dimensions costs more than all of them
+    // A space of almost all dimensions costs more than one of all.
     while 4 * steps * WIDTH <= 3 * rows {
         if !space.grow(steps, &apply) {
             break;
@@ -38,18 +38,19 @@ pub(super) fn largest(rows: usize, wanted: usize, apply: impl Fn(MatMut<'_, f64>
     Some((values, Mat::from_fn(rows, wanted, |p, k| eigen.U()[(p, rows - 1 - k)])))
 }
 
-/// The space that has been built, and the matrix in it.
+/// The space built so far, and the matrix in it.
 struct Space {
     /// Orthonormal vectors, block by block, one block more than has been multiplied.
     basis: Mat<f64>,
-    /// Of the matrix in this basis: diagonal blocks, and those below them.
+    /// The matrix in this basis: diagonal blocks, and those below them.
     diagonal: Vec<Mat<f64>>,
     below: Vec<Mat<f64>>,
 }
 
 impl Space {
     fn new(rows: usize) -> Space {
-        // any vectors will do in which no eigenvector is absent: the same ones each time (G. Steele et al., splitmix64)
+        // Any vectors are suitable in which no eigenvector is absent; they are the same each time (G. Steele et al.,
+        // splitmix64).
         let mut state = 0_u64;
         let basis = Mat::from_fn(rows, WIDTH, |_, _| {
             state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -60,7 +61,7 @@ impl Space {
         Space { basis, diagonal: Vec::new(), below: Vec::new() }
     }
 
-    /// Multiplies until so many blocks are done; `false` if no new direction is left.
+    /// Multiplies until this many blocks are complete; `false` if no new direction is left.
     fn grow(&mut self, steps: usize, apply: impl Fn(MatMut<'_, f64>)) -> bool {
         let rows = self.basis.nrows();
         let have = self.basis.ncols();
@@ -78,7 +79,7 @@ impl Space {
             let last = known.subcols(step * WIDTH, WIDTH);
             next.copy_from(last);
             apply(next.as_mut());
-            // the two blocks of the recurrence first, and then all, for what rounding has left of them
+            // First against the two blocks of the recurrence, then against all, because of rounding.
             let diagonal = last.transpose() * next.as_ref();
             matmul(next.as_mut(), Accum::Add, last, diagonal.as_ref(), -1.0, Par::Seq);
             if let Some(below) = self.below.last() {
@@ -114,8 +115,8 @@ impl Space {
     }
 }
 
-/// Makes the columns orthonormal, and returns the upper triangular `R` with the old ones as `new R`; `None` if they depend
-/// on each other.
+/// Makes the columns orthonormal, and returns the upper triangular `R` with the old columns = new columns times `R`; `None` if
+/// they are linearly dependent.
 fn orthonormal(mut columns: MatMut<'_, f64>) -> Option<Mat<f64>> {
     let gram = columns.as_ref().transpose() * columns.as_ref();
     let factor = Llt::new(gram.as_ref(), Side::Lower).ok()?;
@@ -128,9 +129,9 @@ fn orthonormal(mut columns: MatMut<'_, f64>) -> Option<Mat<f64>> {
 mod tests {
     use super::*;
 
-    /// A diagonal matrix, turned by a reflection, with double eigenvalues.
+    /// A diagonal matrix with double eigenvalues, transformed by a reflection.
     #[test]
-    fn eigenvalues_of_a_matrix_that_is_known() {
+    fn eigenvalues_of_a_known_matrix() {
         let rows = 600;
         let exact: Vec<f64> = (0..rows).map(|p| 1.0 / ((2 + p / 2) as f64).powi(2)).collect();
         let mirror: Vec<f64> = (0..rows).map(|p| (0.3 * p as f64).sin()).collect();
@@ -148,7 +149,7 @@ mod tests {
                 (0..rows).for_each(|p| x[(p, k)] = column[p]);
             }
         };
-        // by a space of a part of the dimensions, and by all of them
+        // In a space of a part of the dimensions, and of all of them.
         for wanted in [1, 30, 150, 500, 600] {
             let (values, vectors) = largest(rows, wanted, apply).unwrap();
             assert!(values.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-14), "{wanted}");
@@ -162,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Where all is one eigenspace the second block has no direction of its own.
+    /// If there is only one eigenspace, the second block has no direction of its own.
     #[test]
     fn the_identity_has_no_krylov_space() {
         let (values, vectors) = largest(400, 10, |_| ()).unwrap();

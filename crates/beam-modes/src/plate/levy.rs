@@ -1,9 +1,9 @@
-//! Static deflection of plates pinned along two opposite edges, by Levy's single series.
+//! Static deflection of plates that are pinned along two opposite edges, by Levy's single series.
 //!
-//! With sines `sin(k x)`, `k = m pi/a`, along the pinned direction, a unit load at `(x, y)` asks across for
-//! `(d^2/dt^2 - 1)^2 W = delta` in `t = k y`: `(1 + u) e^(-u)/4` at the distance `u` from the load, and two terms that decay from
-//! either edge, `e^(-t)` and `t e^(-t)`, which meet the conditions there (S. P. Timoshenko and S. Woinowsky-Krieger, *Theory of
-//! Plates and Shells*, 1959, chapter 6). At the load itself
+//! With sines `sin(k x)`, `k = m pi/a`, along the pinned direction, the deflection across under a unit load at `(x, y)`
+//! satisfies `(d^2/dt^2 - 1)^2 W = delta` in `t = k y`. It is `(1 + u) e^(-u)/4` at the distance `u` from the load plus two
+//! terms that decay from either edge, `e^(-t)` and `t e^(-t)`, which satisfy the conditions there (S. P. Timoshenko and S.
+//! Woinowsky-Krieger, *Theory of Plates and Shells*, 1959, chapter 6). At the load itself
 //!
 //! ```text
 //! D G = sum_m sin^2(k x) (1 + what the edges add)/(2 a k^3).                                                      (1)
@@ -14,12 +14,12 @@ use super::navier::sines_over_cubes;
 use crate::statics::solve;
 use std::f64::consts::PI;
 
-/// Terms at most; beyond them what the edges add is taken to stay.
+/// Largest number of terms; beyond them the contribution of the edges is taken as constant.
 const TERMS: i32 = 4000;
-/// What decays from so far away is nothing.
+/// A term that has decayed over this distance is zero to rounding.
 const FAR: f64 = 40.0;
 
-/// The two linear forms in `W`, `W'`, `W''`, `W'''`, with derivatives inwards, that an edge makes zero.
+/// The two linear forms in `W`, `W'`, `W''`, `W'''`, with derivatives inwards, that are zero at an edge.
 fn conditions(edge: Edge, nu: f64) -> [[f64; 4]; 2] {
     match edge {
         Edge::Clamped => [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]],
@@ -28,7 +28,7 @@ fn conditions(edge: Edge, nu: f64) -> [[f64; 4]; 2] {
     }
 }
 
-/// The terms that decay from an edge, there, and those of the other edge, at the distance `s`.
+/// The terms that decay from an edge, at this edge, and those of the other edge, at the distance `s`.
 fn own() -> [[f64; 4]; 2] {
     [[1.0, -1.0, 1.0, -1.0], [0.0, 1.0, -2.0, 3.0]]
 }
@@ -37,7 +37,7 @@ fn other(s: f64) -> [[f64; 4]; 2] {
     [[1.0, 1.0, 1.0, 1.0], [s, s - 1.0, s - 2.0, s - 3.0]].map(|values| values.map(|value| value * (-s).exp()))
 }
 
-/// The load's own term, times 4, on an edge at the distance `u`.
+/// The term of the load, times 4, on an edge at the distance `u`.
 fn load(u: f64) -> [f64; 4] {
     [1.0 + u, u, u - 1.0, u - 2.0].map(|value| value * (-u).exp())
 }
@@ -100,8 +100,8 @@ mod tests {
         }
     }
 
-    /// The deflection of a strip far from what holds its long edges is that of an infinite one; clamped edges hold more
-    /// than pinned ones, and free ones less.
+    /// The deflection of a strip far from the constraints of its long edges is that of an infinite one; it is smaller with
+    /// clamped edges than with pinned ones, and larger with free ones.
     #[test]
     fn edges_order_the_deflection() {
         let [clamped, pinned, free] = [Edge::Clamped, Edge::Pinned, Edge::Free]

@@ -1,8 +1,9 @@
-//! Polynomials across one direction of a plate, on `-1 <= s <= 1`.
+//! Polynomials in one direction of a plate, on `-1 <= s <= 1`.
 //!
-//! A bubble has a Legendre polynomial of degree 2 or more as its second derivative, and vanishes with its slope at both
-//! ends. Below them stand those polynomials of degree 3 or less that the edges allow. The second derivatives of bubbles
-//! are orthogonal to each other and to those of the others, so that stiffness matrices are well conditioned at any degree.
+//! A bubble function has a Legendre polynomial of degree 2 or more as its second derivative, and vanishes with its slope at
+//! both ends. The other functions are those polynomials of degree 3 or less that the edges allow. The second derivatives of
+//! bubbles are orthogonal to each other and to those of the others, so that stiffness matrices are well conditioned at any
+//! degree.
 
 use super::definition::Edge;
 
@@ -13,10 +14,10 @@ pub(super) struct Function {
     curvature: Vec<f64>,
 }
 
-/// The functions across one direction.
+/// The functions in one direction.
 pub(super) struct Line {
     pub functions: Vec<Function>,
-    /// Numbers of the functions of either parity; all in the first list where the two edges differ.
+    /// Indices of the functions of either parity; all are in the first list if the two edges differ.
     pub classes: [Vec<usize>; 2],
 }
 
@@ -25,7 +26,7 @@ pub(super) struct Products {
     pub values: Vec<Vec<f64>>,
     pub slopes: Vec<Vec<f64>>,
     pub curvatures: Vec<Vec<f64>>,
-    /// The first one's curvature times the second one's value.
+    /// The curvature of the first function times the value of the second.
     pub mixed: Vec<Vec<f64>>,
 }
 
@@ -55,7 +56,7 @@ impl Line {
         self.functions.iter().map(sum).collect()
     }
 
-    /// Means of all functions over `-1..1`: of the Legendre polynomials only the first has one.
+    /// Means of all functions over `-1..1`; only the first Legendre polynomial has one.
     pub fn means(&self) -> Vec<f64> {
         self.functions.iter().map(|function| function.value.first().copied().unwrap_or_default()).collect()
     }

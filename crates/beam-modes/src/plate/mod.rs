@@ -18,13 +18,12 @@ use ritz::Ritz;
 
 /// Largest number of modes that may be requested.
 const MOST: usize = 20_000;
-/// Polynomials that resolve so many modes are taken for fewer, too: they cost little, and low modes with singular corners need
-/// them.
+/// With fewer modes the polynomials for this many are used: they cost little, and low modes with singular corners need them.
 const AMPLE: usize = 120;
 
 impl Plate {
-    /// Largest number of modes that [`Plate::modes`] computes: 20,000 in closed form, otherwise as many as matrices of
-    /// 3,000 rows hold; some 450 for a square without symmetry, 2,000 with it.
+    /// Largest number of modes that [`Plate::modes`] computes: 20,000 in closed form, otherwise the number that matrices of
+    /// 3,000 rows resolve; some 450 for a square without symmetry, 2,000 with it.
     pub fn most_modes(&self) -> usize {
         if self.pinned_all_round() {
             return MOST;
@@ -39,11 +38,11 @@ impl Plate {
 
     /// The first `count` natural modes.
     ///
-    /// Pinned all round: Navier's closed form. Otherwise Ritz's method on products of polynomials whose second
-    /// derivatives are Legendre's, of a degree that resolves the shortest wave among the modes asked for, or among 120;
-    /// [`PlateModes::change`] tells how much of each frequency still depended on the degree. Frequencies come from
-    /// above. Where a clamped edge meets a free one, the shape is singular and they are right to some 5e-6, elsewhere
-    /// to 1e-7 and mostly far better.
+    /// A plate that is pinned along all edges is solved by Navier's closed form; others by Ritz's method with products of
+    /// polynomials whose second derivatives are Legendre polynomials, of a degree that resolves the shortest wave among the
+    /// requested modes, or among 120. [`PlateModes::change`] states by how much each frequency still depended on the degree.
+    /// Frequencies converge from above. Where a clamped edge meets a free one, the shape is singular and they are accurate to
+    /// some 5e-6, elsewhere to 1e-7 and mostly far better.
     ///
     /// # Errors
     /// As [`Plate::checked`]; a count beyond [`Plate::most_modes`].
@@ -62,22 +61,23 @@ impl Plate {
         Ritz::new(self, degrees).modes(count)
     }
 
-    /// Static deflection at a location under a unit load there, m/N: of the elastic modes alone if the plate can move as a
+    /// Static deflection at a location under a unit load there, m/N; that of the elastic modes alone if the plate can move as a
     /// rigid body.
     ///
-    /// In closed form (a single series after summing Navier's double one) for a plate pinned all round. Otherwise
-    /// Ritz's method with up to some 54 polynomials each way, which misses the sharp dent under the load; what it misses is
-    /// taken from a plate for which it is known, as it depends on the neighbourhood of the load only: pinned along two
-    /// opposite edges, with the free edge that is nearest (Levy's series), or pinned all round. What is left is extrapolated
-    /// in the degree, to some 1e-7, and to 1e-4 very near to corners that clamped edges hold.
+    /// For a plate that is pinned along all edges it is in closed form (a single series after summation of Navier's double
+    /// one). Otherwise Ritz's method is used with up to some 54 polynomials in each direction, which do not resolve the local
+    /// deflection under the load. This error depends on the neighbourhood of the load only, and is therefore taken from a plate
+    /// for which it is known: one that is pinned along two opposite edges, with the free edge that is nearest (Levy's series),
+    /// or along all edges. The remaining error is extrapolated in the degree, to some 1e-7, and to 1e-4 very near to corners
+    /// with clamped edges.
     ///
     /// # Errors
-    /// As [`Plate::checked`]; a location off the plate; Mindlin's theory, which gives no finite deflection.
+    /// As [`Plate::checked`]; a location outside the plate; Mindlin's theory, which gives no finite deflection.
     pub fn static_compliance(&self, x_m: f64, y_m: f64) -> Result<f64, InvalidInput> {
         Ok(self.static_compliance_with_uncertainty(x_m, y_m)?.0)
     }
 
-    /// [`Plate::static_compliance`], and by how much it may be off, m/N: what the last polynomials changed, and some 1e-9 of it
+    /// [`Plate::static_compliance`] and its uncertainty, m/N: the change by the last polynomials, and some 1e-9 of the value
     /// for rounding; 0 for a closed form.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl Plate {
         self.extrapolated(Ritz::STATIC_DEGREES, x, y)
     }
 
-    /// The static compliance by Ritz's method with polynomials of three degrees, and by how much it may be off.
+    /// The static compliance by Ritz's method with polynomials of three degrees, and its uncertainty.
     fn extrapolated(&self, degrees: [usize; 3], x: f64, y: f64) -> Result<(f64, f64), InvalidInput> {
         const ROUNDING: f64 = 1e-9;
         let (known, closed) = self.known_nearby(x, y);
@@ -107,19 +107,19 @@ impl Plate {
         let [first, second, third] = degrees.map(of_degree);
         let (second, third) = (second?, third?);
         let (before, last) = (second - first?, third - second);
-        // what is missing falls as a power of the degree, at least the second, so that changes over equal ratios of the
-        // degree are a geometric series
+        // The error decreases as a power of the degree, at least the second, so that changes over equal ratios of the degree
+        // are a geometric series.
         let slowest = (degrees[1] as f64 / degrees[2] as f64).powi(2);
         let ratio = if before == 0.0 { 0.0 } else { (last / before).clamp(0.0, slowest) };
         let whole = (third + last * ratio / (1.0 - ratio)).max(0.0);
         Ok((whole, last.abs() + ROUNDING * whole))
     }
 
-    /// A plate of the same size that is alike near a location, given in shares of length and width, and its static compliance
-    /// there in closed form: pinned along two opposite edges, with this plate's two others where one of them is the
-    /// nearest free edge; or pinned all round.
+    /// A plate of the same size that has the same edges near a location, given in shares of length and width, and its static
+    /// compliance there in closed form: pinned along two opposite edges, with the two others of this plate if one of them is
+    /// the nearest free edge; or pinned along all edges.
     fn known_nearby(&self, x: f64, y: f64) -> (Plate, f64) {
-        /// Across a strip that is much narrower than long, Levy's equations are nearly dependent.
+        /// For a strip much narrower than long, Levy's equations are nearly dependent.
         const NARROWEST: f64 = 0.02;
         let [left, right, low, high] = self.edges;
         let (a, b) = (self.length_m, self.width_m);
@@ -159,7 +159,8 @@ mod tests {
     };
     const PLACES: [[f64; 2]; 6] = [[0.5, 0.5], [0.3, 0.2], [0.9, 0.9], [0.97, 0.5], [0.05, 0.98], [0.99, 0.99]];
 
-    /// Between clamped edges what Ritz's method misses is taken from the plate pinned all round; Levy's series knows better.
+    /// Between clamped edges the error of Ritz's method is taken from the plate that is pinned along all edges; Levy's series
+    /// is the reference.
     #[test]
     fn the_error_between_clamped_edges_is_stated() {
         for (b, edges) in [(0.3, [Edge::Clamped; 2]), (0.9, [Edge::Clamped, Edge::Pinned])] {
@@ -172,7 +173,7 @@ mod tests {
         }
     }
 
-    /// Near free edges and corners half as many polynomials again tell.
+    /// Near free edges and corners, half as many polynomials again are the reference.
     #[test]
     fn the_error_near_free_edges_is_stated() {
         let (clamped, free, pinned) = (Edge::Clamped, Edge::Free, Edge::Pinned);

@@ -1,4 +1,4 @@
-//! Modes of a plate, and what can be asked of them.
+//! Modes of a plate and their evaluation.
 
 use super::definition::Plate;
 use super::line::Line;
@@ -6,10 +6,10 @@ use crate::point_mode::{PointMode, point_modes};
 use crate::string::{sine_mean, sine_of};
 use invalid_input::InvalidInput;
 
-/// Natural modes of a plate, in ascending order of frequency; rigid-body ones first, with `omega = 0`.
+/// Natural modes of a plate, in ascending order of frequency; rigid-body modes first, with `omega = 0`.
 ///
-/// Shapes are mass-normalised, `int rho h phi_i phi_j dA = delta_ij`, and in kg^(-1/2); with Mindlin's theory rotary
-/// inertia counts too. Signs are fixed by the largest coefficient in the basis.
+/// Shapes are mass-normalised, `int rho h phi_i phi_j dA = delta_ij`, and in kg^(-1/2); with Mindlin's theory the mass includes
+/// rotary inertia. Signs are determined by the largest coefficient in the basis.
 #[derive(Debug, Clone)]
 pub struct PlateModes {
     pub(super) plate: Plate,
@@ -19,7 +19,7 @@ pub struct PlateModes {
     pub(super) kind: Kind,
 }
 
-/// How shapes are held.
+/// Representation of the shapes.
 #[derive(Debug, Clone)]
 pub(super) enum Kind {
     /// Products of sines.
@@ -41,12 +41,12 @@ pub(super) struct Sine {
 #[derive(Debug, Clone)]
 pub(super) struct Product {
     pub classes: [usize; 2],
-    /// Row by row; the second direction runs fastest.
+    /// Coefficients row by row; the index of the second direction varies fastest.
     pub coefficients: Vec<f64>,
 }
 
 impl Product {
-    /// The sum with these values of the functions in either direction.
+    /// The sum for these values of the functions in either direction.
     fn sum(&self, [along, across]: &[Line; 2], [values_along, values_across]: &[Vec<f64>; 2]) -> f64 {
         let (rows, columns) = (&along.classes[self.classes[0]], &across.classes[self.classes[1]]);
         let row = |(i, coefficients): (&usize, &[f64])| {
@@ -58,7 +58,7 @@ impl Product {
 }
 
 impl PlateModes {
-    /// How many modes there are.
+    /// Number of modes.
     pub fn len(&self) -> usize {
         self.omega_rad_s.len()
     }
@@ -68,7 +68,7 @@ impl PlateModes {
         self.omega_rad_s.is_empty()
     }
 
-    /// How many of them are rigid-body motions.
+    /// Number of rigid-body modes.
     pub fn rigid_body_count(&self) -> usize {
         self.rigid
     }
@@ -78,13 +78,14 @@ impl PlateModes {
         &self.omega_rad_s
     }
 
-    /// By what share each frequency would rise, at most, if the polynomials' degree were two less in both directions: a
-    /// measure of what a higher degree could still change; at least 1e-11, for rounding. Zero where modes have a closed form.
+    /// Relative increase of each frequency, at most, if the degree of the polynomials were two less in both directions: a
+    /// measure of the possible change by a higher degree. It is at least 1e-11, for rounding, and zero for modes in closed
+    /// form.
     pub fn change(&self) -> &[f64] {
         &self.change
     }
 
-    /// How many of the modes, from the lowest, are converged: each changes by less than this share.
+    /// Number of converged modes, from the lowest: each changes by less than this share.
     pub fn converged(&self, share: f64) -> usize {
         self.change.iter().take_while(|change| **change < share).count()
     }
@@ -92,7 +93,7 @@ impl PlateModes {
     /// Shapes of all modes at a location, kg^(-1/2).
     ///
     /// # Errors
-    /// [`InvalidInput`] for a location off the plate.
+    /// [`InvalidInput`] for a location outside the plate.
     pub fn shapes_at(&self, x_m: f64, y_m: f64) -> Result<Vec<f64>, InvalidInput> {
         let (x, y) = self.plate.place(x_m, y_m)?;
         Ok(match &self.kind {
@@ -107,7 +108,7 @@ impl PlateModes {
         })
     }
 
-    /// All modes as a force at a location meets them.
+    /// All modes as excited by a force at a location.
     ///
     /// # Errors
     /// As for [`shapes_at`](Self::shapes_at).

@@ -1,14 +1,14 @@
-//! Plates pinned along all edges, in closed form.
+//! Plates that are pinned along all edges, in closed form.
 //!
-//! `w = sin(m pi x/a) sin(n pi y/b)`, with `k^2 = (m pi/a)^2 + (n pi/b)^2`. Kirchhoff: `omega = k^2 sqrt(D/(rho h))`.
-//! Mindlin (*J. Appl. Mech.* 18 (1951) 31), with rotations `psi` of amplitude `k W kappa G h/(D k^2 + kappa G h - rho h^3
-//! omega^2/12)` and two frequencies a pair `m, n`:
+//! `w = sin(m pi x/a) sin(n pi y/b)`, with `k^2 = (m pi/a)^2 + (n pi/b)^2`. Kirchhoff: `omega = k^2 sqrt(D/(rho h))`. Mindlin
+//! (*J. Appl. Mech.* 18 (1951) 31), with rotations `psi` of amplitude `k W kappa G h/(D k^2 + kappa G h - rho h^3 omega^2/12)`
+//! and two frequencies for each pair `m, n`:
 //!
 //! ```text
 //! (kappa G h k^2 - rho h omega^2)(D k^2 + kappa G h - rho h^3 omega^2/12) = (kappa G h k)^2.
 //! ```
 //!
-//! Modes of thickness-shear in which `w` is zero everywhere are left out.
+//! Thickness-shear modes in which `w` is zero everywhere are omitted.
 
 use super::definition::{Plate, PlateTheory};
 use super::modes::{Kind, PlateModes, Sine};
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 /// The first `count` modes.
 pub(super) fn modes(plate: &Plate, count: usize) -> PlateModes {
-    // all pairs below a wave number that holds enough of them: the quarter of the ellipse less its edges
+    // All pairs below a wave number that includes enough of them: the quarter of the ellipse minus its edges.
     let (a, b) = (plate.length_m, plate.width_m);
     let mut limit = (4.0 * PI * count as f64 / (a * b)).sqrt() + 2.0 * PI * (a + b) / (a * b);
     let mut sines = below(plate, limit);
@@ -30,8 +30,8 @@ pub(super) fn modes(plate: &Plate, count: usize) -> PlateModes {
     PlateModes { plate: *plate, rigid: 0, change: vec![0.0; count], omega_rad_s, kind: Kind::Sines(sines) }
 }
 
-/// All modes of wave numbers up to `limit`, and none that is faster than the fastest of them can be missing below:
-/// frequencies of either branch rise with the wave number, and Mindlin's second branch is cut where the first is.
+/// All modes of wave numbers up to `limit`. None that is slower than the fastest of them can be missing: frequencies of either
+/// branch increase with the wave number, and Mindlin's second branch is truncated where the first is.
 fn below(plate: &Plate, limit: f64) -> Vec<Sine> {
     let (kx, ky) = (PI / plate.length_m, PI / plate.width_m);
     let mut sines = Vec::new();
@@ -62,12 +62,12 @@ fn branches(plate: &Plate, k: f64, mut found: impl FnMut(f64, f64)) {
     let h = plate.thickness_m;
     let shear = shear_coefficient * plate.youngs_modulus_pa / (2.0 * (1.0 + plate.poissons_ratio)) * h;
     let rotary = mass * h * h / 12.0;
-    // rho h rho I w^4 - (rho h (D k^2 + S) + rho I S k^2) w^2 + S D k^4 = 0, the small root without cancellation
+    // rho h rho I w^4 - (rho h (D k^2 + S) + rho I S k^2) w^2 + S D k^4 = 0, the small root without cancellation.
     let half = 0.5 * (mass * (d * k * k + shear) + rotary * shear * k * k);
     let (square, last) = (mass * rotary, shear * d * k.powi(4));
     let large = (half + (half * half - square * last).max(0.0).sqrt()) / square;
     for omega_squared in [last / square / large, large] {
-        // of the two expressions for the rotation, the one whose denominator is not a small difference
+        // Of the two expressions for the rotation, the one whose denominator is not a small difference.
         let bending = d * k * k + shear - rotary * omega_squared;
         let rotation = if omega_squared < shear / rotary {
             shear * k / bending
@@ -80,14 +80,14 @@ fn branches(plate: &Plate, k: f64, mut found: impl FnMut(f64, f64)) {
 
 /// Static compliance at a location, given in shares of length and width.
 ///
-/// For each wave across one direction the other is a beam on `(d^2/ds^2 - k^2)^2`, solved in closed form; what is left is
+/// For each wave in one direction the plate is a beam in the other on `(d^2/ds^2 - k^2)^2`, solved in closed form; the rest is
 /// a single series, `1/k^3` for waves short against the distance to the edges, whose sum is known.
 pub(super) fn static_compliance(plate: &Plate, x: f64, y: f64) -> f64 {
     let (a, b, d) = (plate.length_m, plate.width_m, plate.flexural_rigidity_n_m());
     if [x, y].iter().any(|share| *share <= 0.0 || *share >= 1.0) {
         return 0.0;
     }
-    // waves along the direction across which the location is deeper inside
+    // Waves along the direction across which the location is further from the edges.
     let depth = |share: f64, length: f64| share.min(1.0 - share) * length;
     let (along, across, x, y) = if depth(y, b) / a >= depth(x, a) / b { (a, b, x, y) } else { (b, a, y, x) };
     let mut sum = 0.0;
@@ -102,7 +102,7 @@ pub(super) fn static_compliance(plate: &Plate, x: f64, y: f64) -> f64 {
             break;
         }
     }
-    // the rest of every term, sin^2(m pi x)/(4 m^3), in closed form
+    // The rest of every term, sin^2(m pi x)/(4 m^3), in closed form.
     let rest = 0.25 * sines_over_cubes(x);
     2.0 * along * along / (PI.powi(3) * d) * (sum + rest)
 }
@@ -113,7 +113,7 @@ fn coth_less(r: f64) -> f64 {
         // 2r/3 - 4r^3/45 + 4r^5/315
         return r * (2.0 / 3.0 - r * r * (4.0 / 45.0 - r * r * 4.0 / 315.0));
     }
-    // in decaying exponentials: (1 - e^2 - 4 r e)/(1 - e)^2 with e = exp(-2r)
+    // In decaying exponentials: (1 - e^2 - 4 r e)/(1 - e)^2 with e = exp(-2r).
     let e = (-2.0 * r).exp();
     (-(-4.0 * r).exp_m1() - 4.0 * r * e) / ((-2.0 * r).exp_m1()).powi(2)
 }
@@ -135,7 +135,7 @@ fn cosines_over_cubes(phi: f64) -> f64 {
     for k in 1..=30 {
         power *= ratio;
         let n = f64::from(2 * k);
-        // the zeta function of 2 and 4 converge slowly when summed
+        // The series of the zeta function converge slowly at 2 and 4.
         let zeta = match k {
             1 => PI * PI / 6.0,
             2 => PI.powi(4) / 90.0,
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn the_series_of_cosines() {
-        // sum (-1)^m/m^3 = -3 zeta(3)/4; and by summation
+        // sum (-1)^m/m^3 = -3 zeta(3)/4, and by summation.
         assert!((cosines_over_cubes(PI) + 0.75 * ZETA_3).abs() < 1e-14);
         for phi in [1e-3, 0.3, 2.0] {
             let direct: f64 = (1..200_000).rev().map(|m| (f64::from(m) * phi).cos() / f64::from(m).powi(3)).sum();

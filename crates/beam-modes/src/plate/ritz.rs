@@ -7,9 +7,9 @@
 //! U = D/2 int w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) w_xy^2 dA.
 //! ```
 //!
-//! The eigenproblem is solved for `1/omega^2`, whose largest values are the slow modes (`block.rs`); Rayleigh's quotient of
-//! each shape then gives its frequency to within 1e-11. Rigid-body motions, known exactly, are taken out beforehand. Edges
-//! that are alike on opposite sides split the problem into two, or four.
+//! The eigenproblem is solved for `1/omega^2`, whose largest values belong to the lowest modes (`block.rs`); Rayleigh's
+//! quotient of each shape then gives its frequency to within 1e-11. Rigid-body motions, known exactly, are removed beforehand.
+//! Equal conditions on opposite edges divide the problem into two, or four.
 
 use super::block::{Block, Found, Rigid};
 use super::definition::{Edge, Plate};
@@ -18,7 +18,7 @@ use super::modes::{Kind, PlateModes, Product, lines};
 use invalid_input::InvalidInput;
 use std::f64::consts::PI;
 
-/// More functions than this are not taken in one block.
+/// Largest number of functions in one block.
 const MOST_ROWS: usize = 3000;
 
 pub(super) struct Ritz<'a> {
@@ -30,11 +30,11 @@ pub(super) struct Ritz<'a> {
 }
 
 impl<'a> Ritz<'a> {
-    /// Degrees that resolve the first `count` modes, if matrices of a reasonable size do: polynomials need their degree
-    /// beyond the wave number times half the length, by an excess that grows as its cube root.
+    /// Degrees that resolve the first `count` modes, if matrices of a reasonable size do. The degree must exceed the wave
+    /// number times half the length by an amount that grows as its cube root.
     pub fn degrees(plate: &Plate, count: usize) -> Option<[usize; 2]> {
         let (a, b) = (plate.length_m, plate.width_m);
-        // Weyl: N = a b k^2/(4 pi) less what the edges keep still; half a wave for a pinned one, more for a clamped one
+        // Weyl: N = a b k^2/(4 pi) minus the effect of the edges; half a wave for a pinned one, more for a clamped one.
         let held = |pair: &[Edge]| {
             let share = |edge: &Edge| match edge {
                 Edge::Clamped => 0.5,
@@ -56,13 +56,13 @@ impl<'a> Ritz<'a> {
         (rows <= MOST_ROWS).then_some(degrees)
     }
 
-    /// Degrees for the static deflection of a square, in one ratio.
+    /// Degrees for the static deflection of a square, in a constant ratio.
     pub const STATIC_DEGREES: [usize; 3] = [24, 36, 54];
 
-    /// Degrees for the static deflection: more along the longer side, as far as matrices stay small.
+    /// Degrees for the static deflection: more along the longer side, as long as matrices stay small.
     pub fn static_degrees(plate: &Plate, of_square: usize) -> [usize; 2] {
         let ratio = (plate.length_m / plate.width_m).clamp(0.25, 4.0).sqrt();
-        // even, so that both parities have as many functions
+        // Even, so that both parities have the same number of functions.
         let degree = |factor: f64| 2 * (0.5 * of_square as f64 * factor).round() as usize;
         [degree(ratio), degree(1.0 / ratio)]
     }
@@ -81,7 +81,7 @@ impl<'a> Ritz<'a> {
         pairs.into_iter().filter(filled).collect()
     }
 
-    /// Numbers of the functions of two classes.
+    /// Indices of the functions of two classes.
     fn functions(&self, classes: [usize; 2]) -> [&[usize]; 2] {
         [0, 1].map(|which| &self.lines[which].classes[classes[which]][..])
     }
@@ -92,12 +92,12 @@ impl<'a> Ritz<'a> {
             .ok_or_else(unresolved)
     }
 
-    /// Rigid-body motions, orthonormal in mass: which product of functions, and its coefficient.
+    /// Rigid-body motions, orthonormal in mass: the product of functions, and its coefficient.
     fn rigid(&self) -> Vec<([usize; 2], f64)> {
         let root = 3f64.sqrt();
         match self.plate.rigid_body_count() {
             3 => vec![([0, 0], 1.0), ([1, 0], root), ([0, 1], root)],
-            // 1 + s from a pinned edge
+            // 1 + s from a pinned edge.
             1 => vec![([0, 0], 0.5 * root)],
             _ => Vec::new(),
         }
@@ -108,11 +108,11 @@ impl<'a> Ritz<'a> {
         4.0 * self.rigidity_n_m / (self.plate.length_m * self.plate.width_m) / self.plate.mass_kg()
     }
 
-    /// The first `count` elastic modes, if there are so many.
+    /// The first `count` elastic modes, if there are as many.
     fn elastic(&self, count: usize) -> Result<Vec<Found>, InvalidInput> {
         let blocks = self.classes().into_iter().map(|classes| self.block(classes)).collect::<Result<Vec<_>, _>>()?;
         let rows: usize = blocks.iter().map(|block| block.pairs.len()).sum();
-        // modes fall to the blocks nearly in the ratio of their functions
+        // Modes are distributed over the blocks nearly in the ratio of their functions.
         let share = |block: &Block| 1.1 * (count * block.pairs.len()) as f64 / rows as f64 + 4.0;
         let modes = |block: &Block, wanted: usize| block.modes(wanted).ok_or_else(unresolved);
         let mut parts = blocks
@@ -123,7 +123,7 @@ impl<'a> Ritz<'a> {
             let mut all: Vec<f64> = parts.iter().flatten().map(|mode| mode.omega).collect();
             all.sort_by(f64::total_cmp);
             let highest = if count == 0 { 0.0 } else { all.get(count - 1).copied().unwrap_or(f64::INFINITY) };
-            // a block whose last mode is among the first ones may have more of them
+            // A block whose last mode is among the first ones may contain more of them.
             let mut complete = true;
             for (block, part) in blocks.iter().zip(&mut parts) {
                 if part.len() < count.min(block.elastic_count()) && part.last().is_none_or(|mode| mode.omega < highest)
@@ -175,14 +175,14 @@ impl<'a> Ritz<'a> {
         Ok(PlateModes { plate: *self.plate, rigid, omega_rad_s, change, kind })
     }
 
-    /// Static deflection under a unit load at a location, in shares of length and width; of elastic modes alone.
+    /// Static deflection under a unit load at a location, in shares of length and width; that of the elastic modes alone.
     pub fn static_compliance(&self, x: f64, y: f64) -> Result<f64, InvalidInput> {
         let (along, across) = (self.lines[0].values(2.0 * x - 1.0), self.lines[1].values(2.0 * y - 1.0));
         let mut sum = 0.0;
         for classes in self.classes() {
             let block = self.block(classes)?;
             let values: Vec<f64> = block.pairs.iter().map(|[i, j]| along[*i] * across[*j]).collect();
-            // the load less the inertia of the rigid-body motions that it causes
+            // The load minus the inertia of the rigid-body motions that it causes.
             let mut load = values.clone();
             for Rigid { row, size, momentum } in &block.rigid {
                 load.iter_mut().zip(momentum).for_each(|(force, m)| *force -= m * size * values[*row]);
@@ -203,9 +203,10 @@ mod tests {
     use super::super::{PlateTheory, navier};
     use super::*;
 
-    /// Pinned all round, where the frequencies have a closed form: none is missing, and what is stated of each bounds its error.
+    /// For a plate pinned along all edges the frequencies have a closed form: none is missing, and the stated change bounds the
+    /// error of each.
     #[test]
-    fn frequencies_are_navier_s_within_what_is_stated() {
+    fn frequencies_are_navier_s_within_the_stated_change() {
         let plate = Plate {
             length_m: 0.4,
             width_m: 0.3,

@@ -1,4 +1,4 @@
-//! Remainder modes of a beam whose modes are known as far as one likes.
+//! Remainder modes of a beam, of which any number of modes can be computed.
 
 use super::{PointsMode, remainder_at_points, remainder_modes};
 use crate::definition::{Beam, BeamSystem};
@@ -6,19 +6,19 @@ use crate::modes::Modes;
 use crate::point_mode::PointMode;
 use invalid_input::InvalidInput;
 
-/// How many modes to compute so that what lies beyond them hardly tells in the remainder of the first `kept`: twice as
-/// many, and at least 64 more. Restitutions of chapter 3's beam with 64 to 240 modes and their remainder then change by less
-/// than 1e-6 (Euler-Bernoulli) and 1e-4 (Timoshenko), a tenth of what the remainder modes themselves leave.
+/// Number of modes to compute so that those beyond have little effect on the remainder of the first `kept`: twice as many, and
+/// at least 64 more. Restitutions of chapter 3's beam with 64 to 240 modes and their remainder then change by less than 1e-6
+/// (Euler-Bernoulli) and 1e-4 (Timoshenko), a tenth of the error of the remainder modes themselves.
 pub fn enough_for_remainder(kept: usize) -> usize {
     kept.saturating_mul(2).max(kept.saturating_add(64)).min(100_000)
 }
 
 impl Beam {
-    /// The `count` remainder modes (1 to 4) at `x_m` of all modes but the first `kept` (rigid-body motions included), so
-    /// that `kept` modes and these few answer a force at `x_m` nearly as all modes do; see [`remainder_modes`].
+    /// The `count` remainder modes (1 to 4) at `x_m` of all modes but the first `kept` (rigid-body modes included), so that
+    /// `kept` modes and these few respond to a force at `x_m` nearly as all modes do; see [`remainder_modes`].
     ///
-    /// Computes twice as many modes as are kept. Where remainders are wanted at many locations or for many
-    /// `kept`, [`Modes::remainder`] does it from modes computed once.
+    /// Computes twice as many modes as `kept`. For many locations or many values of `kept`, use [`Modes::remainder`] with modes
+    /// that are computed once.
     ///
     /// ```
     /// use beam_modes::{Beam, End, Segment};
@@ -30,26 +30,26 @@ impl Beam {
     /// ```
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location off the beam, and for a `count` other than 1 to 4.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location outside the beam, and for a `count` other than 1 to 4.
     pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
         BeamSystem::from(self.clone()).remainder(x_m, kept, count)
     }
 
-    /// Remainder modes common to several locations on the beam, at most one a location; see [`remainder_at_points`].
+    /// Remainder modes common to several locations on the beam, at most one per location; see [`remainder_at_points`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location outside the beam.
     pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
         BeamSystem::from(self.clone()).remainder_at(x_m, kept)
     }
 }
 
 impl BeamSystem {
-    /// As [`Beam::remainder`]. The tail of a Timoshenko beam is a wave impedance rather than a spring: it falls as the
-    /// inverse of the number of modes, and remainder modes bring more there.
+    /// As [`Beam::remainder`]. The tail of a Timoshenko beam is a wave impedance rather than a spring: it decreases as the
+    /// inverse of the number of modes, so that remainder modes improve the result more.
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location off the beam, and for a `count` other than 1 to 4.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), for a location outside the beam, and for a `count` other than 1 to 4.
     pub fn remainder(&self, x_m: f64, kept: usize, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
         let whole_m_n = self.static_compliance(x_m)?;
         self.modes(enough_for_remainder(kept))?.remainder(x_m, kept, count, whole_m_n)
@@ -58,7 +58,7 @@ impl BeamSystem {
     /// As [`Beam::remainder_at`].
     ///
     /// # Errors
-    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location off the beam.
+    /// [`InvalidInput`] as for [`modes`](Self::modes), and for a location outside the beam.
     pub fn remainder_at(&self, x_m: &[f64], kept: usize) -> Result<Vec<PointsMode>, InvalidInput> {
         let modes = self.modes(enough_for_remainder(kept))?;
         let shapes = x_m.iter().map(|&x| modes.shapes_at(x)).collect::<Result<Vec<_>, _>>()?;
@@ -78,13 +78,12 @@ impl BeamSystem {
 }
 
 impl Modes {
-    /// As [`Beam::remainder`], from modes already computed, preferably twice as many as are kept
-    /// ([`enough_for_remainder`]);
+    /// As [`Beam::remainder`], from modes already computed, preferably twice as many as `kept` ([`enough_for_remainder`]);
     /// `static_compliance_m_n` is that of the whole structure at `x_m`.
     ///
     /// # Errors
-    /// [`InvalidInput`] for a location off the structure, for a `count` other than 1 to 4, for no mode beyond `kept`, and
-    /// for a compliance that is negative or not finite.
+    /// [`InvalidInput`] for a location outside the structure, for a `count` other than 1 to 4, if there is no mode beyond
+    /// `kept`, and for a compliance that is negative or not finite.
     pub fn remainder(
         &self,
         x_m: f64,
@@ -102,7 +101,7 @@ impl Modes {
             let allowed = "a finite number, at least 0";
             return Err(InvalidInput::new("static_compliance_m_n", static_compliance_m_n, allowed));
         }
-        // smallest first, so that the sum is as exact as its last terms
+        // The smallest terms first, so that the sum is as accurate as its last terms.
         let known: f64 = elastic.iter().rev().map(|mode| (mode.shape / mode.omega_rad_s).powi(2)).sum();
         remainder_modes(tail, (static_compliance_m_n - known).max(0.0), count)
     }

@@ -1,20 +1,20 @@
-//! A few *remainder modes* that respond to a force as all the modes do that a truncated model leaves out.
+//! A few *remainder modes* that respond to a force as all truncated modes of a model do.
 //!
-//! Seen from one point, the modes `k > N` left out are the spectral measure with the weights `phi_k^2 / omega_k^2` at
+//! At one point, the truncated modes `k > N` are the spectral measure with the weights `phi_k^2 / omega_k^2` at
 //! `x_k = 1 / omega_k^2`; its moments are
 //!
 //! ```text
 //! m_j = sum_{k > N} phi_k^2 / omega_k^(2 j),      j = 1, 2, ...
 //! ```
 //!
-//! `m_1` is the residual static compliance (residual flexibility), `m_2` the residual inertia (R. H. MacNeal, Comput.
-//! Struct. 1:581, 1971; S. Rubin, AIAA J. 13:995, 1975). The Gauss quadrature with `n` nodes `X_r` and weights `W_r`
-//! matches the first `2 n` moments. It is `n` modes, `omega_r = X_r^(-1/2)` and `phi_r = (W_r / X_r)^(1/2)`, which
-//! answer every force slower than themselves as the whole tail does, and add no algebraic equation to the model. Their
-//! frequencies lie above those of the modes kept.
+//! `m_1` is the residual static compliance (residual flexibility), `m_2` the residual inertia (R. H. MacNeal, Comput. Struct.
+//! 1:581, 1971; S. Rubin, AIAA J. 13:995, 1975). The Gauss quadrature with `n` nodes `X_r` and weights `W_r` matches the first
+//! `2 n` moments. It corresponds to `n` modes, `omega_r = X_r^(-1/2)` and `phi_r = (W_r / X_r)^(1/2)`, which respond to every
+//! force slower than themselves as the whole tail does, and add no algebraic equation to the model. Their frequencies are above
+//! those of the modes that are not truncated.
 //!
-//! Where no solved beam stands behind the modes, [`remainder_from_trend`] makes them of the residual compliance and of
-//! how the modes that are known grow. Several points of one body need one common set of modes: [`remainder_at_points`].
+//! For modes that do not come from a solved beam, [`remainder_from_trend`] makes remainder modes from the residual compliance
+//! and the growth of the known frequencies. Several points of one body need one common set of modes: [`remainder_at_points`].
 
 mod beam;
 mod points;
@@ -29,17 +29,17 @@ use crate::point_mode::PointMode;
 use invalid_input::InvalidInput;
 use quadrature::{Atom, gauss_quadrature, power_law_atoms};
 
-/// At most as many remainder modes as this: more gain nothing against the rounding of the moments.
+/// Largest number of remainder modes: more gain nothing because of the rounding of the moments.
 pub const MOST_REMAINDER_MODES: usize = 4;
 
-/// The `count` remainder modes (1 to 4) of the truncated modes, in ascending order of frequency; fewer where the tail
-/// moves at fewer frequencies, none where the point does not move in it.
+/// The `count` remainder modes (1 to 4) of the truncated modes, in ascending order of frequency; fewer if the tail has fewer
+/// frequencies, none if the point does not move in it.
 ///
-/// `tail` lists the modes `N+1 .. M` that were computed but are not kept. `static_rest_m_n` is what the modes beyond
-/// `M` add to the static compliance, `G(x,x) - sum_{k <= M} phi_k^2/omega_k^2`. It is spread over frequencies above
-/// the highest of `tail` by the law of shear waves, evenly spaced frequencies of even shapes, for which the
-/// compliance left beyond `omega` falls as `1/omega`; in bending it falls as `omega^(-3/2)`, and what little is left
-/// beyond `M` may be spread by either law. The first moment is exact in any case.
+/// `tail` contains the modes `N+1 .. M` that were computed but are truncated. `static_rest_m_n` is the static compliance of the
+/// modes beyond `M`, `G(x,x) - sum_{k <= M} phi_k^2/omega_k^2`. It is distributed over frequencies above the highest of `tail`
+/// by the law of shear waves, which have evenly spaced frequencies and equal shapes, and for which the compliance beyond
+/// `omega` decreases as `1/omega`. In bending it decreases as `omega^(-3/2)`, but the small rest beyond `M` may be distributed
+/// by either law. The first moment is exact in any case.
 ///
 /// ```
 /// use beam_modes::{PointMode, remainder_modes};
@@ -57,8 +57,8 @@ pub const MOST_REMAINDER_MODES: usize = 4;
 /// ```
 ///
 /// # Errors
-/// [`InvalidInput`] for a `count` other than 1 to 4, for frequencies that are not positive, for a compliance that is
-/// negative, for numbers that are not finite or beyond 1e60, and for a compliance beyond an empty `tail`.
+/// [`InvalidInput`] for a `count` other than 1 to 4, for frequencies that are not positive, for a compliance that is negative,
+/// for numbers that are not finite or beyond 1e60, and for a compliance beyond an empty `tail`.
 pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -> Result<Vec<PointMode>, InvalidInput> {
     require_count(count)?;
     for (k, mode) in tail.iter().enumerate() {
@@ -81,11 +81,10 @@ pub fn remainder_modes(tail: &[PointMode], static_rest_m_n: f64, count: usize) -
     Ok(from_atoms(gauss_quadrature(&atoms, count), highest))
 }
 
-/// Mean of `1/omega^2` over compliance that lies beyond `omega_M` by the law of shear waves, in units of
-/// `1/omega_M^2`.
+/// Mean of `1/omega^2` over the compliance beyond `omega_M` by the law of shear waves, in units of `1/omega_M^2`.
 const ASYMPTOTIC_MEAN: f64 = 1.0 / 3.0;
 
-/// By that law the frequencies grow as this power of their number.
+/// By that law the frequencies grow as this power of their index.
 const ASYMPTOTIC_GROWTH: f64 = 1.0;
 
 /// The modes of a quadrature in `(unit / omega)^2`, from the lowest.

@@ -5,7 +5,7 @@ use faer::linalg::solvers::SelfAdjointEigen;
 use faer::{Mat, Side};
 use invalid_input::InvalidInput;
 
-/// A mode as seen from several points of a structure.
+/// A mode at several points of a structure.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -16,27 +16,27 @@ pub struct PointsMode {
     pub shapes: Vec<f64>,
 }
 
-/// Directions that share less than this of the largest in the scaled residual compliance are rounding: points that
-/// coincide, or that the tail moves as one.
+/// Directions with less than this share of the largest eigenvalue of the scaled residual compliance are rounding: points that
+/// coincide, or that move together in the tail.
 const DEPENDENT: f64 = 1e-11;
 
-/// Points whose shapes are smaller than this against those of the liveliest stand still but for rounding.
+/// Points whose shapes are smaller than this, relative to those of the point that moves most, are at rest to rounding.
 const NODE: f64 = 1e-13;
 
-/// Remainder modes of the truncated modes as seen from several points of one body: at most one a point, fewer where
-/// points coincide or lie on nodes of all shapes of the tail.
+/// Remainder modes of the truncated modes at several points of one body: at most one per point, fewer if points coincide or are
+/// nodes of all shapes of the tail.
 ///
-/// They match the first two moments `M_j = sum_{k > N} phi_k phi_k^T / omega_k^(2 j)`, `j = 1, 2`, which are matrices
-/// of the points, so that every force on one point is answered rightly at every other. With `M_2 u = x M_1 u` and
-/// `u^T M_1 u = 1`, each solution is a mode `omega = x^(-1/2)` of the shape `omega M_1 u`.
+/// They match the first two moments `M_j = sum_{k > N} phi_k phi_k^T / omega_k^(2 j)`, `j = 1, 2`, which are matrices over the
+/// points, so that the response at every point to a force at every other is correct. With `M_2 u = x M_1 u` and
+/// `u^T M_1 u = 1`, each solution is a mode `omega = x^(-1/2)` with the shape `omega M_1 u`.
 ///
-/// `tail` lists the modes computed but not kept, all with as many shapes; `static_rest_m_n`, row by row, is what the
-/// modes beyond add to the static Green's function between the points, as for
+/// `tail` contains the modes that were computed but are truncated, all with the same number of shapes; `static_rest_m_n`, row
+/// by row, is the contribution of the modes beyond to the static Green's function between the points, as for
 /// [`remainder_modes`](super::remainder_modes).
 ///
 /// # Errors
-/// [`InvalidInput`] as for [`remainder_modes`](super::remainder_modes), for numbers of shapes that differ, and for a
-/// `static_rest_m_n` that is not a matrix of the points.
+/// [`InvalidInput`] as for [`remainder_modes`](super::remainder_modes), for different numbers of shapes, and for a
+/// `static_rest_m_n` that is not a matrix over the points.
 pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Result<Vec<PointsMode>, InvalidInput> {
     let points = tail.first().map_or(0, |mode| mode.shapes.len());
     for (k, mode) in tail.iter().enumerate() {
@@ -60,7 +60,7 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
         return Ok(Vec::new());
     };
 
-    // moments with x in units of 1/highest^2
+    // Moments with x in units of 1/highest^2.
     let moment = |i: usize, j: usize, order: i32| {
         let rest = 0.5 * (static_rest_m_n[i * points + j] + static_rest_m_n[j * points + i]);
         let term = |mode: &PointsMode| {
@@ -69,7 +69,7 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
         };
         tail.iter().map(term).sum::<f64>() + rest * ASYMPTOTIC_MEAN.powi(order - 1)
     };
-    // every point by its own compliance, so that one that hardly moves counts as the others do
+    // Every point is scaled by its own compliance, so that one that hardly moves counts like the others.
     let size: Vec<f64> = (0..points).map(|i| moment(i, i, 1).max(0.0).sqrt()).collect();
     let floor = NODE * size.iter().copied().fold(0.0, f64::max);
     let scale: Vec<f64> = size.iter().map(|&size| if size > floor { size } else { 0.0 }).collect();
@@ -83,7 +83,7 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
     let eigen = SelfAdjointEigen::new(first.as_ref(), Side::Lower).map_err(|_| unsolved())?;
     let largest = (0..points).map(|r| eigen.S()[r]).fold(0.0, f64::max);
     let kept: Vec<usize> = (0..points).filter(|&r| eigen.S()[r] > DEPENDENT * largest).collect();
-    // columns Q D^(-1/2) of the part of M_1 that is not singular
+    // Columns Q D^(-1/2) of the part of M_1 that is not singular.
     let whiten = Mat::from_fn(points, kept.len(), |i, r| eigen.U()[(i, kept[r])] / eigen.S()[kept[r]].sqrt());
     let reduced = whiten.transpose() * &second * &whiten;
     let poles = SelfAdjointEigen::new(reduced.as_ref(), Side::Lower).map_err(|_| unsolved())?;
@@ -94,6 +94,6 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
         let shapes = (0..points).map(|i| omega_rad_s * scale[i] * shapes[(i, r)]).collect();
         PointsMode { omega_rad_s, shapes }
     };
-    // x > 0 but for rounding in directions that hardly count
+    // x > 0 except for rounding in directions of little weight.
     Ok((0..kept.len()).rev().filter(|&r| poles.S()[r] > 0.0).map(mode).collect())
 }

@@ -11,11 +11,11 @@ pub(crate) struct Atom {
     pub weight: f64,
 }
 
-/// Off-diagonal entries of the Jacobi matrix below this, relative to its largest node, are rounding: the measure has
-/// no more nodes.
+/// Off-diagonal entries of the Jacobi matrix below this, relative to its largest node, are rounding: the measure has no more
+/// nodes.
 const EXHAUSTED: f64 = 1e-13;
 
-/// Nodes and weights that integrate polynomials up to degree `2 count - 1` as the measure does.
+/// Nodes and weights that integrate polynomials up to degree `2 count - 1` exactly for this measure.
 pub(crate) fn gauss_quadrature(atoms: &[Atom], count: usize) -> Vec<Atom> {
     let total: f64 = atoms.iter().map(|atom| atom.weight).sum();
     let largest = atoms.iter().filter(|atom| atom.weight > 0.0).map(|atom| atom.x).fold(0.0, f64::max);
@@ -32,7 +32,7 @@ pub(crate) fn gauss_quadrature(atoms: &[Atom], count: usize) -> Vec<Atom> {
         if diagonal.len() == count {
             break;
         }
-        // against all earlier vectors, twice: exact orthogonality costs nothing here
+        // Against all earlier vectors, twice: exact orthogonality costs little here.
         for _ in 0..2 {
             for vector in &basis {
                 let overlap = dot(vector, &next);
@@ -55,11 +55,11 @@ pub(crate) fn gauss_quadrature(atoms: &[Atom], count: usize) -> Vec<Atom> {
         .collect()
 }
 
-/// The `count` nodes of the weight `x^(-1/(2 growth))` on (0, 1), scaled to the sum `total`: what frequencies that grow
-/// as this power of their number, all of one mean square shape, leave beyond `omega = 1` in `x = 1/omega^2`.
+/// The `count` nodes of the weight `x^(-1/(2 growth))` on (0, 1), scaled to the sum `total`: the contribution beyond
+/// `omega = 1`, in `x = 1/omega^2`, of frequencies that grow as this power of their index and have the same mean square shape.
 pub(crate) fn power_law_atoms(growth: f64, total: f64, count: usize) -> Vec<Atom> {
     let b = -0.5 / growth;
-    // Jacobi's weight x^b (1-x)^0, moved from (-1, 1) to (0, 1)
+    // Jacobi's weight x^b (1-x)^0, mapped from (-1, 1) to (0, 1).
     let diagonal = |k: f64| {
         if k == 0.0 { (1.0 + b) / (2.0 + b) } else { 0.5 + 0.5 * b * b / ((2.0 * k + b) * (2.0 * k + 2.0 + b)) }
     };

@@ -1,6 +1,6 @@
 //! A plain striker at a wall, integrated step by step through the contract of a law.
 
-#![allow(dead_code)] // each test binary uses a part
+#![allow(dead_code)] // each test binary uses only a part
 
 use contact_models::{After, Boundary, Branch, ContactLaw, Memory, boundaries};
 use contact_models::{Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh};
@@ -10,8 +10,8 @@ use proptest::prelude::*;
 pub const BALL_MASS_KG: f64 = 0.11027;
 pub const K_H: f64 = 1.7945e10;
 
-/// Speed ratio of a rigid striker after its contact with a wall, by the classical Runge-Kutta
-/// method with steps of `duration_s / 20000`, landing on every boundary.
+/// Speed ratio of a rigid striker after its contact with a wall, by the classical Runge-Kutta method with steps of
+/// `duration_s / 20000` that end on every boundary.
 pub fn rebound(law: &impl ContactLaw, mass_kg: f64, speed_m_s: f64, duration_s: f64) -> f64 {
     let mut branch = law.touch(&Memory::default(), speed_m_s);
     let mut state = (0.0, speed_m_s);
@@ -51,7 +51,7 @@ fn step(law: &impl ContactLaw, branch: &Branch, mass_kg: f64, (xi, v): (f64, f64
     (xi + h / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0), v + h / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1))
 }
 
-/// A motion with a piecewise linear rate: compression and rate at whole times, one unit apart.
+/// A motion with a piecewise linear rate: compression and rate at integer times.
 #[derive(Debug, Clone)]
 pub struct Motion {
     rates: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Starts at first touch with these rates, and goes on until the bodies are well apart.
+    /// Starts at first touch with these rates, and continues until the bodies are separate.
     fn new(mut rates: Vec<f64>) -> Motion {
         let mut compressions = vec![0.0];
         let mut i = 0;
@@ -91,7 +91,7 @@ pub fn motions() -> impl Strategy<Value = Motion> {
     })
 }
 
-/// Any law, on the scale of compressions and rates near 1.
+/// Any law, on a scale on which compressions and rates are near 1.
 pub fn laws() -> impl Strategy<Value = Law> {
     let (k, e) = (0.2..5.0, 0.05..1.0);
     prop_oneof![
@@ -116,7 +116,7 @@ pub fn laws() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// A state visited inside a branch.
+/// A state inside a branch.
 #[derive(Debug, Clone, Copy)]
 pub struct Visit {
     pub branch: Branch,
@@ -138,7 +138,7 @@ pub struct Walk {
     pub crossings: Vec<Crossing>,
 }
 
-/// Follows a motion from branch to branch, landing on every boundary to rounding.
+/// Follows a motion from branch to branch, and locates every boundary to rounding.
 pub fn walk(law: &Law, motion: &Motion) -> Walk {
     let mut walk = Walk::default();
     let mut memory = Memory::default();
@@ -182,7 +182,7 @@ pub fn walk(law: &Law, motion: &Motion) -> Walk {
     walk
 }
 
-/// The compression at which the branch lets go, zero where it does not say.
+/// The compression at which the branch releases, or zero if it does not state one.
 pub fn release_level(law: &Law, branch: &Branch) -> f64 {
     boundaries(law, branch).fold(0.0, |level, boundary| match boundary {
         Boundary { per_compression: 1.0, per_rate: 0.0, level: end } => level.max(end),
@@ -190,11 +190,11 @@ pub fn release_level(law: &Law, branch: &Branch) -> f64 {
     })
 }
 
-/// Work returned when the contact is let go from this state at a constant slow rate, by the
-/// trapezoidal rule on a grid that refines towards the release.
+/// Work returned if the contact is unloaded from this state at a constant slow rate, by the trapezoidal rule on a grid that is
+/// refined towards the release.
 pub fn unload(law: &Law, state: &Visit, rate: f64) -> f64 {
     let mut branch = state.branch;
-    settle_on(law, &mut branch, state.compression_m, rate); // the branch of unloading, which knows where it will release
+    settle_on(law, &mut branch, state.compression_m, rate); // The branch of unloading, which determines the release.
     let release = release_level(law, &branch);
     let n = 1000;
     let grid = |i: i32| release + (state.compression_m - release) * (f64::from(n - i) / f64::from(n)).powi(2);
@@ -202,7 +202,7 @@ pub fn unload(law: &Law, state: &Visit, rate: f64) -> f64 {
     (0..n).map(|i| 0.5 * (settle(grid(i)) + settle(grid(i + 1))) * (grid(i) - grid(i + 1))).sum()
 }
 
-/// Force at this compression on the branch that holds there while the contact recedes.
+/// Force at this compression on the branch that is valid there while the contact is unloaded.
 fn settle_on(law: &Law, branch: &mut Branch, xi: f64, rate: f64) -> f64 {
     for _ in 0..4 {
         let met = boundaries(law, branch).position(|boundary| boundary.margin(xi, -rate) < 0.0);

@@ -25,7 +25,7 @@ fn choose(h: &[f64], rows: &[(Vec<f64>, f64)], from: usize, chosen: &mut Vec<usi
     None
 }
 
-/// The stationary point with the chosen rows as equations, if it satisfies all rows and no multiplier pulls.
+/// The stationary point with the chosen rows as equations, if it satisfies all rows and no multiplier is negative.
 fn optimal(h: &[f64], rows: &[(Vec<f64>, f64)], chosen: &[usize]) -> Option<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| x * y).sum() };
     // x = H^-1 A^T lambda, A H^-1 A^T lambda = bound

@@ -7,13 +7,13 @@ pub struct Datum {
     /// Number of the location on the beam.
     #[allow(dead_code)]
     pub place: usize,
-    /// Mass and location as the law takes them.
+    /// Mass and location in the form that the law uses.
     pub impact: Impact,
     /// The restitution.
     pub restitution: f64,
 }
 
-/// 12 masses at 25 locations, 50 modes; an error of `noise` times a fixed sequence within -1..1 is added.
+/// 12 masses at 25 locations, 50 modes; the error is `noise` times a fixed sequence within -1..1.
 pub fn impacts([mu0, alpha0, alpha1]: [f64; 3], noise: f64) -> Vec<Datum> {
     let law = Parameters { mu0, alpha0, alpha1, notional_restitution: 1.0 };
     let mut data = Vec::new();
@@ -26,7 +26,7 @@ pub fn impacts([mu0, alpha0, alpha1]: [f64; 3], noise: f64) -> Vec<Datum> {
             let mass = 0.005 * 1.8_f64.powi(step);
             let Ok(impact) = Impact::new(mass, &site) else { continue };
             let Ok(rebound) = law.rebound(&impact) else { continue };
-            // golden-ratio sequence: evenly spread and the same everywhere
+            // A golden-ratio sequence is evenly distributed and the same everywhere.
             let error = noise * (2.0 * (data.len() as f64 * 0.618_033_988_749_894_9).fract() - 1.0);
             data.push(Datum { place, impact, restitution: rebound.restitution + error });
         }
@@ -42,7 +42,7 @@ pub fn residuals(data: &[Datum], p: &[f64], r: &mut [f64]) {
     }
 }
 
-/// Derivatives in the three parameters.
+/// Derivatives with respect to the three parameters.
 pub fn jacobian(data: &[Datum], p: &[f64], rows: &mut [f64]) {
     let law = Parameters { mu0: p[0], alpha0: p[1], alpha1: p[2], notional_restitution: 1.0 };
     for (row, datum) in rows.chunks_exact_mut(3).zip(data) {

@@ -1,11 +1,12 @@
-//! The panels behind: their effect on later times by quadrature sums.
+//! Past panels: their effect on later times, by quadrature sums.
 
 use super::panel::{Panel, divided_power};
 use crate::power::Power;
 use crate::quadrature::{Interpolation, Rule};
 use crate::system::Pair;
 
-/// Most dyadic levels towards the end of a panel; each halves the distance, so that rounding of `t` ends them first.
+/// Largest number of dyadic levels towards the end of a panel. Each halves the distance, so that rounding of `t` ends them
+/// first.
 const MOST_LEVELS: usize = 300;
 
 /// A finished panel.
@@ -20,15 +21,15 @@ pub(crate) struct History {
     rule: Rule,
     densities: usize,
     past: Vec<Past>,
-    /// Interpolation from the nodes of a panel to the Gauss nodes of its dyadic pieces
-    /// `[1 - 2^-k, 1 - 2^-(k+1)]`, and last the rests `[1 - 2^-k, 1]`; built when first needed.
+    /// Interpolation from the nodes of a panel to the Gauss nodes of its dyadic pieces `[1 - 2^-k, 1 - 2^-(k+1)]`, and then of
+    /// the remaining pieces `[1 - 2^-k, 1]`; computed when first needed.
     levels: Vec<Vec<f64>>,
     rests: Vec<Vec<f64>>,
     interpolation: Interpolation,
 }
 
-/// A quadrature rule on a piece of a past panel: distances in `x` from the end of the panel, which keep the digits of
-/// the times to later nodes, and `weight * dt/dx * density` there.
+/// A quadrature rule on a piece of a past panel: distances in `x` from the end of the panel, from which the times to later
+/// nodes follow without cancellation, and `weight * dt/dx * density` there.
 struct Sources {
     back: Vec<f64>,
     strength: Vec<f64>,
@@ -47,7 +48,7 @@ impl History {
         }
     }
 
-    /// Numbers held.
+    /// Number of values stored.
     pub fn len(&self) -> usize {
         self.past.iter().map(|p| p.f.len() + 2 * p.panel.nodes.len()).sum()
     }
@@ -88,7 +89,7 @@ impl History {
     /// Dyadic levels after which the rest of the past panel is no longer than its distance from the first node.
     fn levels_needed(&self, p: usize, panel: &Panel, gap: f64) -> usize {
         let past = &self.past[p].panel;
-        // The gap is counted apart: the panels may be neighbours, and the first node close to the panel's start.
+        // The gap is computed separately: the panels may be neighbours, and the first node close to the panel's start.
         let distance = if past.origin == panel.origin {
             (panel.x[0] - past.x[1] + gap) * divided_power(panel.nodes[0], past.x[1], panel.mapping)
         } else {

@@ -22,7 +22,7 @@ use panel::{LocalRules, Panel};
 /// Largest dense Newton system of a panel.
 const MOST_EQUATIONS: usize = 8000;
 
-/// Roundings of the forcing that the unresolved part of a panel cannot be told from.
+/// Multiple of the rounding of the forcing below which the unresolved part of a panel cannot be distinguished from it.
 const ROUNDINGS: f64 = 50.0;
 
 /// Settings of the collocation method.
@@ -30,10 +30,10 @@ const ROUNDINGS: f64 = 50.0;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Collocation {
-    /// Error allowed for a panel, relative to the largest magnitude each component of the solution has had so far,
-    /// but not below some roundings of the forcing, which the memory may cancel. From 1e-14 to 0.1; default 1e-12.
+    /// Error allowed for a panel, relative to the largest magnitude that each component of the solution has had so far, but not
+    /// below some roundings of the forcing, which the memory may cancel. From 1e-14 to 0.1; default 1e-12.
     pub tolerance: f64,
-    /// Nodes a panel, 4 to 64; default 16.
+    /// Nodes per panel, 4 to 64; default 16.
     pub nodes: usize,
     /// Exponent `q` of the mapping `t - t0 = x^q`, 1 to 12; by default the smallest that makes every order
     /// of the problem times `q` an integer, and 4 if there is none up to 10.
@@ -143,7 +143,7 @@ impl March<'_, '_, '_> {
         let mut reached = 0.0;
         let start = self.start_value(&segment)?;
         let mut guess = start.clone();
-        // The last fault met. If it lies ahead, it says more than what stops the shortest panel tried.
+        // The last fault met. If it lies ahead, it tells more than the reason why the shortest panel failed.
         let mut fault: Option<Fault> = None;
         let mut rejected_before = false;
         while reached < segment.length() {
@@ -151,7 +151,7 @@ impl March<'_, '_, '_> {
                 return Err(Stop::PanelLimit { t: segment.start + reached });
             }
             let left = segment.length() - reached;
-            // A last panel much shorter than its neighbour is avoided by halving what is left.
+            // The rest is halved if the last panel would otherwise be much shorter than its neighbour.
             let step = if length >= left { left } else { length.min(0.5 * left) };
             let end = if step == left { segment.length() } else { reached + step };
             let panel = Panel::new(segment, self.mapping, [reached, end], &self.interpolation.nodes);
@@ -170,7 +170,7 @@ impl March<'_, '_, '_> {
                     }
                     length = if rejected_before { 0.25 } else { 0.5 } * step;
                     rejected_before = true;
-                    // Next to the start of a segment only underflow is too short, elsewhere rounding of t.
+                    // Next to the start of a segment a panel is too short only at underflow, elsewhere at the rounding of t.
                     let smallest = if reached == 0.0 { 1e-200 * segment.length() } else { 1e-13 * reached };
                     if length < smallest {
                         let unresolved = Stop::NoConvergence { t: segment.start + reached };
@@ -183,8 +183,8 @@ impl March<'_, '_, '_> {
         Ok(())
     }
 
-    /// The solution just after the start of a segment: the forcing at first, later the last value and the jump of
-    /// the forcing, since the integrals are continuous.
+    /// The solution just after the start of a segment. The integrals are continuous, so this is the forcing at first, and later
+    /// the last value plus the jump of the forcing.
     fn start_value(&mut self, segment: &Segment) -> Result<Vec<f64>, Stop> {
         let mut value = vec![0.0; self.system.unknowns];
         self.system.forcing(segment.inside(segment.start), &mut value)?;
@@ -200,7 +200,7 @@ impl March<'_, '_, '_> {
         Ok(value)
     }
 
-    /// Solves a panel; on success with the factor by which the next may be longer.
+    /// Solves a panel; on success it returns the factor by which the next may be longer.
     fn try_panel(&mut self, panel: &Panel, guess: &[f64], length: f64) -> Result<(Stage, f64), Rejection> {
         let (d, m, n) = (self.system.unknowns, self.system.densities, panel.times.len());
         let mut rhs = vec![0.0; n * d];
@@ -220,18 +220,18 @@ impl March<'_, '_, '_> {
         if worst > 1.0 || worst.is_nan() {
             return Err(Rejection::Unresolved);
         }
-        // Noise near the bound does not shrink with the panel: some growth is always tried.
+        // Noise near the bound does not decrease with the panel, so the next panel may always be somewhat longer.
         let growth = (0.5 / worst.max(1e-300)).powf(1.0 / n as f64);
         Ok((stage, growth.clamp(1.2, 3.0)))
     }
 
-    /// The unresolved part of solution and density, by its effect on the solution relative to what is allowed.
+    /// The unresolved part of solution and density: its effect on the solution relative to what is allowed.
     fn unresolved(&self, panel: &Panel, stage: &Stage, forcing: &[f64], length: f64) -> f64 {
         let (d, m, n) = (self.system.unknowns, self.system.densities, panel.times.len());
         let y = |c: usize| (0..n).map(move |i| stage.y[i * d + c]);
         let f = |k: usize| (0..n).map(move |i| stage.f[i * m + k]);
-        // The memory may cancel against the forcing, whose rounding is then all there is to resolve, and the density
-        // passes that noise on by its slope.
+        // The memory may cancel against the forcing, whose rounding is then the limit of resolution; the slope of the density
+        // passes it on.
         let noise = ROUNDINGS * f64::EPSILON * forcing.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
         let moved = (0..d).map(|c| range(y(c))).fold(noise, f64::max).max(f64::MIN_POSITIVE);
         let mut worst: f64 = 0.0;
@@ -253,10 +253,11 @@ impl March<'_, '_, '_> {
         worst
     }
 
-    /// How far a component may be expected to go on a segment of this length, seen from a very short first panel.
+    /// The expected magnitude of a component on a segment of this length, from the first panel.
     ///
-    /// A solution that starts from 0 like a power the mapping does not make smooth looks the same on every first
-    /// panel, however short. What such a panel misses is judged by where the least power of the problem would lead.
+    /// A solution that starts from 0 like a power that the mapping does not make smooth looks the same on every first panel,
+    /// however short. The part that such a panel misses is estimated from the value that the least power of the problem would
+    /// reach.
     fn expected_variation(&self, panel: &Panel, length: f64, variation: f64) -> f64 {
         let ratio = length / panel.length();
         if panel.x[0] > 0.0 || ratio < 1e8 {
@@ -283,7 +284,7 @@ impl March<'_, '_, '_> {
     }
 }
 
-/// Largest less smallest value.
+/// Difference between the largest and the smallest value.
 fn range(values: impl Iterator<Item = f64>) -> f64 {
     let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
     high - low

@@ -50,7 +50,7 @@ impl Panel {
 impl Panel {
     /// Time from the point `back` before the end of this panel (in `x`) to the later `xi` on panel `to`.
     ///
-    /// Without cancellation: between segments it is counted over the end of this one.
+    /// To avoid cancellation between segments, it is the sum of the times before and after the end of this panel.
     #[inline]
     pub fn lag(&self, back: f64, to: &Panel, xi: f64) -> f64 {
         let x = self.x[1] - back;
@@ -76,7 +76,7 @@ pub(crate) fn divided_power(a: f64, b: f64, q: u32) -> f64 {
     sum
 }
 
-/// Gauss-Jacobi rules for the singular kernels, one an order.
+/// Gauss-Jacobi rules for the singular kernels, one per order.
 pub(crate) struct LocalRules {
     rules: Vec<(Power, f64, Rule)>,
 }

@@ -4,10 +4,10 @@ use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// The transform of a sequence.
+/// The Fourier transform of a sequence.
 pub(crate) type Spectrum = Vec<Complex<f64>>;
 
-/// Transforms of one length, forwards and back.
+/// Forward and inverse transforms of one length.
 #[derive(Clone)]
 pub(crate) struct Transform {
     forward: Arc<dyn Fft<f64>>,
@@ -16,7 +16,7 @@ pub(crate) struct Transform {
 }
 
 impl Transform {
-    /// Of `length >= 1` values.
+    /// Transforms of `length >= 1` values.
     pub fn new(length: usize) -> Transform {
         let mut planner = FftPlanner::new();
         Transform { forward: planner.plan_fft_forward(length), backward: planner.plan_fft_inverse(length), length }

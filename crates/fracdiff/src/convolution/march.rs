@@ -1,4 +1,4 @@
-//! Marching through one segment with fast history.
+//! Time stepping through one segment, with a history summed by transforms.
 
 use super::fft::{Spectrum, Transform};
 use super::past::Past;
@@ -20,9 +20,9 @@ pub(crate) struct March<'m, 'p, 'a> {
     past: &'m Past,
     segment: Segment,
     steps: usize,
-    /// Weights of each pair of the system, with the step in them.
+    /// Weights for each pair of the system, scaled by the step.
     weights: Vec<Weights>,
-    /// Number of values that corrections act on (0 without corrections).
+    /// Number of values that have corrections (0 without corrections).
     corrected: usize,
     /// Density at the points so far, `points x densities`.
     f: Vec<f64>,
@@ -30,7 +30,7 @@ pub(crate) struct March<'m, 'p, 'a> {
     known: Vec<f64>,
     /// Last solution value, the guess for the next.
     guess: Vec<f64>,
-    /// By length of a block: its transform, and the spectrum of each pair's weights.
+    /// For each length of a block: its transform, and the spectrum of each pair's weights.
     spectra: HashMap<usize, (Transform, Vec<Spectrum>)>,
 }
 
@@ -151,10 +151,10 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
         self.recorder.scan([t])
     }
 
-    /// Points `low..high`, the effect of all points before `low` being in `known`.
+    /// Solves points `low..high`, if `known` contains the effect of all points before `low`.
     fn advance(&mut self, low: usize, high: usize) -> Result<(), Stop> {
         if high - low > DIRECT {
-            // Halves of a power of two, so that few transform lengths occur.
+            // Blocks are halves of a power of two, so that few lengths of transforms occur.
             let half = (high - low).next_power_of_two() / 2;
             self.advance(low, low + half)?;
             self.contribute(low, half, high);
@@ -201,7 +201,7 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
         });
         let densities: Vec<Spectrum> = (0..m)
             .map(|k| {
-                // The weight of point 0 is not a function of the distance and stands in `start`.
+                // The weight of point 0 is not a function of the distance and is in `start`.
                 let block: Vec<f64> = (low..low + half).map(|j| if j == 0 { 0.0 } else { self.f[j * m + k] }).collect();
                 transform.spectrum(&block)
             })
@@ -216,7 +216,7 @@ impl<'m, 'p, 'a> March<'m, 'p, 'a> {
                 }
             }
             if any {
-                // Cyclic wrap-around reaches the first half alone, which is not used.
+                // Cyclic wrap-around affects only the first half, which is not used.
                 let values = transform.values(total);
                 for n in low + half..high {
                     self.known[n * d + c] += values[n - low];

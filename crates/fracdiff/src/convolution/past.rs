@@ -7,7 +7,7 @@ use crate::system::{Pair, Segment};
 /// Distance, in steps, beyond which a Gauss rule replaces the exact integral of the kernel over a step.
 const FAR: f64 = 6.0;
 
-/// Grid values of the density on the segments that are finished.
+/// Grid values of the density on the finished segments.
 pub(crate) struct Past {
     /// Each order with its kernel.
     orders: Vec<(f64, Power)>,
@@ -29,12 +29,12 @@ impl Past {
         self.segments.push((segment, f));
     }
 
-    /// Numbers held.
+    /// Number of values stored.
     pub fn len(&self) -> usize {
         self.segments.iter().map(|(_, f)| f.len()).sum()
     }
 
-    /// Adds the effect of all finished segments on time `t` to `rhs`, the density taken as piecewise linear.
+    /// Adds the effect of all finished segments at time `t` to `rhs`; the density is taken as piecewise linear.
     pub fn add_to(&self, pairs: &[Pair], t: f64, rhs: &mut [f64]) {
         let m = self.densities;
         let mut sums = vec![0.0; self.orders.len() * m];
@@ -64,8 +64,8 @@ impl Past {
         }
     }
 
-    /// Integrals of `u^(order-1)` times the two linear shape functions over `lag - h <= u <= lag`:
-    /// first of the one that is 1 at `u = lag`.
+    /// Integrals of `u^(order-1)` times the two linear shape functions over `lag - h <= u <= lag`; the first of these functions
+    /// is 1 at `u = lag`.
     fn step_weights(&self, (order, power): (f64, Power), lag: f64, h: f64) -> (f64, f64) {
         if lag > FAR * h {
             let (mut left, mut right) = (0.0, 0.0);

@@ -24,14 +24,14 @@ impl Scheme {
         }
     }
 
-    /// Corrections for the singular start of a segment in the past; the methods of first order need none.
+    /// Corrections for the singular start of a past segment; methods of first order need none.
     pub(super) fn start_corrections(self, orders: &[f64]) -> Vec<f64> {
         let exponents = weights::start_exponents(orders);
         let wanted = self == Scheme::Trapezoidal && exponents.len() > 2;
         if wanted { weights::start_corrections(&exponents) } else { Vec::new() }
     }
 
-    /// Degree of the interpolation between grid points: one more than the order needs.
+    /// Degree of the interpolation between grid points, one more than the order requires.
     pub(super) fn degree(self) -> usize {
         if self == Scheme::Trapezoidal { 3 } else { 1 }
     }

@@ -4,14 +4,14 @@ use super::fft::{product, reciprocal};
 use libm::tgamma;
 use nalgebra::{DMatrix, DVector};
 
-/// Weights for unit step: on `f_0` by step, on `f_1, f_2, ...` by distance, and corrections on the first few values.
+/// Weights for a unit step: for `f_0` by step, for `f_1, f_2, ...` by distance, and corrections for the first few values.
 #[derive(Debug, Clone)]
 pub(crate) struct Weights {
     /// `start[n]` belongs to `f_0` in step `n`.
     pub start: Vec<f64>,
     /// `lag[k]` belongs to `f_(n-k)`, `n - k >= 1`.
     pub lag: Vec<f64>,
-    /// `corrections[n * points + l]` belongs additionally to `f_l`; may be empty.
+    /// `corrections[n * points + l]` is added for `f_l`; may be empty.
     pub corrections: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn l1(order: f64, steps: usize) -> Weights {
     let mut lag = vec![0.0; count];
     lag[0] = 1.0;
     let mut start = vec![0.0; count];
-    // (1/2 + z + z^2 + ...), the trapezoidal rule on a sequence; the first value has weight 1/2 in every step
+    // (1/2 + z + z^2 + ...) is the trapezoidal rule on a sequence; the first value has weight 1/2 in every step.
     let mut trapezoid = vec![1.0; count];
     trapezoid[0] = 0.5;
     for i in 0..whole as usize {
@@ -72,7 +72,7 @@ pub(crate) fn trapezoidal(order: f64, steps: usize) -> Weights {
     Weights { start, lag, corrections: Vec::new() }
 }
 
-/// `(k+1)^p - 2 k^p + (k-1)^p`; by its series in `1/k` where the terms cancel.
+/// `(k+1)^p - 2 k^p + (k-1)^p`, by its series in `1/k` where the terms cancel.
 fn second_difference(k: f64, p: f64) -> f64 {
     if k < 20.0 {
         return (k + 1.0).powf(p) - 2.0 * k.powf(p) + (k - 1.0).powf(p);
@@ -88,7 +88,7 @@ fn first_weight(n: f64, p: f64) -> f64 {
     n.powf(p) * binomial_tail(p, -1.0 / n, false)
 }
 
-/// `sum over i >= 2 of binomial(p, i) x^i`, over even `i` alone if asked.
+/// `sum over i >= 2 of binomial(p, i) x^i`, or over even `i` only.
 fn binomial_tail(p: f64, x: f64, even: bool) -> f64 {
     let (mut term, mut sum) = (p * x, 0.0);
     for i in 2..24 {
@@ -125,9 +125,9 @@ pub(crate) fn add_corrections(weights: &mut Weights, order: f64, exponents: &[f6
     }
 }
 
-/// Weights on the first values, in units of the step, that correct the trapezoidal rule for `s^gamma` in a segment that
-/// lies wholly in the past: the rule misses `-zeta(-gamma) h^(1+gamma)` times the kernel at the start of the segment
-/// (Euler-Maclaurin formula of Navot), and nothing to this order for the exponents 0 and 1.
+/// Weights for the first values, in units of the step, that correct the trapezoidal rule for `s^gamma` in a segment that is
+/// entirely in the past. The error of the rule is `-zeta(-gamma) h^(1+gamma)` times the kernel at the start of the segment
+/// (Euler-Maclaurin formula of Navot), and vanishes to this order for the exponents 0 and 1.
 pub(crate) fn start_corrections(exponents: &[f64]) -> Vec<f64> {
     let points = exponents.len();
     let system = DMatrix::from_fn(points, points, |g, l| (l as f64).powf(exponents[g]));
@@ -147,8 +147,8 @@ fn zeta_of_minus(gamma: f64) -> f64 {
     sum - n.powf(gamma + 1.0) / (gamma + 1.0) - slope / 12.0 + third / 720.0
 }
 
-/// The exponents below 1 that the density of a smooth problem may have at the start of a segment: sums of the orders.
-/// With 0 and 1, ascending; at most eight, since the corrections grow ill-conditioned with their number.
+/// The exponents below 1 that the density of a smooth problem may have at the start of a segment, which are sums of the orders,
+/// together with 0 and 1, ascending. There are at most eight, since the corrections become ill-conditioned with their number.
 pub(crate) fn start_exponents(orders: &[f64]) -> Vec<f64> {
     let mut exponents = vec![0.0];
     let mut i = 0;

@@ -48,8 +48,8 @@ impl DasChatterjee {
         Ok(Assembly::new(alpha, states).assemble(beta1, beta2))
     }
 
-    /// The kernel `t^(-alpha)/Gamma(1-alpha)` that the matrices stand for: `c^T exp(-A^-1 B t) A^-1 c`, diagonalised.
-    /// None if rounding has made `A` indefinite.
+    /// The kernel `t^(-alpha)/Gamma(1-alpha)` that the matrices approximate, `c^T exp(-A^-1 B t) A^-1 c`, diagonalised. `None`
+    /// if rounding has made `A` indefinite.
     pub fn kernel(&self) -> Option<ExponentialSum> {
         let n = self.c.len();
         let factor = Cholesky::new(DMatrix::from_row_slice(n, n, &self.a))?.unpack();
@@ -67,7 +67,7 @@ impl DasChatterjee {
     }
 }
 
-/// Element by element integration; hat functions are linear in `eta`, the measure is `dxi = alpha r^(alpha-1) dr`.
+/// Integration element by element; hat functions are linear in `eta`, and the measure is `dxi = alpha r^(alpha-1) dr`.
 struct Assembly {
     alpha: f64,
     states: usize,
@@ -82,7 +82,8 @@ impl Assembly {
         Assembly { alpha, states, a, b, c: vec![0.0; states] }
     }
 
-    /// Adds one quadrature point: rate `r`, measure `dxi`, and the two hat functions `(index, value)` that live there.
+    /// Adds one quadrature point with the rate `r`, the measure `dxi`, and the two hat functions `(index, value)` that are
+    /// nonzero there.
     fn add(&mut self, r: f64, dxi: f64, hats: [(usize, f64); 2]) {
         for (i, p) in hats {
             self.c[i] += dxi * p;
@@ -99,8 +100,8 @@ impl Assembly {
             let log_xi = beta1 + (beta2 - beta1) * i as f64 / last as f64;
             log_xi * std::f64::consts::LN_10 / alpha
         };
-        // First element, eta from 0 to eta_1: the first hat is 1; in xi itself the integrands are smooth enough in
-        // r = xi^(1/alpha) after the substitution r = r_1 u with weight u^(alpha-1).
+        // First element, eta from 0 to eta_1: the first hat is 1. With r = xi^(1/alpha) and the substitution r = r_1 u, the
+        // integrands are smooth apart from the weight u^(alpha-1).
         let r1 = log_rate(0).exp();
         let rule = Rule::jacobi(8, alpha - 1.0);
         for (&u, &w) in rule.nodes.iter().zip(&rule.weights) {

@@ -1,9 +1,8 @@
-//! Marching on a graded mesh with exponentially fading memory.
+//! Time stepping on a graded mesh with exponentially decaying memory.
 //!
-//! Of the kernel `t^m sum_l w_l exp(-r_l t)` the states are `Q_li = int_0^t (t-s)^i exp(-r_l (t-s)) f(s) ds`,
-//! `i = 0 ... m`. A step of length `h` takes them along exactly for a density that is linear on the step:
-//! `Q_i <- exp(-r h) sum_k binomial(i, k) h^(i-k) Q_k + h^(i+1) (f_b M_i - (f_b - f_a) M_(i+1))`, with the moments
-//! `M_i = int_0^1 u^i exp(-r h u) du`.
+//! The states of the kernel `t^m sum_l w_l exp(-r_l t)` are `Q_li = int_0^t (t-s)^i exp(-r_l (t-s)) f(s) ds`, `i = 0 ... m`. A
+//! step of length `h` updates them exactly for a density that is linear on the step: `Q_i <- exp(-r h) sum_k binomial(i, k)
+//! h^(i-k) Q_k + h^(i+1) (f_b M_i - (f_b - f_a) M_(i+1))`, with the moments `M_i = int_0^1 u^i exp(-r h u) du`.
 
 use super::sum::{ExponentialSum, moments};
 use crate::dense::Dense;
@@ -18,7 +17,7 @@ pub(crate) struct Kernel {
     pub order: f64,
     pub whole: usize,
     pub sum: ExponentialSum,
-    /// Whether the current step uses the power itself (the sum holds beyond it only).
+    /// Whether the power itself is used on the current step (the sum is accurate beyond it only).
     pub local_exact: bool,
 }
 
@@ -39,7 +38,7 @@ impl Mesh {
     }
 
     pub fn shortest_step(&self) -> f64 {
-        // The first steps are the shortest; rounding of t bounds them from below.
+        // The first steps are the shortest, and rounding of t limits them.
         let first = |(s, n): &(Segment, usize)| s.length() * (*n as f64).powf(-self.grading);
         self.segments.iter().map(first).fold(f64::INFINITY, f64::min) * (1.0 - 1e-6)
     }
@@ -55,7 +54,7 @@ struct Memory<'k> {
     kernel: &'k Kernel,
     /// `terms x (whole + 1) x densities`.
     q: Vec<f64>,
-    /// Of the current step: `exp(-r h)` a term, and `whole + 2` moments a term.
+    /// For the current step: `exp(-r h)` for each term, and `whole + 2` moments for each term.
     decay: Vec<f64>,
     moments: Vec<f64>,
     h: f64,
@@ -95,7 +94,7 @@ impl<'k> Memory<'k> {
         sum
     }
 
-    /// The integral of the kernel against the past before this step, for density `k`.
+    /// The integral of the kernel and the past before this step, for density `k`.
     fn past(&self, k: usize, densities: usize) -> f64 {
         let terms = self.kernel.sum.weights.iter().zip(&self.decay).enumerate();
         terms.map(|(l, (w, decay))| w * decay * self.carried(l, self.kernel.whole, k, densities)).sum()
@@ -174,7 +173,7 @@ fn march(
     for n in 1..=steps {
         let end = mesh.reached(&segment, n, steps);
         let time = if n == steps { segment.end } else { segment.start + end };
-        // Steps that the rounding of t would swallow are left to the next one.
+        // A step that is below the rounding of t is merged with the next one.
         if n < steps && time - (segment.start + reached) <= 16.0 * f64::EPSILON * time {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Methods whose memory is a fixed number of exponentially fading states.
+//! Methods whose memory is a fixed number of exponentially decaying states.
 
 mod das_chatterjee;
 mod march;
@@ -18,7 +18,7 @@ use march::{Kernel, Mesh};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SumOfExponentials {
-    /// Number of steps, shared out to the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
+    /// Number of steps, distributed over the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
     pub steps: usize,
     /// Exponent of the mesh `t_j = t0 + length (j/n)^grading` of each segment, 1 to 8; default 2, which keeps the
     /// second order for solutions that start like `sqrt(t)`.
@@ -57,8 +57,8 @@ impl SumOfExponentials {
 
 /// Settings of the Galerkin internal states, see [`DasChatterjee`].
 ///
-/// A kernel `t^(order-1)`, `order = m + 1 - alpha`, is `t^m` times the sum of exponentials that the states stand for;
-/// `alpha` must lie between 0.05 and 0.95 (or be 0, which needs no states).
+/// A kernel `t^(order-1)`, `order = m + 1 - alpha`, is `t^m` times the sum of exponentials of the states; `alpha` must be
+/// between 0.05 and 0.95 (or 0, which needs no states).
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -69,7 +69,7 @@ pub struct GalerkinStates {
     pub beta1: f64,
     /// Logarithm of the highest breakpoint in `xi`; default 1.2 (thesis A.1).
     pub beta2: f64,
-    /// Number of steps, shared out to the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
+    /// Number of steps, distributed over the segments between breaks, at least 8 each; 1 to 4194304, default 1000.
     pub steps: usize,
     /// Exponent of the graded mesh of each segment, 1 to 8; default 2.
     pub grading: f64,
@@ -97,7 +97,7 @@ impl GalerkinStates {
                 let mut sum = recipe.kernel().ok_or_else(|| {
                     InvalidInput::new("states", self.states, "few enough for a matrix A positive definite to rounding")
                 })?;
-                // The recipe's kernel has 1/Gamma(fraction) in it.
+                // The kernel of the method contains 1/Gamma(fraction).
                 sum.weights.iter_mut().for_each(|w| *w *= libm::tgamma(fraction));
                 Ok(Kernel { order, whole, sum, local_exact: false })
             })

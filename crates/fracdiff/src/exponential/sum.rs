@@ -1,4 +1,4 @@
-//! Sums of exponentials in place of a power.
+//! Sums of exponentials that approximate a power.
 
 use crate::quadrature::Rule;
 use invalid_input::InvalidInput;
@@ -18,9 +18,9 @@ pub struct ExponentialSum {
 impl ExponentialSum {
     /// Approximates `t^(-exponent)`, `0 < exponent < 1`, for `t_min <= t <= t_max` with the relative error `tolerance`.
     ///
-    /// The integral `t^-e = 1/Gamma(e) int_0^inf r^(e-1) exp(-r t) dr` by a Gauss-Jacobi rule up to `1/t_max` and
-    /// Gauss-Legendre rules on octaves from there (Jiang, Zhang, Zhang & Zhang 2017), so that the number of terms grows
-    /// as `log(t_max/t_min) log(1/tolerance)`.
+    /// The integral `t^-e = 1/Gamma(e) int_0^inf r^(e-1) exp(-r t) dr` is evaluated by a Gauss-Jacobi rule up to `1/t_max` and
+    /// by Gauss-Legendre rules on octaves from there (Jiang, Zhang, Zhang & Zhang 2017), so that the number of terms grows as
+    /// `log(t_max/t_min) log(1/tolerance)`.
     ///
     /// # Errors
     ///
@@ -76,7 +76,7 @@ pub(crate) fn moments(z: f64, out: &mut [f64]) -> f64 {
             out[i] = (i as f64 * out[i - 1] - decay) / z;
         }
     } else {
-        // Downwards from the highest, by exp(-z) sum over k of z^k / ((i+1)(i+2)...(i+1+k)): all terms positive
+        // Downwards from the highest, by exp(-z) sum over k of z^k / ((i+1)(i+2)...(i+1+k)), in which all terms are positive.
         let top = count as f64;
         let (mut term, mut sum, mut k) = (1.0 / top, 0.0, 0.0);
         while term > 1e-18 * sum {

@@ -1,4 +1,4 @@
-//! Operators on a given function, by Gauss-Jacobi rules that carry the weak singularity.
+//! Operators on a given function, by Gauss-Jacobi rules that represent the weak singularity.
 
 use super::{require_order, start_terms};
 use crate::quadrature::Rule;
@@ -10,7 +10,7 @@ use libm::tgamma;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Quadrature {
-    /// Error sought, relative to the integral of the magnitude of the function; 1e-15 to 0.1, default 1e-13.
+    /// Requested error, relative to the integral of the magnitude of the function; 1e-15 to 0.1, default 1e-13.
     pub tolerance: f64,
     /// Exponent `q` of the substitution `s = t x^q`, 1 to 12: 1 (default) for a smooth function, 2 for one that is
     /// smooth in the square root of `s`, and so on.
@@ -32,7 +32,7 @@ impl Quadrature {
     }
 }
 
-/// A value and the difference between the last two rules, a bound on its error for functions that are smooth.
+/// A value, and the difference between the last two rules, which is a bound on the error for smooth functions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -63,11 +63,11 @@ pub fn integral(order: f64, f: impl Fn(f64) -> f64, t: f64, settings: &Quadratur
     Ok(estimate.scaled(1.0 / tgamma(order)))
 }
 
-/// The Caputo derivative of order `order` of a function, given the derivative of the function of order
-/// `order` rounded down, `g`: the function itself below order 1, its first derivative from 1 to below 2.
+/// The Caputo derivative of order `order` of a function, from its derivative `g` of order `order` rounded down: the function
+/// itself below order 1, its first derivative from 1 to below 2.
 ///
-/// Of fractional part `a` the derivative of `g` is, after integration by parts,
-/// `[ (g(t)-g(0)) t^-a + a int_0^t (g(t)-g(s)) (t-s)^(-a-1) ds ] / Gamma(1-a)`, which asks for no derivative of `g`.
+/// With the fractional part `a`, the derivative of `g` is, after integration by parts, `[ (g(t)-g(0)) t^-a + a int_0^t
+/// (g(t)-g(s)) (t-s)^(-a-1) ds ] / Gamma(1-a)`, which does not contain a derivative of `g`.
 ///
 /// ```
 /// use fracdiff::operators::{Quadrature, caputo};
@@ -92,7 +92,7 @@ pub fn caputo(order: f64, g: impl Fn(f64) -> f64, t: f64, settings: &Quadrature)
     if t == 0.0 {
         return Ok(Estimate { value: 0.0, error: 0.0 });
     }
-    // The difference quotient is smooth, the weight (t-s)^(-a) remains.
+    // The difference quotient is smooth, and the weight (t-s)^(-a) remains.
     let quotient = |s: f64, lag: f64| (end - g(s)) / lag;
     let rest = weighted(1.0 - a, quotient, t, settings)?;
     let boundary = (end - finite(g(0.0), 0.0)?) * t.powf(-a);
@@ -100,8 +100,8 @@ pub fn caputo(order: f64, g: impl Fn(f64) -> f64, t: f64, settings: &Quadrature)
     Ok(Estimate { value, error: a * rest.error }.scaled(1.0 / tgamma(1.0 - a)))
 }
 
-/// The Riemann-Liouville derivative: [`caputo`] and the terms of the initial values
-/// `f(0), f'(0), ...`, as many as `order` rounded up, of which a missing one counts as 0.
+/// The Riemann-Liouville derivative: [`caputo`] and the terms of the initial values `f(0), f'(0), ...`, as many as `order`
+/// rounded up. Missing ones count as 0.
 ///
 /// # Errors
 ///
@@ -162,7 +162,7 @@ fn weighted(order: f64, f: impl Fn(f64, f64) -> f64, t: f64, settings: &Quadratu
         let scale = t.powf(order);
         if let Some(last) = last {
             let error = scale * (sum - last).abs();
-            // A difference that no longer falls is rounding, and more nodes next to the singularity add to it.
+            // If the difference no longer decreases, it is rounding, which more nodes near the singularity would increase.
             if error > 0.5 * estimate.error && error <= 1e-8 * scale * magnitude {
                 break;
             }
@@ -196,7 +196,7 @@ mod tests {
                 assert!((got / series(order, t, 0) - 1.0).abs() < 2e-13, "I {order} {t}");
                 let n = order.ceil() as i32;
                 let caputo_value = caputo(order, f64::exp, t, &set).unwrap().value;
-                // Differences of values near 1 leave rounding, the more the closer the fraction is to 1.
+                // Differences of values near 1 have a rounding error that grows as the fraction approaches 1.
                 let rounding = 1e-13 * t.powf(order.floor() - order);
                 let exact = series(-order, t, n);
                 assert!(

@@ -21,13 +21,13 @@ fn require_order(order: f64) -> Result<f64, InvalidInput> {
     InvalidInput::unless(ok, "order", order, "a number greater than 0, at most 16").map(|()| order)
 }
 
-/// What the Riemann-Liouville derivative has over the Caputo derivative, from the derivatives at the start.
+/// The Riemann-Liouville derivative minus the Caputo derivative, from the derivatives at the start.
 ///
 /// At `t = 0` a term with negative exponent is infinite unless its derivative is 0.
 fn start_terms(order: f64, initial: &[f64], t: f64) -> f64 {
     let term = |(k, &value): (usize, &f64)| {
         let gamma = tgamma(k as f64 + 1.0 - order);
-        // 1/Gamma vanishes at the poles: integer orders have no such terms.
+        // 1/Gamma vanishes at the poles, so integer orders have no such terms.
         if value == 0.0 || !gamma.is_finite() { 0.0 } else { value * t.powf(k as f64 - order) / gamma }
     };
     initial.iter().enumerate().map(term).sum()

@@ -10,8 +10,8 @@ const STENCIL: usize = 5;
 
 /// The Riemann-Liouville integral `I^order` at every sample, from the start of the samples.
 ///
-/// The samples are joined by straight lines and these integrated exactly: second order in the spacing, which need not
-/// be equal. `O(n^2)`.
+/// The samples are joined by straight lines, which are integrated exactly: second order in the spacing, which need not be
+/// equal. The cost is `O(n^2)`.
 ///
 /// # Errors
 ///
@@ -37,11 +37,12 @@ pub fn integral_sampled(order: f64, times: &[f64], values: &[f64]) -> Result<Vec
     Ok(out)
 }
 
-/// The Caputo derivative at every sample by the L1 formula: the samples, or for orders above 1 their derivatives
-/// by polynomials through five points, are joined by straight lines whose derivative is integrated exactly.
+/// The Caputo derivative at every sample by the L1 formula: the samples (for orders above 1 their derivatives by polynomials
+/// through five points) are joined by straight lines, whose derivative is integrated exactly.
 ///
-/// Order `2 - a` in the spacing, `a` the fractional part of the order, for smooth functions; the spacing need not be
-/// equal. An integer order gives the ordinary derivative. The first value is 0 unless the order is an integer. `O(n^2)`.
+/// For smooth functions the order in the spacing is `2 - a`, with `a` the fractional part of the order; the spacing need not be
+/// equal. An integer order gives the ordinary derivative. The first value is 0 unless the order is an integer. The cost is
+/// `O(n^2)`.
 ///
 /// ```
 /// use fracdiff::operators::caputo_sampled;
@@ -80,8 +81,8 @@ pub fn caputo_sampled(order: f64, times: &[f64], values: &[f64]) -> Result<Vec<f
 /// The Riemann-Liouville derivative at every sample: [`caputo_sampled`] and the terms of the initial values,
 /// whose derivatives come from polynomials through the first five samples.
 ///
-/// At the start the derivative is infinite unless the samples start at 0 (and for orders above 1 with slope 0,
-/// and so on); the first value is then an infinity of its sign.
+/// At the start the derivative is infinite unless the samples start at 0 (and for orders above 1 with slope 0, and so on). The
+/// first value is then an infinity of the same sign.
 ///
 /// # Errors
 ///
@@ -96,7 +97,7 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
             samples = differentiated(times, &samples);
         }
     }
-    // Opposite infinities at the start: the lowest derivative that is not 0 dominates.
+    // If opposite infinities meet at the start, the lowest derivative that is not 0 dominates.
     let lowest: Vec<f64> = initial
         .iter()
         .scan(false, |seen, &v| {
@@ -111,8 +112,8 @@ pub fn riemann_liouville_sampled(order: f64, times: &[f64], values: &[f64]) -> R
     Ok(out)
 }
 
-/// The Gruenwald-Letnikov derivative of equally spaced samples, `h^-order sum_k (-1)^k binomial(order, k) f_(n-k)`;
-/// a negative order is an integral. First order in the spacing; the Riemann-Liouville derivative in the limit.
+/// The Gruenwald-Letnikov derivative of equally spaced samples, `h^-order sum_k (-1)^k binomial(order, k) f_(n-k)`; a negative
+/// order is an integral. It is of first order in the spacing and converges to the Riemann-Liouville derivative. The cost is
 /// `O(n log n)`.
 ///
 /// # Errors
