@@ -1,4 +1,4 @@
-//! Impacts on an infinite beam: several separations, one, and the rebound; and the first turning point.
+//! Impacts on an infinite beam with several separations, with one, and with a rebound, and the first turning point.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

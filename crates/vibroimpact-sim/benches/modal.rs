@@ -1,4 +1,4 @@
-//! One impact on the beam of thesis chapter 3: with the structure's tables at hand, and built anew; and its derivatives.
+//! One impact on the beam of thesis chapter 3, with cached tables and with new ones, and its derivatives.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -8,7 +8,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use vibroimpact_sim::modal::{Parameter, Posing, Settings, Solver, Start};
 
-/// Tolerances that leave an error of 1e-6 and of 1e-9 in the restitution at N = 40, and their names.
+/// Tolerances that give errors of 1e-6 and 1e-9 in the restitution at N = 40, and their names.
 const ACCURACIES: [(f64, &str); 2] = [(5e-7, "1e-6"), (7e-10, "1e-9")];
 
 fn impacts(criterion: &mut Criterion) {
@@ -30,7 +30,7 @@ fn impacts(criterion: &mut Criterion) {
     }
 }
 
-/// Ten parameters that all change frequencies, dampings or shapes, beside the impact with its uncertainty.
+/// Ten parameters, each of which changes frequencies, dampings or shapes, compared with the impact with its uncertainty.
 fn derivatives(criterion: &mut Criterion) {
     let offsets = [-2e-5, -1e-5, 1e-5, 2e-5];
     for modes in [5, 40, 200] {

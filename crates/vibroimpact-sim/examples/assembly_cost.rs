@@ -1,6 +1,6 @@
 //! One impact on the beam of thesis chapter 3 as an assembly, with and without the energy ledger. See docs/performance.md.
 //!
-//! `assembly_cost MODES TOLERANCE [anew]`; 40 and 1e-6 when left out. `anew` builds the tables in every run.
+//! Usage: `assembly_cost MODES TOLERANCE [anew]`; the defaults are 40 and 1e-6. `anew` builds the tables in every run.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::Instant;
 use vibroimpact_sim::assembly::{Assembly, Body, BodyMode, Contact, Observer, Point, Settings, Solver};
 
-/// Asks for the energy ledger, or does not.
+/// Requests the energy ledger, or does not.
 struct Energy(bool);
 
 impl Observer for Energy {

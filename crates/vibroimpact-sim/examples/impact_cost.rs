@@ -1,6 +1,6 @@
-//! One impact on the beam of thesis chapter 3, a hundred times over: for callgrind. See docs/performance.md.
+//! Solves one impact on the beam of thesis chapter 3 a hundred times, for callgrind. See docs/performance.md.
 //!
-//! `impact_cost MODES TOLERANCE [uncertainty] [anew]`; 40 and 1e-6 when left out.
+//! Usage: `impact_cost MODES TOLERANCE [uncertainty] [anew]`; the defaults are 40 and 1e-6.
 
 #[path = "../tests/common/mod.rs"]
 mod common;

@@ -1,6 +1,6 @@
-//! One impact on an infinite beam, a hundred times over: for callgrind. See docs/performance.md.
+//! Solves one impact on an infinite beam a hundred times, for callgrind. See docs/performance.md.
 //!
-//! `infinite_cost S TOLERANCE NODES [estimate] [first]`; 15, 1e-10 and 20 when left out.
+//! Usage: `infinite_cost S TOLERANCE NODES [estimate] [first]`; the defaults are 15, 1e-10 and 20.
 
 use std::hint::black_box;
 use std::time::Instant;

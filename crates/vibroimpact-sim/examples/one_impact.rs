@@ -1,4 +1,4 @@
-//! A ball on a structure of three modes: every contact, the rebound, and where the energy went.
+//! A ball on a structure of three modes: every contact, the rebound, and the energy balance.
 //!
 //! `cargo run --release -p vibroimpact-sim --example one_impact`
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{}: restitution {e:.9}, uncertain by {uncertainty:.0e}", solution.outcome.as_str());
     }
 
-    // the same question for a beam without ends, from its one number S
+    // The same question for a beam without ends, given by its only parameter S.
     let waves = infinite::solve(infinite::Structure::Beam, 15.0, &infinite::Settings::default())?;
     println!("infinite beam, S = 15: {} separations, {:?}", waves.separations(), waves.outcome);
     Ok(())

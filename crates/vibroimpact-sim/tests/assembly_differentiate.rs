@@ -1,4 +1,4 @@
-//! Derivatives of runs of assemblies against differences of runs at a tolerance of 1e-13.
+//! Derivatives of runs of assemblies compared with differences of runs at a tolerance of 1e-13.
 
 mod common;
 
@@ -26,7 +26,7 @@ impl Observer for Intervals {
 const STEPS: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
 
 impl Case {
-    /// With one number changed.
+    /// The same with one number changed.
     fn with(&self, which: usize, by: f64) -> (Assembly<Law>, f64) {
         let mut numbers = self.numbers.clone();
         numbers[which] += by;
@@ -64,7 +64,7 @@ impl Case {
         (run(&assembly, &settings, &mut intervals).unwrap(), intervals.0)
     }
 
-    /// Differences of fourth order of everything a derivative is stated of, with steps that differ by a factor of four.
+    /// Fourth-order differences of all outputs that have derivatives, with steps that differ by a factor of four.
     fn differences(&self, which: usize) -> Vec<(f64, f64)> {
         let by = |part: f64| {
             let step = part * self.size(which);
@@ -76,7 +76,8 @@ impl Case {
         fine.iter().zip(&coarse).map(|(fine, coarse)| (*fine, (fine - coarse).abs())).collect()
     }
 
-    /// Every derivative against its difference: how many, and how many lie within what is stated.
+    /// Compares every derivative with its difference; returns their number, and the number of those within the stated
+    /// uncertainty.
     fn check(&self, part: f64) -> (usize, usize) {
         let found = self.differentiate(1e-10);
         let nominal = outputs(&(found.run.clone(), in_time(&found.intervals)));
@@ -87,7 +88,7 @@ impl Case {
             let references = self.differences(which);
             assert_eq!(own.len(), references.len());
             for (i, ((name, own), (reference, known))) in own.iter().zip(references).enumerate() {
-                // a run is known to some 1e-13 of its outputs, a peak to nine digits
+                // Outputs of a run are accurate to some 1e-13, a peak to nine digits.
                 let digits = if name.starts_with("peak") { 1e-9 } else { 1e-13 };
                 let rounding = 10.0 * digits * nominal[i].abs() / (3e-5 * self.size(which));
                 let error = (own.value - reference).abs();
@@ -105,7 +106,7 @@ fn in_time(intervals: &[Vec<Interval>]) -> Vec<(usize, Interval)> {
     intervals.iter().enumerate().flat_map(|(c, own)| own.iter().map(move |interval| (c, *interval))).collect()
 }
 
-/// What derivatives are stated of, contact by contact.
+/// The outputs that have derivatives, contact by contact.
 fn outputs((run, intervals): &(Run, Vec<(usize, Interval)>)) -> Vec<f64> {
     let mut found = Vec::new();
     for (c, end) in run.contacts.iter().enumerate() {
@@ -146,7 +147,7 @@ fn of_mass(body: usize, mass_kg: f64) -> Point {
     point(body, &[mass_kg.sqrt().recip()])
 }
 
-/// A ball dropped on a floor that bounces thrice: everything is known in closed form but the contact.
+/// A ball dropped on a floor that bounces three times: everything except the contact is known in closed form.
 #[test]
 fn a_dropped_ball_changes_with_everything() {
     let case = Case {
@@ -163,7 +164,7 @@ fn a_dropped_ball_changes_with_everything() {
     };
     let (compared, covered) = case.check(1e-6);
     assert_eq!((compared, covered), (7 * (3 * 7 + 4), 7 * (3 * 7 + 4)));
-    // the first touch, at the foot of a parabola
+    // The first touch, at the end of a parabola.
     let derivatives = case.differentiate(1e-10).derivatives.unwrap();
     let by_height = derivatives[1].contacts[0].intervals[0].start_s.value;
     let speed = (0.1f64 * 0.1 + 2.0 * 9.81 * 0.011).sqrt();
@@ -174,7 +175,7 @@ fn modes(numbers: &[f64], damping_ratio: f64) -> Vec<BodyMode> {
     numbers.iter().map(|&omega_rad_s| BodyMode { omega_rad_s, damping_ratio }).collect()
 }
 
-/// Two elastic bodies and a ball, three contacts with laws of their own, loads of every kind.
+/// Two elastic bodies and a ball, three contacts with different laws, loads of every kind.
 fn everything(n: &[f64]) -> (Assembly<Law>, f64) {
     let [omega, zeta, shape, mass, gap, stiffness, force, hertz, phase, pulse, begin, gravity, end_s] =
         n.try_into().unwrap();
@@ -243,27 +244,28 @@ fn by_speed_and_gap(law: Law) -> [Differentiated; 2] {
 }
 
 #[test]
-fn contacts_that_touch_together_keep_their_own_times() {
+fn contacts_that_touch_together_have_their_own_times() {
     let [speed, gap] = by_speed_and_gap(Hertz::new(1e9).unwrap().into());
     let starts = |found: &Differentiated| {
         let derivatives = &found.derivatives.as_ref().unwrap()[0];
         derivatives.contacts.iter().map(|contact| contact.intervals[0].start_s.value).collect::<Vec<_>>()
     };
-    // it arrives at (0.01 + gap)/speed
+    // It arrives at (0.01 + gap)/speed.
     assert!(starts(&speed).iter().all(|by| (by + 0.01).abs() < 1e-8), "{:?}", starts(&speed));
     assert!(starts(&gap)[0].abs() < 1e-8 && (starts(&gap)[1] - 1.0).abs() < 1e-8, "{:?}", starts(&gap));
     let ends = |found: &Differentiated| {
         let derivatives = &found.derivatives.as_ref().unwrap()[0];
         [0, 1].map(|c| derivatives.contacts[c].displacement_m[0])
     };
-    // a wall that stands further away sends the ball back from there, later: it comes less far by twice as much
+    // A wall that is further away returns the ball later from a more distant point: its displacement decreases
+    // by twice as much.
     let [first, second] = ends(&gap);
     assert!(first.value.abs() < 1e-8, "{first:?}");
-    // a force that begins at its own time is no smooth change of one that begins with the panel
+    // A force that begins at its own time is not a smooth change of one that begins with the panel.
     assert!((second.value + 2.0).abs() < 1e-5f64.min(second.uncertainty.unwrap()), "{second:?}");
 }
 
-/// The force of a dashpot jumps at first touch: which of two comes first then matters at once.
+/// The force of a dashpot jumps at first touch, so that the order of two touches matters immediately.
 #[test]
 fn forces_that_jump_together_have_a_derivative_only_if_they_stay_together() {
     let [speed, gap] = by_speed_and_gap(KelvinVoigt::new(1e6, 30.0).unwrap().into());
@@ -307,7 +309,7 @@ fn balls_that_rest_against_each_other_do_not_graze() {
     assert_eq!(covered, compared);
 }
 
-/// Another gap between them: they may touch later, or press each other at once.
+/// With another gap between them they may touch later, or press on each other immediately.
 #[test]
 fn balls_that_touch_without_speed_have_no_derivative_by_their_gap() {
     let (assembly, end_s) = cradle(&[0.1, 1.0, 1e9]);

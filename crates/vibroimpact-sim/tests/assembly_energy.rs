@@ -1,4 +1,4 @@
-//! The energy ledger of assemblies: each part against another way to find it.
+//! The energy ledger of assemblies: each part compared with another way to compute it.
 
 use beam_modes::{Beam, End, RectangularSegment, Segment};
 use contact_models::{Hertz, Hysteretic, KelvinVoigt, Law, LinearSpring, Viscous};
@@ -37,7 +37,7 @@ fn mass(body: usize, mass_kg: f64) -> Point {
     point(body, &[mass_kg.sqrt().recip()])
 }
 
-/// A clamped-free beam seen from some places.
+/// A clamped-free beam at some locations.
 fn cantilever(n: usize, damping_ratio: f64, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
     let segment = Segment::from(RectangularSegment {
         length_m: 1.0,
@@ -105,13 +105,13 @@ fn of_kinds(kinds: &[&str], damping_ratio: f64) -> Assembly<Law> {
 
 const KINDS: [&[&str]; 5] = [&[], &["constant"], &["harmonic"], &["sampled"], &["constant", "harmonic", "sampled"]];
 
-/// Work that went into the contacts while they were compressed (J).
+/// Work on the contacts while they were compressed (J).
 fn compression_work(run: &Run) -> f64 {
     run.contacts.iter().map(|contact| contact.statistics.compression_work_j).sum()
 }
 
 #[test]
-fn nothing_is_lost_where_nothing_damps() {
+fn energy_is_conserved_without_damping() {
     for kinds in KINDS {
         let (found, ledger) = solve(&of_kinds(kinds, 0.0), 0.03, 1e-12);
         let floor = 1e-11 * compression_work(&found);
@@ -121,8 +121,8 @@ fn nothing_is_lost_where_nothing_damps() {
     }
 }
 
-/// Energy of the motion relative to the straight line on which a sampled load holds each mode (J). It is what is carried, and
-/// far more than what the motion has where the load changes within a small part of a slow mode's period.
+/// Energy of the motion relative to the straight line on which a sampled load holds each mode (J). This is the propagated
+/// energy, and far more than that of the motion if the load changes within a small part of a slow mode's period.
 fn carried_energy(assembly: &Assembly<Law>) -> f64 {
     let of = |load: &Load| {
         let Force::Sampled { times_s, forces_n } = &load.force else { return 0.0 };
@@ -153,7 +153,7 @@ fn damping_loads_and_contacts_account_for_all_energy() {
     }
 }
 
-/// Damping, load work and contact work by fine quadrature of the motion itself.
+/// Damping, load work and contact work by fine quadrature of the motion.
 struct Quadrature<'a> {
     assembly: &'a Assembly<Law>,
     rule: GaussLegendre,
@@ -214,7 +214,7 @@ impl Observer for Quadrature<'_> {
 }
 
 #[test]
-fn every_part_is_what_fine_quadrature_of_the_motion_finds() {
+fn every_part_agrees_with_fine_quadrature_of_the_motion() {
     for kinds in KINDS {
         let assembly = of_kinds(kinds, 0.02);
         let fastest_rad_s = assembly.bodies[0].modes.iter().map(|mode| mode.omega_rad_s).fold(0.0, f64::max);
@@ -238,16 +238,16 @@ fn every_part_is_what_fine_quadrature_of_the_motion_finds() {
         assert!((ledger.modal_damping_j - seen.damping_j).abs() < floor, "{kinds:?}: {:e} {ledger:?}", seen.damping_j);
         let load_work_j = seen.load_work_j;
         assert!((ledger.load_work_j - load_work_j).abs() < floor, "{kinds:?}: {load_work_j:e} {ledger:?}");
-        // the force of the law, not its polynomial
+        // The force of the law, not its polynomial.
         assert!((work - seen.contact_work_j).abs() < 10.0 * floor, "{kinds:?}: {:e} {work:e}", seen.contact_work_j);
-        // a ratio that is wrong in its seventh digit would be seen
+        // An error in the seventh digit of a ratio would be detected.
         let wrong = measure(0.02 * (1.0 + 1e-7));
         assert!((ledger.modal_damping_j - wrong.damping_j).abs() > floor, "{kinds:?}");
     }
 }
 
 #[test]
-fn a_contact_loses_what_a_wall_does_not_give_back() {
+fn a_contact_loses_what_a_wall_does_not_return() {
     let (mass_kg, speed_m_s) = (0.1, 0.7);
     let laws: [Law; 4] = [
         Hertz::new(1e9).unwrap().into(),
@@ -273,7 +273,7 @@ fn a_contact_loses_what_a_wall_does_not_give_back() {
 }
 
 #[test]
-fn an_interference_gives_back_what_it_stores() {
+fn an_interference_returns_its_stored_energy() {
     let (stiffness, overlap, mass_kg) = (1e6, 1e-4, 0.3);
     let law = LinearSpring::new(stiffness).unwrap().into();
     let contacts = vec![Contact { sides: [mass(0, mass_kg), mass(1, mass_kg)], gap_m: -overlap, law }];
@@ -283,7 +283,7 @@ fn an_interference_gives_back_what_it_stores() {
         loads: vec![],
     };
     let stored = 0.5 * stiffness * overlap * overlap;
-    // in the middle of the expansion, and long after
+    // In the middle of the expansion, and long after.
     let quarter = 0.5 * PI / (2.0 * stiffness / mass_kg).sqrt();
     for (end_s, left) in [(0.5 * quarter, 0.5 * stored), (10.0 * quarter, 0.0)] {
         let (_, ledger) = solve(&pair, end_s, 1e-11);
@@ -336,8 +336,8 @@ fn one_impact_has_the_ledger_of_the_solver_of_impacts() {
 }
 
 #[test]
-fn modes_that_turn_many_times_in_a_panel_are_accounted_for() {
-    // a soft contact on a beam of many modes
+fn modes_that_oscillate_many_times_in_a_panel_are_accounted_for() {
+    // A soft contact on a beam of many modes.
     for damping_ratio in [0.0, 0.005, 0.9] {
         let (assembly, _) = chapter_3(120, damping_ratio, LinearSpring::new(1e5).unwrap().into());
         let (found, ledger) = solve(&assembly, 0.01, 1e-9);
@@ -347,8 +347,8 @@ fn modes_that_turn_many_times_in_a_panel_are_accounted_for() {
     }
 }
 
-/// Near an undamped frequency the ledger is a small difference of large numbers. What it loses of its digits is stated, also where
-/// the errors of two parts cancel; the motion keeps its own.
+/// Near an undamped frequency the ledger is a small difference of large numbers. The loss of digits is stated, also if the
+/// errors of two parts cancel; the motion has its full accuracy.
 #[test]
 fn rounding_is_stated_where_a_load_nearly_meets_an_undamped_frequency() {
     let (omega_rad_s, end_s) = (100.0, 1.0);
@@ -365,13 +365,13 @@ fn rounding_is_stated_where_a_load_nearly_meets_an_undamped_frequency() {
         };
         let (found, ledger) = solve(&assembly, end_s, 1e-10);
         let [_, energy] = ledger.bodies_j[0];
-        // the motion from rest at a frequency so near: `(sin(omega t) - omega t cos(omega t)) / (2 omega^2)`
+        // The motion from rest at a frequency so close: `(sin(omega t) - omega t cos(omega t)) / (2 omega^2)`.
         if detuning < 1e-6 {
             let turned = omega_rad_s * end_s;
             let exact = (turned.sin() - turned * turned.cos()) / (2.0 * omega_rad_s * omega_rad_s);
             assert!((found.amplitude[0][0] - exact).abs() < 2.0 * detuning * turned * exact.abs(), "{found:?}");
         }
-        // such a small damping takes less than `2 zeta omega t` of twice the energy at the end
+        // Such a small damping dissipates less than `2 zeta omega t` of twice the energy at the end.
         let damping = 4.0 * damping_ratio * omega_rad_s * end_s * energy;
         assert!(ledger.modal_damping_j.abs() <= damping + ledger.rounding_j, "{detuning}: {ledger:?}");
         let missing = (ledger.load_work_j - energy).abs();

@@ -1,5 +1,5 @@
-//! Hard cases of many bodies and contacts: what is posed in two ways comes to the same, and many modes account for all
-//! energy.
+//! Difficult cases of many bodies and contacts: equivalent descriptions give the same result, and the energy of many modes is
+//! balanced.
 
 mod common;
 
@@ -53,14 +53,14 @@ fn above_stops(n: usize, stops: &[(f64, f64)]) -> Assembly<Law> {
 }
 
 #[test]
-fn contacts_a_micrometre_apart_on_one_body_are_as_one_of_both_stiffnesses() {
+fn contacts_a_micrometre_apart_on_one_body_are_one_of_both_stiffnesses() {
     let place = 1.0 - 5e-7;
     let (one, of_one) = solve(&above_stops(20, &[(place, 1e8)]), 0.16);
     let (two, of_two) = solve(&above_stops(20, &[(1.0 - 1e-6, 5e7), (1.0, 5e7)]), 0.16);
     assert_eq!((of_one.len(), of_two.len()), (1, 2));
     for (_, half) in &of_two {
         let (_, whole) = &of_one[0];
-        // the beam turns at its tip, so that they touch one after the other
+        // The beam rotates at its tip, so that they touch one after the other.
         assert!((half.start_s / whole.start_s - 1.0).abs() < 2e-6, "{half:?} {whole:?}");
         assert!((half.end_s.unwrap() / whole.end_s.unwrap() - 1.0).abs() < 2e-6);
         assert!((2.0 * half.impulse_n_s / whole.impulse_n_s - 1.0).abs() < 1e-4);
@@ -71,14 +71,14 @@ fn contacts_a_micrometre_apart_on_one_body_are_as_one_of_both_stiffnesses() {
     }
 }
 
-/// Energy to 1e-11 of the work of the load, and a price that grows with the number of modes no faster than it.
+/// Energy to 1e-11 of the work of the load, and a cost that grows no faster than the number of modes.
 #[test]
 fn three_hundred_modes_account_for_all_energy() {
     let (found, intervals) = solve(&above_stops(300, &[(1.0, 1e8)]), 0.1);
     let energy = found.energy.unwrap();
     assert!(!intervals.is_empty());
     assert!(energy.unaccounted_j.abs() < 1e-11 * energy.load_work_j.abs(), "{energy:?}");
-    // the low modes are those of the converged answer of 100 modes
+    // The low modes are those of the converged solution with 100 modes.
     let (fewer, others) = solve(&above_stops(100, &[(1.0, 1e8)]), 0.1);
     assert!((others[0].1.start_s / intervals[0].1.start_s - 1.0).abs() < 1e-5);
     assert!((others[0].1.end_s.unwrap() / intervals[0].1.end_s.unwrap() - 1.0).abs() < 1e-4);
@@ -108,7 +108,7 @@ fn ball_between(order: [usize; 3]) -> Assembly<Law> {
 }
 
 #[test]
-fn bodies_and_contacts_in_another_order_come_to_the_same() {
+fn the_order_of_bodies_and_contacts_does_not_matter() {
     let (one, intervals) = solve(&ball_between([0, 1, 2]), 0.2);
     assert!(intervals.len() > 4, "{}", intervals.len());
     let mut exchanged = ball_between([2, 0, 1]);
@@ -132,10 +132,11 @@ fn rod(length_m: f64, ends: [RodEnd; 2], modes: usize) -> Modes {
     Rod { segments: vec![segment], ends }.modes(modes).unwrap()
 }
 
-/// A rod that is pressed against its support, whole, and cut in two halves with a stiff contact between them. Free ends of
-/// halves hand on a force by many modes only, so that the halves come near by about one over their number.
+/// A rod that is pressed against its support, as a whole, and divided into two halves with a stiff contact between them. The
+/// free ends of the halves transmit a force only through many modes, so that the error of the halves is about one over the
+/// number of modes.
 #[test]
-fn a_rod_cut_in_two_and_pressed_together_moves_as_the_whole() {
+fn a_rod_divided_in_two_and_pressed_together_moves_as_the_whole() {
     const END_S: f64 = 5e-3;
     const JOINT_N_M: f64 = 1e11;
     let press = |body: usize, shape: Vec<f64>| {
@@ -159,24 +160,24 @@ fn a_rod_cut_in_two_and_pressed_together_moves_as_the_whole() {
         let contacts = vec![Contact { sides, gap_m, law: spring(JOINT_N_M) }];
         let (found, intervals) =
             solve(&Assembly { bodies: vec![damped(&left), damped(&right)], contacts, loads }, END_S);
-        // before the wave of the load comes the halves tremble by less than 1e-12 m against each other
+        // Before the wave of the load arrives, the halves move by less than 1e-12 m against each other.
         assert!(intervals.len() < 50, "{}", intervals.len());
         assert!(intervals.iter().all(|(_, interval)| interval.impulse_n_s > 0.0), "{intervals:?}");
-        // it opens no more once it is pressed
+        // It does not open once it is pressed.
         assert!(intervals.last().is_some_and(|(_, last)| last.end_s.is_none() && last.start_s < 1e-3));
         tip(&right, &found, 1, 0.5) / expected - 1.0
     };
-    // pressed together a little from the start, or not at all, so that rounding says whether they touch
+    // Pressed together slightly from the start, or not at all, so that rounding decides whether they touch.
     for gap_m in [-1e-9, 0.0] {
         let (few, many) = (error(40, gap_m), error(160, gap_m));
         assert!(many.abs() < 5e-3 && many.abs() < 0.5 * few.abs(), "{few} {many}");
     }
 }
 
-/// A ball on a ball on a soft floor sways below a stop. The contact between the balls hardly yields: what carries the upper
-/// one to the stop is the floor under the lower one.
+/// A ball on a ball on a soft floor oscillates below a stop. The contact between the balls hardly yields: the deflection of the
+/// floor under the lower ball moves the upper one to the stop.
 #[test]
-fn a_stack_that_sways_into_a_stop_is_not_at_rest() {
+fn a_stack_that_oscillates_into_a_stop_is_not_at_rest() {
     let (g, soft, hard): (f64, f64, f64) = (9.81, 100.0, 2000.0);
     let low = -2.0 * g / soft;
     let high = low - g / hard;
@@ -194,15 +195,15 @@ fn a_stack_that_sways_into_a_stop_is_not_at_rest() {
     let mut seen = Intervals::default();
     let found = run(&assembly, &Settings::until(1.0), &mut seen).unwrap();
     assert!(seen.0.iter().any(|(contact, _)| *contact == 2), "{:?} at {} s", found.outcome, found.end_s);
-    // farther away it never comes there, and that is certain
+    // With a larger gap it never reaches the stop, and that is certain.
     let mut farther = assembly;
     farther.contacts[2].gap_m = high + 0.2;
     let found = run(&farther, &Settings::until(1.0), &mut Intervals::default()).unwrap();
     assert_eq!(found.outcome, Outcome::Rest);
 }
 
-/// The finest tolerance, a dashpot and a load: near the deepest compression the rounding of the overlap, as the slopes of
-/// short panels magnify it, must not pass for truncation.
+/// The finest tolerance, a dashpot and a load: near the maximum compression the rounding of the overlap, magnified by the
+/// slopes of short panels, must not be mistaken for truncation.
 #[test]
 fn a_dashpot_under_loads_is_solved_to_the_finest_tolerance() {
     let law = Law::from(KelvinVoigt::new(1e8, 1363.0).unwrap());

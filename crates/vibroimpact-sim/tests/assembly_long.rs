@@ -1,4 +1,4 @@
-//! Assemblies over long times: rest, reliability, and cases at the edges.
+//! Assemblies over long times: rest, reliability, and limiting cases.
 
 mod common;
 
@@ -59,13 +59,13 @@ fn a_dropped_ball_comes_to_rest_and_stays_there() {
     assert_eq!(found.outcome, Outcome::Rest, "{:?}", found.counts);
     assert!(found.end_s < 3.0 && intervals[0].len() > 10, "{} {}", found.end_s, intervals[0].len());
     assert_eq!(intervals[0].last().unwrap().end_s, None);
-    // it does stay: going on for as long again finds no further interval
+    // It does stay at rest: a run twice as long finds no further interval.
     let mut on = Settings::until(2.0 * found.end_s);
     on.stop_at_rest = false;
     let (later, all) = solve(&assembly, &on);
     assert_eq!(later.outcome, Outcome::End);
     assert_eq!(all[0].len(), intervals[0].len());
-    // under the ball's weight in the end
+    // At the end, under the weight of the ball.
     assert!((later.contacts[0].force_n / (0.05 * 9.81) - 1.0).abs() < 1e-2, "{}", later.contacts[0].force_n);
 }
 
@@ -85,10 +85,10 @@ fn an_orderly_run_is_certain_to_its_end_and_a_chaotic_one_is_not() {
         Solver::new(&chaotic).unwrap().reliable_until(&settings, &intervals, found.end_s, &mut || false).unwrap();
     let certain = certain.unwrap();
     assert!(certain < found.end_s && certain > 0.02, "{certain}");
-    // a second run that is told to stop says nothing
+    // A second run that is stopped gives no information.
     let stopped = Solver::new(&chaotic).unwrap().reliable_until(&settings, &intervals, found.end_s, &mut || true);
     assert_eq!(stopped.unwrap(), None);
-    // up to there a far tighter run agrees
+    // Up to this time, a run with a far smaller tolerance agrees.
     settings.tolerance = 1e-12;
     let (_, tight) = solve(&chaotic, &settings);
     for (one, other) in intervals[0].iter().zip(&tight[0]).filter(|(one, _)| one.end_s.is_some_and(|at| at < certain)) {
@@ -98,7 +98,7 @@ fn an_orderly_run_is_certain_to_its_end_and_a_chaotic_one_is_not() {
 
 #[test]
 fn a_ball_that_grazes_touches_and_one_that_does_not_does_not() {
-    // thrown up under a ceiling: the apex is 1e-12 m beyond it, or short of it
+    // Thrown up under a ceiling: the apex is 1e-12 m beyond the ceiling, or below it.
     let (m, g, v) = (0.1, 9.81, 1.0);
     let apex = v * v / (2.0 * g);
     for (beyond, contacts) in [(1e-12, 1), (-1e-12, 0)] {
@@ -118,8 +118,8 @@ fn a_ball_that_grazes_touches_and_one_that_does_not_does_not() {
 }
 
 #[test]
-fn stiffnesses_far_apart_go_together() {
-    // a chain between two walls, springs from 1e4 to 1e12 N/m
+fn very_different_stiffnesses_can_be_combined() {
+    // A chain between two walls, with springs from 1e4 to 1e12 N/m.
     let m = 0.1;
     let bodies = (0..4).map(|i| Body::mass(m, 0.0, if i == 0 { 1.0 } else { 0.0 })).collect();
     let law = |k: f64| Law::from(LinearSpring::new(k).unwrap());
@@ -140,8 +140,8 @@ fn stiffnesses_far_apart_go_together() {
 }
 
 #[test]
-fn contacts_that_nearly_coincide_are_told_apart() {
-    // one ball, two springs a nanometre apart behind each other, and the same in one
+fn contacts_that_nearly_coincide_are_distinguished() {
+    // One ball, two springs one behind the other at a distance of a nanometre, and the same as one spring.
     let m = 0.1;
     let ball = || Body::mass(m, 1e-3, -1.0);
     let law = |k: f64| Law::from(LinearSpring::new(k).unwrap());
@@ -167,7 +167,7 @@ fn loads_that_begin_and_end_within_a_contact_are_followed() {
     let ball = Body::mass(m, 0.0, -1.0);
     let assembly = Assembly { bodies: vec![ball], contacts: vec![contact], loads: vec![load] };
     let (found, _) = solve(&assembly, &Settings::until(8e-4));
-    // in contact all the time: an oscillator under a rectangular pulse
+    // In contact all the time: an oscillator under a rectangular pulse.
     let omega = (1e6f64 / m).sqrt();
     let step = |t: f64| if t > 0.0 { 100.0 / (m * omega) * (omega * t).sin() } else { 0.0 };
     let exact = -(omega * 8e-4).cos() + step(8e-4 - 2e-4) - step(8e-4 - 5e-4);
@@ -186,14 +186,14 @@ fn many_intervals_and_limits() {
     let (found, _) = solve(&damped, &settings);
     assert_eq!(found.outcome, Outcome::Stopped(Reason::Steps));
     assert!(found.end_s > 0.0);
-    // nothing at all
+    // Nothing at all.
     let empty: Assembly<Law> = Assembly { bodies: vec![], contacts: vec![], loads: vec![] };
     assert_eq!(solve(&empty, &Settings::until(1.0)).0.outcome, Outcome::End);
 }
 
 #[test]
-fn a_ball_does_not_fall_through_the_floor_whatever_its_height_and_the_end() {
-    // flights of a rigid ball are one power series as long as the run: its rounding must not hide the floor
+fn a_ball_does_not_fall_through_the_floor_for_any_height_and_end() {
+    // Flights of a rigid ball are one power series over the whole run: its rounding must not hide the floor.
     let (m, g) = (0.1, 9.81);
     for i in 0..60 {
         let (height, end_s) = (1e-4 * 1.17f64.powi(i % 20), 0.2 + 0.37 * f64::from(i));

@@ -1,4 +1,4 @@
-//! Periodic motions against closed forms.
+//! Periodic motions compared with closed forms.
 
 use contact_models::{KelvinVoigt, Law, LinearSpring};
 use std::cell::Cell;
@@ -13,7 +13,7 @@ fn point(shape: f64) -> Point {
     Point::OfBody { body: 0, shape: vec![shape] }
 }
 
-/// A damped oscillator of 1 kg, driven harmonically beside a stop.
+/// A damped oscillator of 1 kg beside a stop, under a harmonic load.
 fn driven(damping_ratio: f64, gap_m: f64, force_n: f64, omega_rad_s: f64) -> Assembly<Law> {
     let body = Body::at_rest(vec![BodyMode { omega_rad_s: 10.0, damping_ratio }]);
     let law = Law::from(LinearSpring::new(50.0).unwrap());
@@ -34,7 +34,7 @@ fn without_contact_the_orbit_is_the_steady_motion_and_its_multipliers_are_known(
     let side = orbit.sides[0][1];
     assert!((side.displacement_first_harmonic_m / amplitude - 1.0).abs() < 1e-9, "{side:?}");
     assert!((side.displacement_max_m / amplitude - 1.0).abs() < 1e-5);
-    // exp(lambda T), lambda = -zeta omega_0 +- i omega_d
+    // exp(lambda T), lambda = -zeta omega_0 +- i omega_d.
     let (size, angle) = ((-zeta * 10.0 * period).exp(), 10.0 * (1.0 - zeta * zeta).sqrt() * period);
     for multiplier in &orbit.floquet_multipliers {
         assert!((multiplier[0] - size * angle.cos()).abs() < 1e-12, "{multiplier:?}");
@@ -49,14 +49,14 @@ fn an_orbit_against_a_stop_repeats_itself_and_its_multipliers_have_the_right_pro
     let assembly = driven(zeta, 1e-3, 1.0, omega);
     let OrbitOutcome::Found(orbit) = find_orbit(&assembly, &OrbitSettings::default()).unwrap() else { panic!() };
     assert!(orbit.stable && orbit.intervals_per_period == [1] && orbit.iterations <= 5, "{orbit:?}");
-    // Liouville: the damping alone shrinks the volume of states
+    // Liouville: only the damping reduces the volume in the space of states.
     let product = orbit
         .floquet_multipliers
         .iter()
         .fold((1.0, 0.0), |(re, im): (f64, f64), m| (re * m[0] - im * m[1], re * m[1] + im * m[0]));
     let volume = (-2.0 * zeta * 10.0 * orbit.period_s).exp();
     assert!((product.0 - volume).abs() < 1e-10 && product.1.abs() < 1e-12, "{product:?} {volume}");
-    // a long transient arrives there
+    // A long transient converges to it.
     let mut settings = Settings::until(400.0 * orbit.period_s + orbit.phase_s);
     settings.tolerance = 1e-11;
     let found = run(&assembly, &settings, &mut ()).unwrap();
@@ -64,9 +64,9 @@ fn an_orbit_against_a_stop_repeats_itself_and_its_multipliers_have_the_right_pro
     assert!((found.rate[0][0] - orbit.state[1]).abs() < 1e-8);
 }
 
-/// Stopped at ever later questions, the search tells that it was, and how near it had come.
+/// If it is stopped after a number of queries, the search reports this and the best approximation.
 #[test]
-fn a_search_that_is_stopped_keeps_what_it_has_come_to() {
+fn a_stopped_search_returns_its_best_approximation() {
     let assembly = driven(0.05, 1e-3, 1.0, 9.0);
     let settings = OrbitSettings { transient_periods: 3, ..OrbitSettings::default() };
     let mut closures = Vec::new();
@@ -93,7 +93,7 @@ fn a_search_that_is_stopped_keeps_what_it_has_come_to() {
     assert!(closures.windows(2).all(|pair| pair[1] <= pair[0]), "{closures:?}");
 }
 
-/// A ball under gravity on a table that shakes by `A sin(omega t)`, in the table's frame, against a stiff floor with the
+/// A ball under gravity on a table that moves by `A sin(omega t)`, in the frame of the table, against a stiff floor with the
 /// restitution `e` of a viscous contact.
 fn shaken(gamma: f64, e: f64) -> Assembly<Law> {
     let (m, omega, g) = (0.1f64, 100.0 * PI, 9.81);
@@ -104,7 +104,7 @@ fn shaken(gamma: f64, e: f64) -> Assembly<Law> {
         Contact { sides: [Point::OfBody { body: 0, shape: vec![m.sqrt().recip()] }, Point::Ground], gap_m: 0.0, law };
     let field = |force| Load { body: 0, shape: vec![m.sqrt()], force };
     Assembly {
-        // thrown up so that it lands after a period in the phase of the periodic motion
+        // Thrown up so that it lands after one period in the phase of the periodic motion.
         bodies: vec![Body::mass(m, 0.0, 0.5 * g * 2.0 * PI / omega)],
         contacts: vec![contact],
         loads: vec![
@@ -114,7 +114,7 @@ fn shaken(gamma: f64, e: f64) -> Assembly<Law> {
     }
 }
 
-/// The phase of the impact: the table's velocity then makes up for the loss, cos(phase) = pi (1-e)/(1+e)/gamma.
+/// The phase of the impact: the table's velocity then compensates the loss, cos(phase) = pi (1-e)/(1+e)/gamma.
 fn phase(gamma: f64, e: f64) -> f64 {
     (PI * (1.0 - e) / (1.0 + e) / gamma).acos()
 }
@@ -136,7 +136,7 @@ fn restitution_damping(e: f64) -> f64 {
 #[test]
 fn a_ball_on_a_shaken_table_loses_its_stability_at_the_closed_forms_threshold() {
     let e = 0.8;
-    // period one is stable from 0.349 to 1.0708, where it doubles
+    // Period one is stable from 0.349 to 1.0708, where it doubles.
     for (gamma, stable) in [(0.6, true), (1.0, true), (1.15, false)] {
         let assembly = shaken(gamma, e);
         let settings = OrbitSettings { transient_periods: 0, ..Default::default() };
@@ -163,7 +163,7 @@ impl Observer for Starts {
 
 #[test]
 fn the_free_oscillation_against_a_stop_has_the_closed_forms_frequency() {
-    // SDND122, without its slip: 0.64663104064 Hz
+    // SDND122, without its slip: 0.64663104064 Hz.
     let energy = 0.006_501_083_316_26f64;
     let body = Body {
         modes: vec![BodyMode { omega_rad_s: 10f64.sqrt(), damping_ratio: 0.0 }],
@@ -191,14 +191,14 @@ fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
     assert!(branch.complete, "{:?}", branch.points.last());
     let doubling: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::PeriodDoubling).collect();
     assert_eq!(doubling.len(), 1, "{:?}", branch.special);
-    // the contact is not instantaneous: 20 us of a period of 20 ms
+    // The contact is not instantaneous: it takes 20 us of a period of 20 ms.
     assert!((doubling[0].parameter / 1.0708365 - 1.0).abs() < 5e-3, "{doubling:?}");
     assert!(branch.points.iter().all(|p| p.orbit.stable == (p.parameter < doubling[0].parameter)));
 }
 
 #[test]
-fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
-    // a hardening frequency response: a lightly damped oscillator that reaches a stiff stop near its resonance
+fn a_branch_passes_its_folds_and_locates_its_first_contact() {
+    // A hardening frequency response: a lightly damped oscillator that reaches a stiff stop near its resonance.
     let build = |omega: f64| {
         let mut assembly = driven(0.02, 0.05, 0.6, omega);
         assembly.contacts[0].law = Law::from(LinearSpring::new(2000.0).unwrap());
@@ -209,7 +209,7 @@ fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
     settings.longest_step = 0.02;
     settings.max_orbits = 400;
     let branch = follow_branch(build, &settings, |_| true).unwrap();
-    // the steady motion without the stop reaches it where its amplitude is the gap
+    // The steady motion without the stop reaches it where its amplitude equals the gap.
     let amplitude = |w: f64| 0.6 / ((100.0 - w * w).powi(2) + (0.4 * w).powi(2)).sqrt();
     let (mut low, mut high) = (8.0, 10.0);
     for _ in 0..60 {
@@ -223,8 +223,8 @@ fn a_branch_goes_round_its_folds_and_tells_where_it_begins_to_touch() {
     assert!(branch.points.iter().any(|point| !point.orbit.stable));
 }
 
-/// A body of two modes against a damped stop: where the motion of one period loses its stability to one with a second frequency, a
-/// pair of complex multipliers has the size 1, and it is larger on one side only.
+/// A body of two modes against a damped stop. Where the motion of one period loses its stability to one with a second
+/// frequency, a pair of complex multipliers has the modulus 1, which is larger on one side only.
 #[test]
 fn a_pair_of_multipliers_leaves_the_unit_circle_at_a_neimark_sacker_point() {
     let driven = |omega_rad_s: f64| -> Result<Assembly<Law>, InvalidInput> {
@@ -241,7 +241,7 @@ fn a_pair_of_multipliers_leaves_the_unit_circle_at_a_neimark_sacker_point() {
     let branch = follow_branch(driven, &BranchSettings::over(16.9, 17.9), |_| true).unwrap();
     let found: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::NeimarkSacker).collect();
     assert_eq!(found.len(), 1, "{:?}", branch.special);
-    // by the multipliers of the neighbours on the branch, between which it lies
+    // By the multipliers of the neighbours on the branch, between which it lies.
     let size = |k: usize| {
         let orbit: &vibroimpact_sim::assembly::Orbit = &branch.points[k].orbit;
         let complex = orbit.floquet_multipliers.iter().filter(|m| m[1] != 0.0);

@@ -1,4 +1,4 @@
-//! Assemblies against closed forms and against an independent integration of the same equations.
+//! Assemblies compared with closed forms and with an independent integration of the same equations.
 
 mod common;
 
@@ -27,8 +27,8 @@ fn mass(body: usize, mass_kg: f64) -> Point {
     point(body, &[mass_kg.sqrt().recip()])
 }
 
-/// Velocities of both sides of every contact at the end, by a Runge-Kutta integration of all modes, for laws whose force
-/// is zero or more on one branch.
+/// Velocities of both sides of every contact at the end, by a Runge-Kutta integration of all modes, for laws with one branch
+/// and a force that is not negative.
 fn reference(assembly: &Assembly<Law>, end_s: f64, tolerance: f64) -> Vec<[f64; 2]> {
     let first: Vec<usize> = assembly
         .bodies
@@ -86,7 +86,7 @@ fn reference(assembly: &Assembly<Law>, end_s: f64, tolerance: f64) -> Vec<[f64; 
     let mut y: Vec<f64> = assembly.bodies.iter().flat_map(|body| body.amplitude.clone()).collect();
     y.extend(assembly.bodies.iter().flat_map(|body| body.rate.clone()));
     let scale = |i: usize| if i < n { 1e-4 } else { 1.0 };
-    // loads that break off are met with a step's end
+    // A step ends where a load ends abruptly.
     let mut stops: Vec<f64> = vec![end_s];
     for load in &assembly.loads {
         if let Force::Sampled { times_s, .. } = &load.force {
@@ -120,7 +120,7 @@ fn compare(assembly: &Assembly<Law>, end_s: f64, floor: f64) -> Vec<(usize, Inte
 
 #[test]
 fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
-    // half periods against the stop and away from it, in turn
+    // Half periods against the stop and away from it alternate.
     let body = Body {
         modes: vec![BodyMode { omega_rad_s: 10.0, damping_ratio: 0.0 }],
         amplitude: vec![0.0],
@@ -142,7 +142,7 @@ fn a_mass_on_a_spring_meets_a_stop_at_the_closed_forms_times() {
 }
 
 #[test]
-fn a_dropped_ball_bounces_for_ever_on_an_elastic_floor() {
+fn a_dropped_ball_bounces_forever_on_an_elastic_floor() {
     let (m, g, height) = (0.1, 9.81, 0.01);
     let law = Law::from(Hertz::new(1e9).unwrap());
     let contact = Contact { sides: [mass(0, m), Point::Ground], gap_m: 0.0, law };
@@ -161,7 +161,7 @@ fn a_dropped_ball_bounces_for_ever_on_an_elastic_floor() {
 }
 
 #[test]
-fn newtons_cradle_hands_the_blow_on() {
+fn newtons_cradle_transfers_the_impact() {
     let law = Law::from(Hertz::new(1e9).unwrap());
     let m = 0.1;
     let bodies = (0..5).map(|i| Body::mass(m, 0.0, if i == 0 { 1.0 } else { 0.0 })).collect();
@@ -173,12 +173,12 @@ fn newtons_cradle_hands_the_blow_on() {
     let momentum: f64 = found.rate.iter().map(|rate| rate[0] * m.sqrt()).sum();
     let energy: f64 = found.rate.iter().map(|rate| 0.5 * rate[0] * rate[0]).sum();
     assert!((momentum - m).abs() < 1e-14 && (energy - 0.5 * m).abs() < 1e-11, "{momentum} {energy}");
-    // nearly all goes to the last ball
+    // Nearly all of the momentum is transferred to the last ball.
     assert!(found.rate[4][0] / m.sqrt() > 0.9 && found.rate[0][0].abs() / m.sqrt() < 0.15);
 }
 
-/// Balls in a row that touch at the start, the last of them alone in motion or the first, and the contacts in either order.
-/// What a contact does before the wave comes to it is less than any tolerance: it costs no panels, and it ends no interval.
+/// Balls in a row that touch at the start; the last of them alone is in motion, or the first, with the contacts in either
+/// order. The force of a contact before the wave arrives is below any tolerance: it costs no panels, and it ends no interval.
 #[test]
 fn contacts_without_force_cost_nothing_and_end_no_interval() {
     let law = Law::from(Hertz::new(1e9).unwrap());
@@ -209,14 +209,14 @@ fn contacts_without_force_cost_nothing_and_end_no_interval() {
             for (found, exact) in found.iter().zip(&exact) {
                 assert!((found - exact).abs() < (0.1 * tolerance).max(1e-12), "{tolerance:e}: {found} {exact}");
             }
-            // a panel asks for two, and their number grows with the ninth root of the accuracy
+            // A panel needs two, and their number grows with the ninth root of the accuracy.
             let panels = 16.0 * tolerance.powf(-1.0 / 9.0);
             assert!((iterations as f64) < 4.0 * panels, "{tolerance:e}: {iterations}");
         }
     }
 }
 
-/// A clamped-free beam seen from some places.
+/// A clamped-free beam at some locations.
 fn cantilever(n: usize, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
     let segment = Segment::from(RectangularSegment {
         length_m: 1.0,
@@ -233,7 +233,7 @@ fn cantilever(n: usize, places: &[f64]) -> (Vec<BodyMode>, Vec<Vec<f64>>) {
 }
 
 #[test]
-fn bodies_contacts_and_loads_of_every_kind_go_together() {
+fn bodies_contacts_and_loads_of_every_kind_can_be_combined() {
     let (modes, shapes) = cantilever(6, &[0.5, 1.0, 0.8]);
     let ball = Body::mass(0.2, 0.0, -1.0);
     let hertz = Law::from(Hertz::new(1e8).unwrap());
@@ -268,7 +268,7 @@ fn bodies_contacts_and_loads_of_every_kind_go_together() {
 
 #[test]
 fn code_asters_cantilever_meets_its_stop_as_computed_elsewhere() {
-    // SDNL104: tip force on a cantilever above an elastic stop
+    // SDNL104: a tip force on a cantilever above an elastic stop.
     let (r, length, e, rho) = (0.1f64, 1.0, 1e10, 1e6);
     let segment = Segment {
         length_m: length,

@@ -1,4 +1,4 @@
-//! One striker, one contact: the assembly against the solver of single impacts.
+//! One striker, one contact: the assembly compared with the solver of single impacts.
 
 use contact_models::{Hertz, KelvinVoigt, Law, LinearSpring, Viscous};
 use std::f64::consts::PI;

@@ -1,4 +1,4 @@
-//! Dropped rods against counts, masses and wave solutions that are known exactly.
+//! Dropped rods compared with counts, masses and wave solutions that are known exactly.
 
 use beam_modes::{Rod, RodEnd, RodSegment, remainder_modes};
 use contact_models::{Hertz, LinearSpring};
@@ -34,7 +34,7 @@ fn bending_modes_below_the_first_axial_one_are_the_thesiss() {
 }
 
 #[test]
-fn the_rigid_motions_have_the_thesiss_mass() {
+fn rigid_body_motions_have_the_thesiss_mass() {
     let rod = rod(0.4, 0.6);
     let modes = rod.drop(1.0).unwrap().structure.modes;
     let inverse: f64 = modes[..2].iter().map(|mode| mode.shape.powi(2)).sum();
@@ -42,9 +42,9 @@ fn the_rigid_motions_have_the_thesiss_mass() {
 }
 
 #[test]
-fn an_upright_rod_rebounds_fully_the_softer_the_contact() {
-    // exact wave solution: restitution 1 on a rigid surface without local compliance, and in the rigid limit of a soft
-    // contact; in between the wave keeps a little. Bending must not stir at all.
+fn an_upright_rod_rebounds_fully_on_a_soft_contact() {
+    // Exact wave solution: the restitution is 1 on a rigid surface without local compliance, and in the rigid limit of a soft
+    // contact; in between the wave keeps a little energy. Bending must not be excited at all.
     let upright = rod(0.2, FRAC_PI_2);
     let solution = solve(&upright, 1e-9);
     assert_eq!(solution.outcome, Outcome::Rebound);
@@ -82,8 +82,8 @@ fn a_tilted_rod_keeps_vibration_and_gains_no_energy() {
 }
 
 #[test]
-fn the_sdnl111_benchmark_is_met() {
-    // a free rod and a held one, in their own axial modes, with nearly rigid contact between them
+fn the_sdnl111_benchmark_is_reproduced() {
+    // A free rod and a fixed one, in their own axial modes, with nearly rigid contact between them.
     let segment = RodSegment { length_m: 1.0, axial_rigidity_n: 2e11 * 4e-4, mass_per_length_kg_m: 7800.0 * 4e-4 };
     let modes_each = 400;
     let (mut modes, mut tail, mut rest) = (vec![], vec![], 0.0);
@@ -121,9 +121,9 @@ fn the_sdnl111_benchmark_is_met() {
     assert!((solution.restitution.unwrap() - 1.0).abs() < 0.01);
 }
 
-/// Lying, upright and as near to either as numbers go; without elastic modes.
+/// Lying, upright, and as close to either as numbers allow; without elastic modes.
 #[test]
-fn rods_at_the_edge() {
+fn limiting_cases_of_rods() {
     let usual = rod(0.4, 0.8);
     let rods = [
         ("lying", DroppedRod { inclination_rad: 0.0, ..usual }),
@@ -139,7 +139,7 @@ fn rods_at_the_edge() {
         let (e, stated) = (solution.restitution.unwrap(), solution.restitution_uncertainty.unwrap());
         assert!((-1.0..=1.0 + 1e-9).contains(&e) && stated < 1e-3, "{name}: {e} +- {stated:e}");
     }
-    // an angle that no number can tell from the right one changes nothing
+    // An angle that is a right angle to rounding changes nothing.
     for (angle, aside) in [(0.0, 1e-12), (FRAC_PI_2, -1e-12)] {
         let (a, b) = (solve(&rod(0.4, angle), 1e-9), solve(&rod(0.4, angle + aside), 1e-9));
         let stated = a.restitution_uncertainty.unwrap() + b.restitution_uncertainty.unwrap();

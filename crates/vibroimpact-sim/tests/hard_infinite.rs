@@ -1,4 +1,4 @@
-//! What breaks codes for impacts on infinite beams and plates, each case with what is to come of it.
+//! Cases that are difficult for codes of impacts on infinite beams and plates, each with its expected result.
 
 mod common;
 
@@ -13,10 +13,10 @@ fn run(s: f64) -> Solution {
     solve(Structure::Beam, s, &Settings::default()).unwrap()
 }
 
-/// `S` as near as 1e-9 and 1e-12 to the critical value and to each turning point, on both sides: how it ends, and how many
-/// separations there are (`None`: more than numbers can tell).
+/// `S` within 1e-9 and 1e-12 of the critical value and of each turning point, on both sides: the outcome, and the number of
+/// separations (`None`: more than double precision can count).
 #[test]
-fn on_both_sides_of_every_change() {
+fn on_both_sides_of_every_critical_value() {
     let critical = critical_s();
     let mut table = vec![
         ("below critical", critical.s * (1.0 - 1e-9), Outcome::Rebound, Some(1)),
@@ -38,14 +38,14 @@ fn on_both_sides_of_every_change() {
         assert_eq!(solution.outcome, outcome, "{name}: S = {s}");
         if let Some(count) = separations {
             assert_eq!(solution.separations(), count, "{name}: S = {s}");
-            // the number of contacts is certain, and so are their times; only where one grazes do digits go
+            // The number of contacts is certain, and so are their times; digits are lost only where one grazes.
             assert!(
                 solution.relative_uncertainty.unwrap() < 1e-3,
                 "{name}: S = {s}: {:?}",
                 solution.relative_uncertainty
             );
         } else {
-            // what is certain ends where times leave the range of numbers, or digits the body's speed
+            // Certainty ends where times leave the range of numbers, or the body's speed has no digits left.
             let certain = solution.certain_separations.unwrap();
             assert!(certain > 50, "{name}: S = {s}: {certain} of {}", solution.separations());
             assert_eq!(solution.rebound_ratio(), None, "{name}");
@@ -57,10 +57,10 @@ fn on_both_sides_of_every_change() {
     }
 }
 
-/// Just below a turning point the n-th flight is short and shallow, just above it the compression has a minimum of the
-/// same smallness in its place: the nearer, the closer both come to zero.
+/// Just below a turning point the n-th flight is short and shallow; just above it the compression has an equally small minimum
+/// in its place. Both approach zero with the distance.
 #[test]
-fn a_graze_is_seen_from_both_sides() {
+fn grazing_contacts_on_both_sides() {
     for point in turning_points(6).unwrap() {
         let mut last = f64::INFINITY;
         for aside in [1e-4, 1e-6, 1e-8] {
@@ -68,8 +68,8 @@ fn a_graze_is_seen_from_both_sides() {
             let parted = below.sub_impacts[point.n - 1].end.unwrap();
             let flight = below.sub_impacts[point.n].start - parted;
             assert!(flight > 0.0 && flight < last, "n = {}: {flight:e}", point.n);
-            // a gap that opens as the square of time is as deep as the distance from the turning point, and as long as
-            // its square root: three shrink by a hundred each, the flight by ten
+            // A gap that opens as the square of time has a depth proportional to the distance from the turning point, and a
+            // duration proportional to its square root: three depths decrease by a hundred each, the durations by ten.
             if last.is_finite() {
                 assert!((last / flight / 10.0 - 1.0).abs() < 0.1, "n = {}: {last:e} to {flight:e}", point.n);
             }
@@ -83,25 +83,25 @@ fn a_graze_is_seen_from_both_sides() {
     }
 }
 
-/// So close above the critical value that how the impact ends is beyond the digits of numbers: the separations that are
-/// certain are counted, and no rebound is invented.
+/// So close above the critical value that the outcome is beyond double precision: the separations that are certain are counted,
+/// and no rebound is invented.
 #[test]
 fn what_is_certain_just_above_the_critical_value() {
-    // the number of separations that a run found before, with its "rebound"
+    // The number of separations that a run found before, with its "rebound".
     for (s, found) in [(1.5605177558734, 326), (1.5605177648, 985)] {
         let solution = run(s);
         assert_eq!(solution.outcome, Outcome::Stopped(StopReason::DigitsExhausted), "S = {s}");
         assert_eq!(solution.rebound_ratio(), None);
         let certain = solution.certain_separations.unwrap();
         assert!((50..=found).contains(&certain) && certain <= solution.separations(), "S = {s}: {certain}");
-        // each of them in its time: other numbers of nodes find them too
+        // Each of them at its time: other numbers of nodes find them too.
         let other =
             solve(Structure::Beam, s, &Settings { nodes: 26, tolerance: 1e-12, ..Settings::default() }).unwrap();
         for (a, b) in solution.sub_impacts.iter().zip(&other.sub_impacts).take(certain) {
             assert!((a.start - b.start).abs() <= 0.5 * b.start, "S = {s}: {} {}", a.start, b.start);
         }
     }
-    // the nearest numbers on either side: whether the body comes back at all is not known
+    // The nearest numbers on either side: whether the body returns at all is not known.
     let critical = critical_s().s;
     for ulps in -3i64..=3 {
         let solution = run(f64::from_bits((critical.to_bits() as i64 + ulps) as u64));
@@ -113,7 +113,7 @@ fn what_is_certain_just_above_the_critical_value() {
 proptest! {
     #![proptest_config(config(60))]
 
-    /// Any `S`: contacts in order, a body that only ever slows down, and a rebound no faster than the approach.
+    /// Any `S`: contacts are in order, the speed of the body never increases, and the rebound is no faster than the approach.
     #[test]
     fn any_s(power in -12.0..8.0f64, plate in any::<bool>()) {
         let structure = if plate { Structure::Plate } else { Structure::Beam };
@@ -160,7 +160,7 @@ proptest! {
             prop_assert_eq!(a.outcome, b.outcome);
             prop_assert_eq!(a.separations(), b.separations());
             if let (Some(x), Some(y)) = (a.rebound_ratio(), b.rebound_ratio()) {
-                // S itself differs by rounding; the restitution falls with less than its own size a decade of S
+                // S itself differs by rounding; the relative decrease of the restitution per decade of S is below one.
                 let stated = a.relative_uncertainty.unwrap_or(1.0) + b.relative_uncertainty.unwrap_or(1.0) + 1e-12;
                 prop_assert!((x - y).abs() <= 2.0 * stated, "{} {}", x, y);
             }

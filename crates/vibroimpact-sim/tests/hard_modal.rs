@@ -1,5 +1,5 @@
-//! What breaks codes for impacts on modal structures, each case with what is to come of it. Bounds on what is known are at
-//! least five times the worst that was measured at the tolerance 1e-9, rounded up to a power of ten.
+//! Cases that are difficult for codes of impacts on modal structures, each with its expected result. Bounds on the errors are
+//! at least five times the largest error measured at the tolerance 1e-9, rounded up to a power of ten.
 
 mod common;
 
@@ -11,15 +11,15 @@ use proptest::prelude::*;
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Mode, Outcome, Settings, Solution, Solver, Start, Striker, Structure};
 
-/// What is to come of a case.
+/// The expected result of a case.
 enum Expect {
-    /// This restitution, within the stated uncertainty and this much more.
+    /// This restitution, within the stated uncertainty plus this amount.
     Restitution(f64, f64),
-    /// The restitution of another description of the same impact, within both stated uncertainties.
+    /// The restitution of another description of the same impact, within the sum of both stated uncertainties.
     Same(Structure),
-    /// A rebound whose restitution is known to this.
+    /// A rebound whose restitution has this uncertainty.
     Rebound(f64),
-    /// No contact that lasts, no energy gained; the limit on steps may come first.
+    /// No contact that lasts and no energy gained; the limit on steps may be reached first.
     Sound,
 }
 
@@ -84,18 +84,18 @@ fn beam(ends: [End; 2]) -> Beam {
 }
 
 #[test]
-fn places() {
+fn locations() {
     let mut cases = Vec::new();
     for n in [0, 1, 40, 1000] {
         let name = format!("on the support, N = {n}: a wall");
         cases.push(case(name, pinned(n, 0.02, 0.0), ball(), hertz(), Expect::Restitution(1.0, 0.0)));
     }
-    // so near the support the beam is m sum phi^2 = 1e-8 away from a wall
+    // So close to the support the beam differs from a wall by m sum phi^2 = 1e-8.
     let structure = pinned(40, 0.02, 1e-6);
     let z = ball().mass_kg * structure.modes.iter().map(|mode| mode.shape * mode.shape).sum::<f64>();
     assert!(z < 1e-6);
     cases.push(case("1e-6 of a support", structure, ball(), hertz(), Expect::Restitution(1.0, 2.0 * z)));
-    // at midspan every other mode has a node
+    // At midspan every second mode has a node.
     let mut odd = pinned(41, 0.02, 0.5);
     odd.modes = odd.modes.into_iter().step_by(2).collect();
     cases.push(case("on the node of 20 modes", pinned(41, 0.02, 0.5), ball(), hertz(), Expect::Same(odd)));
@@ -103,7 +103,7 @@ fn places() {
     cases.push(case("free end", seen_from(&free, 1.0, 40, 0.02), ball(), hertz(), Expect::Rebound(1e-8)));
     let inside = seen_from(&free, 1.0 - 1e-12, 40, 0.02);
     cases.push(case("1e-12 of a free end", seen_from(&free, 1.0, 40, 0.02), ball(), hertz(), Expect::Same(inside)));
-    // on a step, and within rounding of it on either side
+    // On a step, and within rounding of it on either side.
     let slim = Segment { length_m: 0.5, flexural_rigidity_n_m2: 34.0, mass_per_length_kg_m: 0.5 };
     let thick = Segment { length_m: 0.5, ..free.segments[0] };
     let stepped = Beam { segments: vec![thick, slim], ends: [End::Clamped, End::Free] };
@@ -116,8 +116,8 @@ fn places() {
     hold(&cases);
 }
 
-/// From no mode to a thousand: a rebound known to many digits at every number, and one that settles where remainder
-/// modes stand for those left out.
+/// From no mode to a thousand: the restitution is accurate to many digits at every number, and converges if remainder modes
+/// represent the truncated modes.
 #[test]
 fn numbers_of_modes() {
     let mut cases = Vec::new();
@@ -141,14 +141,14 @@ fn twelve_decades() {
     let mut cases = Vec::new();
     for power in -6..=6 {
         let striker = Striker { mass_kg: 10f64.powi(power), ..ball() };
-        // a striker a million times the beam's mass is in contact for many thousands of steps
+        // A striker a million times heavier than the beam is in contact for many thousands of steps.
         let expect = if power <= 4 { Expect::Rebound(1e-7) } else { Expect::Sound };
         cases.push(case(format!("mass 1e{power} kg"), pinned(40, 0.02, GOLDEN), striker, hertz(), expect));
     }
     for power in 2..=14 {
         let law = Law::from(Hertz::new(10f64.powi(power)).unwrap());
         let name = format!("stiffness 1e{power}");
-        // bodies that hard tell apart motions of the beam that are very close to each other
+        // Such stiff bodies distinguish motions of the beam that are very close to each other.
         let known = if power < 14 { 1e-5 } else { 1e-2 };
         cases.push(case(name, pinned(40, 0.02, GOLDEN), ball(), law, Expect::Rebound(known)));
     }
@@ -158,7 +158,7 @@ fn twelve_decades() {
         cases.push(case(name, pinned(40, 0.02, GOLDEN), striker, hertz(), Expect::Rebound(1e-5)));
     }
     hold(&cases);
-    // with a linear contact the speed is no more than a factor
+    // With a linear contact the speed is only a factor.
     let law = Law::from(LinearSpring::new(1e6).unwrap());
     let at = |speed_m_s: f64| run(&pinned(40, 0.02, GOLDEN), &Striker { speed_m_s, ..ball() }, &law);
     let unit = at(1.0);
@@ -178,15 +178,15 @@ fn damping_and_frequencies() {
         let structure = pinned(20, damping, GOLDEN);
         cases.push(case(format!("damping ratio {damping}"), structure, ball(), hertz(), Expect::Rebound(known)));
     }
-    // critical damping is no special place
+    // Critical damping is not a special case.
     let beside = pinned(20, 1.0 - 1e-12, GOLDEN);
     cases.push(case("critical damping", pinned(20, 1.0, GOLDEN), ball(), hertz(), Expect::Same(beside)));
-    // so much damping holds the beam still
+    // With so much damping the beam does not move.
     cases.push(case("damping ratio 1e6", pinned(20, 1e6, GOLDEN), ball(), hertz(), Expect::Restitution(1.0, 1e-3)));
     for apart in [0.0, 1e-16, 1e-12, 1e-9] {
         let one = Structure { modes: vec![Mode { omega_rad_s: 900.0, damping_ratio: 0.01, shape: 1.5 }] };
         let each = |factor: f64| Mode { omega_rad_s: 900.0 * factor, damping_ratio: 0.01, shape: 0.75 };
-        // four modes of one frequency, of phi^2 = 1.5^2 together
+        // Four modes of one frequency, with phi^2 = 1.5^2 in total.
         let four = Structure { modes: [1.0 - apart, 1.0, 1.0, 1.0 + apart].map(each).to_vec() };
         cases.push(case(format!("frequencies {apart:e} apart"), four, ball(), hertz(), Expect::Same(one)));
     }
@@ -195,7 +195,7 @@ fn damping_and_frequencies() {
 
 #[test]
 fn rigid_body_modes() {
-    // on rigid modes alone two bodies meet: their relative speed is turned round
+    // On rigid modes alone two bodies meet: their relative velocity is reversed.
     let rigid = |shapes: &[f64]| Structure {
         modes: shapes.iter().map(|&shape| Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape }).collect(),
     };
@@ -204,7 +204,7 @@ fn rigid_body_modes() {
         case("two rigid modes", rigid(&[1.0, 3.0]), ball(), hertz(), Expect::Restitution(1.0, 0.0)),
         case("light rigid body", rigid(&[1e6]), ball(), hertz(), Expect::Restitution(1.0, 0.0)),
     ]);
-    // a free-free beam, struck off its middle: momentum and moment of momentum are kept to the last digits
+    // A free-free beam, struck away from its middle: momentum and angular momentum are conserved to the last digits.
     let free = beam([End::Free, End::Free]);
     for (x, damping) in [(0.5, 0.0), (0.7, 0.0), (1.0, 0.02), (0.7, 0.5)] {
         let structure = seen_from(&free, x, 30, damping);
@@ -250,8 +250,8 @@ fn hysteresis_with_tiny_loops() {
     }
 }
 
-/// A heavily damped contact pauses, without force, and resumes, a dozen times: however long the steps of its ladder are
-/// against the modes (time is scaled, which moves the one against the other), none of the short contacts is passed over.
+/// A heavily damped contact pauses, without force, and resumes, a dozen times. For any ratio of its dyadic steps to the modes
+/// (time is scaled, which changes the ratio), none of the short contacts is missed.
 #[test]
 fn pauses_of_a_damped_contact() {
     let impact = |time: f64, tolerance: f64| {
@@ -277,7 +277,7 @@ fn pauses_of_a_damped_contact() {
 
 #[test]
 fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
-    // the surface stands a million compressions from its place, kept there by next to no force: nothing may change
+    // The surface is a million compressions away from its rest position, held there by almost no force: nothing may change.
     let mode = Mode { omega_rad_s: 1e-7, damping_ratio: 0.0, shape: 30.0 };
     let other = Mode { omega_rad_s: 2e-7, damping_ratio: 0.0, shape: 20.0 };
     let structure = Structure { modes: vec![mode, other] };
@@ -295,7 +295,7 @@ fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
     ];
     for (law, floor) in laws {
         let solve = |amplitude: f64| {
-            // against each other, so that where the modes stand cancels in part
+            // The modes oppose each other, so that their static displacements partly cancel.
             let start = Start { amplitude: vec![amplitude, -amplitude], ..Start::at_rest(2) };
             let settings = Settings { max_sub_impacts: 1, ..settings(1e-12) };
             Solver::new(&structure).unwrap().solve(&striker, &law, Some(&start), &settings).unwrap()
@@ -308,10 +308,10 @@ fn a_stiff_contact_far_from_where_the_structure_was_at_rest() {
     }
 }
 
-/// At first touch the structure's fast modes pull its surface away again, after a contact of microseconds in an impact of
-/// seconds. It has no impulse to speak of, but a law that remembers the speed of approach answers to the second touch.
+/// At first touch the structure's fast modes move its surface away again, after a contact of microseconds in an impact of
+/// seconds. Its impulse is negligible, but a law that depends on the speed of approach responds to the second touch.
 #[test]
-fn surfaces_that_part_at_once() {
+fn surfaces_that_separate_immediately() {
     let mode = |k: usize| Mode {
         omega_rad_s: 2640.0 * (k * k) as f64,
         damping_ratio: 0.0024,
@@ -319,7 +319,7 @@ fn surfaces_that_part_at_once() {
     };
     let mut modes: Vec<Mode> = (1..=11).map(mode).collect();
     modes.push(Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 0.07 });
-    // the seventh mode moves towards the striker, the sixth away from it, both faster than the striker
+    // The seventh mode moves towards the striker, the sixth away from it, both faster than the striker.
     let mut start = Start::at_rest(modes.len());
     start.rate[6] = 1.7e-4;
     start.rate[5] = -1.3e-4;
@@ -339,7 +339,7 @@ fn surfaces_that_part_at_once() {
     }
 }
 
-/// Compressions beyond those that a law computes with: no answer rather than a wrong one.
+/// Compressions beyond the range of the law: no result rather than a wrong one.
 #[test]
 fn a_compression_beyond_the_law() {
     let structure = Structure::default();
@@ -354,19 +354,19 @@ fn a_compression_beyond_the_law() {
     assert!(energy_kept(&structure, &striker, &solution) < 1.0 + 1e-9, "{solution:?}");
 }
 
-/// A structure that swings freely and only just reaches an immovable stop.
+/// A structure that vibrates freely and only just reaches an immovable stop.
 #[test]
 fn a_stop_at_the_end_of_a_swing() {
     let mode = |omega_rad_s: f64, shape: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape };
     let stop = Striker { mass_kg: f64::INFINITY, speed_m_s: 0.0 };
     let law = Law::from(LinearSpring::new(1e5).unwrap());
-    // both swings are largest together: the contact is reached as closely as the sum of the amplitudes tells
+    // Both modes have their maximum at the same time: the contact is reached with the accuracy of the sum of the amplitudes.
     let structure = Structure { modes: vec![mode(100.0, 1.0), mode(500.0, 0.5)] };
     let reach = 1e-3 + 0.5 * 1e-4;
     for aside in [1e-3, 1e-6, 1e-9, 1e-12] {
         for (gap, contact) in [(reach * (1.0 - aside), true), (reach * (1.0 + aside), false)] {
             let at_rest_time = 0.5 * std::f64::consts::PI / 100.0;
-            // amplitudes a quarter of the slow period before both are largest
+            // Amplitudes a quarter of the slow period before both are largest.
             let amplitude = vec![1e-3 * (100.0 * at_rest_time).cos(), 1e-4 * (500.0 * at_rest_time).cos()];
             let rate = vec![0.1 * (100.0 * at_rest_time).sin(), 0.05 * (500.0 * at_rest_time).sin()];
             let now = amplitude[0] + 0.5 * amplitude[1];
@@ -378,7 +378,7 @@ fn a_stop_at_the_end_of_a_swing() {
             if let [first] = solution.sub_impacts[..] {
                 assert!((first.start_s / at_rest_time - 1.0).abs() < aside.sqrt() + 1e-9, "{first:?}");
             } else {
-                // so close that rounding decides, the search may go on to its limit; it invents no contact
+                // This close, rounding decides, and the search may continue to its limit; it invents no contact.
                 let undecided = aside < 1e-11 && solution.outcome == Outcome::Stopped(StopReason::Flight);
                 assert!(undecided || solution.outcome == Outcome::NoContact, "{aside:e} {gap} {:?}", solution.outcome);
             }
@@ -386,7 +386,7 @@ fn a_stop_at_the_end_of_a_swing() {
     }
 }
 
-/// Places along the beam between which the number of contacts changes, narrowed down until one contact only grazes.
+/// Locations along the beam between which the number of contacts changes, bisected until one contact only grazes.
 #[test]
 fn contacts_that_come_and_go() {
     let once = Settings { estimate_uncertainty: false, ..settings(1e-9) };
@@ -407,7 +407,7 @@ fn contacts_that_come_and_go() {
             if count(middle) == few { low = middle } else { high = middle }
         }
         let other = count(high);
-        // beside the graze the numbers are those on either side of it, and nothing else changes with a jump
+        // Beside the grazing contact the numbers are those on either side of it, and nothing else jumps.
         for (b, expected) in [(low - 1e-9, few), (high + 1e-9, other)] {
             let solution = run(&pinned(25, 0.02, b), &ball(), &hertz());
             assert_eq!(solution.sub_impacts.len(), expected, "{b}");
@@ -417,14 +417,14 @@ fn contacts_that_come_and_go() {
         let stated = a.restitution_uncertainty.unwrap() + b.restitution_uncertainty.unwrap();
         let jump = (a.restitution.unwrap() - b.restitution.unwrap()).abs();
         assert!(jump <= stated, "at b = {low}: {few} and {other} contacts, jump {jump:e}, stated {stated:e}");
-        // what one side has more is a touch of no force, or one contact just split in two
+        // The additional contact on one side is a touch without force, or one contact that was just divided in two.
         assert!(few.abs_diff(other) <= 2, "at b = {low}: {few} and {other}");
         found += 1;
     }
     assert!(found >= 25, "only {found} places");
 }
 
-/// Between the contacts found, the surfaces never overlap: no contact was missed.
+/// Between the contacts the surfaces never overlap: no contact was missed.
 fn no_overlap(b: f64) {
     let solver = Solver::new(&pinned(25, 0.02, b)).unwrap();
     let (solution, history) = solver.record(&ball(), &hertz(), None, &settings(1e-9)).unwrap();
@@ -443,7 +443,7 @@ proptest! {
     #![proptest_config(config(200))]
 
     #[test]
-    fn every_impact_ends_with_sound_numbers(
+    fn every_impact_ends_with_valid_numbers(
         structure in any_structure(),
         law in any_law(),
         mass_kg in decades(-6.0, 4.0),
@@ -467,8 +467,8 @@ proptest! {
     }
 }
 
-/// A light ball on the guided end of a slender beam in three modes and two remainder modes, which are far stiffer: steps of
-/// loose tolerances must not get stuck. The reference is the solution at 1e-12.
+/// A light ball on the guided end of a slender beam in three modes and two remainder modes, which are far stiffer: steps at
+/// loose tolerances must not stall. The reference is the solution at 1e-12.
 #[test]
 fn few_modes_and_a_stiff_remainder_at_loose_tolerances() {
     let (length, diameter): (f64, f64) = (0.29256227331225043, 0.000420049429993596);

@@ -1,4 +1,4 @@
-//! Laws other than Hertz's, and impulse responses of one's own, on structures without ends, against independent methods.
+//! Laws other than Hertz's, and user-defined impulse responses, on structures without ends, compared with independent methods.
 
 mod common;
 
@@ -65,15 +65,15 @@ fn hertz_agrees_with_its_own_solver() {
             }
         }
         match exact.outcome {
-            // what makes the other solver certain that contact is sustained holds for Hertz contact alone
+            // The proof of sustained contact in the other solver applies to Hertz contact only.
             Outcome::Sustained => assert_eq!(found.outcome, Outcome::Stopped(StopReason::ContactLasts)),
             outcome => assert_eq!(found.outcome, outcome),
         }
     }
 }
 
-/// Laws of all kinds for a striker of 50 g and contacts of about 1 ms, and how far 350 modes may be off: a force that begins
-/// with a jump excites frequencies that no finite number of modes has.
+/// Laws of all kinds for a striker of 50 g and contacts of about 1 ms, and the allowed error of 350 modes: a force that begins
+/// with a jump excites frequencies beyond any finite number of modes.
 fn laws() -> Vec<(Law, f64)> {
     vec![
         (LinearSpring::new(1e6).unwrap().into(), 2e-6),
@@ -96,8 +96,8 @@ fn laws() -> Vec<(Law, f64)> {
     ]
 }
 
-/// The first contact with an infinite beam and with the middle of a pinned one, so long that no wave that matters is
-/// back in time, by its modes.
+/// The first contact with an infinite beam and with the middle of a pinned one, by its modes. The beam is so long that no
+/// relevant wave returns in time.
 #[test]
 fn agrees_with_a_long_beam_by_its_modes() {
     let (side, length) = (0.011323_f64, 3.0_f64);
@@ -107,7 +107,7 @@ fn agrees_with_a_long_beam_by_its_modes() {
         damping_ratio: 0.0,
         shape: (2.0 / (mass_per_length * length)).sqrt(),
     };
-    // even modes have a node in the middle
+    // Even modes have a node in the middle.
     let structure = modal::Structure { modes: (0..350).map(|k| mode(2 * k + 1)).collect() };
     let striker = Striker { mass_kg: 0.05, speed_m_s: 1.0 };
     let receptance = Receptance::beam(rigidity, mass_per_length).unwrap();
@@ -133,18 +133,18 @@ fn agrees_with_a_long_beam_by_its_modes() {
     }
 }
 
-/// The forces on a uniform grid by product integration of the trapezoidal rule, for `kappa = t^p` and a force that
-/// depends on compression and rate and is never negative: a second method without branches, events or panels.
+/// The forces on a uniform grid by product integration with the trapezoidal rule, for `kappa = t^p` and a force that depends on
+/// compression and rate and is never negative: a second method without branches, events or panels.
 fn march(p: f64, force: &dyn Fn(f64, f64) -> f64, end: f64, steps: usize) -> Vec<f64> {
     let h = end / steps as f64;
-    // first and second integrals of the kernels of compression and rate
+    // First and second integrals of the kernels of compression and rate.
     let kernels: [[&dyn Fn(f64) -> f64; 2]; 2] = [
         [&|t: f64| t * t / 2.0 + t.powf(p + 1.0) / (p + 1.0), &|t: f64| {
             t.powi(3) / 6.0 + t.powf(p + 2.0) / ((p + 1.0) * (p + 2.0))
         }],
         [&|t: f64| t + t.powf(p), &|t: f64| t * t / 2.0 + t.powf(p + 1.0) / (p + 1.0)],
     ];
-    // weights of whole hat functions, and of the half ones at the start and at the present
+    // Weights of whole hat functions, and of the half ones at the start and at the present time.
     let weights: Vec<[Vec<f64>; 3]> = kernels
         .iter()
         .map(|[first, second]| {
@@ -163,7 +163,7 @@ fn march(p: f64, force: &dyn Fn(f64, f64) -> f64, end: f64, steps: usize) -> Vec
             let line = if i == 0 { n as f64 * h } else { 1.0 };
             line - past - start[n] * f[0]
         });
-        // f = force(known - w f) by bisection: the difference grows with f
+        // f = force(known - w f) by bisection: the difference grows with f.
         let (mut low, mut high) = (0.0, 10.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -199,19 +199,20 @@ fn agrees_with_a_trapezoidal_march() {
                 (1..f.len()).map(|n| h * (at(n) - f[n]).abs()).sum::<f64>()
             };
             let (coarse, fine) = (error(&march(p, force, end, steps)), error(&march(p, force, end, 2 * steps)));
-            // what is left is the error of the march: it falls as its step does, slowest after a force that jumps
+            // The remaining difference is the error of the trapezoidal method: it decreases as its step does, most slowly after
+            // a force that jumps.
             assert!(fine < 2e-3 && fine < 0.5 * coarse, "{p} {law:?}: {coarse:e} {fine:e}");
             assert!(solution.relative_uncertainty.unwrap() < 1e-8, "{p} {law:?}");
         }
     }
 }
 
-/// On a plate equations (1) to (3) are the ordinary ones `P' = f`, `x' = 1 - P - f`: Runge-Kutta steps up to the first
-/// release, for Kelvin-Voigt and Hunt-Crossley contact.
+/// On a plate equations (1) to (3) are the ordinary ones `P' = f`, `x' = 1 - P - f`: Runge-Kutta steps up to the first release,
+/// for Kelvin-Voigt and Hunt-Crossley contact.
 #[test]
 fn agrees_with_the_equations_of_a_plate() {
     let (k, c, d) = (0.7, 0.4, 0.6);
-    // x' from x and P, solved for
+    // x' from x and P.
     let kelvin_voigt = |x: f64, p: f64| (1.0 - p - k * x) / (1.0 + c);
     let hunt_crossley = |x: f64, p: f64| {
         let spring = k * x.max(0.0).powf(1.5);
@@ -224,7 +225,7 @@ fn agrees_with_the_equations_of_a_plate() {
     for (law, rate) in cases {
         let solution = run(&power(0.0), &law);
         let release = solution.sub_impacts[0].duration.unwrap();
-        // force, without slack: the contact with a plate ends in it at the latest
+        // Force without slack: the contact with a plate ends in slack at the latest.
         let force = |x: f64, p: f64| (1.0 - p - rate(x, p)).max(0.0);
         let slopes = |x: f64, p: f64| if force(x, p) > 0.0 { [rate(x, p), force(x, p)] } else { [1.0 - p, 0.0] };
         let steps = 40_000;
@@ -244,8 +245,8 @@ fn agrees_with_the_equations_of_a_plate() {
     }
 }
 
-/// Two beams, or terms of any powers, act together: the terms of one structure written in parts make the same impact, and
-/// the unit of time is that at which the structure has moved as far as the striker.
+/// Two beams, or terms of any powers, act together: a structure whose terms are divided into parts has the same impact, and the
+/// unit of time is that at which the structure has moved as far as the striker.
 #[test]
 fn terms_add_up() {
     let law = HuntCrossley::new(0.8, 1.5, 0.2).unwrap();
@@ -260,7 +261,8 @@ fn terms_add_up() {
     let scale = mixed.scale(&striker).unwrap();
     assert!((0.7 * mixed.displacement_m(scale.time_s) / scale.time_s - 1.0).abs() < 1e-12);
     assert_eq!(scale.displacement_m, 3.0 * scale.time_s);
-    // the free end of a semi-infinite beam answers four times as much: as the beam itself to a striker of four times the mass
+    // The response of the free end of a semi-infinite beam is four times that of the beam: it corresponds to the beam with a
+    // striker of four times the mass.
     let end = Receptance::new(&[Term { coefficient: 4.0, power: 0.5 }]).unwrap();
     let light = solve_law(&end, &UNIT, &LinearSpring::new(0.5).unwrap(), &Settings::default()).unwrap();
     let heavy = Striker { mass_kg: 4.0, speed_m_s: 1.0 };
@@ -269,9 +271,9 @@ fn terms_add_up() {
     assert!((light.first_rebound_ratio().unwrap() - heavy.first_rebound_ratio().unwrap()).abs() < 1e-12);
 }
 
-/// What poses no problem is refused by name, and a law that breaks its contract ends the run with that reason.
+/// Invalid problems are rejected by name, and a law that breaks its contract ends the run with that reason.
 #[test]
-fn refuses_what_poses_no_problem() {
+fn invalid_problems_are_refused() {
     let refused = |terms: &[Term]| Receptance::new(terms).unwrap_err().field.to_string();
     assert_eq!(refused(&[]), "terms");
     assert_eq!(refused(&[Term { coefficient: -1.0, power: 0.5 }]), "terms[0].coefficient");
@@ -289,7 +291,7 @@ fn refuses_what_poses_no_problem() {
     }
     assert!(solve_law(&power(0.5), &UNIT, &law, &Settings { nodes: 3, ..Settings::default() }).is_err());
 
-    /// A spring that gives no number, or that pulls.
+    /// A spring that gives NaN, or tension.
     struct Broken {
         stiffness: f64,
     }

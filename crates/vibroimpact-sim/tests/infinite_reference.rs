@@ -1,4 +1,4 @@
-//! The spectral solution against independent methods and closed forms.
+//! The spectral solution compared with independent methods and closed forms.
 
 use std::f64::consts::PI;
 use vibroimpact_sim::infinite::{BeamSection, FirstContact, Impact, Material, Settings, Solution, Structure, solve};
@@ -12,15 +12,14 @@ fn beam(s: f64) -> Solution {
     solve(Structure::Beam, s, &Settings::default()).unwrap()
 }
 
-/// First contacts in 25-digit arithmetic by another discretisation (one global panel); script beside
-/// the data.
+/// First contacts in 25-digit arithmetic by another discretisation (one global panel); the script is beside the data.
 #[test]
 fn first_contact_against_multiprecision() {
     let data = include_str!("data/infinite_first_contact.csv");
     let mut rows = 0;
     for line in data.lines().skip(1) {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
-        // the finer of the two numbers of nodes
+        // The finer of the two numbers of nodes.
         if cells[1] < 30.0 {
             continue;
         }
@@ -34,11 +33,11 @@ fn first_contact_against_multiprecision() {
     assert!(rows >= 5);
 }
 
-/// Product-trapezoidal march of the Volterra equation on a uniform grid: compressions at the
-/// grid points. Second order, so two grids extrapolate.
+/// Solution of the Volterra equation by the product trapezoidal rule on a uniform grid: compressions at the grid points. It is
+/// of second order, so that two grids can be extrapolated.
 fn march(s: f64, end: f64, steps: usize) -> Vec<f64> {
     let h = end / steps as f64;
-    // weights of hat functions: second differences of the kernel's second integral
+    // Weights of hat functions: second differences of the kernel's second integral.
     let second = |m: f64| (m * h).powi(3) / 6.0 + 4.0 / 15.0 * (m * h).powf(2.5);
     let weight: Vec<f64> = (0..=steps)
         .map(|m| {
@@ -51,7 +50,7 @@ fn march(s: f64, end: f64, steps: usize) -> Vec<f64> {
     for n in 1..=steps {
         let past: f64 = (1..n).map(|j| weight[n - j] * f[j]).sum();
         let free = n as f64 * h - past;
-        // x + w f(x) = free, by Newton's method
+        // x + w f(x) = free, by Newton's method.
         let mut value = free.min(x[n - 1] + 2.0 * h);
         for _ in 0..50 {
             let up = value.max(0.0);
@@ -67,8 +66,8 @@ fn march(s: f64, end: f64, steps: usize) -> Vec<f64> {
     x
 }
 
-/// Two contacts and the flight between them, at S = 15 (and one contact at S = 1, 0.001) against the
-/// extrapolated trapezoidal march.
+/// Two contacts and the flight between them, at S = 15 (and one contact at S = 1 and 0.001), compared with the extrapolated
+/// trapezoidal rule.
 #[test]
 fn agrees_with_a_trapezoidal_march() {
     for (s, end, steps) in [(1e-3, 20.0, 1500), (1.0, 8.0, 1500), (100.0, 20.0, 5000), (15.0, 46.0, 6000)] {
@@ -85,9 +84,9 @@ fn agrees_with_a_trapezoidal_march() {
     }
 }
 
-/// The thesis's kind of recipe (appendix A.1): the beam's memory as N internal states on a range
-/// of frequencies, with the frequencies above taken as quasi-steady; here driven by the force,
-/// `y' = (1/sqrt(pi)) int a(xi) d xi`, `a' = -xi^2 a + f`, and integrated by Runge-Kutta steps.
+/// The method of the thesis (appendix A.1): the beam's memory as N internal states on a range of frequencies, with the
+/// frequencies above taken as quasi-steady. Here it is driven by the force, `y' = (1/sqrt(pi)) int a(xi) d xi`,
+/// `a' = -xi^2 a + f`, and integrated by Runge-Kutta steps.
 #[test]
 fn agrees_with_internal_states() {
     let (s, states) = (15.0_f64, 56);
@@ -132,9 +131,9 @@ fn agrees_with_internal_states() {
     assert!(worst < 2e-5, "{worst:e}");
 }
 
-/// Errors fall with the tolerance and the nodes, and the error estimate is of the error's size.
+/// Errors decrease with the tolerance and the number of nodes, and the error estimate has the size of the error.
 #[test]
-fn converges_and_knows_it() {
+fn converges_with_a_correct_error_estimate() {
     let exact = solve(Structure::Beam, 15.0, &Settings { nodes: 28, tolerance: 1e-13, ..once() }).unwrap();
     let error = |solution: &Solution| {
         assert_eq!(solution.sub_impacts.len(), exact.sub_impacts.len());
@@ -151,8 +150,8 @@ fn converges_and_knows_it() {
     assert!(fine < 1e-12 && estimate < 1e-12, "{fine:e} {estimate:e}");
 }
 
-/// The motion given at any time is consistent: continuous across touch and separation, rates are
-/// derivatives, the body's momentum balances the impulse, nothing penetrates in flight.
+/// The motion at any time is consistent: it is continuous at touch and separation, rates are derivatives, the body's momentum
+/// balances the impulse, and nothing penetrates in flight.
 #[test]
 fn motion_is_consistent() {
     let solution = solve(Structure::Beam, 15.0, &Settings { horizon: 200.0, ..once() }).unwrap();
@@ -197,7 +196,7 @@ fn table_2_1() {
     }
 }
 
-/// Thesis Table A.1 and the invariance of Fig. A.1: one S, one nondimensional force.
+/// Thesis Table A.1 and the invariance of Fig. A.1: one S, one dimensionless force.
 #[test]
 fn table_and_figure_a_1() {
     let sets = [
@@ -212,7 +211,7 @@ fn table_and_figure_a_1() {
         assert!((groups.s / 0.528 - 1.0).abs() < 2e-2, "{groups:?}");
         assert!((groups.force_n / force - 1.0).abs() < 3e-3 && (groups.time_s / time - 1.0).abs() < 3e-3);
         assert!((groups.displacement_m / groups.thesis_length_m / groups.s.cbrt() - 1.0).abs() < 1e-13);
-        // dimensional march of m z'' = f, y from f, with these constants, against the scaled solution
+        // Dimensional integration of m z'' = f, y from f, with these constants, compared with the scaled solution.
         let solution = beam(groups.s);
         let steps = 3000;
         let h = 2.0 * groups.time_s / steps as f64;
@@ -262,8 +261,8 @@ fn physical_parameters() {
     assert!(Impact { mass_kg: 1e200, ..a }.groups().is_err());
 }
 
-/// Semi-analytical first contact: thesis Fig. 2.6 (m = 0.555 at v = 70, 0.769 at v = 125), agreement
-/// with the full solution up to S = 1.2e4, closer with more functions.
+/// Semi-analytical first contact: thesis Fig. 2.6 (m = 0.555 at v = 70, 0.769 at v = 125). It agrees with the full solution up
+/// to S = 1.2e4, more closely with more functions.
 #[test]
 fn semi_analytical_first_contact() {
     for (v, m) in [(70.0, 0.555), (125.0, 0.769)] {
@@ -286,7 +285,8 @@ fn semi_analytical_first_contact() {
         };
         assert!(error(6) < 2e-3 && error(12) < 0.5 * error(6), "{s}: {} {}", error(6), error(12));
     }
-    // the thesis's range for six functions, 1.2e4: there is no solution that pushes throughout beyond
+    // The range of the thesis for six functions ends at 1.2e4: beyond it there is no solution whose force is positive
+    // throughout.
     let full = beam(1.2e4).first_rebound_ratio().unwrap();
     let errors = [6, 8, 10, 12, 14].map(|n| (FirstContact::at_s(1.2e4, n).unwrap().rebound_ratio() - full).abs());
     assert!(errors[0] < 3e-3 && errors.windows(2).all(|pair| pair[1] < 0.7 * pair[0]), "{errors:?}");

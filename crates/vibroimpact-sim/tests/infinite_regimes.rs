@@ -18,8 +18,7 @@ fn separations(s: f64) -> usize {
     solution.separations()
 }
 
-/// The numbers of separations: one contact below the critical S, the thesis's examples above it,
-/// and never more with larger S.
+/// The numbers of separations: one contact below the critical S, the thesis's examples above it, and never an increase with S.
 #[test]
 fn numbers_of_separations() {
     for (s, count) in [(15.0, 4), (1e3, 1), (1e5, 0), (4e5, 0), (1e8, 0), (1.6, 33)] {
@@ -41,7 +40,7 @@ fn numbers_of_separations() {
     }
 }
 
-/// The critical S to 12 digits, the thesis's to 0.1 %; one contact below it, many above.
+/// The critical S to 12 digits, and within 0.1 % of the thesis; one contact below it, many above.
 #[test]
 fn critical_value() {
     let critical = critical_s();
@@ -51,7 +50,7 @@ fn critical_value() {
     assert_eq!((below.outcome, below.separations()), (Outcome::Rebound, 1));
     let ratio = below.rebound_ratio().unwrap();
     assert!(ratio > 1e-11 && ratio < 1e-10);
-    // just above, the second contact comes at a time that grows as the inverse square of the speed
+    // Just above, the second contact begins at a time that grows as the inverse square of the speed.
     let above = solve(Structure::Beam, critical.s * (1.0 + 1e-9), &Settings { max_panels: 200, ..once() }).unwrap();
     let speed = -above.sub_impacts[0].striker_velocity_at_end.unwrap();
     assert!((speed / ratio - 1.0).abs() < 1e-4, "{speed} {ratio}");
@@ -59,8 +58,8 @@ fn critical_value() {
     assert!(above.sub_impacts.len() > 5);
 }
 
-/// Very close to the critical S the speed of the body falls, contact by contact, far below the
-/// rounding error of its initial speed; no rebound is invented and no digit lost to that.
+/// Very close to the critical S the speed of the body decreases, contact by contact, far below the rounding error of its
+/// initial speed; no rebound is invented and no digit is lost.
 #[test]
 fn close_to_the_critical_value() {
     let s = critical_s().s * (1.0 + 1e-7);
@@ -75,14 +74,14 @@ fn close_to_the_critical_value() {
     for pair in solution.sub_impacts.windows(2) {
         assert!(pair[1].closing_speed < pair[0].closing_speed && pair[1].start > pair[0].start);
     }
-    // a thousandth above it all of them are found
+    // A thousandth above it, all of them are found.
     let all = solve(Structure::Beam, critical_s().s * 1.001, &Settings::default()).unwrap();
     assert_eq!((all.outcome, all.separations()), (Outcome::Sustained, 120));
     assert!(all.relative_uncertainty.unwrap() < 1e-9, "{:?}", all.relative_uncertainty);
 }
 
-/// The first 12 turning points to 10 digits and more, the thesis's to 0.1 %; just below each there
-/// is one separation more than just above.
+/// The first 12 turning points to 10 digits and more, and within 0.1 % of the thesis; just below each there is one separation
+/// more than just above.
 #[test]
 fn turning_points_of_the_thesis() {
     let points = turning_points(12).unwrap();
@@ -96,7 +95,7 @@ fn turning_points_of_the_thesis() {
     assert!((alone.s - points[6].s).abs() <= alone.uncertainty + points[6].uncertainty);
 }
 
-/// On to n = 33 and 34, which enclose S = 1.6 with its 33 separations.
+/// Up to n = 33 and 34, which enclose S = 1.6 with its 33 separations.
 #[test]
 fn late_turning_points() {
     let (a, b) = (turning_point(33).unwrap(), turning_point(34).unwrap());
@@ -105,7 +104,7 @@ fn late_turning_points() {
     assert!(critical_s().s < b.s);
 }
 
-/// S to 0: Hertz contact with a rigid support (closed form), approached as S^(1/10).
+/// S to 0: the limit is Hertz contact with a rigid support (closed form), with an error of S^(1/10).
 #[test]
 fn rigid_limit() {
     let distance = |s: f64| {
@@ -122,8 +121,7 @@ fn rigid_limit() {
     }
 }
 
-/// Sustained contact ends on Eq. 2.47, whatever the number of separations, and the attached
-/// body is the limit of large S.
+/// Sustained contact ends on Eq. 2.47 for any number of separations, and the attached body is the limit of large S.
 #[test]
 fn large_time_asymptotics() {
     for s in [15.0, 1e3, 1e5] {
@@ -140,8 +138,8 @@ fn large_time_asymptotics() {
     assert!(distance(1e8) < 2e-3 && distance(1e8) < 0.2 * distance(1e5));
 }
 
-/// A plate is a dashpot: one contact whatever S, and the motion solves u' = -f, x' = u - f, here
-/// integrated by the classical Runge-Kutta method.
+/// A plate is a dashpot: there is one contact for any S, and the motion satisfies u' = -f, x' = u - f, here integrated by the
+/// classical Runge-Kutta method.
 #[test]
 fn plate_always_rebounds_once() {
     for k in -6..=4 {
@@ -173,8 +171,8 @@ fn plate_always_rebounds_once() {
     }
 }
 
-/// Contact declared to last does last when followed twenty times further, also next to turning
-/// points, where the compression all but vanished once.
+/// Contact that is declared to last does last if it is computed twenty times further, also next to turning points, where the
+/// compression once nearly vanished.
 #[test]
 fn sustained_contact_lasts() {
     let points = turning_points(6).unwrap();
@@ -189,7 +187,7 @@ fn sustained_contact_lasts() {
     }
 }
 
-/// Any settings allowed give the same contacts, without panic.
+/// Any valid settings give the same contacts, without panic.
 #[test]
 fn settings_do_not_change_the_outcome() {
     for structure in [Structure::Beam, Structure::Plate] {
@@ -204,7 +202,7 @@ fn settings_do_not_change_the_outcome() {
     }
 }
 
-/// Input out of range is named, not computed.
+/// Input out of range is reported, not computed.
 #[test]
 fn bad_input_is_refused() {
     for s in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-13, 1e9] {

@@ -1,6 +1,7 @@
-//! What cannot change the restitution, over random impacts: mirror, units, time's direction, how modes are written.
+//! Changes that must not affect the restitution, over random impacts: mirror image, units, direction of time, representation of
+//! modes.
 //!
-//! Two descriptions of one impact must agree within the uncertainties that the two solutions state themselves.
+//! Two descriptions of one impact must agree within the uncertainties that both solutions state.
 
 mod common;
 
@@ -17,7 +18,7 @@ use vibroimpact_sim::modal::{Mode, Outcome, Solution, Solver, Start, Striker, St
 
 const TOLERANCE: f64 = 1e-9;
 
-/// Fails unless both ended alike and their restitutions differ by no more than the stated uncertainties together.
+/// Fails unless both ended in the same way and their restitutions differ by no more than the sum of the stated uncertainties.
 fn agree(a: &Solution, b: &Solution) -> Result<(), TestCaseError> {
     let (Some(e), Some(f)) = (a.restitution, b.restitution) else {
         return Err(TestCaseError::fail(format!("{:?}, {:?}", a.outcome, b.outcome)));
@@ -89,7 +90,7 @@ proptest! {
         agree(&here.solve(TOLERANCE), &there.solve(TOLERANCE))?;
     }
 
-    /// Units of mass, length and time have no part in a number without unit. With fixed values in other units this is
+    /// A dimensionless number does not depend on the units of mass, length and time. With fixed values in other units this is
     /// scaling: bodies `mass` times heavier, `length` times larger, `time` times slower.
     #[test]
     fn other_units_and_similar_impacts(
@@ -111,11 +112,11 @@ proptest! {
         agree(&impact.solve(TOLERANCE), &other.solve(TOLERANCE))?;
     }
 
-    /// An impact without losses, run backwards from its end, gives the striker its speed back.
+    /// An impact without losses, run backwards from its end, returns the striker's initial speed.
     #[test]
     fn time_reversed(structure in ordinary_structure(Just(0.0)), striker in ordinary_striker(), law in conservative_law()) {
         let solver = Solver::new(&structure).unwrap();
-        // there and back again at a tolerance: the speed returned
+        // Forward and back at one tolerance: the returned speed.
         let round_trip = |tolerance: f64| {
             let there = solver.solve(&striker, &law, None, &settings(tolerance)).unwrap();
             let rate = there.rate.iter().map(|rate| -rate).collect();
@@ -126,21 +127,23 @@ proptest! {
         };
         let (there, away, back, returned) = round_trip(1e-12);
         prop_assert_eq!((there, back), (Outcome::Rebound, Outcome::Rebound));
-        // a structure that outruns a striker never touches it again, whichever way time goes
+        // If the structure moves away faster than the striker, they never touch again, in either direction of time.
         prop_assume!(away > 0.0);
-        // the way back amplifies errors of the whole state, which no stated uncertainty covers: the solver's own
-        // recipe for the round trip, from 32 and 8 times the tolerance, and five times the difference where that is amplified
+        // The way back amplifies errors of the whole state, which no stated uncertainty covers. The uncertainty of the round
+        // trip is estimated as in the solver: from 32 and 8 times the tolerance, and five times the difference if it is
+        // amplified.
         let spread = [3.2e-11, 8e-12].map(|tolerance| (round_trip(tolerance).3 - returned).abs());
         let spread = spread[0].max(spread[1]);
         let times = if spread > 1e-12 * striker.speed_m_s { 5.0 } else { 2.5 };
         let allowed = 5e-12 * striker.speed_m_s + times * spread;
-        // of an impact that amplifies errors by 1e9 nothing comes back, and the recipe, a difference of two, may err
+        // If an impact amplifies errors by 1e9, the way back has no correct digits, and the estimate, a difference of two
+        // numbers, may be wrong.
         prop_assume!(allowed < 1e-3 * striker.speed_m_s);
         let error = (returned - striker.speed_m_s).abs();
         prop_assert!(error <= allowed, "{:e} m/s, allowed {:e}", error, allowed);
     }
 
-    /// A mode is the same as two of its frequency that share its `phi^2`.
+    /// A mode is equivalent to two of its frequency that share its `phi^2`.
     #[test]
     fn a_mode_split_in_two(impact in ordinary_impact(), which in any::<prop::sample::Index>(), angle in 0.0..1.57f64) {
         let mut split = impact.clone();
@@ -151,7 +154,7 @@ proptest! {
         agree(&impact.solve(TOLERANCE), &split.solve(TOLERANCE))?;
     }
 
-    /// Frequencies that nearly agree are no different from equal ones.
+    /// Nearly equal frequencies give the same result as equal ones.
     #[test]
     fn a_mode_split_in_two_of_nearly_equal_frequency(
         impact in ordinary_impact(), which in any::<prop::sample::Index>(), apart in decades(-16.0, -13.0),
@@ -164,10 +167,10 @@ proptest! {
         agree(&impact.solve(TOLERANCE), &split.solve(TOLERANCE))?;
     }
 
-    /// How the modes are written down: their order, the signs of their shapes, and modes with a node at the contact.
-    /// None of it changes a single bit.
+    /// Representation of the modes: their order, the signs of their shapes, and modes with a node at the contact. None of these
+    /// changes a single bit.
     #[test]
-    fn modes_written_otherwise(impact in ordinary_impact(), signs in any::<u64>(), unexcited in decades(-3.0, 9.0)) {
+    fn equivalent_lists_of_modes(impact in ordinary_impact(), signs in any::<u64>(), unexcited in decades(-3.0, 9.0)) {
         let mut other = impact.clone();
         for (k, mode) in other.structure.modes.iter_mut().enumerate() {
             if signs >> (k % 64) & 1 == 1 {

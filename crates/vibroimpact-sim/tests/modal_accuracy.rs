@@ -1,4 +1,4 @@
-//! The modal impact against an independent method, against itself, and against the published benchmark.
+//! The modal impact compared with an independent method, with itself, and with the published benchmark.
 
 mod common;
 
@@ -19,15 +19,15 @@ fn a_plain_runge_kutta_integration_finds_the_same_rebound() {
         let fine = runge_kutta(&structure, &ball(), &law, end, 1e-12);
         let coarse = runge_kutta(&structure, &ball(), &law, end, 1e-11);
         let error = (solution.striker_velocity_m_s - fine).abs();
-        // the integration itself has this many digits
+        // The integration itself has this accuracy.
         let floor = 3.0 * (fine - coarse).abs() + 1e-10;
         assert!(error < floor, "N = {n}: {error:e} against {floor:e}");
         assert!(floor < 1e-7, "N = {n}: the reference has only {floor:e}");
     }
 }
 
-/// Every law, with its branches and what it remembers of earlier contacts, on modes and remainder modes as the program
-/// chooses them: the rebound and every touch by a method that shares nothing with the solver but the law.
+/// Every law, with its branches and its memory of earlier contacts, on modes and remainder modes as the program chooses them:
+/// the rebound and every touch by a method that has only the law in common with the solver.
 #[test]
 fn a_second_method_agrees_for_every_law_with_remainder_modes() {
     let laws: [Law; 11] = [
@@ -54,7 +54,7 @@ fn a_second_method_agrees_for_every_law_with_remainder_modes() {
             let [fine, coarse] = [1e-12, 1e-11]
                 .map(|tolerance| second_method(&structure, &ball(), &law, solution.end_s * 1.001, tolerance));
             let error = (solution.striker_velocity_m_s - fine.velocity_m_s).abs();
-            // the integration itself has this many digits
+            // The integration itself has this accuracy.
             let own = 3.0 * (fine.velocity_m_s - coarse.velocity_m_s).abs() + 1e-10;
             let touches: Vec<f64> = solution.sub_impacts.iter().map(|contact| contact.start_s).collect();
             println!("{}, {damping}: {} contacts, {error:e} of {own:e}", law.name(), touches.len());
@@ -96,7 +96,7 @@ fn the_energy_balance_closes() {
         let energy = history.energy_ledger();
         assert!((energy.initial_j - 0.5 * 0.11027).abs() < 1e-16);
         assert!(energy.residual_j.abs() < 1e-11 * energy.initial_j, "{:e}", energy.residual_j / energy.initial_j);
-        // an undamped structure and an elastic contact lose nothing
+        // An undamped structure and an elastic contact lose nothing.
         if law == hertz() {
             assert!(energy.contact_j.abs() < 1e-11 * energy.initial_j, "{:e}", energy.contact_j);
         } else {
@@ -117,17 +117,17 @@ fn with_remainder_modes_restitution_converges_in_the_number_of_modes() {
     for n in [80, 100, 150, 200] {
         assert!((e(n) - limit).abs() < 5e-5, "N = {n}: {} against {limit}", e(n));
     }
-    // plain truncation is still this far away at N = 100
+    // Plain truncation still has this error at N = 100.
     let truncated = solve(&pinned(100, 0.02, GOLDEN), 1e-9).restitution.unwrap();
     assert!((truncated - limit).abs() > 5e-3);
 }
 
 #[test]
-fn the_sdnl32_benchmark_is_met() {
-    // a beam turning as a rigid body about its pin, whose tip meets a spring of 18000 N/m
+fn the_sdnl32_benchmark_is_reproduced() {
+    // A beam that rotates as a rigid body about its pin, and whose tip meets a spring of 18000 N/m.
     let (length, side, youngs, density): (f64, f64, f64, f64) = (0.783, 0.014, 6.7e10, 2400.0);
     let (mass, rigidity) = (density * side * side, youngs * side.powi(4) / 12.0);
-    // pinned-free: tan x = tanh x; tip shapes of unit modal mass are 2/sqrt(m L), with alternating sign
+    // Pinned-free: tan x = tanh x; tip shapes of unit modal mass are 2/sqrt(m L), with alternating sign.
     let mut modes = vec![Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: (3.0 / (mass * length)).sqrt() }];
     for k in 1..10 {
         let mut x = (k as f64 + 0.25) * std::f64::consts::PI;
@@ -135,7 +135,7 @@ fn the_sdnl32_benchmark_is_met() {
             x = k as f64 * std::f64::consts::PI + x.tanh().atan();
         }
         let omega = (x / length).powi(2) * (rigidity / mass).sqrt();
-        // phi(L)^2 m L = 4 for this pair of ends
+        // phi(L)^2 m L = 4 for this pair of ends.
         modes.push(Mode { omega_rad_s: omega, damping_ratio: 0.01, shape: 2.0 / (mass * length).sqrt() });
     }
     let tip_speed = 3.8 * length;
@@ -151,19 +151,19 @@ fn the_sdnl32_benchmark_is_met() {
     for line in table.lines().skip(1) {
         let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap()).collect();
         if fields[1] == 3.0 {
-            continue; // misprint of the reference
+            continue; // Misprint of the reference.
         }
         let tip_mm = -1e3 * history.at(1e-3 * fields[1]).structure_displacement_m;
         assert!((tip_mm - fields[2]).abs() < 0.03, "{} ms: {tip_mm} against {}", fields[1], fields[2]);
         compared += 1;
     }
     assert!(compared >= 10);
-    // the published misprint: -4.92 for what every solver finds to be -4.95
+    // The published misprint: -4.92, where every solver finds -4.95.
     assert!((-1e3 * history.at(3e-3).structure_displacement_m + 4.95).abs() < 0.03);
 }
 
 #[test]
-fn history_and_solution_tell_the_same_story() {
+fn history_and_solution_agree() {
     let structure = pinned(25, 0.0, 0.4);
     let solver = Solver::new(&structure).unwrap();
     let (solution, history) = solver.record(&ball(), &hertz(), None, &settings(1e-10)).unwrap();
@@ -171,7 +171,7 @@ fn history_and_solution_tell_the_same_story() {
     let at_end = history.at(solution.end_s);
     assert!((at_end.striker_velocity_m_s - solution.striker_velocity_m_s).abs() < 1e-12);
     for contact in &solution.sub_impacts {
-        // surfaces touch at both ends, press in between, and the impulse is the integral of the force
+        // The surfaces touch at both ends, press in between, and the impulse is the integral of the force.
         assert!(history.at(contact.start_s).compression_m.abs() < 1e-15);
         assert!(history.at(contact.end_s).compression_m.abs() < 1e-14);
         let n = 4000;
@@ -189,7 +189,7 @@ fn history_and_solution_tell_the_same_story() {
     assert!((total(time) - initial).abs() < 1e-11 * initial);
 }
 
-/// Between the nodes too a history says what the law says: no force pulls, and at a touch there is none.
+/// Between the nodes, too, a history shows the force of the law: it is never tensile, and zero at a touch.
 #[test]
 fn a_history_shows_the_force_of_the_law() {
     let laws = [
@@ -221,7 +221,7 @@ fn a_history_shows_the_force_of_the_law() {
                     }
                 }
                 let ends = [history.at(contact.start_s), history.at(contact.end_s)];
-                // a dashpot presses from the first moment on
+                // A dashpot presses from the first moment.
                 let jumps = matches!(law, Law::KelvinVoigt(_));
                 assert!(jumps || ends.iter().all(|end| end.force_n <= 1e-5 * largest), "{}: {ends:?}", law.name());
             }

@@ -1,4 +1,4 @@
-//! What must hold exactly, whatever the numbers: symmetries, limits, known restitutions, bad input.
+//! Properties that hold exactly for any numbers: symmetries, limits, known restitutions, invalid input.
 
 mod common;
 
@@ -18,7 +18,7 @@ fn modes_with_a_node_at_the_contact_change_nothing() {
 }
 
 #[test]
-fn mirrored_places_are_equal() {
+fn mirrored_locations_are_equal() {
     for b in [0.1, 0.37, 0.4] {
         let (left, right) = (solve(&pinned(30, 0.02, b), 1e-10), solve(&pinned(30, 0.02, 1.0 - b), 1e-10));
         let stated = left.restitution_uncertainty.unwrap();
@@ -28,7 +28,7 @@ fn mirrored_places_are_equal() {
 
 #[test]
 fn other_units_give_the_same_restitution() {
-    // metre -> millimetre, second -> millisecond, kilogram -> gram
+    // Metre to millimetre, second to millisecond, kilogram to gram.
     let (length, time, mass): (f64, f64, f64) = (1e3, 1e3, 1e3);
     let si = pinned(30, 0.02, GOLDEN);
     let modes = si.modes.iter().map(|mode| Mode {
@@ -57,14 +57,14 @@ fn an_undamped_impact_run_backwards_returns_to_its_start() {
     assert_eq!(again.sub_impacts.len(), there.sub_impacts.len());
     assert!((again.striker_velocity_m_s - 1.0).abs() < 1e-9, "{}", again.striker_velocity_m_s);
     assert!(again.rate.iter().all(|v| v.abs() < 1e-9));
-    // the contacts come in reverse order with the same impulses
+    // The contacts occur in reverse order with the same impulses.
     for (a, b) in there.sub_impacts.iter().zip(again.sub_impacts.iter().rev()) {
         assert!((a.impulse_n_s - b.impulse_n_s).abs() < 1e-9);
     }
 }
 
 #[test]
-fn without_modes_the_restitution_is_the_laws_own() {
+fn without_modes_the_restitution_is_that_of_the_law() {
     let laws: [Law; 7] = [
         hertz(),
         Viscous::new(1.7945e10, 0.08).unwrap().into(),
@@ -84,7 +84,7 @@ fn without_modes_the_restitution_is_the_laws_own() {
         let error = (solution.restitution.unwrap() - expected).abs();
         assert!(error < 1e-9, "{}: {error:e}", law.name());
     }
-    // the thesis chose its viscous and hysteretic parameters for about 0.95
+    // The thesis chose its viscous and hysteretic parameters for about 0.95.
     for law in [laws[1], laws[2]] {
         assert!((law.wall_restitution(0.11027, 1.0).unwrap() - 0.95).abs() < 2e-3);
     }
@@ -104,8 +104,8 @@ fn a_two_centimetre_ball_has_one_contact() {
 }
 
 #[test]
-fn a_free_body_rebounds_as_momentum_wants() {
-    // two rigid bodies: a structure of one rigid-body mode of 2 kg
+fn a_free_body_rebounds_by_conservation_of_momentum() {
+    // Two rigid bodies: the structure is one rigid-body mode of 2 kg.
     let rigid = Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape: 0.5f64.sqrt() };
     let structure = Structure { modes: vec![rigid] };
     let solution = Solver::new(&structure).unwrap().solve(&ball(), &hertz(), None, &settings(1e-11)).unwrap();
@@ -117,7 +117,7 @@ fn a_free_body_rebounds_as_momentum_wants() {
 }
 
 #[test]
-fn bodies_that_part_never_meet() {
+fn separating_bodies_never_meet() {
     let away = Striker { mass_kg: 0.1, speed_m_s: -1.0 };
     let solution = Solver::new(&pinned(40, 0.02, 0.4)).unwrap().solve(&away, &hertz(), None, &settings(1e-9)).unwrap();
     assert_eq!((solution.outcome, solution.sub_impacts.len()), (Outcome::NoContact, 0));
@@ -125,7 +125,7 @@ fn bodies_that_part_never_meet() {
 }
 
 #[test]
-fn a_distant_striker_arrives_when_it_should() {
+fn a_distant_striker_arrives_on_time() {
     let mut start = Start::at_rest(40);
     start.gap_m = 0.25;
     let structure = pinned(40, 0.02, GOLDEN);
@@ -144,7 +144,7 @@ fn heavy_damping_and_coinciding_modes_are_ordinary() {
         assert!(solution.restitution.unwrap() > 0.0 && solution.restitution.unwrap() < 1.0);
         assert!(solution.restitution_uncertainty.unwrap() < 1e-6);
     }
-    // a mode split into two equal halves is the same structure
+    // A mode divided into two equal halves is the same structure.
     let whole = pinned(12, 0.02, GOLDEN);
     let half = |mode: &Mode| Mode { shape: mode.shape * 0.5f64.sqrt(), ..*mode };
     let modes = whole.modes.iter().flat_map(|mode| [half(mode), half(mode)]).collect();
@@ -154,7 +154,7 @@ fn heavy_damping_and_coinciding_modes_are_ordinary() {
 }
 
 #[test]
-fn limits_end_a_run_with_what_it_found() {
+fn limits_end_a_run_with_its_results() {
     let structure = pinned(25, 0.0, 0.4);
     let solver = Solver::new(&structure).unwrap();
     let few = Settings { max_sub_impacts: 1, ..settings(1e-9) };

@@ -1,4 +1,4 @@
-//! Laws of one's own: those that keep their contract are laws like any other, and one that breaks it ends with that reason.
+//! User-defined laws: those that keep their contract work like any other, and one that breaks it ends the run with that reason.
 
 mod common;
 
@@ -9,7 +9,7 @@ use contact_models::{
 use vibroimpact_sim::StopReason;
 use vibroimpact_sim::modal::{Outcome, Solver};
 
-/// A linear spring that changes between two branches for ever, or gives no number beyond some compression.
+/// A linear spring that changes between two branches forever, or gives NaN beyond some compression.
 struct Endless {
     limit_m: f64,
 }
@@ -48,7 +48,7 @@ fn a_law_that_breaks_its_contract_ends_with_that_reason() {
     }
 }
 
-/// Hertz's law with boundaries that are never met before its own.
+/// Hertz's law with boundaries that are never reached before its own.
 struct Crowded(Hertz);
 
 impl ContactLaw for Crowded {
@@ -117,9 +117,9 @@ impl ContactLaw for Squared {
     }
 }
 
-/// Nobody says that the force depends on the rate, and the march computes the rate all the same.
+/// No declaration states that the force depends on the rate, and the solver computes the rate all the same.
 #[test]
-fn dependence_on_the_rate_is_seen() {
+fn dependence_on_the_rate_is_detected() {
     assert!(check_contract(&Squared, 1e-4, 1.0).is_ok());
     let structure = pinned(4, 0.02, 0.3);
     let solver = Solver::new(&structure).unwrap();

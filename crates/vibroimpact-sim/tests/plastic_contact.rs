@@ -1,4 +1,4 @@
-//! The law of the example `own_law`, with two internal variables, against an integration of its flow rule.
+//! The law of the example `own_law`, with two internal variables, compared with an integration of its flow rule.
 
 mod common;
 #[path = "../examples/own_law/hardening.rs"]
@@ -11,14 +11,14 @@ use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{self, Assembly, Body, BodyMode, Contact, Outcome, Point, run};
 use vibroimpact_sim::modal::{Parameter, Posing, Solver, Start, Striker};
 
-/// Little kinematic hardening, and so much that the contact yields backwards before it opens.
+/// Little kinematic hardening, and so much that the contact yields in unloading before it opens.
 fn laws() -> [Hardening; 2] {
     let mild = Hardening { stiffness_n_m: 2e7, yield_force_n: 100.0, kinematic_n_m: 1e6, isotropic_n_m: 2e6 };
     [mild, Hardening { yield_force_n: 20.0, kinematic_n_m: 1e7, isotropic_n_m: 5e5, ..mild }]
         .map(|law| law.validated().unwrap())
 }
 
-/// What a contact does, by the flow rule alone.
+/// A contact by the flow rule alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Flow {
     Open,
@@ -26,14 +26,15 @@ enum Flow {
     Yields(f64),
 }
 
-/// Modes and contacts: overlaps are `psi a - gap`, and beside the modes each contact has an indentation and a force of yield.
+/// Modes and contacts: overlaps are `psi a - gap`, and in addition to the modes each contact has an indentation and a yield
+/// force.
 struct Reference {
     modes: Vec<BodyMode>,
     contacts: Vec<(Vec<f64>, f64, Hardening)>,
 }
 
 impl Reference {
-    /// Overlap and rate of a contact, its indentation and its force of yield.
+    /// Overlap and rate of a contact, its indentation and its yield force.
     fn seen(&self, c: usize, y: &[f64]) -> (f64, f64, f64, f64) {
         let (psi, gap, _) = &self.contacts[c];
         let n = self.modes.len();
@@ -41,7 +42,7 @@ impl Reference {
         (dot(&y[..n]) - gap, dot(&y[n..2 * n]), y[2 * n + 2 * c], y[2 * n + 2 * c + 1])
     }
 
-    /// Force, and its distances from the ends of the elastic range.
+    /// Force, and its distances from the limits of the elastic range.
     fn force(&self, c: usize, y: &[f64]) -> (f64, f64, f64) {
         let law = &self.contacts[c].2;
         let (xi, _, p, yields) = self.seen(c, y);
@@ -64,7 +65,7 @@ impl Reference {
             let force = self.force(c, y).0;
             (0..n).for_each(|k| dy[n + k] -= psi[k] * force);
             if let Flow::Yields(_) = flow {
-                // the force stays at the end of its range
+                // The force stays at the limit of its range.
                 let all = law.stiffness_n_m + law.kinematic_n_m + law.isotropic_n_m;
                 let flows = law.stiffness_n_m / all * self.seen(c, y).1;
                 (dy[2 * n + 2 * c], dy[2 * n + 2 * c + 1]) = (flows, law.isotropic_n_m * flows.abs());
@@ -72,7 +73,7 @@ impl Reference {
         }
     }
 
-    /// What a contact goes over to here.
+    /// The next state of a contact here.
     fn next(&self, c: usize, flow: Flow, y: &[f64]) -> Option<Flow> {
         let (xi, rate, p, _) = self.seen(c, y);
         let (force, above, below) = self.force(c, y);
@@ -86,7 +87,7 @@ impl Reference {
         }
     }
 
-    /// The state at the end, and how often contacts closed, yielded forwards and backwards.
+    /// The state at the end, and the numbers of closures and of yielding in loading and in unloading.
     fn run(&self, modes: &[f64], end_s: f64, tolerance: f64) -> (Vec<f64>, [usize; 3]) {
         let n = self.modes.len();
         let mut y = modes.to_vec();
@@ -117,7 +118,7 @@ impl Reference {
     }
 }
 
-/// A ball on a beam of four modes: velocity of the ball, contacts and indentation are those of the flow rule.
+/// A ball on a beam of four modes: velocity of the ball, contacts and indentation agree with the flow rule.
 #[test]
 fn an_impact_follows_the_flow_rule() {
     let (structure, ball) = (pinned(4, 0.02, 0.3), ball());
@@ -146,7 +147,7 @@ fn an_impact_follows_the_flow_rule() {
         assert_eq!(solution.sub_impacts.len(), seen[0]);
         assert!(seen[1] > 0);
         backwards += seen[2];
-        // where the last contact opens, the compression is the indentation
+        // Where the last contact opens, the compression equals the indentation.
         let left_m = history.at(solution.end_s).compression_m;
         assert!((left_m - y[10]).abs() < 1e-6 * y[10], "{left_m:e} {:e}", y[10]);
         assert!(history.times(end_s, 50).iter().all(|time| history.at(*time).force_n.is_finite()));
@@ -201,7 +202,7 @@ fn two_contacts_follow_the_flow_rule() {
     assert!(seen[1] > 0 && seen[2] > 0, "{seen:?}");
 }
 
-/// The law keeps what laws promise, and its motions reach all three kinds of branches.
+/// The law has the properties that a solver requires, and its motions reach all three kinds of branches.
 #[test]
 fn the_law_keeps_its_contract() {
     for law in laws() {
@@ -210,7 +211,8 @@ fn the_law_keeps_its_contract() {
             assert!(kept.is_ok(), "{law:?} {compression_m} {}", kept.unwrap_err());
         }
     }
-    // pressed twice to the same depth, the strong law yields backwards at the end of each press, and forwards again
+    // If it is pressed twice to the same depth, the law with strong hardening yields in unloading at the end of each press, and
+    // in loading again.
     let times: Vec<f64> = (0..=400).map(|i| f64::from(i) / 100.0).collect();
     let press = |t: f64| (5e-5 * (PI * t).sin(), 5e-5 * PI * (PI * t).cos());
     let path = trace(&laws()[1], &times, press).unwrap();
@@ -218,7 +220,7 @@ fn the_law_keeps_its_contract() {
     assert!(lost(1.5) > 0.0 && lost(3.5) > lost(1.5) + 0.01 * lost(1.5));
 }
 
-/// Derivatives follow the indentation and the force of yield from contact to contact.
+/// Derivatives include the indentation and the yield force from contact to contact.
 #[test]
 fn derivatives_follow_the_internal_variables() {
     let offsets = [-2e-4, -1e-4, 1e-4, 2e-4];

@@ -1,4 +1,4 @@
-//! What remainder modes bring: the restitution of the thesis's beam with few modes against the converged one.
+//! The effect of remainder modes: the restitution of the thesis's beam with few modes compared with the converged one.
 
 mod common;
 use beam_modes::{Beam, BeamSystem, End, PointMode, RectangularSegment, Segment, ShearSection, remainder_modes};
@@ -13,7 +13,7 @@ fn restitution(structure: &Structure) -> f64 {
     solve(structure, 1e-10).restitution.unwrap()
 }
 
-/// `n` modes of the beam and `count` remainder modes of 3,000 more, damped as the last that is kept.
+/// `n` modes of the beam and `count` remainder modes of 3,000 more, with the damping of the last mode that is not truncated.
 fn with_remainder(n: usize, count: usize) -> Structure {
     let all = pinned(n + 3000, DAMPING, GOLDEN);
     let tail: Vec<PointMode> =
@@ -27,7 +27,7 @@ fn with_remainder(n: usize, count: usize) -> Structure {
     structure
 }
 
-/// Golden section, 3 cm ball: 64 modes alone are off by 2e-2, two remainder modes for the rest by 1e-5.
+/// Golden section, 3 cm ball: the error of 64 modes alone is 2e-2, that with two remainder modes for the rest 1e-5.
 #[test]
 fn two_remainder_modes_are_worth_a_thousand_modes() {
     let converged = restitution(&with_remainder(256, 3));
@@ -44,8 +44,8 @@ fn two_remainder_modes_are_worth_a_thousand_modes() {
     assert!(one < 1e-5 && two < 2e-6 && three < 1e-6);
 }
 
-/// A steel beam of square segments, length and side (m), by Timoshenko's theory: `n` modes as seen from a place and four
-/// remainder modes.
+/// A steel beam of square segments, length and side (m), by Timoshenko's theory: `n` modes at a location and four remainder
+/// modes.
 fn square(segments: &[(f64, f64)], shear_coefficient: f64, ends: [End; 2], x: f64, n: usize) -> Structure {
     let (modulus, density, nu) = (2e11, 7800.0, 0.3);
     let section = |&(_, side): &(f64, f64)| ShearSection {
@@ -74,7 +74,7 @@ fn timoshenko(n: usize) -> Structure {
     square(&[(1.0, 0.011323)], 10.0 * 1.3 / (12.0 + 11.0 * 0.3), [End::Pinned; 2], GOLDEN, n)
 }
 
-/// The impact of a steel ball (m) at 1 m/s, mass and Hertz contact from its material.
+/// The impact of a steel ball (radius in m) at 1 m/s, with mass and Hertz contact from its material.
 fn solution(structure: &Structure, radius_m: f64, tolerance: f64) -> Solution {
     let striker = Striker { mass_kg: 4.0 / 3.0 * PI * radius_m.powi(3) * 7800.0, speed_m_s: 1.0 };
     let ball = Body { youngs_modulus_pa: 2e11, poissons_ratio: 0.3, radius_m };
@@ -99,7 +99,7 @@ fn the_theory_of_the_beam_matters_more_than_its_modes() {
     }
 }
 
-/// Other beams than that of chapter 3: 150 modes and four remainder modes are within 1e-4 of 600.
+/// Beams other than that of chapter 3: the result with 150 modes and four remainder modes is within 1e-4 of that with 600.
 #[test]
 fn a_hundred_and_fifty_modes_are_enough_for_thick_beams() {
     let kappa = 5.0 * 1.3 / 7.5;
@@ -117,8 +117,8 @@ fn a_hundred_and_fifty_modes_are_enough_for_thick_beams() {
     }
 }
 
-/// With as many modes an impact takes as many steps by either theory (one contact by both: the 2 cm ball), and not many more
-/// with remainder modes, which are faster waves in a thick beam.
+/// With the same number of modes an impact takes as many steps by either theory (one contact by both: the 2 cm ball), and not
+/// many more with remainder modes, which are faster waves in a thick beam.
 #[test]
 fn thick_beams_cost_what_slender_ones_do() {
     let steps = |structure: &Structure| {

@@ -1,4 +1,4 @@
-//! Structures that move against an immovable stop: whether they meet it, leave it for good, or stay pressed against it.
+//! Structures that move against an immovable stop: whether they meet it, separate from it for good, or stay pressed against it.
 
 mod common;
 
@@ -20,7 +20,7 @@ fn segment(length_m: f64, youngs_pa: f64, density_kg_m3: f64, width_m: f64, thic
     Segment { length_m, flexural_rigidity_n_m2, mass_per_length_kg_m: density_kg_m3 * area }
 }
 
-/// The first mode in motion, at a gap from the stop; its shape at the contact taken positive.
+/// The first mode in motion, at a gap from the stop; its shape at the contact is taken as positive.
 fn swing(structure: &mut Structure, amplitude: f64, rate: f64, gap_m: f64) -> Start {
     structure.modes[0].shape = structure.modes[0].shape.abs();
     let mut start = Start::at_rest(structure.modes.len());
@@ -32,10 +32,10 @@ fn run(structure: &Structure, law: &Law, start: &Start, settings: &Settings) -> 
     Solver::new(structure).unwrap().solve(&STOP, law, Some(start), settings).unwrap()
 }
 
-/// A structure that swings past a stop at a distance, and comes to rest short of it: a double-double integration with a
-/// certified search finds no contact.
+/// A structure that vibrates at a distance from a stop and comes to rest without reaching it: a double-double integration with
+/// a certified search finds no contact.
 #[test]
-fn a_damped_swing_that_never_meets_the_stop() {
+fn a_damped_vibration_that_never_meets_the_stop() {
     let segments = vec![
         segment(0.5190888196463543, 239502084789.586, 4876.4439580942635, 0.022134036069978515, 0.0065336823462030695),
         segment(0.057180895682550865, 239502084789.586, 4876.4439580942635, 0.013831915788182705, 0.010115847471865448),
@@ -59,14 +59,14 @@ fn pressed() -> (Structure, Law, Start) {
     (structure, law, start)
 }
 
-/// A beam that is deflected away from a stop, springs back and comes to rest against it: its static state is known in
-/// closed form.
+/// A beam that is deflected away from a stop, springs back and comes to rest against it: its static state is known in closed
+/// form.
 #[test]
 fn a_beam_that_comes_to_rest_against_a_stop() {
     let (structure, law, start) = pressed();
     let solution = run(&structure, &law, &start, &settings(1e-9));
     assert_eq!(solution.outcome, Outcome::Sustained);
-    // followed on until it has come to rest, it stands where statics puts it
+    // When it has come to rest, its position is that of statics.
     let until = 40.0;
     let further = Settings { until_s: until, ..settings(1e-9) };
     let (same, history) = Solver::new(&structure).unwrap().record(&STOP, &law, Some(&start), &further).unwrap();
@@ -79,7 +79,7 @@ fn a_beam_that_comes_to_rest_against_a_stop() {
     assert!(now.structure_velocity_m_s.abs() < 1e-9);
 }
 
-/// Of a structure without damping some motion never dies down; the bodies stay together once its energy cannot part them.
+/// Without damping some motion of a structure never decays; the bodies stay together once its energy cannot separate them.
 #[test]
 fn a_structure_without_damping_is_held_by_its_preload() {
     let (mut structure, ..) = pressed();
@@ -87,7 +87,7 @@ fn a_structure_without_damping_is_held_by_its_preload() {
     for mode in &mut structure.modes {
         mode.damping_ratio = 0.0;
     }
-    // let go where the surfaces part, with one mode in motion; the contact alone takes energy up
+    // Released at the surface of the stop, with one mode in motion; only the contact dissipates energy.
     let law = Law::from(KelvinVoigt::new(3e4, 100.0).unwrap());
     let static_compliance = |mode: &Mode| (mode.shape / mode.omega_rad_s).powi(2);
     let compliance: f64 = structure.modes.iter().map(static_compliance).sum();
@@ -113,8 +113,9 @@ fn any_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// Damped beams in any motion, before stops that they press on, meet or pass: each ends as it does in truth, for ever
-/// apart or for ever together. A stop that the undeformed beam just touches is none of them: contacts without end.
+/// Damped beams in any motion, in front of stops that they press on, meet or pass: each run ends with the true outcome,
+/// separate forever or together forever. A stop that the undeformed beam just touches is excluded, because its contacts never
+/// end.
 #[test]
 fn every_damped_motion_before_a_stop_ends() {
     let ends =
@@ -141,7 +142,7 @@ fn every_damped_motion_before_a_stop_ends() {
             start.rate[k] = size * omega_rad_s * parts.1;
             swings += (shape * size).abs() * parts.0.hypot(parts.1);
         }
-        // the stop stands beyond the undeformed surface, or before it: then the structure starts deflected away from it
+        // The stop is beyond the undeformed surface, or in front of it: then the structure starts deflected away from it.
         let stop = beyond * swings;
         let now: f64 = structure.modes.iter().zip(&start.amplitude).map(|(mode, a)| mode.shape * a).sum();
         start.gap_m = stop - now;
@@ -157,13 +158,13 @@ fn every_damped_motion_before_a_stop_ends() {
             Outcome::Sustained => counts[2] += 1,
             _ => panic!("{what}"),
         }
-        // statics decides which of them last
+        // Statics decides which contacts last.
         assert_eq!(solution.outcome == Outcome::Sustained, stop < 0.0, "{what}");
     }
     assert!(counts.iter().all(|count| *count >= 10), "{counts:?}");
 }
 
-/// An undamped swing that falls short of the stop by less than rounding can tell: the search says that it gave up, and why.
+/// The amplitude of an undamped vibration is below the stop by less than rounding: the search reports that it gave up, and why.
 #[test]
 fn a_search_without_end_is_named() {
     let mode = |omega_rad_s: f64| Mode { omega_rad_s, damping_ratio: 0.0, shape: 1.0 };

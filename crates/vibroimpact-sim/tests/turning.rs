@@ -1,5 +1,5 @@
-//! A solver that is turned from place to place of a structure, or shared by threads, finds what a new one finds, to the last
-//! bit.
+//! A solver that is moved from location to location of a structure, or shared by threads, gives the results of a new one, to
+//! the last bit.
 
 mod common;
 
@@ -7,8 +7,8 @@ use common::{ball, hertz, pinned, settings};
 use vibroimpact_sim::modal::{Settings, Solver, Start, Striker, Structure};
 
 #[test]
-fn a_solver_turned_to_another_place_is_as_a_new_one() {
-    // a node of every fifth mode, where fewer modes move; places near an end; other damping; other modes
+fn a_solver_moved_to_another_location_equals_a_new_one() {
+    // A node of every fifth mode, where fewer modes move; locations near an end; other damping; other modes.
     let mut beams: Vec<Structure> = [0.618, 0.4, 0.02, 0.4, 0.999, 0.5].map(|place| pinned(40, 0.02, place)).into();
     beams.extend([pinned(40, 0.0, 0.618), pinned(12, 0.02, 0.3), pinned(40, 0.02, 0.3)]);
     for estimate_uncertainty in [false, true] {
@@ -24,7 +24,7 @@ fn a_solver_turned_to_another_place_is_as_a_new_one() {
 }
 
 #[test]
-fn a_structure_that_is_none_is_refused_and_the_solver_stays_as_it_was() {
+fn an_invalid_structure_is_refused_and_the_solver_does_not_change() {
     let beam = pinned(10, 0.02, 0.4);
     let mut solver = Solver::new(&beam).unwrap();
     let mut broken = beam.clone();
@@ -35,10 +35,10 @@ fn a_structure_that_is_none_is_refused_and_the_solver_stays_as_it_was() {
     assert_eq!(solver.solve(&ball(), &hertz(), None, &settings), new);
 }
 
-/// Threads build the tables of a solver together and find what each would find alone. Strikers differ, as do the rigid modes
-/// then; one of them stands still, and the motion is recorded with its ledger by every other thread.
+/// Threads build the tables of a solver together and get the results that each would get alone. Strikers differ, and hence the
+/// rigid modes; one of them is at rest, and every second thread records the motion with its ledger.
 #[test]
-fn threads_share_a_solver_and_find_the_same_bits() {
+fn threads_share_a_solver_with_the_same_bits() {
     let beam = pinned(40, 0.02, 0.618);
     let settings = settings(1e-5);
     let strikers: Vec<Striker> = (1..=8).map(|i| Striker { mass_kg: 0.02 * f64::from(i), ..ball() }).collect();

@@ -1,4 +1,4 @@
-//! What the examples strike, and with what.
+//! The structure and the striker of the examples.
 
 use vibroimpact_sim::modal::{Mode, Striker, Structure};
 

@@ -1,5 +1,4 @@
-//! A contact that yields and hardens, with two internal variables: the plastic indentation `p` (m) and the force of yield
-//! `Y` (N).
+//! A contact with plastic hardening and two internal variables: the plastic indentation `p` (m) and the yield force `Y` (N).
 //!
 //! Source: the one-dimensional model of mixed hardening of J. C. Simo and T. J. R. Hughes, *Computational Inelasticity*
 //! (Springer, 1998), section 1.2, with a force in place of a stress. With `xi` the compression,
@@ -9,15 +8,14 @@
 //! X - Y <= F <= X + Y,     X = h p,     Y' = g |p'|                                  (2)
 //! ```
 //!
-//! Where `F` reaches the upper or the lower end of (2), the contact yields forwards or backwards. `F` then stays there, so
-//! that with `s = k/(k + h + g)`, from an anchor `xi_a` on,
+//! If `F` reaches the upper or the lower limit of (2), the contact yields in loading or in unloading. `F` then stays at this
+//! limit, so that with `s = k/(k + h + g)`, from an anchor `xi_a` on,
 //!
 //! ```text
 //! p = p_a + s (xi - xi_a),     Y = Y_a + g s |xi - xi_a|                             (3)
 //! ```
 //!
-//! and the slope of the force is `k (1 - s)`. The contact opens where the force vanishes, at `xi = p`, and leaves `p` and `Y`
-//! behind.
+//! and the slope of the force is `k (1 - s)`. The contact opens where the force vanishes, at `xi = p`; `p` and `Y` remain.
 
 // ANCHOR: state
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Internal, InvalidInput, Memory, Stage};
@@ -53,16 +51,16 @@ impl From<Internal> for Plastic {
 pub struct Hardening {
     /// Elastic stiffness `k` (N/m).
     pub stiffness_n_m: f64,
-    /// Force `Y` at which a fresh contact yields (N).
+    /// Force `Y` at which a contact of a fresh surface yields (N).
     pub yield_force_n: f64,
-    /// Kinematic hardening `h` (N/m): the range of elastic forces moves along with the indentation.
+    /// Kinematic hardening `h` (N/m): the range of elastic forces moves with the indentation.
     pub kinematic_n_m: f64,
     /// Isotropic hardening `g` (N/m): the range becomes wider.
     pub isotropic_n_m: f64,
 }
 
 impl Hardening {
-    /// The law itself if its parameters are in range.
+    /// The law if its parameters are in range.
     ///
     /// # Errors
     /// A parameter that is not positive, or beyond 1e30.
@@ -102,11 +100,11 @@ impl Hardening {
         Branch { stage: ELASTIC, anchor_m: plastic.indentation_m, internal: plastic.into() }
     }
 
-    /// The ends of (2) (N). The lower one is no less than zero, where the contact opens.
+    /// The limits of (2) (N). The lower one is at least zero, where the contact opens.
     fn range(&self, plastic: Plastic) -> (f64, f64) {
         let back_n = self.kinematic_n_m * plastic.indentation_m;
         let lower = back_n - plastic.yield_force_n;
-        // a contact that has opened while it yielded backwards is left at zero, but for rounding
+        // A contact that has opened while it yielded in unloading ends at zero, except for rounding.
         let lower = if lower > 1e-9 * plastic.yield_force_n { lower } else { 0.0 };
         (lower, back_n + plastic.yield_force_n)
     }
@@ -116,7 +114,7 @@ impl Hardening {
 impl ContactLaw for Hardening {
     fn touch(&self, memory: &Memory, _approach_speed_m_s: f64) -> Branch {
         let [kept_n] = memory.internal.into();
-        // a fresh memory is all zero
+        // A fresh memory is all zero.
         let yield_force_n = self.yield_force_n.max(kept_n);
         self.elastic(Plastic { indentation_m: memory.touch_m, yield_force_n })
     }
@@ -133,7 +131,7 @@ impl ContactLaw for Hardening {
         if branch.stage == BACKWARDS {
             return 0.5 * force_n * force_n / slope_n_m;
         }
-        // unloading is elastic down to the lower end, and yields backwards from there
+        // Unloading is elastic down to the lower limit, and yields from there.
         let lower = self.range(self.plastic(branch, compression_m)).0.min(force_n);
         0.5 * (force_n * force_n - lower * lower) / self.stiffness_n_m + 0.5 * lower * lower / slope_n_m
     }
@@ -151,7 +149,7 @@ impl ContactLaw for Hardening {
             }
             (FORWARDS, 0) => Some(Boundary::rate_falls_to(0.0)),
             (BACKWARDS, 0) => {
-                // where the force vanishes by its constant slope
+                // The compression at which the force vanishes, by its constant slope.
                 let force_n = self.force(branch, branch.anchor_m, 0.0).force_n;
                 let slope_n_m = self.stiffness_n_m * (1.0 - self.share());
                 Some(Boundary::compression_falls_to(branch.anchor_m - force_n / slope_n_m))

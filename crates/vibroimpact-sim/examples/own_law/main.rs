@@ -1,4 +1,4 @@
-//! A contact law of one's own: a ball on a beam that it indents, and the same ball between the beam and a stop.
+//! A contact law of your own: a ball on a beam that it indents, and the same ball between the beam and a stop.
 //!
 //! `cargo run --release -p vibroimpact-sim --example own_law`
 
@@ -12,7 +12,7 @@ use hardening::Hardening;
 use vibroimpact_sim::assembly::{Assembly, Body, BodyMode, Contact, Interval, Observer, Point, Settings, run};
 use vibroimpact_sim::modal::{self, Solver};
 
-/// Prints each contact when it is over.
+/// Prints each contact after its end.
 struct Printed;
 
 impl Observer for Printed {
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("restitution {:?}, indentation {:.3} um", solution.restitution, 1e6 * lasting_m);
     // ANCHOR_END: run
 
-    // the same ball comes down on the beam, and a stop above catches it
+    // The same ball falls on the beam, and a stop above catches it.
     let shape = |factor: f64| -> Vec<f64> { structure.modes.iter().map(|mode| factor * mode.shape).collect() };
     let modes = structure.modes.iter().map(|m| BodyMode { omega_rad_s: m.omega_rad_s, damping_ratio: m.damping_ratio });
     let of_ball = Point::OfBody { body: 0, shape: vec![ball.mass_kg.sqrt().recip()] };

@@ -1,4 +1,4 @@
-//! What the tests of the modal impact share: the thesis's beam, and a plain Runge-Kutta integration.
+//! Common parts of the tests of the modal impact: the thesis's beam, and a plain Runge-Kutta integration.
 #![allow(dead_code)]
 
 pub mod random;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use vibroimpact_sim::assembly::{Interval, Observer};
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Striker, Structure};
 
-/// Collects the intervals of all contacts, each with the number of its contact, and asks for the energy ledger.
+/// Collects the intervals of all contacts, each with the number of its contact, and requests the energy ledger.
 #[derive(Default)]
 pub struct Intervals(pub Vec<(usize, Interval)>);
 
@@ -41,7 +41,7 @@ pub fn pinned(n: usize, damping_ratio: f64, b: f64) -> Structure {
     Structure { modes: (1..=n).map(mode).collect() }
 }
 
-/// The same with two remainder modes for all that are higher.
+/// The same with two remainder modes for all higher modes.
 pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure {
     let beam = Beam {
         segments: vec![Segment::from(RectangularSegment {
@@ -58,7 +58,7 @@ pub fn pinned_with_remainder(n: usize, damping_ratio: f64, b: f64) -> Structure 
     structure
 }
 
-/// Modes of a beam at a place, all with one damping ratio.
+/// Modes of a beam at a location, all with one damping ratio.
 pub fn seen_from(beam: &Beam, x_m: f64, count: usize, damping_ratio: f64) -> Structure {
     Structure::from_modes(beam.modes(count).unwrap().seen_from(x_m).unwrap(), damping_ratio)
 }
@@ -86,16 +86,16 @@ pub fn runge_kutta(structure: &Structure, striker: &Striker, law: &Law, end_s: f
     second_method(structure, striker, law, end_s, tolerance).velocity_m_s
 }
 
-/// What the second method found.
+/// The result of the second method.
 pub struct Found {
     pub velocity_m_s: f64,
-    /// Beginnings of contacts (s).
+    /// Starts of contacts (s).
     pub touches_s: Vec<f64>,
 }
 
-/// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker
-/// and of every mode, for a structure at rest that the striker touches. Flights are integrated as well; every end of a branch
-/// of the law, every release and every touch is located, and the integration begins anew behind it.
+/// The same equations in one vector, by an adaptive Dormand-Prince 5(4) pair: displacement and velocity of the striker and of
+/// every mode, for a structure at rest that the striker touches. Flights are integrated as well; every end of a branch of the
+/// law, every release and every touch is located, and the integration restarts after it.
 pub fn second_method(
     structure: &Structure,
     striker: &Striker,
@@ -104,7 +104,7 @@ pub fn second_method(
     tolerance: f64,
 ) -> Found {
     let n = structure.modes.len();
-    // compression and its rate
+    // Compression and its rate.
     let seen = |y: &[f64]| {
         let modes = structure.modes.iter().zip(y[2..].chunks_exact(2));
         modes.fold((-y[0], -y[1]), |(xi, rate), (mode, y)| (xi + mode.shape * y[0], rate + mode.shape * y[1]))
@@ -120,7 +120,7 @@ pub fn second_method(
                 -2.0 * mode.damping_ratio * mode.omega_rad_s * v - mode.omega_rad_s.powi(2) * a - mode.shape * force;
         }
     };
-    // scales of the error: velocities by the approach, displacements by what it covers in the fastest period
+    // Scales of the error: velocities by the approach speed, displacements by the distance it covers in the fastest period.
     let fastest = structure.modes.iter().map(|mode| mode.omega_rad_s).fold(1e4, f64::max);
     let scale = |i: usize| striker.speed_m_s * if i.is_multiple_of(2) { 1.0 / fastest } else { 1.0 };
     let mut y = vec![0.0; 2 * n + 2];
@@ -158,8 +158,8 @@ pub fn second_method(
     Found { velocity_m_s: y[1], touches_s }
 }
 
-/// Integrates `y' = f(t, y)` from and to these times, with a first step, by an adaptive Dormand-Prince 5(4) pair: the
-/// error of a step in component `i` is held to `tolerance * scale(i)`.
+/// Integrates `y' = f(t, y)` between these times, with a given first step, by an adaptive Dormand-Prince 5(4) pair: the error
+/// of a step in component `i` is kept below `tolerance * scale(i)`.
 pub fn dormand_prince(
     slope: impl Fn(f64, &[f64], &mut [f64]),
     scale: impl Fn(usize) -> f64,
@@ -170,7 +170,7 @@ pub fn dormand_prince(
     dormand_prince_until(slope, scale, y, span_s, tolerance, |_| false);
 }
 
-/// The same until `met` holds for the first time, which is located to the last digit but a few. Returns that time, or the end.
+/// The same until `met` is true for the first time, which is located to the last few digits. Returns that time, or the end.
 pub fn dormand_prince_until(
     slope: impl Fn(f64, &[f64], &mut [f64]),
     scale: impl Fn(usize) -> f64,
@@ -190,7 +190,7 @@ pub fn dormand_prince_until(
     const E: [f64; 7] =
         [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
     const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-    // a step as short as this has found what is met
+    // A step as short as this has located the condition.
     const LAST: f64 = 1e-15;
     let size = y.len();
     let mut k = vec![vec![0.0; size]; 7];
@@ -215,7 +215,7 @@ pub fn dormand_prince_until(
                     *y = trial;
                     return t + h;
                 }
-                // from now on in steps that halve, up to what is met and not beyond
+                // From here the steps are halved, up to the event and not beyond.
                 longest = 0.5 * h;
                 h = longest;
                 continue;

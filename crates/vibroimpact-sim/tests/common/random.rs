@@ -1,4 +1,4 @@
-//! Random impacts for property tests: the seed is fixed, so that a run is the same everywhere.
+//! Random impacts for property tests. The seed is fixed, so that a run is the same everywhere.
 
 use contact_models::{
     Felt, Flores, Hertz, HuntCrossley, Hysteretic, KelvinVoigt, LankaraniNikravesh, Law, LinearSpring, Power, Thornton,
@@ -9,7 +9,7 @@ use proptest::test_runner::RngSeed;
 use std::f64::consts::PI;
 use vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
 
-/// So many cases, times the environment variable `VIBROIMPACT_CASES` if it is set.
+/// This number of cases, times the environment variable `VIBROIMPACT_CASES` if it is set.
 pub fn cases(count: u32) -> u32 {
     let factor = std::env::var("VIBROIMPACT_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
     count.saturating_mul(factor)
@@ -24,7 +24,7 @@ pub fn config(count: u32) -> ProptestConfig {
     }
 }
 
-/// Numbers spread evenly over the decades `10^from .. 10^to`.
+/// Numbers distributed evenly over the decades `10^from .. 10^to`.
 pub fn decades(from: f64, to: f64) -> impl Strategy<Value = f64> {
     (from..to).prop_map(|x| 10f64.powf(x))
 }
@@ -57,7 +57,7 @@ pub fn any_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// Any structure, over many decades, with and without rigid-body modes and a fast mode that yields like a spring.
+/// Any structure, over many decades, with and without rigid-body modes and a fast mode that responds like a spring.
 pub fn any_structure() -> impl Strategy<Value = Structure> {
     let damping = prop_oneof![Just(0.0), decades(-4.0, 1.0)];
     let compliance = prop_oneof![4 => Just(None), 1 => decades(-12.0, -6.0).prop_map(Some)];
@@ -79,7 +79,7 @@ pub fn any_structure() -> impl Strategy<Value = Structure> {
     )
 }
 
-/// An impact as an engineer might pose it: of the order of the thesis's, two decades up and down.
+/// An impact as an engineer might define it: within two decades of the impact of the thesis.
 #[derive(Debug, Clone)]
 pub struct Impact {
     pub structure: Structure,
@@ -95,7 +95,7 @@ impl Impact {
     }
 }
 
-/// Laws that lose energy and laws that do not, for a striker of the order of 0.1 kg at 1 m/s.
+/// Laws with and without dissipation, for a striker of the order of 0.1 kg at 1 m/s.
 pub fn ordinary_law() -> impl Strategy<Value = Law> {
     let stiffness = || decades(8.0, 11.0);
     prop_oneof![
@@ -109,7 +109,7 @@ pub fn ordinary_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// Laws that give back all they took.
+/// Laws without dissipation.
 pub fn conservative_law() -> impl Strategy<Value = Law> {
     prop_oneof![
         2 => decades(8.0, 11.0).prop_map(|k| Law::from(Hertz::new(k).unwrap())),
@@ -117,7 +117,7 @@ pub fn conservative_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// A pinned beam in its first modes, struck anywhere, with or without remainder modes for the others.
+/// A pinned beam in its first modes, struck anywhere, with or without remainder modes.
 pub fn ordinary_structure(damping: impl Strategy<Value = f64>) -> impl Strategy<Value = Structure> {
     (1usize..50, damping, 0.02..0.98f64, any::<bool>()).prop_map(|(n, damping_ratio, b, residual)| match residual {
         true => super::pinned_with_remainder(n, damping_ratio, b),
@@ -129,7 +129,7 @@ pub fn ordinary_striker() -> impl Strategy<Value = Striker> {
     (decades(-2.5, 0.5), decades(-1.0, 1.0)).prop_map(|(mass_kg, speed_m_s)| Striker { mass_kg, speed_m_s })
 }
 
-/// Damped or not.
+/// With or without damping.
 pub fn ordinary_damping() -> impl Strategy<Value = f64> {
     prop_oneof![1 => Just(0.0), 4 => decades(-3.0, -1.0)]
 }
@@ -139,8 +139,8 @@ pub fn ordinary_impact() -> impl Strategy<Value = Impact> {
         .prop_map(|(structure, striker, law)| Impact { structure, striker, law })
 }
 
-/// An impact from the edges of what an engineer might pose: near supports and free ends, many modes without damping, every
-/// law, free structures that fly against a stop.
+/// An impact at the limits of what an engineer might define: near supports and free ends, many modes without damping, every
+/// law, free structures that move towards a stop.
 #[derive(Debug, Clone)]
 pub struct EdgeImpact {
     pub structure: Structure,
@@ -166,7 +166,7 @@ fn edge_law() -> impl Strategy<Value = Law> {
     ]
 }
 
-/// A pinned beam seen from near its support, a cantilever-like row of modes seen from its tip, or many modes.
+/// A pinned beam near its support, a cantilever-like list of modes at its tip, or many modes.
 fn edge_structure() -> impl Strategy<Value = Structure> {
     let place = prop_oneof![2 => decades(-3.0, -1.3), 1 => Just(0.5), 2 => 0.02..0.98f64];
     let number = prop_oneof![2 => 1usize..50, 1 => 50usize..120];
@@ -177,7 +177,7 @@ fn edge_structure() -> impl Strategy<Value = Structure> {
         }
         let mut structure = super::pinned(n, damping_ratio, b);
         if tip {
-            // all shapes of one size, as at a free end
+            // All shapes of one size, as at a free end.
             for (k, mode) in structure.modes.iter_mut().enumerate() {
                 mode.omega_rad_s *= ((k as f64 + 0.5) / (k as f64 + 1.0)).powi(2);
                 mode.shape = 2.0;
@@ -196,7 +196,7 @@ pub fn edge_impact() -> impl Strategy<Value = EdgeImpact> {
     });
     let stop = (edge_structure(), decades(-1.0, 0.5), decades(-1.0, 1.0), -0.3..0.3f64, edge_law()).prop_map(
         |(mut structure, shape, speed, swing, law)| {
-            // a structure that flies as a rigid body, swinging in its lowest mode
+            // A structure that moves as a rigid body, vibrating in its lowest mode.
             structure.modes.insert(0, Mode { omega_rad_s: 0.0, damping_ratio: 0.0, shape });
             let mut start = Start::at_rest(structure.modes.len());
             start.rate[0] = speed / shape;

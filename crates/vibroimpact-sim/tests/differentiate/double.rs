@@ -5,13 +5,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Double {
-    /// The nearest double, and what it leaves out.
+    /// The nearest double, and the remainder.
     pub near: f64,
     pub rest: f64,
 }
 
 impl Double {
-    /// The sum of two doubles, nothing lost.
+    /// The exact sum of two doubles.
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Double {
         let near = a + b;
@@ -19,7 +19,7 @@ impl Double {
         Double { near, rest: (a - (near - of_b)) + (b - of_b) }
     }
 
-    /// The same where `|b|` is small beside `|a|`.
+    /// The same if `|b|` is small compared with `|a|`.
     #[inline(always)]
     fn renormalized(a: f64, b: f64) -> Double {
         let near = a + b;

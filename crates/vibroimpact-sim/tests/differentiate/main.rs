@@ -1,4 +1,4 @@
-//! Derivatives of impacts against differences of solutions in 32 digits, and of solutions at a tolerance of 1e-13.
+//! Derivatives of impacts compared with differences of solutions in 32 digits, and of solutions at a tolerance of 1e-13.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -17,7 +17,7 @@ use vibroimpact_sim::modal::{
     Structure, SubImpact,
 };
 
-/// A law whose force is so many times that of another.
+/// A law whose force is a multiple of that of another.
 #[derive(Clone)]
 struct Times(f64, Law);
 
@@ -48,7 +48,7 @@ impl ContactLaw for Times {
     }
 }
 
-/// An impact with all that poses it.
+/// An impact with its complete definition.
 #[derive(Clone)]
 struct Posed {
     structure: Structure,
@@ -57,7 +57,7 @@ struct Posed {
     start: Start,
 }
 
-/// What can be changed of it, by a part of its size.
+/// The numbers of it that can be changed, by a fraction of their size.
 const PARAMETERS: [&str; 7] = ["mass", "speed", "frequencies", "damping", "shapes", "stiffness", "gap"];
 
 impl Posed {
@@ -138,7 +138,7 @@ impl Posed {
         solver.differentiate(&self.striker, &self.law, Some(&self.start), &settings(tolerance), &parameters).unwrap()
     }
 
-    /// Central differences of fourth order of an output, and how well they are known.
+    /// Central differences of fourth order of an output, and their accuracy.
     fn differences(&self, which: usize, of: impl Fn(&Solution) -> f64) -> (f64, f64) {
         let by = |step: f64| {
             let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|place| of(&self.with(which, place * step).solve(1e-13)));
@@ -149,27 +149,27 @@ impl Posed {
     }
 }
 
-/// How many derivatives were compared, and how many of them hold.
+/// Number of derivatives that were compared, and number of those that pass.
 #[derive(Debug, Default)]
 struct Tally {
     compared: usize,
     covered: usize,
-    /// Not right to a millionth, with an uncertainty stated that does not cover it: nothing tells the user that they are wrong.
+    /// Not accurate to a millionth, with a stated uncertainty that does not cover the error: nothing warns the user.
     silent: usize,
-    /// Of impacts with at most [`FEW`] contacts: compared, and right to a millionth. Every further contact magnifies the error
-    /// of the motion, and after dozens of them no solution at this tolerance knows a derivative so well.
+    /// For impacts with at most [`FEW`] contacts: compared, and accurate to a millionth. Every further contact magnifies the
+    /// error of the motion, and after dozens of them no solution at this tolerance gives a derivative with this accuracy.
     few: [usize; 2],
 }
 
-/// Contacts of an impact whose derivatives are asked to be right to a millionth.
+/// Largest number of contacts of an impact whose derivatives have to be accurate to a millionth.
 const FEW: usize = 15;
 
 /// Names of the tallies.
 const OUTPUTS: [&str; 3] = ["velocity", "times", "impulses"];
 
 impl Tally {
-    /// A derivative of an impact with so many contacts beside one that is known so well; differences from the truth below a
-    /// millionth of `least` do not count.
+    /// Compares a derivative of an impact with this number of contacts with one of this accuracy; errors below a millionth of
+    /// `least` do not count.
     fn compare(&mut self, derivative: Derivative, [reference, known]: [f64; 2], least: f64, contacts: usize) {
         let error = (derivative.value - reference).abs();
         let near = error <= 1e-6 * reference.abs().max(least) + known;
@@ -192,7 +192,7 @@ impl Tally {
         assert!(compared >= 20 && few > 0);
         assert!(covered as f64 >= 0.99 * compared as f64, "{name}: {covered} of {compared} covered");
         assert!(silent as f64 <= 1e-3 * compared as f64, "{name}: {silent} of {compared} wrong and not said so");
-        // of a few hundred, one
+        // One of a few hundred.
         assert!(near as f64 >= 0.995 * few as f64 - 1.0, "{name}: {near} of {few} within a millionth");
     }
 }
@@ -207,9 +207,9 @@ fn random_impacts(count: u32) -> impl Iterator<Item = Posed> {
     })
 }
 
-/// A unit of a change is its part of the number that changes, so that outputs of equal size have derivatives of equal size.
+/// The unit of a change is a fraction of the changed number, so that outputs of equal size have derivatives of equal size.
 #[test]
-fn derivatives_of_random_impacts_meet_differences_in_32_digits() {
+fn derivatives_of_random_impacts_agree_with_differences_in_32_digits() {
     const STEP: f64 = 1e-9;
     let mut tallies: [Tally; 3] = Default::default();
     let (mut impacts, mut lost, mut unknown) = (0, 0, 0);
@@ -232,7 +232,7 @@ fn derivatives_of_random_impacts_meet_differences_in_32_digits() {
                 let intervals = intervals.map(|(after, before)| [0, 1, 2].map(|i| slope(after[i], before[i])));
                 Some((slope(after.velocity, before.velocity), intervals.collect::<Vec<_>>()))
             };
-            // another number of contacts nearby
+            // The number of contacts is different nearby.
             let (Some(fine), Some(coarse)) = (by(STEP), by(4.0 * STEP)) else {
                 lost += 1;
                 continue;
@@ -246,7 +246,7 @@ fn derivatives_of_random_impacts_meet_differences_in_32_digits() {
             tallies[0].compare(derivatives.striker_velocity_m_s, velocity, 1e-3 * speed, count);
             let (finer, size) = (finer[which].striker_velocity_m_s, velocity[0].abs().max(1e-3 * speed));
             if finer.uncertainty.is_some_and(|uncertainty| uncertainty <= 1e-6 * size) {
-                // a tenth of what the test below decides by it
+                // A tenth of the limit of the test below.
                 let error = (finer.value - velocity[0]).abs();
                 assert!(
                     error <= 1e-7 * size + velocity[1],
@@ -267,10 +267,10 @@ fn derivatives_of_random_impacts_meet_differences_in_32_digits() {
     OUTPUTS.iter().zip(&tallies).for_each(|(name, tally)| tally.check(name));
 }
 
-/// Derivatives along a motion solved ten thousand times as finely meet those in 32 digits (above) and take milliseconds, so
-/// that many more impacts are compared.
+/// Derivatives along a motion solved with a tolerance ten thousand times smaller agree with those in 32 digits (above) and take
+/// milliseconds, so that many more impacts are compared.
 #[test]
-fn derivatives_of_random_impacts_meet_those_along_a_finer_motion() {
+fn derivatives_of_random_impacts_agree_with_those_along_a_finer_motion() {
     let mut tallies: [Tally; 3] = Default::default();
     for posed in random_impacts(100) {
         let [own, fine] = [1e-9, 1e-13].map(|tolerance| posed.differentiate(tolerance));
@@ -281,7 +281,7 @@ fn derivatives_of_random_impacts_meet_those_along_a_finer_motion() {
         let Striker { mass_kg, speed_m_s: speed } = posed.striker;
         assert_eq!(fine.solution.sub_impacts.len(), count);
         for (own, fine) in own.derivatives.unwrap().iter().zip(&fine.derivatives.unwrap()) {
-            // those that are not known to a millionth themselves compare nothing
+            // Derivatives whose own accuracy is worse than a millionth are not compared.
             let velocity = fine.striker_velocity_m_s;
             let least = 1e-3 * speed;
             if velocity.uncertainty.is_none_or(|uncertainty| uncertainty > 1e-6 * velocity.value.abs().max(least)) {
@@ -319,7 +319,7 @@ fn all_outputs_of_several_contacts_have_derivatives() {
                 ];
                 for (name, Derivative { value, .. }, output) in outputs {
                     let (reference, known) = posed.differences(which, |solution| output(&solution.sub_impacts[i]));
-                    // the solver finds a peak to nine digits, which differences magnify
+                    // The solver's peaks are accurate to nine digits, and differences magnify the error.
                     let part = if name.starts_with("peak") { 1e-4 } else { 1e-6 };
                     let allowed = part * reference.abs() + 3.0 * known;
                     assert!((value - reference).abs() <= allowed, "{name} {i}: {value} {reference} {known}");
@@ -337,7 +337,7 @@ fn all_outputs_of_several_contacts_have_derivatives() {
     }
 }
 
-/// A rigid wall gives back what the law leaves: the derivative by the law is known in closed form.
+/// At a rigid wall only the law remains: the derivative with respect to the law is known in closed form.
 #[test]
 fn a_rebound_from_a_wall_changes_with_the_law_alone() {
     let striker = ball();
@@ -351,7 +351,7 @@ fn a_rebound_from_a_wall_changes_with_the_law_alone() {
     let found =
         Solver::new(&wall).unwrap().differentiate(&striker, &dashpot(20.0), None, &settings(1e-11), &[parameter]);
     let derivative = found.unwrap().derivatives.unwrap()[0].restitution;
-    // a spring and dashpot without adhesion part where the force falls to zero
+    // A spring and dashpot without adhesion separate where the force decreases to zero.
     let restitution = |damping: f64| {
         let zeta = damping / (2.0 * (1e6 * striker.mass_kg).sqrt());
         let root = (1.0 - zeta * zeta).sqrt();
@@ -376,7 +376,8 @@ fn bad_parameters_are_named() {
     assert_eq!(field([1.0, 2.0, 3.0, 4.0], &other), "parameters[0].neighbours[0].structure.modes");
 }
 
-/// Where the two roots of a mode coincide, next to that, and where the closed form of there gives way to that of other modes.
+/// At the point where the two roots of a mode coincide, next to it, and where its closed form is replaced by that of other
+/// modes.
 #[test]
 fn modes_about_critical_damping_have_derivatives() {
     const STEP: f64 = 1e-9;
@@ -411,8 +412,8 @@ fn modes_about_critical_damping_have_derivatives() {
     }
 }
 
-/// Of the random impacts the one where differences of the law about its anchor once passed the corner of the force there, which
-/// no tolerance told: elastic-plastic, with thirteen contacts.
+/// The one of the random impacts for which differences of the law about its anchor crossed the corner of the force there, which
+/// no tolerance showed: elastic-plastic, with thirteen contacts.
 #[test]
 fn a_corner_of_the_law_does_not_disturb_derivatives() {
     const STEP: f64 = 1e-9;

@@ -4,10 +4,10 @@
 //! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = -psi_k F,      xi = sum psi_k a_k - gap,      F = F(xi, xi')
 //! ```
 //!
-//! with the striker as one more mode without frequency. The coefficients of a step follow from each other, order by order;
-//! powers of the compression by the recurrence `n u_0 p_n = sum (alpha j - (n - j)) u_j p_(n-j)` of `p = u^alpha`. Where a
-//! function of compression and rate changes its sign, the step ends there and the next formula of the law holds. It shares
-//! nothing with the solver but the equations.
+//! with the striker as an additional mode without frequency. The coefficients of a step follow from each other, order by order;
+//! powers of the compression by the recurrence `n u_0 p_n = sum (alpha j - (n - j)) u_j p_(n-j)` of `p = u^alpha`. If a
+//! function of compression and rate changes its sign, the step ends there and the next formula of the law applies. Only the
+//! equations are common to this code and the solver.
 
 use super::double::Double;
 use contact_models::Law;
@@ -15,9 +15,9 @@ use pulp::Arch;
 
 /// Degree of the series.
 const DEGREE: usize = 40;
-/// What is left out of a step, in parts.
+/// Relative truncation error of a step.
 const PART: f64 = 1e-27;
-/// Places of a step at which the events are looked at.
+/// Number of points of a step at which the event functions are evaluated.
 const PLACES: usize = 16;
 
 /// An impact in numbers of 32 digits. The striker is mode 0.
@@ -31,11 +31,11 @@ pub struct Impact {
     pub rate: Vec<Double>,
     pub gap: Double,
     pub law: Law,
-    /// The force is so many times that of the law.
+    /// Factor of the force of the law.
     pub times: Double,
 }
 
-/// What became of it.
+/// The result.
 pub struct Followed {
     /// Start, end and impulse of each interval of contact.
     pub intervals: Vec<[Double; 3]>,
@@ -43,16 +43,16 @@ pub struct Followed {
     pub velocity: Double,
 }
 
-/// Where the law is.
+/// The state of the law.
 #[derive(Debug, Clone, Copy)]
 enum Phase {
     Open,
     Pushing,
     Slack,
-    /// Of the hysteretic law: where the branch began and its variable there.
+    /// For the hysteretic law: compression at the start of the branch, and its variable there.
     Loading([Double; 2]),
     Unloading([Double; 2]),
-    /// Of the elastic-plastic law: indentation and largest compression so far.
+    /// For the elastic-plastic law: indentation and largest compression so far.
     Elastic([Double; 2]),
     Plastic,
 }
@@ -94,14 +94,14 @@ fn yielding(law: &contact_models::Thornton) -> [Double; 3] {
     [xi, number(4.0) / number(3.0) * modulus * (radius * xi).sqrt() * xi, PI * pressure * radius]
 }
 
-/// Its force on the loading line.
+/// The force of the elastic-plastic law on the loading line.
 fn plastic_force(law: &contact_models::Thornton, xi: Double) -> Double {
     let [first, force, slope] = yielding(law);
     force + slope * (xi - first)
 }
 
 impl Impact {
-    /// What holds in a phase.
+    /// The formulas that apply in a phase.
     fn formula(&self, phase: Phase) -> Formula {
         let none = Formula::default();
         let mut formula = match (phase, self.law) {
@@ -157,10 +157,10 @@ impl Impact {
         formula
     }
 
-    /// Functions of compression and rate that are positive in a phase and end it where one falls to zero.
+    /// Functions of compression and rate that are positive in a phase, which ends where one of them decreases to zero.
     fn margins(&self, phase: Phase, touch: Double, xi: Double, rate: Double) -> [Double; 2] {
         let never = number(1.0);
-        // positive where a damped law pushes
+        // Positive where a damped law has a force.
         let pushes = match self.law {
             Law::KelvinVoigt(law) => Some(number(law.stiffness_n_m) * xi + number(law.damping_n_s_m) * rate),
             Law::Viscous(law) => Some(number(1.0) + number(law.damping_s_m) * rate),
@@ -169,7 +169,7 @@ impl Impact {
         };
         match phase {
             Phase::Open => [touch - xi, never],
-            // a spring with a dashpot stops pushing before it is free
+            // The force of a spring with a dashpot ends before the compression does.
             Phase::Pushing if matches!(self.law, Law::KelvinVoigt(_)) => [never, pushes.unwrap_or(never)],
             Phase::Pushing => [xi, pushes.unwrap_or(never)],
             Phase::Slack => [xi, pushes.map_or(never, |pushes| -pushes)],
@@ -179,7 +179,7 @@ impl Impact {
         }
     }
 
-    /// The phase that begins where a margin has fallen to zero, and where the next contact begins.
+    /// The phase after an event function has decreased to zero, and at the start of the next contact.
     fn next(&self, phase: Phase, which: usize, touch: Double, xi: Double, memory: &mut [Double; 2]) -> (Phase, Double) {
         let goes_on = |phase| (phase, touch);
         match (phase, which, self.law) {
@@ -214,7 +214,8 @@ impl Impact {
         }
     }
 
-    /// Follows the motion through so many intervals of contact; none where they do not come by the time `longest_s`.
+    /// Computes the motion through this number of intervals of contact; `None` if they do not occur before the time
+    /// `longest_s`.
     pub fn follow(&self, count: usize, longest_s: f64) -> Option<Followed> {
         let mut series = Series::new(self);
         let mut memory = match &self.law {
@@ -224,7 +225,7 @@ impl Impact {
         let (mut phase, mut touch, mut time) = (Phase::Open, number(0.0), number(0.0));
         let mut intervals = Vec::new();
         let (mut started, mut before) = (time, self.rate[0]);
-        // striker's velocity by its rate in the mode
+        // The striker's velocity from its rate in the mode.
         let velocity = |rate: Double| -(rate * self.psi[0]);
         let mass = number(1.0) / (self.psi[0] * self.psi[0]);
         while time.near < longest_s {
@@ -250,7 +251,7 @@ impl Impact {
     }
 }
 
-/// Numbers side by side, as vector units take them.
+/// Numbers side by side, for vector units.
 #[derive(Clone)]
 struct Row {
     near: Vec<f64>,
@@ -274,7 +275,7 @@ impl Row {
     }
 }
 
-/// The series of a step: coefficients of order `i` of all amplitudes and of all rates.
+/// The series of a step: coefficients of order `i` of all amplitudes and all rates.
 struct Series {
     amplitude: Vec<Row>,
     rate: Vec<Row>,
@@ -330,7 +331,7 @@ impl Series {
         );
     }
 
-    /// To this time of the step.
+    /// The state at this time of the step.
     fn move_to(&mut self, time: Double) {
         for rows in [&mut self.amplitude, &mut self.rate] {
             let mut sum = rows[DEGREE].clone();
@@ -348,7 +349,7 @@ impl Series {
         }
     }
 
-    /// One step, to the first event in it if there is one, whose number it returns.
+    /// One step, up to the first event in it, if there is one; returns its number.
     fn step(
         &mut self,
         impact: &Impact,
@@ -362,7 +363,7 @@ impl Series {
         let (mut v, mut q, mut g, mut force) = (xi.clone(), xi.clone(), xi.clone(), xi.clone());
         let (xi_m, rate_m_s) = self.contact(impact);
         let fastest_s = 1.0 / self.fastest.max(1e-3);
-        // coefficients in the time in which the compression changes by itself do not overflow
+        // Coefficients in the time scale on which the compression changes do not overflow.
         let own_s = ((xi_m - formula.anchor).near / rate_m_s.near).abs();
         let unit_s = if formula.has_power() && own_s > 0.0 { own_s.min(fastest_s) } else { fastest_s };
         let mut longest = 3.5 * fastest_s / unit_s;
@@ -375,11 +376,11 @@ impl Series {
                 force[0] = force[0] + formula.constant;
                 (u[0], v[0]) = (xi[0] - formula.anchor, xi[0] + formula.eps);
                 if has_power {
-                    // near its beginning and its end the power does nothing for a time
+                    // Near its start and its end the power has no effect for a time.
                     let speed = rate[0].near.abs().max(1e-300);
                     let own: f64 = impact.psi.iter().map(|psi| psi.near * psi.near).sum();
                     let stiffness = own * (formula.power.near.abs() + formula.excess.near.abs());
-                    // the time in which it changes the rate by a part: stiffness (speed t)^1.5 t = part speed
+                    // The time in which it changes the rate by a given fraction: stiffness (speed t)^1.5 t = fraction speed.
                     let idle = (PART * speed / (stiffness * speed.powf(1.5))).powf(0.4);
                     if u[0].near <= 0.5 * speed * idle {
                         has_power = false;
@@ -412,7 +413,7 @@ impl Series {
                 self.raise(i, unit_s, force[i]);
             }
         }
-        // how far the last coefficients of force and compression let the step go
+        // The step length that the last coefficients of force and compression allow.
         let reach = |values: &[Double], size: f64| {
             let of = |i: usize| (PART * size / values[i].near.abs()).powf(1.0 / i as f64);
             of(DEGREE - 1).min(of(DEGREE))
@@ -426,11 +427,11 @@ impl Series {
         let length = number(longest.min(reach(&xi, most)));
         let at = |values: &[Double], t: Double| values.iter().rev().fold(Double::default(), |sum, x| sum * t + *x);
         let margins = |t: Double| impact.margins(phase, touch, at(&xi, t), at(&rate, t));
-        // the first place where a margin is gone that was there
+        // The first point where an event function that was positive is not.
         let mut end = length;
         let mut met = None;
         let mut before = margins(number(0.0));
-        // how far compression and rate can move at all
+        // Bound on the change of compression and rate.
         let [most_xi, most_rate] = [&xi, &rate]
             .map(|values| (1..=DEGREE).rev().fold(0.0, |sum, i| (sum + values[i].near.abs()) * length.near));
         let corners = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
@@ -467,7 +468,7 @@ fn raised(u: &[Double], p: &[Double], i: usize, alpha: f64) -> Double {
     terms.sum::<Double>() / (number(i as f64) * u[0])
 }
 
-/// Where a function falls to zero between two times.
+/// The time between two others at which a function decreases to zero.
 fn bisect(mut low: Double, mut high: Double, margin: impl Fn(Double) -> Double) -> Double {
     let (mut above, mut below) = (margin(low), margin(high));
     let mut side = 0;
@@ -475,7 +476,7 @@ fn bisect(mut low: Double, mut high: Double, margin: impl Fn(Double) -> Double) 
         if (high - low).near <= 1e-31 * high.near {
             break;
         }
-        // the secant, whose end that stays is halved (Illinois)
+        // The secant rule; the value at the retained end is halved (Illinois).
         let middle = low + (high - low) * (above / (above - below));
         let inside = (middle - low).near > 0.0 && (high - middle).near > 0.0;
         let middle = if inside { middle } else { (low + high) * number(0.5) };
