@@ -1,4 +1,4 @@
-//! From the text of a scene to the solver's terms, and to the rebound.
+//! Time from the text of a scene to the solver's problem, and to the rebound.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -22,7 +22,7 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     assert_eq!((result["outcome"].as_str(), result["end_s"].as_f64()), (Some("end"), Some(1.0)));
     assert_eq!(result["reliable_until_s"], result["end_s"]);
     assert!(result["steady_motion"].is_null());
-    // the result stands with the scene that it belongs to
+    // The result contains the scene that it belongs to.
     assert_eq!(result["vibroimpact"], env!("CARGO_PKG_VERSION"));
     assert_eq!(result["scene"]["version"], 1);
     let again = AssemblyScene::from_value(&result["scene"]).unwrap();
@@ -38,7 +38,7 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     for key in ["time_share", "rms_force_n", "largest_force_n", "contact_work_rate_w"] {
         assert!(contact[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {contact}");
     }
-    // what the load has done is where it must be
+    // The work of the load must be accounted for.
     let energy = &result["energy"];
     let joule = |value: &Value| value.as_f64().unwrap();
     let bodies = energy["bodies"].as_object().unwrap();
@@ -51,10 +51,10 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
     assert_eq!(points.len(), 4);
     assert_eq!((points[1]["contact"].as_str(), points[1]["side"].as_u64()), (Some("1-2"), Some(1)));
     assert!(points[1]["displacement_m"].as_f64().unwrap() > 0.016);
-    // the list is cut where it is told to be, and the statistics are not
+    // The list is truncated as requested, and the statistics are not.
     let short = stdout(&run(folder.path(), &["simulate", &scene("sdnl105"), "--json", "--intervals", "1"]));
     let short: Value = serde_json::from_str(&short).unwrap();
-    // the first to begin is listed
+    // The interval that begins first is listed.
     assert_eq!(short["contacts"]["1-2"]["intervals"].as_array().unwrap().len(), 1);
     assert_eq!(short["contacts"]["1-2"]["intervals_left_out"], 1);
     assert_eq!(short["contacts"]["2-3"]["intervals_left_out"], 4);
@@ -95,7 +95,7 @@ fn out_writes_intervals_histories_picture_and_report() {
         assert_eq!(row[1], (number + 1).to_string());
         assert_eq!(row[2].parse::<f64>().unwrap(), listed["start_s"].as_f64().unwrap());
     }
-    // a force where the gap is negative, none where it is open beyond rounding; once a period in the section
+    // There is a force where the gap is negative, none where it is open beyond rounding; the section has one row per period.
     let history = rows("history.csv");
     assert!(history.len() > 4096);
     let number = |cell: &String| cell.parse::<f64>().unwrap();
@@ -116,7 +116,7 @@ fn a_scene_that_cannot_be_used_is_refused_before_anything_is_written() {
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("contacts[0].between[0].location_m = 1.5 is not allowed"), "{message}");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    // commands for one impact say where such a scene belongs
+    // Commands for single impacts name the commands for such a scene.
     let output = run(folder.path(), &["plan", &scene("sdnl104")]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));

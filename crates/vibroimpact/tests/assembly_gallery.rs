@@ -1,4 +1,4 @@
-//! The gallery of scenes of bodies: what each gives, in a table, and its picture.
+//! The gallery of scenes of bodies: the results in a table, and the pictures.
 
 mod gallery;
 

@@ -1,4 +1,4 @@
-//! Scenes of bodies against published figures, closed forms and second methods.
+//! Scenes of bodies compared with published values, closed forms and second methods.
 
 mod gallery;
 
@@ -22,14 +22,14 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 }
 
 #[test]
-fn sdnl104_has_the_exact_figures_of_its_modes() {
+fn sdnl104_has_the_exact_values_of_its_modes() {
     let with_modes = |modes: usize| {
         let mut scene = assembly("sdnl104");
         let Some(Body::Elastic(beam)) = scene.bodies.get_mut("beam") else { panic!() };
         beam.modes = Some(modes);
         scene
     };
-    // five modes, exact in time by a second method, which agrees to 5 digits in displacements and times, 3 in velocities
+    // Five modes, exact in time by a second method, which agrees to 5 digits in displacements and times, 3 in velocities.
     let five = with_modes(5);
     assert_near(until(&five, 0.1315).run.contacts[0].displacement_m[0], -1.7360e-6, 1e-4);
     assert_near(until(&five, 0.1566).run.contacts[0].velocity_m_s[0], -4.44e-3, 1e-3);
@@ -38,10 +38,10 @@ fn sdnl104_has_the_exact_figures_of_its_modes() {
     assert_near(whole.intervals[0][0].end_s.unwrap(), 0.092458, 2e-5);
     let kinetic = |found: &Simulation| -> f64 { found.run.rate[0].iter().map(|rate| 0.5 * rate * rate).sum() };
     assert_near(kinetic(&whole), 0.05161, 1e-4);
-    // with more modes, what 40 of them and their residual compliance give
+    // With more modes, the result of 40 of them and their residual compliance.
     let forty = with_modes(40);
     let tip = until(&forty, 0.1315).run.contacts[0].displacement_m[0];
-    // the digits of the second method are those of the tip's range, 1e-4 m
+    // The digits of the second method are relative to the range of the tip, 1e-4 m.
     assert!((tip + 1.841e-6).abs() < 1e-8, "{tip}");
     let whole = until(&forty, 0.16);
     assert_near(whole.intervals[0][0].start_s, 0.03614, 1e-4);
@@ -50,14 +50,14 @@ fn sdnl104_has_the_exact_figures_of_its_modes() {
 }
 
 #[test]
-fn remainder_modes_stand_for_the_modes_left_out() {
+fn remainder_modes_represent_the_truncated_modes() {
     let mut scene = assembly("sdnl104");
     let Some(Body::Elastic(beam)) = scene.bodies.get_mut("beam") else { panic!() };
     (beam.modes, beam.residual_compliance) = (Some(10), true);
-    // one remainder mode for the one place of contact and load
+    // One remainder mode for the only location of contact and load.
     let posed = scene.pose().unwrap();
     assert_eq!(posed.assembly.bodies[0].modes.len(), 11);
-    // its compliance makes that of the tip whole, L^3 / 3 EI
+    // With its compliance that of the tip is complete, L^3 / 3 EI.
     let shape = match &posed.assembly.contacts[0].sides[0] {
         vibroimpact::vibroimpact_sim::assembly::Point::OfBody { shape, .. } => shape.clone(),
         ground => panic!("{ground:?}"),
@@ -65,7 +65,7 @@ fn remainder_modes_stand_for_the_modes_left_out() {
     let modes = posed.assembly.bodies[0].modes.iter().zip(&shape);
     let compliance: f64 = modes.map(|(mode, phi)| (phi / mode.omega_rad_s).powi(2)).sum();
     assert_near(compliance, 1.0 / (3.0 * 1e10 * PI * 0.2f64.powi(4) / 64.0), 1e-9);
-    // ten modes and their residual compliance, exact in time by the second method
+    // Ten modes and their residual compliance, exact in time by the second method.
     let found = until(&scene, 0.16);
     assert_near(found.intervals[0][0].start_s, 0.03614, 1e-4);
     assert_near(found.intervals[0][0].end_s.unwrap(), 0.09256, 1e-4);
@@ -73,9 +73,9 @@ fn remainder_modes_stand_for_the_modes_left_out() {
     assert!((tip + 1.838e-6).abs() < 2e-9, "{tip}");
 }
 
-/// Remainder modes are those of the beam as it is, with shear and with what is fixed to it.
+/// Remainder modes include shear and the attachments of the beam.
 #[test]
-fn remainder_modes_know_theory_and_attachments() {
+fn remainder_modes_include_theory_and_attachments() {
     let mut scene = assembly("sdnl104");
     let Some(Body::Elastic(body)) = scene.bodies.get_mut("beam") else { panic!() };
     (body.modes, body.residual_compliance) = (Some(10), true);
@@ -92,11 +92,11 @@ fn remainder_modes_know_theory_and_attachments() {
 }
 
 #[test]
-fn sdnl105_is_met_by_the_modes_of_its_mesh() {
+fn sdnl105_is_reproduced_by_the_modes_of_its_mesh() {
     let scene = assembly("sdnl105");
     let Body::Elastic(tube) = &scene.bodies["tube-1"] else { panic!() };
     let Elastics::Structure(Structure::Beam(beam)) = &tube.structure else { panic!() };
-    // ten elements, modes up to 35 Hz, as the test has them
+    // Ten elements, modes up to 35 Hz, as in the test.
     let modes = fem::Model::new(&beam.to_beam().unwrap(), 10).unwrap().modes().unwrap();
     let omega: Vec<f64> = modes.omega_rad_s().iter().copied().filter(|omega| *omega < TAU * 35.0).collect();
     let shape = modes.shapes_at(0.5).unwrap()[..omega.len()].to_vec();
@@ -107,23 +107,23 @@ fn sdnl105_is_met_by_the_modes_of_its_mesh() {
     }
     let text = meshed.to_string().replace("\"location_m\":0.5", "\"location\":\"middle\"");
     let found = AssemblyScene::from_json(&text).unwrap().simulate().unwrap();
-    // the contact 1-2 has tube 2 first
+    // The contact 1-2 has tube 2 first.
     let [first, second] = [&found.run.contacts[0], &found.run.contacts[1]];
     let displacement = [first.displacement_m[1], first.displacement_m[0], second.displacement_m[0]];
-    // the range of the three integrators, widened by its own width
+    // The range of the three integrators, widened by its own width.
     for (found, [low, high]) in
         displacement.into_iter().zip([[0.016426, 0.016429], [0.011163, 0.011168], [0.005887, 0.005898]])
     {
         let width: f64 = high - low;
         assert!(found > low - width && found < high + width, "{displacement:?}");
     }
-    // velocities, as far as the three agree
+    // Velocities, as far as the three agree.
     let velocity = [first.velocity_m_s[1], first.velocity_m_s[0], second.velocity_m_s[0]];
     for (found, [low, high]) in velocity.into_iter().zip([[0.02542, 0.02542], [0.0441, 0.0443], [0.10455, 0.10458]]) {
         let width = f64::max(high - low, 1e-3 * high);
         assert!(found > low - width && found < high + width, "{velocity:?}");
     }
-    // energy can only have come from the load, and each contact opens and closes in turn
+    // Energy can only have come from the load, and each contact opens and closes alternately.
     assert_eq!(found.run.outcome, Outcome::End);
 }
 
@@ -138,7 +138,7 @@ fn sdnd101_is_a_half_sine_after_the_other() {
         assert_near(interval.impulse_n_s, 2e6 / contact.powi(2), 1e-8);
     }
     assert_eq!(found.intervals[0].len(), 3);
-    // as stated, with the instants of the largest forces
+    // As stated, with the instants of the largest forces.
     let second = &found.intervals[0][1];
     assert_near(0.5 * PI / contact, 0.01563, 1e-3);
     assert_near(second.start_s + 0.5 * PI / contact, 0.361, 1e-3);
@@ -168,13 +168,13 @@ fn sdnd102_is_the_same_against_a_wall_and_against_its_mirror_image() {
 }
 
 #[test]
-fn sdnd125_has_the_force_that_is_stated() {
+fn sdnd125_has_the_stated_force() {
     let found = until(&assembly("sdnd125"), 0.68044);
     assert_near(found.run.contacts[0].force_n, 1698.44669074479, 1e-6);
 }
 
 #[test]
-fn sdnd125_is_the_same_seen_from_the_other_side() {
+fn sdnd125_is_the_same_from_the_other_side() {
     let scene = assembly("sdnd125");
     let mut mirrored = scene.clone();
     mirrored.loads[0].force_n = scene.loads[0].force_n.map(|force| -force);
@@ -188,7 +188,7 @@ fn sdnd125_is_the_same_seen_from_the_other_side() {
             assert!((a.start_s - b.start_s).abs() < 1e-8 && (a.impulse_n_s - b.impulse_n_s).abs() < 1e-6);
         }
     }
-    // impulses and the load's turn the middle mass: m v = int F dt + I_left - I_right
+    // Impulses and the load's impulse reverse the middle mass: m v = int F dt + I_left - I_right.
     let impulse = |c: usize| one.run.contacts[c].statistics.impulse_n_s;
     let load = 60.0 / (4.0 * PI) * (1.0 - (4.0 * PI).cos());
     let velocity = one.run.contacts[0].velocity_m_s[0];
@@ -196,16 +196,16 @@ fn sdnd125_is_the_same_seen_from_the_other_side() {
 }
 
 #[test]
-fn a_dropped_ball_lies_on_the_beam_at_last() {
+fn a_dropped_ball_comes_to_rest_on_the_beam() {
     let found = assembly("dropped-ball").simulate().unwrap();
     let contact = &found.run.contacts[0];
     assert!(found.intervals[0].len() > 10);
     assert!(found.intervals[0].last().is_some_and(|last| last.end_s.is_none()));
     assert_eq!(found.run.outcome, Outcome::Rest);
-    // what is left is the ball's weight, and a vibration that opens the contact no more
+    // The remaining force is the ball's weight, with a vibration that does not open the contact any more.
     assert_near(contact.force_n, 0.11027 * 9.81, 1e-2);
     assert!(contact.velocity_m_s.iter().all(|velocity| velocity.abs() < 2e-3), "{:?}", contact.velocity_m_s);
-    // the first touch: 5 mm of free fall onto the sagged beam
+    // The first touch: 5 mm of free fall onto the beam deflected by its weight.
     let sag = found.posed.assembly.bodies[1].amplitude.iter().zip(shape(&found)).map(|(a, phi)| a * phi).sum::<f64>();
     assert_near(found.intervals[0][0].start_s, (2.0 * (0.005 - sag) / 9.81).sqrt(), 1e-9);
 }
@@ -219,20 +219,20 @@ fn shape(found: &Simulation) -> Vec<f64> {
 }
 
 #[test]
-fn a_ball_on_a_shaken_table_keeps_to_one_impact_a_period() {
+fn a_ball_on_a_shaken_table_has_one_impact_per_period() {
     let found = assembly("shaken-table").simulate().unwrap();
     let (period, e) = (0.05, 0.5);
-    // it flies for a period: approach and separation differ by g T, and their ratio is the restitution
+    // It flies for a period: approach and separation speeds differ by g T, and their ratio is the restitution.
     let approach = 9.81 * period / (1.0 + e);
     let last = &found.intervals[0][found.intervals[0].len() - 20..];
     for pair in last.windows(2) {
         assert_near(pair[1].start_s - pair[0].start_s, period, 1e-9);
-        // the contact takes 0.2 % of the period
+        // The contact takes 0.2 % of the period.
         assert_near(pair[1].approach_speed_m_s, approach, 2e-3);
         assert_near(pair[1].separation_speed_m_s.unwrap(), e * approach, 2e-3);
     }
     assert_eq!(found.steady, Some(SteadyMotion { periods: 1, intervals: 1 }));
-    // beyond the closed-form threshold (1.5268 at this restitution) the period doubles
+    // Beyond the closed-form threshold (1.5268 at this restitution) the period doubles.
     let mut faster = assembly("shaken-table");
     let motion = faster.ground_motion.as_mut().unwrap();
     motion.displacement_m = Some(1.57 * 9.81 / (TAU * 20.0f64).powi(2));
@@ -249,7 +249,7 @@ fn a_ball_on_a_shaken_table_keeps_to_one_impact_a_period() {
 fn newtons_cradle_is_that_of_a_general_integrator() {
     let found = assembly("newtons-cradle").simulate().unwrap();
     let ours: Vec<f64> = found.run.rate.iter().map(|rate| rate[0] / 0.1f64.sqrt()).collect();
-    // classical Runge-Kutta on the five masses
+    // Classical Runge-Kutta integration of the five masses.
     let acceleration = |u: &[f64; 5]| {
         let mut forces = [0.0; 5];
         for i in 0..4 {
@@ -285,11 +285,11 @@ fn newtons_cradle_is_that_of_a_general_integrator() {
 }
 
 #[test]
-fn rods_change_speeds_while_a_wave_runs_there_and_back() {
+fn rods_exchange_speeds_in_the_time_of_a_returning_wave() {
     let found = assembly("two-rods").simulate().unwrap();
     let contact = &found.intervals[0][0];
     assert_eq!(found.intervals[0].len(), 1);
-    // Saint-Venant: 2 L / c, here with a joint of finite stiffness
+    // Saint-Venant: 2 L / c, here with a joint of finite stiffness.
     assert_near(contact.end_s.unwrap(), 2.0 * 0.5 / (2e11f64 / 7800.0).sqrt(), 2e-2);
     let root = (7800.0 * PI / 4.0 * 0.02f64.powi(2) * 0.5).sqrt();
     let [first, second] = [0, 1].map(|body| found.run.rate[body][0] / root);
@@ -298,10 +298,10 @@ fn rods_change_speeds_while_a_wave_runs_there_and_back() {
     assert_near(contact.impulse_n_s, root * root * second, 1e-9);
 }
 
-/// The exact wave solution: the end moves on at half the speed until the wave is back after 2 L/c, then back at it until
-/// 4 L/c, and leaves at the full speed.
+/// The exact wave solution: the end continues at half the speed until the wave returns after 2 L/c, then moves back at this
+/// speed until 4 L/c, and leaves at the full speed.
 #[test]
-fn sdnl111_is_met_by_the_exact_wave_solution() {
+fn sdnl111_agrees_with_the_exact_wave_solution() {
     let scene = assembly("sdnl111");
     let round = 2.0 / (2e11f64 / 7800.0).sqrt();
     let exact = |t: f64| match t / round {
@@ -309,11 +309,11 @@ fn sdnl111_is_met_by_the_exact_wave_solution() {
         part if part < 2.0 => -0.5 * round + 0.5 * (t - round),
         _ => t - 2.0 * round,
     };
-    // as published for this test
+    // As published for this test.
     for (t, published) in [(2e-4, -1e-4), (4e-4, -1.94968353e-4), (8e-4, 1.00632937e-5), (1e-3, 2.10063294e-4)] {
         assert!((exact(t) - published).abs() < 1e-12);
         let found = until(&scene, t).run.contacts[0].displacement_m[0];
-        // the spring gives by F/k = 1.6e-7 m
+        // The spring is compressed by F/k = 1.6e-7 m.
         assert!((found - published).abs() < 2.5e-7, "{t}: {found} {published}");
     }
     let found = scene.simulate().unwrap();
@@ -321,10 +321,10 @@ fn sdnl111_is_met_by_the_exact_wave_solution() {
     assert_near(found.intervals[0][0].end_s.unwrap(), 2.0 * round, 2e-3);
 }
 
-/// Over a window the mean square of the force is the difference of two runs. What is stated is a statistic of a sensitive
-/// motion by a fixed step: within what other modes or shear coefficients change.
+/// Over a window the mean square of the force is the difference of two runs. The reference value is a statistic of a sensitive
+/// motion by a fixed step; the difference is within the effect of other modes or shear coefficients.
 #[test]
-fn sdnl301_has_about_the_force_that_is_stated() {
+fn sdnl301_has_about_the_stated_force() {
     let scene = assembly("sdnl301");
     let squares = |end_s: f64| {
         let found = until(&scene, end_s);
@@ -342,7 +342,7 @@ fn sdnl301_has_about_the_force_that_is_stated() {
 
 #[test]
 fn impulses_balance_momentum_between_stops() {
-    // whole periods of the ground leave no impulse of the inertial load
+    // Over whole periods of the ground the inertial load has no impulse.
     let scene = assembly("rattling-gear");
     let found = scene.simulate().unwrap();
     assert_eq!(found.posed.contacts, ["flank+", "flank-"]);
@@ -353,7 +353,7 @@ fn impulses_balance_momentum_between_stops() {
 }
 
 #[test]
-fn an_impact_damper_holds_its_oscillator_down() {
+fn an_impact_damper_reduces_the_amplitude_of_its_oscillator() {
     let scene = assembly("impact-damper");
     let largest = |scene: &AssemblyScene| {
         let ends = (0..20).map(|i| until(scene, 8.0 + 0.0125 * f64::from(i)).run.contacts[0].displacement_m[1].abs());
@@ -363,15 +363,14 @@ fn an_impact_damper_holds_its_oscillator_down() {
     let mut free = scene.clone();
     free.contacts.clear();
     let posed = free.simulate().unwrap();
-    // at its frequency of 10 Hz, almost the static response over twice the damping ratio
+    // At its frequency of 10 Hz, almost the static response over twice the damping ratio.
     let amplitude = posed.run.amplitude[1][0].hypot(posed.run.rate[1][0] / (TAU * 10.0));
     assert!(amplitude > 0.02 && damped < 0.25 * amplitude, "{damped} {amplitude}");
 }
 
-/// Weights of every kind of body: where a mass hangs at a beam, and for a string and a plate, the deflection is that of
-/// statics.
+/// Weights of every kind of body: for a mass on a beam, a string and a plate, the deflection is that of statics.
 #[test]
-fn bodies_hang_where_statics_says() {
+fn weights_cause_the_static_deflection() {
     let scene = AssemblyScene::from_value(&json!({
         "bodies": {
             "beam": { "kind": "beam", "ends": ["pinned", "pinned"], "modes": 60,

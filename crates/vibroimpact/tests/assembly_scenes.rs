@@ -1,5 +1,5 @@
-//! Scenes of bodies: what is written is read back, the terms of the solver are those of the contract, and every field that
-//! cannot be used is refused by its path.
+//! Scenes of bodies: a scene that is written is read back unchanged, the solver's problem agrees with the definitions, and
+//! every field that cannot be used is rejected with its path.
 
 mod gallery;
 
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use vibroimpact::assembly::{AnyScene, AssemblyScene};
 use vibroimpact::vibroimpact_sim::assembly::{Force, Point};
 
-/// Every kind of part once.
+/// A scene with every kind of part.
 fn scene() -> Value {
     json!({
         "bodies": {
@@ -47,7 +47,7 @@ fn pose(scene: &Value) -> Result<vibroimpact::assembly::Posed, vibroimpact::Inva
 }
 
 #[test]
-fn what_is_written_is_read_back_the_same() {
+fn written_scenes_are_read_back_unchanged() {
     let mut scenes = vec![AssemblyScene::from_value(&scene()).unwrap()];
     scenes.extend(assemblies().into_iter().map(|(_, scene)| scene));
     for scene in scenes {
@@ -58,18 +58,18 @@ fn what_is_written_is_read_back_the_same() {
 }
 
 #[test]
-fn the_terms_of_the_solver_are_those_of_the_contract() {
+fn the_problem_of_the_solver_agrees_with_the_definitions() {
     let posed = pose(&scene()).unwrap();
     assert_eq!(posed.bodies, ["ball", "beam", "rig", "rod"]);
     assert_eq!(posed.contacts, ["c1", "stop+", "stop-", "c2"]);
     let assembly = &posed.assembly;
-    // position and velocity are displacements of the mass: u = a / sqrt(m)
+    // Position and velocity are displacements of the mass: u = a / sqrt(m).
     let ball = &assembly.bodies[0];
     assert!((ball.amplitude[0] / 0.5f64.recip() - 0.001 * 0.25).abs() < 1e-18 && ball.rate[0] == -0.5);
-    // a free rod of 2 kg at 2 m/s has the energy m v^2 / 2 in its rigid mode alone
+    // A free rod of 2 kg at 2 m/s has the energy m v^2 / 2 in its rigid mode alone.
     let rod = &assembly.bodies[3];
     assert!((rod.rate[0].powi(2) - 8.0).abs() < 1e-12 && rod.rate[1..].iter().all(|rate| *rate == 0.0));
-    // A stands first; the mirror contact of a two-sided one has its sides exchanged
+    // A is first; the mirror contact of a two-sided one has its sides exchanged.
     let body = |point: &Point| match point {
         Point::Ground => None,
         Point::OfBody { body, shape } => Some((*body, shape.clone())),
@@ -81,7 +81,7 @@ fn the_terms_of_the_solver_are_those_of_the_contract() {
     assert_eq!(sides(2), [None, Some((2, vec![0.5, -1.0]))]);
     assert_eq!(sides(3)[0], None);
     assert_eq!([0, 1, 2, 3].map(|c| assembly.contacts[c].gap_m), [0.0, 1e-4, 1e-4, -1e-6]);
-    // loads as stated, then gravity and the ground's inertial load on every body
+    // Loads as stated, then gravity and the inertial load of the ground on every body.
     let loads = &assembly.loads;
     assert_eq!(loads.len(), 3 + 4 + 4);
     let quarter = std::f64::consts::FRAC_PI_2;
@@ -90,7 +90,7 @@ fn the_terms_of_the_solver_are_those_of_the_contract() {
     assert_eq!(loads[2].force, Force::Sampled { times_s: vec![0.0, 0.1, 0.1], forces_n: vec![0.0, 5.0, 0.0] });
     assert_eq!((&loads[3].shape, &loads[3].force), (&vec![0.5], &Force::Constant { force_n: -9.81 }));
     assert_eq!(loads[5].shape, [2.0, 0.3]);
-    // y = A sin(w t) of the ground: the inertial load is m A w^2 sin(w t)
+    // y = A sin(w t) of the ground: the inertial load is m A w^2 sin(w t).
     let Force::Harmonic { force_n, .. } = loads[7].force else { panic!("{:?}", loads[7]) };
     assert!((force_n / (0.01 * (TAU * 5.0f64).powi(2)) - 1.0).abs() < 1e-14);
 }
@@ -102,17 +102,17 @@ fn a_static_start_is_the_deflection_under_the_constant_loads() {
     scene.as_object_mut().unwrap().remove("ground_motion");
     let posed = pose(&scene).unwrap();
     let beam = &posed.assembly.bodies[1];
-    // the tip of a cantilever sags by m g L^4 / (8 EI); four modes give it within 1e-4
+    // The static deflection at the tip of a cantilever is m g L^4 / (8 EI); four modes give it within 1e-4.
     let shapes = [2.0, -2.0, 2.0, -2.0];
     let sag: f64 = beam.amplitude.iter().zip(shapes).map(|(a, phi)| a * phi).sum();
     assert!((sag / (-9.81 / (8.0 * 274.0)) - 1.0).abs() < 1e-4, "{sag}");
-    // rigid-body motions stay as they are stated, and so do masses
+    // Rigid-body motions are as stated, and so are masses.
     assert_eq!(posed.assembly.bodies[0], pose(&self::scene()).unwrap().assembly.bodies[0]);
     assert_eq!(posed.assembly.bodies[2].amplitude[0], 0.0);
 }
 
 #[test]
-fn motion_of_single_modes_is_told_where_it_can_be_seen() {
+fn motion_of_single_modes_is_stated_where_it_is_visible() {
     let mut scene = scene();
     scene["bodies"]["rig"]["start"] = json!({ "amplitude_m_kg0_5": [0.1],
         "moving_modes": [{ "mode": 2, "location": "tip", "displacement_m": 0.001, "velocity_m_s": 3 }] });
@@ -139,7 +139,7 @@ fn tables_are_read_from_the_folder_of_the_scene() {
     let AnyScene::Bodies(read) = AnyScene::read(&folder.path().join("scene.json")).unwrap() else { panic!() };
     let posed = read.pose().unwrap();
     assert_eq!(posed.assembly.loads[0].force, Force::Sampled { times_s: vec![0.0, 0.1], forces_n: vec![0.0, 5.0] });
-    // the inertial load is against the ground's acceleration
+    // The inertial load is opposite to the ground's acceleration.
     let quake = &posed.assembly.loads.last().unwrap().force;
     assert_eq!(*quake, Force::Sampled { times_s: vec![0.0, 0.5, 1.0], forces_n: vec![-0.0, -1.0, -0.0] });
 
@@ -160,7 +160,7 @@ fn tables_are_read_from_the_folder_of_the_scene() {
 
 #[test]
 fn every_field_that_cannot_be_used_is_named_by_its_path() {
-    // at this place, this value: this path is refused
+    // For each pointer and value, the path that is rejected.
     let cases = [
         ("/bodies", json!({}), "bodies"),
         ("/bodies", json!([]), "bodies"),
@@ -287,7 +287,7 @@ fn every_field_that_cannot_be_used_is_named_by_its_path() {
         ("/description", json!(1), "description"),
         ("/structure", json!({}), "structure"),
     ];
-    // with remainder modes, a place off the beam is still that of its contact
+    // With remainder modes, the error for a location outside the beam still names the contact.
     let mut off = scene();
     off["bodies"]["beam"]["residual_compliance"] = json!(true);
     off["contacts"][0]["between"][1]["location_m"] = json!(1.5);
@@ -316,7 +316,7 @@ fn a_load_at_an_undamped_frequency_is_refused_with_the_reason() {
     assert!(fault.allowed.contains("undamped mode"), "{fault}");
     let shown: f64 = fault.value.unwrap().to_string().parse().unwrap();
     assert!((shown - 100.0 / TAU).abs() < 1e-9);
-    // a node of that mode, or a damped mode, takes it
+    // At a node of that mode, or with damping, the load is accepted.
     scene["bodies"]["rig"]["damping_ratios"] = json!([0, 0.01]);
     assert!(pose(&scene).is_ok());
 }

@@ -1,5 +1,4 @@
-//! Input that must not get through, as a user meets it: exit code 2, a message that says what would be allowed, and
-//! nothing written.
+//! Invalid input as a user meets it: exit code 2, a message that states what would be allowed, and nothing written.
 
 mod program;
 
@@ -28,7 +27,7 @@ fn folder(files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-/// Runs the program, which must refuse and write nothing, and returns the message.
+/// Runs the program, which must reject the input and write nothing, and returns the message.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     let names = || {
         let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
@@ -64,7 +63,7 @@ fn fit_takes_only_data_that_can_be_fitted() {
 
 #[test]
 fn a_parameter_that_the_data_do_not_determine_is_not_called_converged() {
-    // light strikers alone: alpha0 may be anything from large on
+    // With light strikers only, alpha0 may have any large value.
     let table: String = (1..10).map(|i| format!("{},0.{i},0.99\n", 1e-4 * f64::from(i))).collect();
     let table = format!("mass_kg,location_m,restitution\n{table}");
     let folder = folder(&[("scene.json", BEAM), ("data.csv", &table)]);
@@ -81,7 +80,7 @@ fn a_parameter_that_the_data_do_not_determine_is_not_called_converged() {
 }
 
 #[test]
-fn no_modes_at_all_are_refused() {
+fn structures_without_modes_are_refused() {
     let folder = folder(&[
         ("scene.json", BEAM),
         ("data.csv", TABLE),
@@ -115,7 +114,7 @@ fn no_modes_at_all_are_refused() {
 }
 
 #[test]
-fn a_damping_ratio_is_blamed_by_the_name_that_it_has_in_the_scene() {
+fn a_damping_ratio_is_reported_by_its_name_in_the_scene() {
     let folder = folder(&[
         ("scene.json", &BEAM.replace("0.02", "1e7")),
         ("stated.json", &BEAM.replace("0.02", "1e7").replace("\"location_m\"", "\"modes\": 4, \"location_m\"")),
@@ -137,7 +136,7 @@ fn a_damping_ratio_is_blamed_by_the_name_that_it_has_in_the_scene() {
 }
 
 #[test]
-fn a_mistyped_name_is_answered_by_the_one_that_was_probably_meant() {
+fn for_a_mistyped_name_the_probable_one_is_suggested() {
     for (from, to, meant) in [
         ("\"beam\"", "\"bem\"", "beam"),
         ("\"beam\"", "\"dropped_rod\"", "dropped-rod"),
@@ -160,7 +159,7 @@ fn a_mistyped_name_is_answered_by_the_one_that_was_probably_meant() {
 }
 
 #[test]
-fn messages_repeat_nothing_that_steers_a_terminal_and_nothing_at_length() {
+fn messages_are_short_and_cannot_control_a_terminal() {
     let escape = '\u{1b}';
     let digits = "9".repeat(400);
     let folder = folder(&[
@@ -193,7 +192,7 @@ fn messages_repeat_nothing_that_steers_a_terminal_and_nothing_at_length() {
         assert!(!message.contains(escape), "{arguments:?}: {message:?}");
         assert!(!message.contains(&digits[..100]), "{arguments:?}: {message:?}");
     }
-    // a name that is allowed is printed, but steers nothing either
+    // A name that is allowed is printed, but cannot control a terminal either.
     let points = r#"{ "structure": { "kind": "modal", "omega_rad_s": [9], "points": { "t\u001b[2J": { "shape": [1] } } },
         "location": "t\u001b[2J", "striker": { "mass_kg": 1, "speed_m_s": 1 },
         "contact": { "law": "hertz", "stiffness_n_m1_5": 1e9 } }"#;
@@ -203,7 +202,7 @@ fn messages_repeat_nothing_that_steers_a_terminal_and_nothing_at_length() {
 }
 
 #[test]
-fn a_text_under_the_ending_of_another_format_is_told_so() {
+fn a_text_with_the_extension_of_another_format_is_recognised() {
     let toml = "location_m = 0.3\n[structure]\nkind = 'beam'\n";
     let folder = folder(&[("scene.json", toml), ("scene.toml", BEAM), ("neither.json", "location_m"), ("e.json", "")]);
     let message = refused(folder.path(), &["simulate", "scene.json"]);
@@ -250,13 +249,13 @@ fn nothing_that_exists_is_replaced_without_force() {
     for name in ["mine.svg", "mine.html", "out/result.json"] {
         assert_ne!(read(name), "mine");
     }
-    // what stays of an earlier result would be taken for a part of this one
+    // Remains of an earlier result could be mistaken for a part of this one.
     stdout(&run(folder.path(), &[&simulate[..], &out, &["--force"]].concat()));
     assert!(!folder.path().join("out/contacts.csv").exists() && folder.path().join("out/history.csv").exists());
 }
 
 #[test]
-fn a_sweep_takes_no_folder_of_something_else() {
+fn a_sweep_refuses_a_folder_of_something_else() {
     let sweep = format!(
         r#"{{ "scene": {}, "vary": [{{ "field": "striker.speed_m_s", "values": [1, 2] }}] }}"#,
         BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"")
@@ -271,20 +270,20 @@ fn a_sweep_takes_no_folder_of_something_else() {
         fs::remove_dir_all(folder.path().join("out")).unwrap();
     }
     stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"]));
-    // its own folder it takes again
+    // It accepts its own folder again.
     assert!(stdout(&run(folder.path(), &["sweep", "sweep.json", "--out", "out"])).contains("all points were done"));
 }
 
 #[test]
-fn a_sweep_without_a_single_result_does_not_end_well() {
-    // the first point is checked only as far as that costs nothing: its speed is found when it is solved
+fn a_sweep_without_a_single_result_fails() {
+    // The first point is checked only as far as that costs little: its speed is found when it is solved.
     let sweep = |speeds: &str| {
         let scene = BEAM.replace("\"location_m\"", "\"modes\": 4, \"location_m\"");
         format!(r#"{{ "scene": {scene}, "vary": [{{ "field": "striker.speed_m_s", "values": {speeds} }}] }}"#)
     };
     for (speeds, code) in [("[1e300, 2e300]", 2), ("[1e300, 1]", 0)] {
         let folder = folder(&[("sweep.json", &sweep(speeds))]);
-        // the same again when all is there, and for a program that reads the object
+        // The same again when all rows are present, and for a program that reads the object.
         for option in ["--quiet", "--quiet", "--json"] {
             let output = run(folder.path(), &["sweep", "sweep.json", "--out", "out", option]);
             let message = String::from_utf8(output.stderr).unwrap();

@@ -1,4 +1,4 @@
-//! What the theory of bending leaves open, and the choice of the theory.
+//! The uncertainty due to the theory of bending, and the choice of the theory.
 
 use serde_json::{Value, json};
 use vibroimpact::Scene;
@@ -7,7 +7,7 @@ use vibroimpact::scene::BeamTheory;
 
 const COWPER: f64 = 10.0 * 1.3 / (12.0 + 11.0 * 0.3);
 
-/// The thesis's beam of chapter 3 with what Timoshenko's theory needs, struck by a steel ball.
+/// The thesis's beam of chapter 3 with the properties that Timoshenko's theory needs, struck by a steel ball.
 fn chapter_3(radius_m: f64, theory: Option<&str>) -> Value {
     let mut scene = json!({
         "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
@@ -42,7 +42,7 @@ fn the_difference_is_that_of_the_converged_impacts() {
             println!("{radius} {theory}: {:?} {part}", found.restitution);
             assert!((found.restitution.unwrap() - own).abs() < 2e-3, "{found:?}");
             assert!(part > (thick - slender).abs() - 5e-3, "{part}");
-            // no more than that unless the coefficient tells more
+            // No more than that, unless the coefficient has a larger effect.
             assert!(radius > 0.01 || part < 0.013, "{part}");
             let parts = found.uncertainty.solver.unwrap() + found.uncertainty.modes_left_out.unwrap() + part;
             assert_eq!(found.restitution_uncertainty, Some(parts));
@@ -51,7 +51,7 @@ fn the_difference_is_that_of_the_converged_impacts() {
     }
 }
 
-/// Two per cent of the shear coefficient move the impact of chapter 3 by 0.06 (0.253 at 0.850, 0.194 at 0.867).
+/// Two per cent of the shear coefficient change the restitution of chapter 3 by 0.06 (0.253 at 0.850, 0.194 at 0.867).
 #[test]
 fn the_shear_coefficient_is_part_of_it() {
     let with = |coefficient: f64| {
@@ -64,7 +64,7 @@ fn the_shear_coefficient_is_part_of_it() {
     let [less, own, more] = [0.98, 1.0, 1.02].map(|factor| with(factor * COWPER));
     println!("{less} {own} {more}");
     assert!((own - 0.25302).abs() < 1e-4 && (more - 0.194).abs() < 2e-3 && (less - 0.255).abs() < 2e-3);
-    // at the coefficient 2 % larger the two theories are nearer to each other than the coefficients
+    // With a coefficient 2 % larger, the two theories are closer to each other than the results of the two coefficients.
     let mut scene = chapter_3(0.015, Some("timoshenko"));
     scene["structure"]["segments"][0]["shear_coefficient"] = json!(1.02 * COWPER);
     let part = answer(&scene).uncertainty.beam_theory.unwrap();
@@ -82,7 +82,7 @@ fn the_cheaper_theory_answers_where_the_tolerance_allows() {
         let differs = |text: &str| text.split("differs by some ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
         assert_eq!(differs(&why), differs(&found.reason));
         let difference: f64 = differs(&why).parse().unwrap();
-        // the impact handed out is by the same theory
+        // The returned impact is by the same theory.
         let scene = posed(&scene);
         assert_eq!(scene.impact().unwrap(), scene.choose().unwrap().impact.unwrap());
         (found.theory.unwrap(), difference, found.uncertainty.beam_theory.unwrap())
@@ -96,13 +96,13 @@ fn the_cheaper_theory_answers_where_the_tolerance_allows() {
     let (theory, difference, _) = chosen(0.015, 0.01);
     assert_eq!(theory, BeamTheory::Timoshenko);
     assert!((difference - 0.1105).abs() < 5e-3, "{difference}");
-    // a theory that is stated is no choice
+    // A theory that is stated is not chosen.
     let stated = answer(&chapter_3(0.01, Some("timoshenko")));
     assert!(stated.theory == Some(BeamTheory::Timoshenko) && !stated.reason.contains("differs by"));
 }
 
 #[test]
-fn what_cannot_be_compared_says_why() {
+fn the_reason_is_stated_where_theories_cannot_be_compared() {
     let mut plain = chapter_3(0.015, None);
     let segment = plain["structure"]["segments"][0].as_object_mut().unwrap();
     segment.remove("poissons_ratio");
@@ -117,9 +117,9 @@ fn what_cannot_be_compared_says_why() {
     }
 }
 
-/// Sweeps leave it out, all else is the same; and it costs no more than a few times the impact.
+/// Sweeps omit it, and everything else is the same; it costs no more than a few impacts.
 #[test]
-fn sweeps_leave_it_out() {
+fn sweeps_omit_it() {
     for modes in [None, Some(60)] {
         let mut scene = chapter_3(0.015, Some("timoshenko"));
         if let Some(modes) = modes {
@@ -138,7 +138,7 @@ fn sweeps_leave_it_out() {
 }
 
 #[test]
-fn the_result_names_the_theory_that_answered() {
+fn the_result_names_its_theory() {
     let mut scene = chapter_3(0.01, None);
     scene["tolerance"] = json!(0.04);
     let scene = posed(&scene);

@@ -1,5 +1,4 @@
-//! Beams of scenes beyond the slender ones of the thesis: theory of bending, attachments, supports, axial force,
-//! foundation, damping.
+//! Beams other than the slender ones of the thesis: theory of bending, attachments, supports, axial force, foundation, damping.
 
 use serde_json::{Value, json};
 use vibroimpact::scene::{Beam, BeamTheory, End, RectangularSegment, Segment, Structure, TheoryVariant};
@@ -7,7 +6,7 @@ use vibroimpact::{InvalidInput, Scene};
 
 const COWPER: f64 = 10.0 * 1.3 / (12.0 + 11.0 * 0.3);
 
-/// The thesis's beam of chapter 3 with what Timoshenko's theory needs, struck by the 3 cm ball.
+/// The thesis's beam of chapter 3 with the properties that Timoshenko's theory needs, struck by the 3 cm ball.
 fn chapter_3() -> Value {
     json!({
         "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
@@ -47,10 +46,10 @@ fn frequencies(scene: &Value, count: usize) -> Vec<f64> {
 }
 
 /// With remainder modes: 0.25302 by Timoshenko's theory with Cowper's coefficient (from 800,000 modes and the static
-/// compliance), within 1e-4 from 120 modes on; 0.14255 by Euler-Bernoulli's, which is what a scene that states its modes
-/// means. With a spring for the others 120 modes give 0.2558.
+/// compliance), within 1e-4 from 120 modes on; 0.14255 by Euler-Bernoulli's, which is used for a scene that states its modes.
+/// With a spring in place of the other modes 120 modes give 0.2558.
 #[test]
-fn the_theory_moves_the_restitution_of_chapter_3() {
+fn the_theory_changes_the_restitution_of_chapter_3() {
     let restitution = |scene: &Value| {
         let solution = Scene::from_value(scene).unwrap().impact().unwrap().solve().unwrap();
         solution.restitution.unwrap()
@@ -67,7 +66,7 @@ fn the_theory_moves_the_restitution_of_chapter_3() {
 }
 
 #[test]
-fn the_theory_is_chosen_where_the_modes_are() {
+fn the_theory_is_chosen_with_the_modes() {
     use BeamTheory::{EulerBernoulli, Timoshenko};
     let theory = |change: &dyn Fn(&mut Value)| {
         let mut scene = chapter_3();
@@ -96,7 +95,7 @@ fn the_theory_is_chosen_where_the_modes_are() {
     assert_eq!(slender, EulerBernoulli);
 }
 
-/// Rectangle and circle against the formulas written out, and the same section given directly.
+/// Rectangle and circle compared with the formulas, and with the same section given directly.
 #[test]
 fn sections_give_shear_and_rotary_inertia() {
     let nu = 0.3f64;
@@ -155,7 +154,7 @@ fn variants_differ_by_theory_and_by_two_per_cent_of_shear() {
 }
 
 #[test]
-fn fittings_reach_the_modes() {
+fn attachments_change_the_modes() {
     let bare = frequencies(&chapter_3(), 5);
     let heavy = frequencies(&with("/structure/attachments", json!([{ "location_m": 0.5, "mass_kg": 1e9 }])), 6);
     let supported = frequencies(&with("/structure/supports", json!([{ "location_m": 0.5 }])), 5);
@@ -164,7 +163,7 @@ fn fittings_reach_the_modes() {
     }
     let taut = frequencies(&with("/structure/axial_force_n", json!(5000)), 5);
     let founded = frequencies(&with("/structure/foundation_n_m2", json!(1e6)), 5);
-    // 1 kg/m: omega^2 = bare^2 + T k^2/m, and + k_f/m
+    // 1 kg/m: omega^2 = bare^2 + T k^2/m, and + k_f/m.
     let mass = 7800.0 * 0.011323f64.powi(2);
     for k in 0..5 {
         let wave = (k as f64 + 1.0) * std::f64::consts::PI;
@@ -184,20 +183,20 @@ fn damping_by_list_and_by_rayleigh() {
         let expected = ratio + 1.5 / mode.omega_rad_s + 0.5e-6 * mode.omega_rad_s;
         assert!((mode.damping_ratio / expected - 1.0).abs() < 1e-14);
     }
-    // rigid-body motions are not in the list, and not damped
+    // Rigid-body motions are not in the list, and not damped.
     put(&mut scene, "/structure/ends", json!(["free", "free"]));
     let free = Scene::from_value(&scene).unwrap().mode_shapes(3).unwrap();
     assert_eq!(free[0].damping_ratio, 0.02);
     assert!((free[2].damping_ratio - 0.1).abs() < 0.02, "{}", free[2].damping_ratio);
 }
 
-/// The whole program on beams beyond the slender: the choice of the model, and a restitution that more modes confirm.
+/// The whole program on beams that are not slender: the choice of the model, and a restitution that more modes confirm.
 #[test]
-fn the_program_answers_scenes_with_fittings() {
+fn the_program_solves_scenes_with_attachments() {
     let mut scene = with("/structure/attachments", json!([{ "location_m": 0.3, "mass_kg": 0.1, "spring_n_m": 1e4 }]));
     scene.as_object_mut().unwrap().remove("modes");
     scene.as_object_mut().unwrap().remove("residual_compliance");
-    // a small ball: one contact, which the theory hardly moves
+    // A small ball: one contact, on which the theory has little effect.
     put(&mut scene, "/striker/radius_m", json!(0.008));
     let answer = Scene::from_value(&scene).unwrap().answer().unwrap();
     let chosen = answer.restitution.unwrap();
@@ -279,7 +278,7 @@ fn bad_input_is_named() {
 }
 
 #[test]
-fn what_is_no_beam_is_refused() {
+fn short_thick_bodies_are_refused() {
     let stout = with("/structure/segments/0/thickness_m", json!(0.6));
     let found = fault(&stout);
     assert_eq!(found.field, "structure.segments[0].thickness_m");

@@ -25,7 +25,7 @@ fn scene(changes: &[(&str, Value)]) -> Value {
     scene
 }
 
-/// A 7 g ball in the middle: every model has an answer.
+/// A 7 g ball in the middle: every model has a result.
 fn light(model: &str) -> Value {
     scene(&[("/striker/radius_m", json!(0.006)), ("/location_m", json!(0.5)), ("/model", json!(model))])
 }
@@ -56,7 +56,7 @@ impl Folder {
         serde_json::from_str(&self.printed(command, &["--json"])).unwrap()
     }
 
-    /// The message of a run that must end as faults of input do, with nothing printed and nothing written.
+    /// The message of a run that must fail because of its input, with nothing printed and nothing written.
     fn refusal(&self, command: &str, options: &[&str]) -> String {
         let before = self.files();
         let output = self.run(command, options);
@@ -78,7 +78,7 @@ fn gallery(name: &str) -> Value {
 }
 
 #[test]
-fn simulate_answers_by_the_model_asked_for() {
+fn simulate_uses_the_requested_model() {
     for model in MODELS {
         let folder = Folder::with(&light(model));
         let result = folder.json("simulate");
@@ -102,7 +102,7 @@ fn every_model_is_drawn_and_reported() {
         for (option, file) in [("--plot", "impact.svg"), ("--report", "impact.html")] {
             folder.printed("simulate", &[option, file]);
             let written = fs::read_to_string(folder.0.path().join(file)).unwrap();
-            // what has a course in time shows it
+            // A model with a history shows it.
             assert_eq!(written.contains("contact force ("), matches!(model, "modal" | "rigid"), "{model} {option}");
             assert!(written.contains("restitution"), "{model} {option}");
         }
@@ -140,8 +140,8 @@ fn plan_and_compare_list_every_model() {
 }
 
 #[test]
-fn a_scene_that_does_not_settle_is_a_result_that_says_so() {
-    // six undamped modes, far too few for the contact
+fn a_scene_that_does_not_converge_has_a_result_that_states_this() {
+    // Six undamped modes, far too few for the contact.
     let mut undamped = scene(&[("/tolerance", json!(1e-5))]);
     undamped["structure"] = json!({ "kind": "modal", "omega_rad_s": [163, 653, 1469, 2611, 4080, 5876],
         "shape_at_location": [1.3, -0.9, -0.6, 1.4, -0.4, -1.1], "static_compliance_m_n": 6.602e-5 });
@@ -155,7 +155,7 @@ fn a_scene_that_does_not_settle_is_a_result_that_says_so() {
 }
 
 #[test]
-fn a_model_that_cannot_be_had_is_refused() {
+fn an_unavailable_model_is_refused() {
     let spring = json!({ "law": "linear-spring", "stiffness_n_m": 1e7 });
     let infinite = scene(&[("/model", json!("infinite-beam")), ("/contact", spring)]);
     let free = scene(&[("/model", json!("emoc")), ("/structure/ends", json!(["free", "free"]))]);
@@ -164,7 +164,7 @@ fn a_model_that_cannot_be_had_is_refused() {
             let message = Folder::with(&scene).refusal(command, &["--json"]);
             assert!(message.contains("model = \"") && message.contains(reason), "{command}: {message}");
         }
-        // a comparison lists it among the others
+        // A comparison lists it among the others.
         let comparison = Folder::with(&scene).json("compare");
         let refused = comparison["tiers"].as_array().unwrap().iter().any(|tier| {
             tier["model"] == scene["model"] && tier["refused"].as_str().is_some_and(|text| text.contains(reason))
@@ -174,7 +174,7 @@ fn a_model_that_cannot_be_had_is_refused() {
 }
 
 #[test]
-fn what_moves_before_the_impact_has_the_modal_model_alone() {
+fn structures_that_move_before_the_impact_have_only_the_modal_model() {
     for (name, why) in [
         ("dropped-rod.json", "dropped rod"),
         ("moving-beam.json", "moves before the impact"),
@@ -200,7 +200,7 @@ fn what_moves_before_the_impact_has_the_modal_model_alone() {
             assert!(message.contains("auto or modal") && message.contains(why), "{message}");
         }
     }
-    // there is no limit of many modes to settle to: the number has to be stated
+    // There is no limit of many modes to converge to: the number has to be stated.
     let mut scene = gallery("moving-beam.json");
     scene.as_object_mut().unwrap().remove("modes");
     for command in ["simulate", "plan", "compare"] {

@@ -7,7 +7,7 @@ use std::fs;
 use program::{run, stdout};
 use serde_json::{Value, json};
 
-/// The scene that the documentation shows; 40 damped modes of a stepped cantilever.
+/// The scene of the documentation; 40 damped modes of a stepped cantilever.
 const SCENE: &str = r#"{ "structure": { "kind": "beam", "ends": ["clamped", "free"],
     "segments": [ { "length_m": 0.5, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.011323, "thickness_m": 0.011323 },
                   { "length_m": 0.5, "flexural_rigidity_n_m2": 34.2, "mass_per_length_kg_m": 0.5 } ],
@@ -16,7 +16,7 @@ const SCENE: &str = r#"{ "structure": { "kind": "beam", "ends": ["clamped", "fre
   "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 },
   "location_m": 0.4, "modes": 40 }"#;
 
-/// Runs `simulate` on a text, with `--out`, and returns the message; it must fail as input faults do, writing nothing.
+/// Runs `simulate` on a text, with `--out`, and returns the message; it must reject the input and write nothing.
 fn refusal(text: impl AsRef<[u8]>) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), text).unwrap();
@@ -67,7 +67,7 @@ fn simulate_prints_one_json_object_with_the_promised_keys() {
         assert!(number(contact, "start_s") < number(contact, "end_s"));
         assert!(number(contact, "peak_force_n") > 0.0 && number(contact, "peak_compression_m") > 0.0);
     }
-    // the impulses are what turned the striker round
+    // The impulses have reversed the striker.
     let impulse: f64 = contacts.iter().map(|contact| number(contact, "impulse_n_s")).sum();
     assert!((impulse / (0.11027 * (1.0 + restitution)) - 1.0).abs() < 1e-9);
 
@@ -93,7 +93,7 @@ fn simulate_without_json_is_for_readers() {
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 
-/// A free body that moves away faster than the ball follows.
+/// A free body that moves away faster than the ball approaches.
 #[test]
 fn bodies_that_never_meet_are_a_result_with_its_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -140,14 +140,14 @@ fn out_writes_histories_picture_and_result() {
     assert_eq!(energies.lines().next().unwrap().split(',').count(), 41);
     assert_eq!(read("sub_impacts.csv").lines().count() - 1, result["sub_impacts"].as_array().unwrap().len());
 
-    // a second run replaces the files by the same bytes
+    // A second run replaces the files by the same bytes.
     stdout(&run(folder.path(), &["simulate", "scene.json", "--json", "--out", "a/b", "--force"]));
     assert_eq!(read("history.csv"), history);
     assert_eq!(fs::read_dir(folder.path().join("a/b")).unwrap().count(), 5);
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_no_fault_of_the_scene() {
+fn a_folder_that_cannot_be_made_is_not_an_error_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), SCENE).unwrap();
     let output = run(folder.path(), &["simulate", "scene.json", "--out", "scene.json/results"]);
@@ -157,7 +157,7 @@ fn a_folder_that_cannot_be_made_is_no_fault_of_the_scene() {
 }
 
 #[test]
-fn modes_lists_frequencies_and_shapes_that_a_modal_structure_takes() {
+fn modes_lists_frequencies_and_shapes_in_the_form_of_a_modal_structure() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), SCENE).unwrap();
     let printed = stdout(&run(folder.path(), &["modes", "scene.json", "--count", "40", "--json"]));
@@ -171,7 +171,7 @@ fn modes_lists_frequencies_and_shapes_that_a_modal_structure_takes() {
     let table = stdout(&run(folder.path(), &["modes", "scene.json", "--count", "3"]));
     assert_eq!(table.lines().count(), 4);
 
-    // the same impact, posed by those modes
+    // The same impact, defined by those modes.
     let modal = json!({
         "structure": { "kind": "modal", "omega_rad_s": omega, "shape_at_location": shape, "damping_ratios": vec![0.02; 40] },
         "striker": { "mass_kg": 0.11027, "radius_m": 0.015, "speed_m_s": 1.0 },
@@ -181,8 +181,8 @@ fn modes_lists_frequencies_and_shapes_that_a_modal_structure_takes() {
     let result = |name: &str| {
         let mut result: Value =
             serde_json::from_str(&stdout(&run(folder.path(), &["simulate", name, "--json"]))).unwrap();
-        // all but the words of the reason, the scene, and what is known of the modes left out and of the thickness:
-        // nothing, of a list
+        // Everything except the text of the reason, the scene, and the statements on truncated modes and thickness, which a
+        // list of modes does not have.
         let fields = result.as_object_mut().unwrap();
         let choice = fields.remove("choice").unwrap();
         fields.remove("scene");
@@ -292,7 +292,7 @@ fn wrong_types_and_unknown_fields_are_named() {
 }
 
 #[test]
-fn texts_that_are_not_json_are_refused_with_their_place() {
+fn texts_that_are_not_json_are_refused_with_line_and_column() {
     for (text, part) in [
         (SCENE.replace("0.02", "NaN"), "structure.damping_ratio = NaN"),
         (SCENE.replace("0.02", "-Infinity"), "structure.damping_ratio = -Infinity"),

@@ -1,4 +1,4 @@
-//! The keys and columns that the commands write, against the page that documents them.
+//! The keys and columns that the commands write, compared with the page that documents them.
 
 mod program;
 
@@ -15,14 +15,14 @@ fn page(name: &str) -> String {
     fs::read_to_string(format!("{ROOT}/docs/how-to/{name}.md")).unwrap()
 }
 
-/// The text of the section of a page whose heading begins so.
+/// The text of the section of a page whose heading begins with this text.
 fn section(page: &str, heading: &str) -> String {
     let begins = format!("\n## {heading}");
     let rest = page.split_once(&begins).unwrap_or_else(|| panic!("no section {heading}")).1;
     rest.split("\n## ").next().unwrap().to_owned()
 }
 
-/// Keys at any depth. What stands under the keys `apart`, which hold names of the scene, is left out.
+/// Keys at any depth. Values under the keys `apart`, whose keys are names in the scene, are omitted.
 fn keys(tree: &Value, apart: &[&str], found: &mut BTreeSet<String>) {
     match tree {
         Value::Object(entries) => entries.iter().for_each(|(key, value)| {
@@ -36,12 +36,12 @@ fn keys(tree: &Value, apart: &[&str], found: &mut BTreeSet<String>) {
     }
 }
 
-/// Whether a text names a key or column in a code span: alone, as the end of a path, or as a list.
+/// Whether a text contains a key or column in a code span: alone, as the end of a path, or in a list.
 fn names(text: &str, key: &str) -> bool {
     ["`", "."].iter().any(|before| ["`", "[]"].iter().any(|after| text.contains(&format!("{before}{key}{after}"))))
 }
 
-/// Prints one object, and checks that every key of it is in a section of the page.
+/// Runs a command that prints one object, and checks that every key of it is in a section of the page.
 fn documented(folder: &Path, heading: &str, command: &[&str], apart: &[&str]) -> Value {
     let printed: Value = serde_json::from_str(&stdout(&run(folder, &[command, &["--json"]].concat()))).unwrap();
     let text = section(&page("outputs"), heading);
@@ -53,7 +53,7 @@ fn documented(folder: &Path, heading: &str, command: &[&str], apart: &[&str]) ->
     printed
 }
 
-/// Checks that every column of a table is in a text, once the names of this scene are replaced by what the page says.
+/// Checks that every column of a table is in a text, after the names of this scene have been replaced by those of the page.
 fn columns(table: &Path, text: &str, replaced: &[(&str, &str)]) {
     let first = fs::read_to_string(table).unwrap().lines().next().unwrap().to_owned();
     for column in first.split(',') {
@@ -88,7 +88,7 @@ fn every_key_of_every_command_is_documented() {
     for command in [["sensitivity", &beam, "--by", "striker.speed_m_s"], ["sensitivity", &bodies, "--by", "end_s"]] {
         let found = documented(folder, "`sensitivity`", &command, &["scene", "derivatives"]);
         for output in found["derivatives"].as_object().unwrap().keys() {
-            // the page names the first contact and the first mode
+            // The page uses the first contact and the first mode.
             let mut general = output.replace(".stop.", ".NAME.").replace(".beam.", ".NAME.");
             if let Some((list, rest)) = general.clone().split_once('[') {
                 general = format!("{list}[0]{}", rest.split_once(']').unwrap().1);

@@ -1,5 +1,5 @@
-//! What a new user meets first: `demo`, `init`, fields set on the command line, scenes from the standard input, materials
-//! by name, manual pages, and how much is said.
+//! The first steps of a new user: `demo`, `init`, fields set on the command line, scenes from the standard input, materials by
+//! name, manual pages, and the amount of output.
 
 mod program;
 
@@ -14,7 +14,7 @@ use vibroimpact::Scene;
 use vibroimpact::scene::{MATERIALS, schema};
 use vibroimpact::simulate::Simulation;
 
-/// Runs the program on a text at its standard input.
+/// Runs the program with a text on its standard input.
 fn fed(folder: &Path, arguments: &[&str], text: &str) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_vibroimpact"))
         .current_dir(folder)
@@ -24,7 +24,7 @@ fn fed(folder: &Path, arguments: &[&str], text: &str) -> Output {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // a program that refuses its arguments does not read
+    // A program that rejects its arguments does not read its input.
     let _ = program.stdin.take().unwrap().write_all(text.as_bytes());
     program.wait_with_output().unwrap()
 }
@@ -59,7 +59,7 @@ fn the_demo_needs_no_file_and_writes_none_unasked() {
     let text = stdout(&run(folder.path(), &["demo", "--plot", "demo.svg", "--report", "demo.html"]));
     assert!(text.contains("wrote demo.svg") && text.contains("wrote demo.html"), "{text}");
     assert!(fs::read_to_string(folder.path().join("demo.svg")).unwrap().starts_with("<svg"));
-    // the same impact by the file that init writes, on another way
+    // The same impact by the file that init writes.
     stdout(&run(folder.path(), &["init"]));
     let [demo, file] = [["demo", "--json"].as_slice(), &["simulate", "impact.toml", "--json"]]
         .map(|arguments| stdout(&run(folder.path(), arguments)));
@@ -123,7 +123,7 @@ fn fields_are_set_on_the_command_line() {
     let in_file = stdout(&run(folder.path(), &["simulate", "scene.toml", "--json", "--set", "modes=30"]));
     let set = ["demo", "--json", "--set", "striker.speed_m_s=2", "--set", " modes = 30 "];
     assert_eq!(stdout(&run(folder.path(), &set)), in_file);
-    // a text, a list, a field of an object that is not there yet, and one left out
+    // A text, a list, a field of an object that does not exist yet, and an omitted one.
     let set = [
         "demo",
         "--json",
@@ -163,16 +163,16 @@ fn fields_are_set_on_the_command_line() {
         assert!(message.contains(part), "{assignment}: {message}");
         assert!(!folder.path().join("there").exists());
     }
-    // every command that reads a scene takes it
+    // Every command that reads a scene accepts it.
     for arguments in [&["plan"][..], &["compare"], &["modes", "--count", "2"], &["emoc"]] {
         let set = [arguments, &["scene.toml", "--set", "location_m=9"]].concat();
         assert!(refused(&run(folder.path(), &set)).contains("location_m = 9"), "{arguments:?}");
     }
 }
 
-/// The ball moves as its history says, and what cannot be shown is refused.
+/// The ball moves according to its history, and an impact that cannot be animated is rejected.
 #[test]
-fn an_impact_is_shown_moving() {
+fn an_impact_is_animated() {
     let folder = tempfile::tempdir().unwrap();
     let told = stdout(&run(folder.path(), &["demo", "--animate", "moving.svg"]));
     assert!(told.contains("wrote moving.svg"), "{told}");
@@ -188,9 +188,9 @@ fn an_impact_is_shown_moving() {
     };
     let (beam, ball) = (values("d"), values("cy"));
     assert_eq!((beam.len(), ball.len()), (241, 241));
-    // the largest force is that of the result, though it lasts for less than a picture does
+    // The largest force is that of the result, although it lasts for less than one frame.
     assert!(told.contains("2.133 kN") && svg.contains(">2.133 kN<"), "{told}");
-    // upwards is towards smaller numbers: the ball falls with the beam first, and leaves upwards
+    // Upwards means smaller numbers: the ball first moves down with the beam, and leaves upwards.
     let heights: Vec<f64> = ball.iter().map(|y| y.parse().unwrap()).collect();
     assert!(heights[10] > heights[0] && heights[240] < heights[230]);
     let bodies = first_scene(folder.path(), "bodies");
@@ -203,7 +203,7 @@ fn an_impact_is_shown_moving() {
     assert!(refused(&run(folder.path(), &["demo", "--animate", "moving.svg"])).contains("this file exists"));
 }
 
-/// Holds a figure of the book against what the program draws.
+/// Compares a figure of the book with the one that the program draws.
 fn assert_drawn(arguments: &[&str], figure: &str) {
     let folder = tempfile::tempdir().unwrap();
     stdout(&run(folder.path(), &[arguments, &["--plot", "drawn.svg"]].concat()));
@@ -216,14 +216,14 @@ fn assert_drawn(arguments: &[&str], figure: &str) {
     assert!(shown == drawn, "docs/figures/{figure} is not current; VIBROIMPACT_BLESS=1 writes it");
 }
 
-/// The force pulse of the piano hammer in the book is what the program draws.
+/// The force pulse of the piano hammer in the book is drawn by the program.
 #[test]
 fn the_book_shows_the_hammer() {
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/scenes/piano-hammer.json");
     assert_drawn(&["simulate", scene], "piano-hammer.svg");
 }
 
-/// The picture of the README is what the program draws.
+/// The picture of the README is drawn by the program.
 #[test]
 fn the_readme_shows_the_demo() {
     assert_drawn(&["demo"], "first-impact.svg");
@@ -231,9 +231,9 @@ fn the_readme_shows_the_demo() {
     assert!(readme.contains("](docs/figures/first-impact.svg)"));
 }
 
-/// The page with the library in it, but for the library itself, which `web/check.sh` tries in a browser.
+/// The page with the library in it, except for the library itself, which `web/check.sh` tests in a browser.
 #[test]
-fn the_page_to_play_with_is_current_and_small() {
+fn the_interactive_page_is_current_and_small() {
     let read = |name: &str| fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)).unwrap();
     let (source, page) = (read("web/page.html"), read("docs/play.html"));
     let (before, after) = source.split_once("@MODULE@").unwrap();
@@ -241,9 +241,9 @@ fn the_page_to_play_with_is_current_and_small() {
     assert!(page.len() < 1_500_000 && !page.contains("http"), "{} bytes", page.len());
 }
 
-/// By the numbers of the norms, written out.
+/// A material is equivalent to its numbers in the standards.
 #[test]
-fn a_material_is_its_numbers() {
+fn a_material_is_equivalent_to_its_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let by_name = Scene::from_toml(&first_scene(folder.path(), "cantilever")).unwrap();
     let numbers = |text: &str, number: &str| text.replace("material = \"aluminium\"", number);
@@ -256,7 +256,7 @@ fn a_material_is_its_numbers() {
         + &numbers(contact, "youngs_modulus_pa = 7e10\npoissons_ratio = 0.3");
     assert!(!by_number.contains("material ="), "{by_number}");
     assert_eq!(Scene::from_toml(&by_number).unwrap(), by_name);
-    // the schema knows where a name may stand
+    // The schema contains the fields in which a name is allowed.
     let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
     let named: Value =
         serde_json::to_value(first_scene(folder.path(), "beam").parse::<toml::Table>().unwrap()).unwrap();
@@ -279,7 +279,7 @@ fn a_material_is_its_numbers() {
         let solved = read.and_then(|scene| scene.plan().map(|_| ()).map_err(|fault| fault.to_string()));
         assert_eq!(solved.is_ok(), valid, "{place}: {solved:?}");
     }
-    // the book lists what the program knows
+    // The book lists the materials of the program.
     let book = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/how-to/materials.md")).unwrap();
     for material in MATERIALS {
         let row = format!(
@@ -309,7 +309,7 @@ fn every_command_has_a_manual_page() {
 }
 
 #[test]
-fn the_voice_is_quiet_or_verbose_as_asked() {
+fn output_is_quiet_or_verbose_as_requested() {
     let folder = tempfile::tempdir().unwrap();
     let told = stdout(&run(folder.path(), &["demo", "--out", "run"]));
     assert!(told.contains("look at run/impact.svg first"), "{told}");
@@ -322,9 +322,9 @@ fn the_voice_is_quiet_or_verbose_as_asked() {
     assert!(refused(&run(folder.path(), &["demo", "--quiet", "--verbose"])).contains("cannot be used with"));
 }
 
-/// The sum of the modes at the place of impact, against the motion that the solver itself records there.
+/// The sum of the modes at the location of impact, compared with the motion that the solver records there.
 #[test]
-fn the_deflection_passes_through_the_place_of_impact() {
+fn the_deflection_agrees_at_the_location_of_impact() {
     let folder = tempfile::tempdir().unwrap();
     for kind in ["beam", "cantilever"] {
         let scene = Scene::from_toml(&first_scene(folder.path(), kind)).unwrap();
@@ -332,7 +332,7 @@ fn the_deflection_passes_through_the_place_of_impact() {
         let scene = found.scene(&scene);
         let Simulation::Modal(resolved) = &found else { panic!("a beam has modes") };
         let until_s = resolved.until_s(None);
-        // 0.3 of 1 m and 0.25 of 0.3 m are places of the grid
+        // 0.3 of 1 m and 0.25 of 0.3 m are locations of the grid.
         let deflection = resolved.deflection(&scene, until_s, [60, 50]).unwrap().unwrap();
         let place = if kind == "beam" { 18 } else { 50 };
         let history = &resolved.history;
@@ -346,7 +346,7 @@ fn the_deflection_passes_through_the_place_of_impact() {
             assert!((sum - there).abs() < 1e-9 * largest, "{kind} at {time_s} s: {sum} and {there}");
             assert_eq!(deflection.striker_m[i], history.at(time_s).striker_displacement_m);
         }
-        // a support does not move
+        // A support does not move.
         assert!(deflection.structure_m.iter().all(|row| row[0].abs() < 1e-9 * largest));
     }
 }

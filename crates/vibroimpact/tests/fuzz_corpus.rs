@@ -1,17 +1,17 @@
-//! Every file of the fuzzer's corpus through what the fuzzer calls: no fuzzer and no nightly compiler are needed.
+//! Runs the functions of the fuzzer on every file of its corpus, without a fuzzer or a nightly compiler.
 
 #[path = "../../../fuzz/src/targets.rs"]
 mod targets;
 
 use std::path::Path;
 
-/// Feeds a folder's files, in order of name, and says how many there are.
+/// Processes the files of a folder, in the order of their names, and returns their number.
 fn feed(target: &str, function: fn(&[u8])) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus").join(target);
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     for file in &files {
-        // names the file in the output of a test that fails
+        // Prints the name of the file in the output of a test that fails.
         println!("{}", file.display());
         function(&std::fs::read(file).unwrap());
     }

@@ -1,4 +1,4 @@
-//! `vibroimpact identify`: parameters from synthetic measurements, whose truth is known.
+//! `vibroimpact identify`: parameters from synthetic measurements whose true values are known.
 
 mod program;
 
@@ -9,7 +9,7 @@ use program::{run, stdout};
 use serde_json::{Value, json};
 use vibroimpact::Scene;
 
-/// A list of modes: cheap, and its truth is the same for any number of modes.
+/// A list of modes: it is cheap, and its true values are the same for any number of modes.
 fn scene(stiffness: f64, mass: f64) -> Value {
     let omega = [58.2, 364.7, 1021.2, 2001.1, 3308.0, 4941.6];
     json!({
@@ -27,7 +27,7 @@ fn scene(stiffness: f64, mass: f64) -> Value {
     })
 }
 
-/// Normal deviates: SplitMix64 by Box and Muller.
+/// Normal deviates: SplitMix64 and the method of Box and Muller.
 struct Noise(u64);
 
 impl Noise {
@@ -92,17 +92,17 @@ fn value(found: &Value, j: usize) -> f64 {
 const FREE: &str = "contact.stiffness_n_m1_5,striker.mass_kg";
 
 #[test]
-fn exact_data_give_the_parameters_that_made_them() {
+fn exact_data_give_their_true_parameters() {
     let table = table(&scene(1.2e9, 0.05), [0.0, 0.0], false, &mut Noise(1));
     let found = identify(&scene(0.8e9, 0.07), &table, &["--free", FREE]);
     assert!((value(&found, 0) / 1.2e9 - 1.0).abs() < 1e-6, "{found:#}");
     assert!((value(&found, 1) / 0.05 - 1.0).abs() < 1e-6, "{found:#}");
 }
 
-/// 95 % intervals of 12 tables with noise, twice; thousands are the study's. Of 24 intervals that hold with probability 0.95, fewer
-/// than 19 do one time in ten thousand.
+/// 95 % intervals of 12 tables with noise, twice; the study has thousands. Of 24 intervals that contain the true value with
+/// probability 0.95, fewer than 19 do so one time in ten thousand.
 #[test]
-fn intervals_hold_the_truth_as_often_as_they_say() {
+fn intervals_contain_the_true_values_as_often_as_stated() {
     use vibroimpact::identify::{Data, Free, Request, identify};
     let truth = scene(1.2e9, 0.05);
     let begin = Scene::from_value(&scene(1.3e9, 0.055)).unwrap();
@@ -129,7 +129,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     }
 }
 
-/// The same table with noise on it.
+/// The same table with added noise.
 fn with_noise(exact: &str, noise: [f64; 2], stated: bool, random: &mut Noise) -> String {
     let mut lines = exact.lines();
     let header = lines.next().unwrap();
@@ -146,7 +146,7 @@ fn with_noise(exact: &str, noise: [f64; 2], stated: bool, random: &mut Noise) ->
 }
 
 #[test]
-fn a_wrong_model_is_noticed() {
+fn a_wrong_model_is_detected() {
     let table = table(&scene(1.2e9, 0.05), [0.004, 4e-7], true, &mut Noise(7));
     let noticed = |scene: &Value, free: &str| {
         let found = identify(scene, &table, &["--free", free, "--starts", "1"]);
@@ -155,18 +155,18 @@ fn a_wrong_model_is_noticed() {
         test["noticed"].as_bool().unwrap()
     };
     assert!(!noticed(&scene(1.3e9, 0.055), FREE));
-    // another law: a linear spring, whose contacts last equally long at every speed
+    // Another law: a linear spring, whose contacts have the same duration at every speed.
     let mut other = scene(1.0, 0.055);
     other["contact"] = json!({ "law": "linear-spring", "stiffness_n_m": 1e7 });
     assert!(noticed(&other, "contact.stiffness_n_m"));
-    // another damping: far more in the higher modes
+    // Another damping: far more in the higher modes.
     let mut other = scene(1.3e9, 0.055);
     other["structure"]["damping_ratios"] = json!([0.004, 0.005, 0.3, 0.3, 0.3, 0.3]);
     assert!(noticed(&other, FREE));
 }
 
 #[test]
-fn repeated_rows_tell_a_wrong_model_without_stated_noise() {
+fn repeated_rows_reveal_a_wrong_model_without_stated_noise() {
     let truth = scene(1.2e9, 0.05);
     let mut random = Noise(11);
     let exact = table(&truth, [0.0, 0.0], false, &mut random);
@@ -180,7 +180,7 @@ fn repeated_rows_tell_a_wrong_model_without_stated_noise() {
         (&found["lack_of_fit"][0]["test"], &found["lack_of_fit"][0]["noticed"]),
         (&json!("repeated rows"), &json!(false))
     );
-    // the noise is found, too
+    // The noise is estimated, too.
     for (noise, truth) in found["noise"].as_array().unwrap().iter().zip([0.004, 4e-7]) {
         assert!((noise["standard_deviation"].as_f64().unwrap() / truth - 1.0).abs() < 0.3, "{noise}");
     }
@@ -190,7 +190,7 @@ fn repeated_rows_tell_a_wrong_model_without_stated_noise() {
     assert_eq!(found["lack_of_fit"][0]["noticed"], true, "{found:#}");
 }
 
-/// Force histories of four speeds with noise, delayed by the gauge and by its clock, in files of their own.
+/// Force histories of four speeds with noise, delayed by the gauge and by its clock, in separate files.
 fn with_records(folder: &Path, truth: &Value, time_constant: f64, noise: f64) {
     let mut random = Noise(21);
     let mut text = "striker.speed_m_s,force_file,force_n_sd\n".to_owned();
@@ -198,7 +198,7 @@ fn with_records(folder: &Path, truth: &Value, time_constant: f64, noise: f64) {
         let mut tree = truth.clone();
         tree["striker"]["speed_m_s"] = json!(speed);
         let (_, history) = Scene::from_value(&tree).unwrap().impact().unwrap().record().unwrap();
-        // the gauge by explicit steps of its equation, far finer than the samples
+        // The gauge by explicit steps of its equation, far finer than the samples.
         let (offset, until) = (0.3 + 0.1 * i as f64, 1.1 * history.duration_s());
         let steps = 400_000;
         let h = until / f64::from(steps);
@@ -207,7 +207,7 @@ fn with_records(folder: &Path, truth: &Value, time_constant: f64, noise: f64) {
             if k % 1000 == 0 {
                 file += &format!("{:?},{:?}\n", offset + h * f64::from(k), shown + noise * random.next());
             }
-            // the midpoint rule
+            // The midpoint rule.
             let force = history.at(h * (f64::from(k) + 0.5)).force_n;
             shown += h / (time_constant + 0.5 * h) * (force - shown);
         }
@@ -218,16 +218,16 @@ fn with_records(folder: &Path, truth: &Value, time_constant: f64, noise: f64) {
 }
 
 #[test]
-fn force_histories_tell_the_contact_and_the_gauge() {
+fn force_histories_determine_the_contact_and_the_gauge() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), scene(1.4e9, 0.05).to_string()).unwrap();
     with_records(folder.path(), &scene(1.2e9, 0.05), 2e-5, 2.0);
     let free = "contact.stiffness_n_m1_5,gauge.time_constant_s=1e-6..1e-3";
-    // one start: the misfit has one minimum
+    // One start, because the misfit has one minimum.
     let found = in_folder(folder.path(), &["--free", free, "--starts", "1", "--plot", "picture.svg"]);
     for (j, truth) in [1.2e9, 2e-5].into_iter().enumerate() {
         let [low, high] = [0, 1].map(|k| found["parameters"][j]["profile_interval"][k].as_f64().unwrap());
-        // three standard deviations
+        // Three standard deviations.
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         assert!((middle - truth).abs() < 1.6 * half && half < 0.03 * truth, "{j}: {low} to {high}");
     }
@@ -236,14 +236,14 @@ fn force_histories_tell_the_contact_and_the_gauge() {
     }
     assert!(found["lack_of_fit"].as_array().unwrap().iter().all(|test| test["noticed"] == false), "{found:#}");
     assert!(fs::read_to_string(folder.path().join("picture.svg")).unwrap().contains("force-0.csv"));
-    // a gauge that is taken to be without delay
+    // A gauge that is assumed to have no delay.
     let found = in_folder(folder.path(), &["--free", "contact.stiffness_n_m1_5", "--starts", "1"]);
     assert!(found["lack_of_fit"].as_array().unwrap().iter().all(|test| test["noticed"] == true), "{found:#}");
 }
 
 #[test]
-fn what_the_data_leave_open_is_told() {
-    // of a rigid place, contact durations tell the ratio of stiffness to mass alone: T ~ (m/k)^(2/5)
+fn undetermined_combinations_are_reported() {
+    // At a rigid location, contact durations determine only the ratio of stiffness to mass: T ~ (m/k)^(2/5).
     let scene = json!({
         "structure": { "kind": "modal", "omega_rad_s": [1000], "shape_at_location": [1e-6] },
         "striker": { "mass_kg": 0.1, "speed_m_s": 1 },
@@ -259,7 +259,7 @@ fn what_the_data_leave_open_is_told() {
     let ratio = entry("contact.stiffness_n_m1_5") / entry("striker.mass_kg");
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
     assert_eq!(found["parameters"][0]["profile_interval"], json!([null, null]));
-    // damping says nothing at all there
+    // Damping has no effect there.
     let mut damped = scene.clone();
     damped["structure"]["damping_ratios"] = json!([0.01]);
     let found = identify(&damped, table, &["--free", "structure.damping_ratios[0]"]);
@@ -267,7 +267,7 @@ fn what_the_data_leave_open_is_told() {
 }
 
 #[test]
-fn the_next_experiment_is_the_one_that_tells_most() {
+fn the_next_experiment_is_the_most_informative_one() {
     let folder = tempfile::tempdir().unwrap();
     let truth = scene(1.2e9, 0.05);
     fs::write(folder.path().join("scene.json"), scene(1.2e9, 0.05).to_string()).unwrap();
@@ -283,7 +283,7 @@ fn the_next_experiment_is_the_one_that_tells_most() {
     let ranked = found["candidates"].as_array().unwrap();
     let ratios: Vec<f64> = ranked.iter().map(|one| one["volume_ratio"].as_f64().unwrap()).collect();
     assert!(ratios.len() == 9 && ratios.is_sorted() && ratios[0] < 0.95 && ratios[8] <= 1.0, "{ratios:?}");
-    // the second method: really making the best and the worst of them, and refitting
+    // The second method: simulate the best and the worst of them, and fit again.
     let volume = |found: &Value| {
         let se = |j: usize| {
             let ends = &found["parameters"][j]["covariance_interval"];
@@ -304,12 +304,12 @@ fn the_next_experiment_is_the_one_that_tells_most() {
         let measured = format!("{:?},0.004,{first:?},4e-7", made.restitution.unwrap());
         let with = format!("{data}{},{speed},{measured}\n", point.as_str().unwrap());
         let again = identify(&truth, &with, &["--free", FREE, "--starts", "1"]);
-        // the fit moves a little, and with it the derivatives
+        // The fit changes slightly, and with it the derivatives.
         assert!((volume(&again) / before / ratio - 1.0).abs() < 0.1, "{one}: {} {ratio}", volume(&again) / before);
     }
 }
 
-/// Refused input: exit code 2, nothing written, and the field named.
+/// Rejected input: exit code 2, nothing written, and the field named.
 #[test]
 fn bad_input_is_refused_by_name() {
     let good = "location,restitution,restitution_sd\ntip,0.3,0.01\nmiddle,0.3,0.01\n";
@@ -414,8 +414,8 @@ fn bad_options_are_refused_by_name() {
     }
 }
 
-/// The gallery's rubber ball, whose modulus and restitution at a wall differ from what the scene says, thrown at four places of the bar at
-/// three speeds.
+/// The gallery's rubber ball, whose modulus and restitution at a wall differ from those in the scene, thrown at four locations
+/// of the bar at three speeds.
 fn rubber_ball(truth: &[(&str, f64)]) -> String {
     let scene = fs::read_to_string(repository().join("datasets/scenes/rubber-ball.json")).unwrap();
     let mut tree: Value = serde_json::from_str(&scene).unwrap();
@@ -441,7 +441,7 @@ fn repository() -> std::path::PathBuf {
 }
 
 #[test]
-fn the_example_of_the_documentation_is_made_here_and_gives_its_truth_back() {
+fn the_example_of_the_documentation_is_made_here_and_returns_its_true_values() {
     let truth = [("striker_youngs_modulus_pa", 4.2e6), ("restitution", 0.74)];
     let path = repository().join("datasets/identification/rubber-ball.csv");
     let made = rubber_ball(&truth);

@@ -14,7 +14,7 @@ fn solved(arguments: &[&str]) -> Value {
     serde_json::from_str(&stdout(&run(folder.path(), arguments))).unwrap()
 }
 
-/// Runs a command that must fail as input faults do, writing nothing; returns the message.
+/// Runs a command that must reject its input and write nothing; returns the message.
 fn refusal(arguments: &[&str], scene: Option<String>) -> String {
     let folder = tempfile::tempdir().unwrap();
     let files = usize::from(scene.is_some());
@@ -65,7 +65,7 @@ fn one_contact_and_a_rebound() {
     assert_eq!(result["rebound_ratio"], result["first_rebound_ratio"]);
     let ratio = result["rebound_ratio"].as_f64().unwrap();
     assert!(ratio > 0.0 && ratio < 1.0);
-    // the gentlest impact on the beam is one on an immovable body
+    // The weakest impact on the beam is one on an immovable body.
     let gentle = solved(&["infinite-beam", "--s", "1e-12", "--json"]);
     assert!(gentle["rebound_ratio"].as_f64().unwrap() > ratio);
 }
@@ -97,7 +97,7 @@ fn turning_points_are_listed_with_their_uncertainty() {
     assert!(table.contains("critical S 1.56") && table.lines().count() == 5, "{table}");
 }
 
-/// Posed in physical units and by its `S`, an impact is the same, and the units connect the two.
+/// An impact given in physical units and by its `S` is the same, and the units connect the two.
 #[test]
 fn a_scene_is_its_s_in_other_units() {
     let path = gallery("infinite-beam.json");
@@ -120,7 +120,7 @@ fn a_scene_is_its_s_in_other_units() {
 }
 
 #[test]
-fn a_plate_is_solved_by_simulate_and_always_lets_the_striker_go() {
+fn a_plate_is_solved_by_simulate_and_always_releases_the_striker() {
     let path = gallery("infinite-plate.json");
     let result = &solved(&["simulate", path.to_str().unwrap(), "--json"])["infinite"];
     assert_eq!((&result["outcome"], &result["separations"]), (&json!("rebound"), &json!(1)));
@@ -134,7 +134,7 @@ fn a_plate_is_solved_by_simulate_and_always_lets_the_striker_go() {
 /// Other laws on infinite structures have the same documents as Hertz contact, without `S`; a long beam with ends, by its
 /// modes, agrees.
 #[test]
-fn every_law_is_solved_and_told_alike() {
+fn every_law_is_solved_and_reported_in_the_same_form() {
     let laws = [
         json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e6, "restitution": 0.8 }),
         json!({ "law": "hunt-crossley", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3, "restitution": 0.7 }),
@@ -159,7 +159,7 @@ fn every_law_is_solved_and_told_alike() {
             let contact = &result["sub_impacts"][0];
             let peak = contact["peak_force_n"].as_f64().unwrap();
             assert!(contact["impulse_n_s"].as_f64().unwrap() > 0.0 && peak > 0.0);
-            // the tables know the same motion
+            // The tables contain the same motion.
             let table = fs::read_to_string(folder.path().join("a/history.csv")).unwrap();
             let rows: Vec<[f64; 7]> =
                 csv::Reader::from_reader(table.as_bytes()).deserialize().map(Result::unwrap).collect();
@@ -187,9 +187,9 @@ fn every_law_is_solved_and_told_alike() {
     }
 }
 
-/// A contact that lasts is told as one of which the end is not known.
+/// A contact that lasts is reported as one whose end is not known.
 #[test]
-fn a_contact_that_lasts_says_so() {
+fn a_contact_that_lasts_is_reported() {
     let mut tree = scene();
     tree["contact"] = json!({ "law": "kelvin-voigt", "stiffness_n_m": 1e5, "damping_n_s_m": 1e4 });
     let folder = tempfile::tempdir().unwrap();
@@ -349,7 +349,7 @@ fn a_section_can_be_given_in_three_ways() {
     let given = s(json!({ "kind": kind, "flexural_rigidity_n_m2": rigidity, "mass_per_length_kg_m": mass }));
     assert!((given / square - 1.0).abs() < 1e-12);
     let round = s(json!({ "kind": kind, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "diameter_m": side }));
-    // S ~ EI^(-5/2) (mass per length)^(-15/2)
+    // S ~ EI^(-5/2) (mass per length)^(-15/2).
     let pi = std::f64::consts::PI;
     let expected = (12.0 * pi / 64.0).powf(-2.5) * (pi / 4.0).powf(-7.5);
     assert!((round / square / expected - 1.0).abs() < 1e-12);

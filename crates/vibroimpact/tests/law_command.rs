@@ -17,7 +17,7 @@ fn answer(more: &[&str]) -> Value {
     serde_json::from_str(&printed(&[more, &["--json"]].concat())).unwrap()
 }
 
-/// Runs a command that must fail as input faults do, and returns the message.
+/// Runs a command that must reject its input, and returns the message.
 fn refusal(arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), arguments);
@@ -33,19 +33,19 @@ fn parameters_printed_are_those_of_the_law() {
     let laws = answer["laws"].as_array().unwrap();
     let number = |law: usize, name: &str| laws[law]["parameters"][name].as_f64().unwrap();
     assert_eq!(answer["compression_m"], 1e-3);
-    // MuJoCo and spring and dashpot are the same contact
+    // MuJoCo and spring and dashpot are the same contact.
     let (stiffness, damping) = (number(1, "stiffness_n_m"), number(1, "damping_n_s_m"));
     let direct = laws[0]["parameters"]["solref_direct"].as_array().unwrap();
     assert!((-direct[0].as_f64().unwrap() * 0.2 / stiffness - 1.0).abs() < 1e-14);
     assert!((-direct[1].as_f64().unwrap() * 0.2 / damping - 1.0).abs() < 1e-14);
     let law = HuntCrossley::new(number(2, "stiffness_n_m1_5"), 1.5, number(2, "damping_s_m")).unwrap();
     assert!((Law::from(law).wall_restitution(0.2, 1.5).unwrap() - 0.5).abs() < 1e-14);
-    // what the papers give, as the documentation of the laws tables it
+    // Restitutions of the papers' formulas, as in the tables in the documentation of the laws.
     let papers: Vec<f64> = laws.iter().map(|law| law["restitution_by_the_paper"].as_f64().unwrap()).collect();
     for (found, known) in papers.iter().zip([0.550, 0.550, 0.663, 0.470, 0.725]) {
         assert!((found - known).abs() < 5.1e-4, "{papers:?}");
     }
-    // Lankarani and Nikravesh do not come down to a half
+    // Lankarani and Nikravesh's law does not reach one half.
     assert!(laws[4]["parameters"].is_null() && laws[4]["restitution"].is_null());
     assert!(printed(&[]).contains("none: the law cannot have this restitution"));
 }
@@ -76,7 +76,7 @@ fn elastic_contacts_have_no_damping() {
     assert_eq!(answer["laws"][0]["parameters"]["solref_direct"][1], 0.0);
 }
 
-/// Two equal bodies count as half of one.
+/// Two equal bodies are equivalent to one of half the mass.
 #[test]
 fn the_other_body() {
     let answer = answer(&["--other-mass-kg", "0.2", "--law", "mujoco"]);
@@ -84,7 +84,7 @@ fn the_other_body() {
 }
 
 #[test]
-fn faults_name_the_option() {
+fn errors_name_the_option() {
     for bad in ["0", "-1", "nan", "inf", "1e99", "much"] {
         for (place, option) in [(4, "--mass-kg"), (6, "--speed-m-s")] {
             let mut arguments = WANTED;
@@ -102,7 +102,7 @@ fn faults_name_the_option() {
         arguments[2] = bad;
         assert!(refusal(&arguments).to_lowercase().contains(&format!("--restitution = {bad}")));
     }
-    // numbers that are each in range, and a stiffness that is not
+    // Numbers that are each in range, and a stiffness that is not.
     let message = refusal(&[&WANTED[..], &["--compression-m", "1e-29"]].concat());
     assert!(message.contains("stiffness"), "{message}");
     let message = refusal(&[&WANTED[..], &["--law", "lankarani-nikravesh"]].concat());
@@ -111,14 +111,14 @@ fn faults_name_the_option() {
     assert!(refusal(&[&WANTED[..], &["--law", "hertz"]].concat()).contains("possible values"));
 }
 
-/// The law as the table of restitutions in its documentation.
+/// The lowest restitution of the law, as in the table in its documentation.
 #[test]
 fn the_least_restitution_of_lankarani_and_nikravesh() {
     assert!(LankaraniNikravesh::with_restitution(1.0, LankaraniNikravesh::LEAST_RESTITUTION).is_ok());
     assert!(LankaraniNikravesh::with_restitution(1.0, LankaraniNikravesh::LEAST_RESTITUTION - 1e-4).is_err());
 }
 
-/// The page of the book, its table of approximations included.
+/// The page of the book, including its table of approximations.
 #[test]
 fn the_book_shows_what_is_printed() {
     let page = include_str!("../../../docs/how-to/wanted-restitution.md");

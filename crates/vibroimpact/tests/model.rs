@@ -1,4 +1,4 @@
-//! The choice of the model: each tier where it must be, errors within the uncertainty, bad input named.
+//! The choice of the model: each model is chosen where it must be, errors are within the uncertainty, invalid input is named.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use vibroimpact::model::{Answer, Kept, Model, Modes, Reflection, VALIDATED, refl
 use vibroimpact::vibroimpact_sim::infinite::{self, BeamSection};
 use vibroimpact::vibroimpact_sim::modal::{Settings, Solution, Solver, Striker, Structure};
 
-/// The pinned beam of chapter 3 with its ball; the number of modes left to the program.
+/// The pinned beam of chapter 3 with its ball; the program chooses the number of modes.
 fn chapter3() -> Value {
     json!({
         "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02, "segments": [
@@ -56,16 +56,16 @@ fn each_model_is_chosen_where_it_must_be() {
     let light = [("/striker/radius_m", json!(0.006)), ("/location_m", json!(0.5))];
     for (changes, model) in [
         (vec![], Model::Modal),
-        // on either support, and so near one that the tolerance does not tell
+        // On either support, and so near one that the difference is below the tolerance.
         (vec![("/location_m", json!(0))], Model::Rigid),
         (vec![("/location_m", json!(1))], Model::Rigid),
         (vec![("/location_m", json!(1e-5)), ("/tolerance", json!(0.01))], Model::Rigid),
         (vec![("/location_m", json!(1e-2)), ("/tolerance", json!(1e-6))], Model::Modal),
-        // 7 g in the middle of a beam of 1 kg
+        // 7 g in the middle of a beam of 1 kg.
         (light.to_vec(), Model::InfiniteBeam),
-        // the same, but the modes are the structure's own
+        // The same, but with the modes of the structure itself.
         ([&light[..], &[("/modes", json!(40))]].concat(), Model::Modal),
-        // as wide as the net law's error
+        // The tolerance is as wide as the error of the net law.
         (vec![("/tolerance", json!(0.5))], Model::Emoc),
         (vec![("/tolerance", json!(0.5)), ("/structure/damping_ratio", json!(0))], Model::Modal),
     ] {
@@ -76,8 +76,8 @@ fn each_model_is_chosen_where_it_must_be() {
 }
 
 #[test]
-fn a_support_that_yields_law_by_law() {
-    // at a wall, thesis Eq. 3.19 and its kin: the law's own restitution
+fn a_compliant_support_for_every_law() {
+    // At a wall the restitution is that of the law, thesis Eq. 3.19 and similar ones.
     for (law, e) in [
         (json!({ "law": "hertz", "stiffness_n_m1_5": 1e10 }), 1.0),
         (json!({ "law": "viscous", "stiffness_n_m1_5": 1e10, "restitution": 0.7 }), 0.7),
@@ -124,8 +124,8 @@ fn the_uncertainty_covers_the_error() {
 }
 
 #[test]
-fn what_does_not_settle_is_said_to() {
-    // undamped, and too heavy a ball for the accuracy that rounding leaves after many sub-impacts
+fn a_restitution_that_does_not_converge_is_reported() {
+    // Undamped, and too heavy a ball for the accuracy that rounding allows after many sub-impacts.
     let mut scene = with(&[("/tolerance", json!(1e-10)), ("/striker/radius_m", json!(0.03))]);
     let omega: Vec<f64> = (1..=30).map(|k| 163.0 * f64::from(k * k)).collect();
     let shape: Vec<f64> = (1..=30).map(|k| 1.414 * (PI * f64::from(k) * 0.4).sin()).collect();
@@ -143,7 +143,7 @@ fn what_does_not_settle_is_said_to() {
 }
 
 #[test]
-fn an_answer_is_the_same_every_time() {
+fn a_result_is_the_same_every_time() {
     let scene = Scene::from_value(&chapter3()).unwrap();
     let first = scene.answer().unwrap();
     let again: Vec<Answer> = std::thread::scope(|scope| {
@@ -151,7 +151,7 @@ fn an_answer_is_the_same_every_time() {
         runs.into_iter().map(|run| run.join().unwrap()).collect()
     });
     assert!(again.iter().all(|other| *other == first));
-    // and the modal problem handed out is the one that was solved
+    // The returned modal problem is the one that was solved.
     let choice = scene.choose().unwrap();
     assert_eq!(choice.impact.unwrap().solve().unwrap().restitution, first.restitution);
     let impact = scene.impact().unwrap();
@@ -159,21 +159,21 @@ fn an_answer_is_the_same_every_time() {
 }
 
 #[test]
-fn stated_modes_stay_as_they_are() {
+fn stated_modes_are_used_unchanged() {
     let scene = Scene::from_value(&with(&[("/modes", json!(40))])).unwrap();
     let (answer, solution) = (scene.answer().unwrap(), scene.impact().unwrap().solve().unwrap());
     assert_eq!((answer.model, answer.modes, answer.tolerance), (Model::Modal, 40, 1e-9));
     assert_eq!(answer.restitution, solution.restitution);
     assert_eq!(answer.uncertainty.solver, solution.restitution_uncertainty);
     assert_eq!(answer.residual_compliance_m_n, 0.0);
-    // 0.17739 at N = 40 with plain truncation, where the limit of many modes is 0.1425
+    // 0.17739 at N = 40 with plain truncation, where the limit of many modes is 0.1425.
     assert!((answer.restitution.unwrap() - 0.17739).abs() < 1e-3, "{answer:?}");
     let chosen = crate::answer(&chapter3());
     assert!((chosen.restitution.unwrap() - 0.1425).abs() < 2e-3, "{chosen:?}");
 }
 
 #[test]
-fn a_structure_known_by_its_modes_says_what_is_not_known() {
+fn a_structure_given_by_its_modes_states_what_is_not_known() {
     let listed = |compliance: Option<f64>| {
         let omega: Vec<f64> = (1..=40).map(|k| 169.0 * f64::from(k * k)).collect();
         let shape: Vec<f64> = (1..=40).map(|k| 2f64.sqrt() * (PI * f64::from(k) * 0.3).sin()).collect();
@@ -193,14 +193,14 @@ fn a_structure_known_by_its_modes_says_what_is_not_known() {
     assert_eq!((unknown.model, unknown.modes, unknown.tolerance), (Model::Modal, 40, 1e-9));
     assert_eq!((unknown.uncertainty.modes_left_out, unknown.uncertainty.beam_theory), (None, None));
     assert!(unknown.not_known.iter().any(|why| why.contains("static compliance")), "{:?}", unknown.not_known);
-    // G = x^2 (1-x)^2 / (3 EI) with EI = (169/pi^2)^2
+    // G = x^2 (1-x)^2 / (3 EI) with EI = (169/pi^2)^2.
     let whole = (0.3f64 * 0.7).powi(2) / 3.0 / (169.0 / PI.powi(2)).powi(2);
     let known = listed(Some(whole));
     assert!(known.settled && known.residual_compliance_m_n > 0.0 && known.modes < 40, "{known:?}");
 }
 
 #[test]
-fn a_model_that_cannot_be_had_is_refused_by_name() {
+fn an_unavailable_model_is_refused_by_name() {
     let stepped = json!([
         { "length_m": 0.5, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 },
         { "length_m": 0.5, "flexural_rigidity_n_m2": 27, "mass_per_length_kg_m": 1 }
@@ -241,7 +241,7 @@ fn a_model_that_cannot_be_had_is_refused_by_name() {
 }
 
 #[test]
-fn forced_models_say_how_far_they_hold() {
+fn requested_models_state_their_uncertainty() {
     let infinite = answer(&with(&[("/model", json!("infinite-beam"))]));
     assert_eq!(
         (infinite.model, infinite.settled, infinite.restitution_uncertainty),
@@ -274,7 +274,7 @@ fn plan_and_answer_agree_and_compare_lists_every_model() {
     }
 }
 
-/// `scene.model` and `scene.modes` come back as they were written.
+/// `scene.model` and `scene.modes` are written as they were read.
 #[test]
 fn the_fields_of_the_choice_are_written_back() {
     for (model, modes) in [("emoc", json!(7)), ("rigid", json!("auto"))] {
@@ -303,7 +303,7 @@ fn finite_beam(ends: [End; 2], length: f64, place: f64, stiffness: f64, damping_
         ends,
     };
     let mut modes = beam.modes(count).unwrap().seen_from(place).unwrap();
-    // in the middle, every second mode does not move
+    // In the middle, every second mode does not move.
     modes.retain(|mode| mode.shape.abs() > 1e-9);
     modes.extend(beam.remainder(place, count, 2).unwrap());
     let settings = Settings { tolerance: 1e-9, estimate_uncertainty: false, max_sub_impacts: 4, ..Settings::default() };
@@ -313,8 +313,8 @@ fn finite_beam(ends: [End; 2], length: f64, place: f64, stiffness: f64, damping_
         .unwrap()
 }
 
-/// The first contact on beams whose near end is at every distance: the infinite beam, up to the bound. Damped beams
-/// among them show that an infinite beam with modal damping is an undamped one with `C / sqrt(1 + zeta)`.
+/// The first contact on beams whose near end is at every distance: the infinite beam, up to the bound. Damped beams among them
+/// show that an infinite beam with modal damping is equivalent to an undamped one with `C / sqrt(1 + zeta)`.
 #[test]
 fn the_bound_on_reflections_holds() {
     for (end, kind) in [
@@ -336,7 +336,7 @@ fn the_bound_on_reflections_holds() {
                     let change = (e - solution.first_rebound_ratio().unwrap()).abs();
                     let bound = reflection_bound(kind, z, damping);
                     assert!(change <= bound + 1e-7, "{end:?} {damping} {s} {z}: {change:e} {bound:e}");
-                    // and is no idle one: waves that come back do change the contact
+                    // The bound is not idle: waves that return do change the contact.
                     assert!(z > 2.0 || change > 1e-3, "{end:?} {damping} {s}: {change:e}");
                 }
             }
@@ -344,7 +344,7 @@ fn the_bound_on_reflections_holds() {
     }
 }
 
-/// `S = 15`: four separations on an infinite beam. A beam so long that nothing comes back while they last has the same:
+/// `S = 15`: four separations on an infinite beam. On a beam so long that no wave returns while they last, they are the same:
 /// starts, ends and impulses within 1e-4.
 #[test]
 fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
@@ -352,7 +352,7 @@ fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
     assert_eq!(solution.separations(), 4);
     let ends: Vec<f64> =
         solution.sub_impacts.iter().filter_map(|contact| contact.end).map(|end| end * unit_s).collect();
-    // waves of 40 rad in the first contact are back from the ends after the fourth: d = c_g t / 2
+    // Waves of 40 rad in the first contact return from the ends after the fourth: d = c_g t / 2.
     let length = 2.0 * ends[3] * (40.0 / ends[0]).sqrt();
     let count = (5.0 / ends[0].sqrt() * length) as usize;
     let found = finite_beam([End::Pinned, End::Pinned], length, 0.5 * length, stiffness, 0.0, count);
@@ -367,14 +367,14 @@ fn the_first_contacts_on_a_long_beam_are_those_of_an_infinite_one() {
 }
 
 #[test]
-fn what_other_scenes_have_left_changes_no_bit() {
+fn cached_data_of_other_scenes_change_no_bit() {
     let segment = |length_m: f64, thickness_m: f64| {
         json!({ "length_m": length_m, "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.02,
                 "thickness_m": thickness_m })
     };
     let mut kept = Kept::default();
     for segments in [json!([segment(1.0, 0.01)]), json!([segment(0.4, 0.01), segment(0.6, 0.006)])] {
-        // a place that comes again, numbers of modes that rise and fall, stated and chosen
+        // A location that is repeated, numbers of modes that increase and decrease, stated and chosen.
         for place in [0.3, 0.7, 0.3] {
             for (radius, modes) in
                 [(0.01, json!("auto")), (0.025, json!("auto")), (0.015, json!(60)), (0.015, json!(20))]
@@ -394,9 +394,9 @@ fn what_other_scenes_have_left_changes_no_bit() {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
-    /// Whatever the numbers: an answer or a fault with a field, never a panic or a NaN.
+    /// For any numbers: a result or an error with a field, never a panic or a NaN.
     #[test]
-    fn any_scene_is_answered_or_refused(
+    fn any_scene_is_solved_or_refused(
         radius in prop_oneof![Just(0.0), Just(f64::MAX), 1e-9..1e3f64],
         speed in prop_oneof![Just(0.0), Just(-1.0), Just(1e25), 1e-12..1e3f64],
         place in prop_oneof![Just(0.0), Just(1.0), Just(1e-300), -0.1..1.1f64],

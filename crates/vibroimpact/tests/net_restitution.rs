@@ -15,7 +15,7 @@ const PINNED: &str = r#"{ "structure": { "kind": "beam", "ends": ["pinned", "pin
   "contact": { "law": "hertz", "stiffness_n_m1_5": 1.8e10 },
   "location_m": 0.3, "modes": 40 }"#;
 
-/// Runs in a folder with the scene and, if given, a table; it must fail as faulty input does, writing nothing.
+/// Runs in a folder with the scene and, if given, a table; it must reject the input and write nothing.
 fn refusal(scene: &str, table: Option<&[u8]>, arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), scene).unwrap();
@@ -42,7 +42,7 @@ fn number(value: &Value, key: &str) -> f64 {
     value[key].as_f64().unwrap_or_else(|| panic!("{key} in {value}"))
 }
 
-/// The law of chapter 7, written out once more.
+/// The law of chapter 7, implemented a second time.
 fn law([mu0, alpha0, alpha1]: [f64; 3], mass: f64, place: f64, modes: i32) -> [f64; 5] {
     let squares: Vec<f64> = (1..=modes).map(|k| 2.0 * (PI * f64::from(k) * place).sin().powi(2)).collect();
     let z = mass * squares.iter().sum::<f64>();
@@ -67,7 +67,7 @@ fn emoc_prints_the_law_for_the_parameters_given() {
         assert_eq!(found["branch"], if parameters[1] == 0.0 { "basic" } else { "outward" });
         assert_eq!(found["modes"], modes);
     }
-    // without options: all parameters 1, the scene's own modes
+    // Without options all parameters are 1, and the modes are those of the scene.
     assert!((number(&emoc(PINNED, &[]), "restitution") - law([1.0; 3], 0.2, 0.3, 40)[0]).abs() < 1e-12);
 }
 
@@ -85,8 +85,8 @@ fn emoc_without_json_is_for_readers() {
 }
 
 #[test]
-fn rigid_body_modes_join_the_striker_in_one_mass() {
-    // two free masses of 1 kg, nothing else: the striker of 0.5 kg meets them as 1/(1/0.5 + 1)
+fn rigid_body_modes_and_the_striker_have_one_effective_mass() {
+    // Two free masses of 1 kg only: the effective mass for the striker of 0.5 kg is 1/(1/0.5 + 1).
     let scene = json!({
         "structure": { "kind": "modal", "omega_rad_s": [0, 100], "shape_at_location": [1, 1] },
         "striker": { "mass_kg": 0.5, "speed_m_s": 1 },
@@ -97,7 +97,7 @@ fn rigid_body_modes_join_the_striker_in_one_mass() {
     assert!((number(&found, "restitution") - 1.0 / (1.0 + 1.0 / 3.0)).abs() < 1e-15);
 }
 
-/// 10 masses at 9 places with the law's own restitutions, columns in another order and one more.
+/// 10 masses at 9 locations with the restitutions of the law, columns in another order, and one additional column.
 fn table(parameters: [f64; 3]) -> String {
     let mut text = "beam,restitution,location_m,mass_kg\n".to_owned();
     for i in 1..10 {
@@ -110,7 +110,7 @@ fn table(parameters: [f64; 3]) -> String {
 }
 
 #[test]
-fn fit_finds_the_parameters_that_made_the_data() {
+fn fit_finds_the_true_parameters() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), PINNED).unwrap();
     for parameters in [[0.7, 3.0, 0.2], [0.05, 20.0, 2.0]] {
@@ -126,7 +126,7 @@ fn fit_finds_the_parameters_that_made_the_data() {
         let text = stdout(&run(folder.path(), &arguments[..4]));
         assert!(text.contains("95 %") && text.contains("90 impacts, 50 modes"), "{text}");
     }
-    // what fit finds, emoc takes
+    // emoc accepts the parameters that fit finds.
     let found = emoc(PINNED, &["--mu0", "0.05", "--alpha0", "20", "--alpha1", "2", "--emoc-modes", "50"]);
     assert!((number(&found, "restitution") - law([0.05, 20.0, 2.0], 0.2, 0.3, 50)[0]).abs() < 1e-12);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
@@ -204,10 +204,10 @@ fn bad_tables_are_refused_with_their_line() {
 }
 
 #[test]
-fn data_that_determine_nothing_still_give_an_answer() {
+fn data_that_determine_nothing_still_give_a_result() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), PINNED).unwrap();
-    // at the support nothing vibrates, whatever the parameters
+    // At the support nothing vibrates for any parameters.
     fs::write(folder.path().join("data.csv"), "mass_kg,location_m,restitution\n1,0,1\n2,0,1\n3,0,1\n4,0,1\n").unwrap();
     let arguments = ["fit", "data.csv", "--scene", "scene.json"];
     assert!(stdout(&run(folder.path(), &arguments)).contains("do not determine"));
@@ -217,7 +217,7 @@ fn data_that_determine_nothing_still_give_an_answer() {
 }
 
 #[test]
-fn emoc_says_where_its_parameters_come_from_and_that_compare_has_another_law() {
+fn emoc_states_the_source_of_its_parameters_and_that_compare_has_another_law() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("scene.json"), PINNED).unwrap();
     let defaults = stdout(&run(folder.path(), &["emoc", "scene.json"]));

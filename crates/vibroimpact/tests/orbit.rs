@@ -1,4 +1,4 @@
-//! Periodic motions of scenes: text, JSON, branches, faults.
+//! Periodic motions of scenes: text, JSON, branches, errors.
 
 mod program;
 
@@ -8,7 +8,7 @@ use std::path::Path;
 use program::{run, stdout};
 use serde_json::Value;
 
-/// A lightly damped oscillator below its resonance, with a stop that it does not reach, or does.
+/// A lightly damped oscillator below its resonance, with a stop that it may or may not reach.
 fn rig(folder: &Path, gap_m: f64) -> String {
     let text = format!(
         r#"{{ "bodies": {{ "rig": {{ "kind": "modal", "omega_rad_s": [10], "damping_ratios": [0.02],
@@ -65,7 +65,7 @@ fn a_branch_is_followed_drawn_and_written() {
 }
 
 #[test]
-fn faults_name_the_field() {
+fn errors_name_the_field() {
     let folder = tempfile::tempdir().unwrap();
     let scene = rig(folder.path(), 0.05);
     for (arguments, named) in [
@@ -80,7 +80,7 @@ fn faults_name_the_field() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         assert!(message.contains(named), "{arguments:?}: {message}");
     }
-    // no load that repeats itself
+    // No load is periodic.
     let still = fs::read_to_string(&scene).unwrap().replace("\"frequency_hz\": 1.3", "\"frequency_hz\": null");
     fs::write(folder.path().join("still.json"), still).unwrap();
     assert_eq!(run(folder.path(), &["orbit", "still.json"]).status.code(), Some(2));

@@ -37,7 +37,7 @@ fn simulate_draws_and_reports_every_kind_of_scene() {
         }
         assert_eq!(names(folder.path()), ["a", "r.html"]);
         assert_eq!(names(&folder.path().join("a")), ["b.svg"]);
-        // the same again
+        // The same again.
         stdout(&run(folder.path(), &[&arguments[..], &["--force"]].concat()));
         assert_eq!(fs::read_to_string(folder.path().join("a/b.svg")).unwrap(), svg);
         assert_eq!(fs::read_to_string(folder.path().join("r.html")).unwrap(), html);
@@ -45,7 +45,7 @@ fn simulate_draws_and_reports_every_kind_of_scene() {
 }
 
 #[test]
-fn a_report_stands_alone_and_escapes_what_the_scene_says() {
+fn a_report_is_self_contained_and_escapes_text_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     let text = fs::read_to_string(scene("linear-stop")).unwrap();
     let mut hostile: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -57,7 +57,7 @@ fn a_report_stands_alone_and_escapes_what_the_scene_says() {
         assert!(!html.contains(tag), "{tag}");
     }
     assert!(html.contains("&lt;script&gt;alert(1)&lt;/script&gt; ![x](http://evil/x.png) ```"));
-    // nothing is fetched: no address but the name of SVG's language and that in the description
+    // Nothing is loaded: there is no address except the name of SVG's language and the one in the description.
     let addresses = html.matches("http").count();
     assert_eq!(addresses, html.matches("http://www.w3.org/2000/svg").count() + html.matches("http://evil").count());
     assert!(!html.contains("src=") && html.matches("href=").count() == html.matches("href='//evil'").count());
@@ -89,7 +89,7 @@ fn modes_are_drawn_along_a_beam_and_as_stems() {
     let beam = draw("stepped-cantilever", "12");
     assert!(beam.contains("location along the beam (m)") && beam.contains("frequency (kHz)"));
     assert!(!draw("measured-modes", "2").contains("along the beam"));
-    // each is drawn, as long as they are told apart
+    // Each mode is drawn, as long as they can be distinguished.
     let named = |svg: &str, number: usize| svg.contains(&format!("\n{number}: "));
     assert!((1..=12).all(|number| named(&beam, number)) && !named(&beam, 13));
     let many = draw("stepped-cantilever", "40");
@@ -110,7 +110,7 @@ fn modes_are_drawn_along_a_string_and_over_a_plate() {
 }
 
 #[test]
-fn other_endings_are_refused_before_anything_is_solved() {
+fn other_extensions_are_refused_before_anything_is_solved() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, allowed) in [
         (vec!["simulate", "missing.json", "--plot", "a.jpg"], ".svg"),
@@ -122,21 +122,21 @@ fn other_endings_are_refused_before_anything_is_solved() {
         let output = run(folder.path(), &arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{message}");
-        // the ending is found first: the missing scene is not yet a fault
+        // The extension is checked first: the missing scene is not yet an error.
         assert!(message.contains(allowed) && !message.contains("missing.json"), "{message}");
         assert!(output.stdout.is_empty() && names(folder.path()).is_empty());
     }
 }
 
 #[test]
-fn a_place_that_cannot_be_written_leaves_nothing() {
+fn a_path_that_cannot_be_written_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("file"), "").unwrap();
     let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "file/a.svg"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to file/a.svg"));
     assert_eq!(names(folder.path()), ["file"]);
-    // a folder stands where the picture should go
+    // There is a folder in place of the picture.
     fs::create_dir(folder.path().join("a.svg")).unwrap();
     let output = run(folder.path(), &["simulate", &scene("linear-stop"), "--plot", "a.svg", "--force"]);
     assert_eq!(output.status.code(), Some(1));

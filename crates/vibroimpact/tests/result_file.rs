@@ -1,4 +1,4 @@
-//! The object that `simulate --json` prints: one shape for every model and structure, documented key by key.
+//! The object that `simulate --json` prints: one form for every model and structure, documented key by key.
 
 mod program;
 
@@ -15,7 +15,7 @@ fn scene(name: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(format!("{ROOT}/datasets/scenes/{name}.json")).unwrap()).unwrap()
 }
 
-/// A scene with the model that it asks for.
+/// A scene with the model that it requests.
 fn asking(model: &str) -> Value {
     let mut scene = scene("pinned-beam-converged");
     for key in ["modes", "residual_compliance"] {
@@ -31,7 +31,7 @@ fn simulate(folder: &Path, scene: &Value, options: &[&str]) -> Value {
     serde_json::from_str(&printed).unwrap()
 }
 
-/// Each kind of answer, by the name of what it is.
+/// Each kind of result, by its name.
 fn answers(folder: &Path) -> Vec<(&'static str, Value)> {
     let tiny = {
         let mut scene = asking("infinite-beam");
@@ -52,7 +52,7 @@ fn answers(folder: &Path) -> Vec<(&'static str, Value)> {
     .into()
 }
 
-/// Every key, with those that hold it; the scene and what it holds apart.
+/// Every key, with the objects that contain it; the scene and its contents are separate.
 fn keys(tree: &Value, within: &str, found: &mut BTreeSet<String>) {
     match tree {
         Value::Object(entries) => {
@@ -70,7 +70,7 @@ fn keys(tree: &Value, within: &str, found: &mut BTreeSet<String>) {
 }
 
 #[test]
-fn all_answers_have_one_shape_and_every_key_is_documented() {
+fn all_results_have_one_form_and_every_key_is_documented() {
     let folder = tempfile::tempdir().unwrap();
     let answers = answers(folder.path());
     let names = |tree: &Value| tree.as_object().unwrap().keys().cloned().collect::<BTreeSet<String>>();
@@ -93,14 +93,14 @@ fn all_answers_have_one_shape_and_every_key_is_documented() {
             let key = path.rsplit('.').next().unwrap();
             assert!(page.contains(&format!("`{path}`")) || page.contains(&format!("`{key}`")), "{path} of {name}");
         }
-        // the scene in the result gives the result again
+        // The scene in the result gives the result again.
         let again = simulate(folder.path(), &answer["scene"], &[]);
         assert_eq!(&again, answer, "{name}");
     }
 }
 
 #[test]
-fn contacts_on_an_infinite_beam_take_the_strikers_momentum() {
+fn contacts_on_an_infinite_beam_balance_the_strikers_momentum() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["infinite-beam", "infinite-plate"] {
         let found = simulate(folder.path(), &scene(name), &[]);
@@ -109,7 +109,7 @@ fn contacts_on_an_infinite_beam_take_the_strikers_momentum() {
         for (contact, units) in contacts.iter().zip(found["infinite"]["contacts"].as_array().unwrap()) {
             let force = number(&found["infinite"]["physical"]["force_unit_n"]) * number(&units["peak_force"]);
             assert!((number(&contact["peak_force_n"]) / force - 1.0).abs() < 1e-12, "{name}");
-            // the law of the scene
+            // The law of the scene.
             let stiffness = number(&contact["peak_force_n"]) / number(&contact["peak_compression_m"]).powf(1.5);
             let first = number(&contacts[0]["peak_force_n"]) / number(&contacts[0]["peak_compression_m"]).powf(1.5);
             assert!((stiffness / first - 1.0).abs() < 1e-9, "{name}");
@@ -125,7 +125,7 @@ fn contacts_on_an_infinite_beam_take_the_strikers_momentum() {
 }
 
 #[test]
-fn a_dropped_rod_says_how_it_leaves() {
+fn a_dropped_rod_states_its_final_velocities() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene("dropped-rod");
     let found = simulate(folder.path(), &scene, &[]);
@@ -134,11 +134,11 @@ fn a_dropped_rod_says_how_it_leaves() {
     let (length, radius) = (number(&structure["length_m"]), 0.5 * number(&structure["diameter_m"]));
     let mass = number(&structure["density_kg_m3"]) * std::f64::consts::PI * radius.powi(2) * length;
     let speed = number(&scene["striker"]["speed_m_s"]);
-    // the impulses of the floor turn the centre round
+    // The impulses of the floor reverse the velocity of the centre
     let impulse: f64 = found["sub_impacts"].as_array().unwrap().iter().map(|c| number(&c["impulse_n_s"])).sum();
     let centre = number(&rod["centre_velocity_m_s"]);
     assert!((mass * (centre + speed) / impulse - 1.0).abs() < 1e-9, "{rod}");
-    // and, at half its length, set it spinning
+    // and, at half its length, cause its rotation.
     let arm = 0.5 * length * number(&structure["inclination_deg"]).to_radians().cos();
     let spin = number(&rod["angular_velocity_rad_s"]);
     assert!((mass * length.powi(2) / 12.0 * spin / (impulse * arm) - 1.0).abs() < 1e-9, "{rod}");
@@ -149,7 +149,7 @@ fn a_dropped_rod_says_how_it_leaves() {
 }
 
 #[test]
-fn histories_go_as_far_as_asked_where_the_motion_is_known() {
+fn histories_extend_to_the_requested_time_where_the_motion_is_known() {
     let folder = tempfile::tempdir().unwrap();
     let last_time = |scene: &Value, until: &[&str], table: &str| {
         simulate(folder.path(), scene, &[&["--out", "out", "--force"][..], until].concat());
@@ -174,7 +174,7 @@ fn histories_go_as_far_as_asked_where_the_motion_is_known() {
 }
 
 #[test]
-fn pictures_show_what_moves_and_name_it() {
+fn pictures_show_and_name_the_moving_bodies() {
     let folder = tempfile::tempdir().unwrap();
     let picture = |name: &str| {
         simulate(folder.path(), &scene(name), &["--plot", "p.svg", "--force"]);

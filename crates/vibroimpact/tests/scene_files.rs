@@ -16,7 +16,7 @@ fn tree(scene: &Scene) -> Value {
     serde_json::from_str(&scene.to_json()).unwrap()
 }
 
-/// The file as JSON text or TOML text would give it, with its table of modes not yet read.
+/// The file as JSON or TOML text would give it, with its table of modes not yet read.
 fn file_tree(path: &std::path::Path) -> Value {
     let text = fs::read_to_string(path).unwrap();
     match path.extension() {
@@ -25,30 +25,30 @@ fn file_tree(path: &std::path::Path) -> Value {
     }
 }
 
-/// The fault of a scene, in reading or in posing the impact.
+/// The error of a scene, from reading it or from defining the impact.
 fn fault(scene: &Value) -> vibroimpact::InvalidInput {
     Scene::from_value(scene).and_then(|scene| scene.impact()).and_then(|impact| impact.solve()).unwrap_err()
 }
 
 #[test]
-fn json_and_toml_hold_the_same() {
+fn json_and_toml_are_equivalent() {
     for (name, scene) in gallery() {
         let toml = scene.to_toml().unwrap();
         assert_eq!(Scene::from_toml(&toml).unwrap(), scene, "{name}");
         assert_eq!(Scene::from_json(&scene.to_json()).unwrap(), scene, "{name}");
-        // what is written is a fixed point
+        // Writing and reading again changes nothing.
         assert_eq!(tree(&Scene::from_toml(&toml).unwrap()), tree(&scene), "{name}");
         assert_eq!(tree(&scene)["version"], 1, "{name}");
     }
 }
 
 #[test]
-fn what_a_file_says_is_what_is_written() {
+fn a_written_file_contains_the_fields_that_were_read() {
     for path in paths() {
         let file = file_tree(&path);
         let Ok(scene) = Scene::from_value(&file) else { panic!("{path:?}") };
         let written = tree(&scene);
-        // every field of the file comes back; what comes on top is a default
+        // Every field of the file is written; additional ones are defaults.
         fn is_part(of: &Value, whole: &Value) -> bool {
             match (of, whole) {
                 (Value::Object(of), Value::Object(whole)) => {
@@ -68,7 +68,7 @@ fn what_a_file_says_is_what_is_written() {
 }
 
 #[test]
-fn a_fault_in_toml_is_located() {
+fn an_error_in_toml_is_located() {
     for (text, expected) in [
         ("striker = { mass_kg = 1", "line 1, column"),
         ("location_m = 1\nlocation_m = 2\n", "line 2, column 1"),
@@ -89,7 +89,7 @@ fn a_fault_in_toml_is_located() {
 }
 
 #[test]
-fn a_newer_version_is_told_before_the_fields_it_brings() {
+fn a_newer_version_is_reported_before_its_fields() {
     let newer = Scene::from_json(r#"{ "version": 2, "gravity_m_s2": 9.81 }"#).unwrap_err().to_string();
     assert!(newer.starts_with("version = 2 is not allowed: ") && newer.contains("up to 1"), "{newer}");
     let newer = Scene::from_toml("version = 3\nnew = 1").unwrap_err().to_string();
@@ -103,7 +103,7 @@ fn a_newer_version_is_told_before_the_fields_it_brings() {
 }
 
 #[test]
-fn the_schema_is_current_and_tells_scenes_from_others() {
+fn the_schema_is_current_and_distinguishes_scenes_from_others() {
     let schema = schema::of_scenes();
     assert_checked_in("schema/scene.schema.json", &schema::text(&schema));
     let validator = jsonschema::draft202012::options().build(&schema).unwrap();
@@ -114,7 +114,7 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
     for (name, scene) in gallery() {
         assert!(validator.is_valid(&tree(&scene)), "{name}");
     }
-    // slips that the schema finds, and the program too
+    // Mistakes that both the schema and the program find.
     for (name, place, slip) in [
         ("pinned-beam", "/version", json!(2)),
         ("pinned-beam", "/gravity", json!(9.81)),
@@ -206,9 +206,9 @@ fn the_schema_is_current_and_tells_scenes_from_others() {
     }
 }
 
-/// Scenes of bodies, likewise. Slips are JSON pointers; `null` takes a field away.
+/// Scenes of bodies in the same way. Mistakes are JSON pointers; `null` removes a field.
 #[test]
-fn the_schema_tells_scenes_of_bodies_from_others() {
+fn the_schema_distinguishes_scenes_of_bodies_from_others() {
     let validator = jsonschema::draft202012::options().build(&schema::of_scenes()).unwrap();
     for (name, scene) in assemblies() {
         let text = fs::read_to_string(datasets(&format!("assemblies/{name}.json"))).unwrap();
@@ -311,7 +311,7 @@ fn a_table_of_modes_is_read_from_the_folder_of_the_scene() {
     let modes = read.structure().unwrap().modes;
     assert!((modes[0].omega_rad_s - 20.0 * std::f64::consts::PI).abs() < 1e-12);
     assert_eq!((modes[0].shape, modes[1].shape, modes[1].damping_ratio), (0.5, -1.0, 0.02));
-    // the scene stands on its own afterwards
+    // The scene is then self-contained.
     let Structure::Modal(modal) = &read.structure else { panic!() };
     assert_eq!(modal.points["tip"].static_compliance_m_n, Some(1e-3));
     assert_eq!(Scene::from_json(&read.to_json()).unwrap(), read);
@@ -342,7 +342,7 @@ fn a_table_of_modes_is_read_from_the_folder_of_the_scene() {
         let told = Scene::from_value(&scene).unwrap().read_modes_file(folder.path()).unwrap_err().to_string();
         assert!(told.starts_with("structure.file = "), "{told}");
     }
-    // one that was not read says how
+    // A table that was not read states how to read it.
     let mut scene = tree(&read);
     scene["structure"] = json!({ "kind": "modes-file", "file": "modes.csv" });
     assert!(fault(&scene).to_string().contains("Scene::read"));
@@ -392,7 +392,7 @@ fn points_of_a_modal_structure_are_named() {
 }
 
 #[test]
-fn motion_before_the_impact_can_be_told_in_two_ways() {
+fn motion_before_the_impact_can_be_stated_in_two_ways() {
     let scene = named("moving-beam");
     let by_place = scene.impact().unwrap().start.unwrap();
     let shape_at_middle = {
@@ -426,7 +426,7 @@ fn motion_before_the_impact_can_be_told_in_two_ways() {
 }
 
 #[test]
-fn a_stop_and_a_dropped_rod_take_only_what_they_can_use() {
+fn a_stop_and_a_dropped_rod_accept_only_fields_that_apply() {
     let with = |name: &str, place: &str, value: Value| {
         let mut scene = tree(&named(name));
         let (holder, key) = place.rsplit_once('/').unwrap();
@@ -457,7 +457,7 @@ fn a_stop_and_a_dropped_rod_take_only_what_they_can_use() {
         let found = with("dropped-rod", place, value);
         assert!(found == field || field.starts_with("contact") && found.first() == Some("contact"), "{found} {field}");
     }
-    // a floor of the rod's own material is half as stiff as a rigid one
+    // A floor of the rod's own material is half as stiff as a rigid one.
     let stiffness = |scene: &Scene| match scene.impact().unwrap().law {
         vibroimpact::contact_models::Law::Hertz(law) => law.stiffness_n_m1_5,
         other => panic!("{other:?}"),
@@ -468,7 +468,7 @@ fn a_stop_and_a_dropped_rod_take_only_what_they_can_use() {
     let steel = Scene::from_value(&steel).unwrap();
     assert!((stiffness(&steel) / stiffness(&rigid) - 0.5).abs() < 1e-12);
     assert_eq!(rigid.mode_shapes(3).unwrap().len(), 3);
-    // without integration, the mass is that of the rigid-body motions (thesis Eq. 8.9); a moving beam is not covered
+    // Without integration, the mass is that of the rigid-body motions (thesis Eq. 8.9); a moving beam is not supported.
     let net = rigid.emoc(&vibroimpact::emoc::Parameters::default(), None).unwrap();
     let rod_kg = 7876.74 * std::f64::consts::PI / 4.0 * 0.0127f64.powi(2) * 0.2;
     assert!((net.mass_kg / (rod_kg / 2.5) - 1.0).abs() < 1e-12);
@@ -476,7 +476,7 @@ fn a_stop_and_a_dropped_rod_take_only_what_they_can_use() {
     assert_eq!(moving.unwrap_err().field, "start");
 }
 
-/// A text with a few of its characters replaced, taken out or put in.
+/// A text with a few of its characters replaced, removed or inserted.
 fn mutated(mut text: Vec<char>, changes: &[(prop::sample::Index, Option<char>, bool)]) -> String {
     for (at, new, insert) in changes {
         let i = at.index(text.len().max(1)).min(text.len().saturating_sub(1));
@@ -490,7 +490,7 @@ fn mutated(mut text: Vec<char>, changes: &[(prop::sample::Index, Option<char>, b
 }
 
 proptest! {
-    // what a run draws is the same everywhere, as is the time it takes; `cargo xtask fuzz` looks further
+    // The draws of a run are the same everywhere, and so is its time; `cargo xtask fuzz` searches further.
     #![proptest_config(ProptestConfig {
         cases: 400,
         rng_seed: RngSeed::Fixed(2019),
@@ -498,7 +498,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Whatever the text, a scene is understood or refused with a place in the text or a field.
+    /// Any text is a scene, or is rejected with a position in the text or a field.
     #[test]
     fn mutated_scenes_never_panic(
         which in any::<prop::sample::Index>(),
@@ -534,7 +534,7 @@ proptest! {
 }
 
 #[test]
-fn a_scene_that_is_too_large_or_no_text_is_refused() {
+fn a_scene_that_is_too_large_or_not_text_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.json");
     fs::write(&path, [b'{', 0xff, b'}']).unwrap();

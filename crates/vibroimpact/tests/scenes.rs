@@ -1,4 +1,4 @@
-//! Scene files: the gallery runs, what is written is read back the same, and nothing that is read makes it panic.
+//! Scene files: the gallery runs, a scene that is written is read back unchanged, and no input causes a panic.
 
 mod gallery;
 
@@ -18,7 +18,7 @@ fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
         let impact = scene.impact().unwrap();
         let (solution, history) = impact.record().unwrap();
         let energy = history.energy_ledger();
-        // a structure that moves beforehand may give more than the striker brought
+        // A structure that moves beforehand may supply more energy than the striker.
         let most = if scene.start.is_some() { f64::INFINITY } else { 1.0 };
         assert!(solution.restitution.is_some_and(|e| e > 0.0 && e < most), "{name}: {solution:?}");
         let allowed = impact.settings.tolerance.max(1e-9);
@@ -27,7 +27,7 @@ fn every_scene_of_the_gallery_runs_and_balances_its_energy() {
     }
 }
 
-/// Each value's name is the one in scene files, and reads back.
+/// The name of each value is that in scene files, and is read back.
 macro_rules! named_as_in_scenes {
     ($($kind:ident: $($value:ident),+;)+) => {$($(
         assert_eq!(serde_json::to_value($kind::$value).unwrap(), $kind::$value.as_str());
@@ -65,7 +65,7 @@ fn every_infinite_scene_of_the_gallery_runs() {
 }
 
 #[test]
-fn what_is_written_is_read_back_the_same() {
+fn written_scenes_are_read_back_unchanged() {
     for (name, scene) in gallery() {
         let text = scene.to_json();
         assert_eq!(Scene::from_json(&text).unwrap(), scene, "{name}");
@@ -83,7 +83,7 @@ fn the_book_shows_a_scene_of_the_gallery_and_its_restitution() {
     let printed =
         |line: &str| -> f64 { page.split(line).nth(1).unwrap().split('±').next().unwrap().trim().parse().unwrap() };
     assert!((printed("  as modelled ") - restitution(&gallery)).abs() < 1e-7);
-    // the headline holds no more digits than the whole uncertainty allows
+    // The headline shows no more digits than the total uncertainty allows.
     assert!((printed("  restitution ") - restitution(&gallery)).abs() < 1e-4);
 }
 
@@ -112,7 +112,7 @@ fn every_law_of_contact_models_can_be_named() {
         assert_eq!(scene.impact().unwrap().law.name(), name);
         assert!(restitution(&scene) < 1.0, "{name}");
 
-        // the library's own name will do as well, and a slip is answered with all of them
+        // The name in the library is accepted too, and a mistake is answered with all names.
         scene.contact = serde_json::from_value({
             let mut value = value;
             value["law"] = name.into();
@@ -130,9 +130,9 @@ fn tree(name: &str) -> Value {
     serde_json::from_str(&named(name).to_json()).unwrap()
 }
 
-/// A number that its law refuses is told by the name that it has in the scene.
+/// A number that its law rejects is reported by its name in the scene.
 #[test]
-fn faults_of_a_law_name_the_field_of_the_scene() {
+fn errors_of_a_law_name_the_field_of_the_scene() {
     for contact in [
         json!({ "law": "hertz", "stiffness_n_m1_5": 1e9 }),
         json!({ "law": "viscous", "stiffness_n_m1_5": 1e9, "restitution": 0.9 }),
@@ -158,7 +158,7 @@ fn faults_of_a_law_name_the_field_of_the_scene() {
 }
 
 #[test]
-fn what_a_scene_lacks_is_named() {
+fn missing_parts_of_a_scene_are_named() {
     let mut scene = tree("pinned-beam-small-ball");
     scene["structure"] = json!({ "kind": "modal", "omega_rad_s": [100], "points": {} });
     assert_eq!(Scene::from_value(&scene).unwrap_err().field.to_string(), "structure.points");
@@ -168,15 +168,16 @@ fn what_a_scene_lacks_is_named() {
 
 #[test]
 fn the_numbers_of_chapter_3() {
-    // the shared values at N = 40 plain, and the limit of many modes, 0.142554, with remainder modes at N = 100
+    // The reference values at N = 40 with plain truncation, and the limit of many modes, 0.142554, with remainder modes at N =
+    // 100.
     assert!((restitution(&named("pinned-beam")) - 0.17739).abs() < 1e-5);
     assert!((restitution(&named("pinned-beam-converged")) - 0.142554).abs() < 1e-5);
     let small = named("pinned-beam-small-ball").impact().unwrap().solve().unwrap();
     assert_eq!(small.sub_impacts.len(), 1);
-    // thesis Eq. 3.20
+    // Thesis Eq. 3.20.
     let contact_models::Law::Hertz(hertz) = named("pinned-beam").impact().unwrap().law else { panic!() };
     assert!((hertz.stiffness_n_m1_5 - 1.7945e10).abs() < 5e5 * 1.0e1);
-    // materials of a hysteretic contact keep Hertz's loading curve: a quarter of the stiffness (thesis 3.3.4)
+    // With materials, a hysteretic contact has Hertz's loading curve: a quarter of the stiffness (thesis 3.3.4).
     let contact_models::Law::Hysteretic(law) = named("hysteretic").impact().unwrap().law else { panic!() };
     assert!((law.stiffness_n_m1_5 / hertz.stiffness_n_m1_5 - 0.25).abs() < 1e-15);
 }
@@ -192,12 +193,12 @@ fn a_striker_of_another_material_softens_the_contact() {
     let Contact::Hertz(ref mut hertz) = scene.contact else { panic!() };
     hertz.materials.striker_youngs_modulus_pa = Some(2e11 / 3.0);
     hertz.materials.striker_poissons_ratio = Some(0.3);
-    // 1/E* grows from 2 to 4 of the structure's shares
+    // 1/E* grows from 2 to 4 times the structure's part.
     assert!((stiffness(&scene) / steel - 0.5).abs() < 1e-14);
 }
 
 #[test]
-fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
+fn a_modal_structure_includes_the_compliance_of_its_truncated_modes() {
     let beam = named("pinned-beam-converged");
     let mut scene = beam.clone();
     let impact = beam.impact().unwrap();
@@ -212,7 +213,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
         ..Modal::default()
     });
     (scene.location_m, scene.modes) = (None, Modes::Auto);
-    // four remainder modes by the trend of the list, two by the beam itself: the same compliance, nearly the same impact
+    // Four remainder modes by the trend of the list, two by the beam itself: the same compliance, nearly the same impact.
     let listed = scene.impact().unwrap();
     assert_eq!((impact.remainder_modes, listed.remainder_modes, listed.kept_modes()), (2, 4, 100));
     assert_eq!(&listed.structure.modes[..100], modes);
@@ -228,7 +229,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
     let Structure::Modal(ref mut modal) = scene.structure else { panic!() };
     modal.shape_at_location.pop();
     assert!(scene.structure().unwrap_err().to_string().contains("structure.shape_at_location = 99 values"));
-    // nothing elastic is listed, or kept: nothing tells how the rest answers
+    // There is no elastic mode in the list, so that the response of the rest is unknown.
     let Structure::Modal(ref mut modal) = scene.structure else { panic!() };
     *modal = Modal {
         omega_rad_s: vec![0.0, 0.0, 50.0],
@@ -252,7 +253,7 @@ fn a_modal_structure_answers_with_the_compliance_of_what_it_leaves_out() {
 }
 
 #[test]
-fn values_that_json_cannot_hold_are_refused_too() {
+fn values_that_json_cannot_represent_are_refused_too() {
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut scene = named("pinned-beam");
         scene.striker.speed_m_s = value;
@@ -288,7 +289,7 @@ fn any_json() -> impl Strategy<Value = Value> {
     })
 }
 
-/// Every place in a tree, by JSON pointer.
+/// Every value in a tree, by JSON pointer.
 fn places(tree: &Value, here: String, all: &mut Vec<String>) {
     all.push(here.clone());
     match tree {
@@ -316,9 +317,9 @@ proptest! {
         prop_assert!(matches!(whole, Err(SceneError::Syntax { .. })), "{whole:?}");
     }
 
-    /// A good scene with one place overwritten is turned into the solver's terms, or refused with a field.
+    /// A valid scene with one value overwritten is converted for the solver, or rejected with a field.
     #[test]
-    fn a_spoilt_scene_is_understood_or_refused(
+    fn a_changed_scene_is_accepted_or_refused(
         which in any::<prop::sample::Index>(),
         at in any::<prop::sample::Index>(),
         spoil in prop_oneof![

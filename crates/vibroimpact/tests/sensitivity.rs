@@ -1,4 +1,4 @@
-//! Derivatives by the numbers of scenes, against differences of solutions of scenes with other numbers.
+//! Derivatives with respect to the numbers of scenes, compared with differences of solutions of changed scenes.
 
 mod program;
 
@@ -25,7 +25,7 @@ fn restitution(tree: &Value, pointer: &str, value: f64) -> f64 {
 }
 
 #[test]
-fn derivatives_of_gallery_scenes_meet_differences() {
+fn derivatives_of_gallery_scenes_agree_with_differences() {
     let scenes: [(&str, &[&str]); 7] = [
         ("stepped-cantilever.json", &["/structure/segments/0/length_m", "/structure/damping_ratio", "/location_m"]),
         ("timoshenko-beam.json", &["/structure/segments/0/poissons_ratio", "/striker/speed_m_s"]),
@@ -33,7 +33,7 @@ fn derivatives_of_gallery_scenes_meet_differences() {
         ("dropped-rod.json", &["/structure/inclination_deg", "/structure/length_m", "/striker/speed_m_s"]),
         ("elastoplastic.json", &["/striker/speed_m_s", "/contact/yield_pressure_pa", "/structure/damping_ratio"]),
         ("hysteretic.json", &["/contact/k_bar", "/structure/segments/0/width_m", "/striker/speed_m_s"]),
-        // two of its modes change places within these steps
+        // Two of its modes exchange their order within these steps.
         ("cantilever-plate.json", &["/structure/length_m"]),
     ];
     for (scene, pointers) in scenes {
@@ -48,7 +48,7 @@ fn derivatives_of_gallery_scenes_meet_differences() {
                 [-2.0, -1.0, 1.0, 2.0].map(|i| restitution(&found.scene, pointer, value * (1.0 + i * step)));
             let reference = (8.0 * (c - b) - (d - a)) / (12.0 * step * value);
             let derivative = found.of("restitution", field).unwrap();
-            // solutions are known to some 1e-13
+            // Solutions are accurate to some 1e-13.
             let known = 3e-8 / value;
             let error = (derivative.value - reference).abs();
             let allowed = 1e-5 * reference.abs() + known;
@@ -58,12 +58,12 @@ fn derivatives_of_gallery_scenes_meet_differences() {
 }
 
 #[test]
-fn frequencies_change_as_theory_says() {
+fn frequencies_change_according_to_theory() {
     let scene = Scene::read(&gallery("pinned-beam.json")).unwrap();
     let by = ["structure.segments[0].length_m", "structure.segments[0].youngs_modulus_pa"].map(str::to_owned);
     let found = scene.sensitivity(&by).unwrap();
     let omega = scene.mode_shapes(3).unwrap()[2].omega_rad_s;
-    // omega ~ sqrt(E) / L^2
+    // omega ~ sqrt(E) / L^2.
     for (field, exponent, value) in [(&by[0], -2.0, 1.0), (&by[1], 0.5, 2e11)] {
         let derivative = found.of("omega_rad_s[2]", field).unwrap();
         assert!((derivative.value * value / omega - exponent).abs() < 1e-9, "{field}: {derivative:?}");
@@ -71,7 +71,7 @@ fn frequencies_change_as_theory_says() {
     }
 }
 
-/// In the middle of a beam the restitution is largest or smallest, so that its derivative is zero, and known to be so.
+/// In the middle of a beam the restitution has an extremum, so that its derivative is zero, within the stated uncertainty.
 #[test]
 fn errors_of_the_modes_are_part_of_the_uncertainty() {
     let mut tree: Value = serde_json::from_str(&fs::read_to_string(gallery("timoshenko-beam.json")).unwrap()).unwrap();
@@ -86,7 +86,7 @@ fn errors_of_the_modes_are_part_of_the_uncertainty() {
 }
 
 #[test]
-fn a_damping_of_zero_has_neighbours_on_one_side() {
+fn a_damping_of_zero_can_only_increase() {
     let mut tree: Value = serde_json::from_str(&fs::read_to_string(gallery("piano-hammer.json")).unwrap()).unwrap();
     tree["structure"]["damping_ratio"] = json!(0.0);
     let scene = Scene::from_value(&tree).unwrap();
@@ -115,7 +115,7 @@ fn the_command_prints_a_table_a_picture_and_json() {
 }
 
 #[test]
-fn what_cannot_be_differentiated_is_named() {
+fn fields_without_a_derivative_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |scene: &str, more: &[&str]| {
         let scene = gallery(scene).display().to_string();
@@ -151,7 +151,7 @@ fn contacts(tree: &Value, pointer: &str, value: f64) -> Value {
 }
 
 #[test]
-fn derivatives_of_scenes_of_bodies_meet_differences() {
+fn derivatives_of_scenes_of_bodies_agree_with_differences() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../datasets/assemblies");
     let outputs = ["intervals/1/impulse_n_s", "intervals/1/start_s", "intervals/0/separation_speed_m_s"];
     for (name, end_s, contact, pointers) in [
@@ -193,7 +193,7 @@ fn derivatives_of_scenes_of_bodies_meet_differences() {
                 let path = format!("contacts.{contact}.{}", output.replace("/0/", "[0].").replace("/1/", "[1]."));
                 let OfField { value: derivative, uncertainty } = found.table.of(&path, field).unwrap();
                 let error = (derivative - reference).abs();
-                // runs are known to some 1e-13
+                // Runs are accurate to some 1e-13.
                 let known = 3e-13 * here.abs() / step.abs();
                 let allowed = known + uncertainty.unwrap().min(1e-5 * reference.abs());
                 assert!(error <= allowed, "{name} {path} by {field}: {derivative:e} {uncertainty:?}, {reference:e}");

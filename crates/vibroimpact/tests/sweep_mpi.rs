@@ -27,7 +27,7 @@ fn sweep(draws: u64) -> Value {
 
 fn over_ranks(folder: &Path, ranks: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new("mpirun");
-    // as many ranks as asked for, whatever the machine and the user
+    // As many ranks as requested, for any machine and user.
     command.args(["--allow-run-as-root", "--oversubscribe", "-n", ranks, env!("CARGO_BIN_EXE_vibroimpact")]);
     command.args(arguments).current_dir(folder).env("OMPI_MCA_rmaps_base_oversubscribe", "1");
     command
@@ -64,13 +64,13 @@ fn any_number_of_ranks_gives_the_same_bytes() {
         let printed = String::from_utf8_lossy(&output.stdout);
         assert_eq!(printed.matches("400 rebound").count(), 1, "one rank tells: {printed}");
     }
-    // finished: said, and nothing done
+    // A finished sweep is reported, and nothing is computed.
     let output = run(folder.path(), "3", "4");
     assert!(String::from_utf8_lossy(&output.stdout).contains("nothing; all points were done"));
 }
 
 #[test]
-fn ranks_go_on_where_a_job_was_killed() {
+fn ranks_continue_a_killed_job() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("sweep.json"), sweep(600).to_string()).unwrap();
     alone(folder.path());
@@ -79,7 +79,7 @@ fn ranks_go_on_where_a_job_was_killed() {
         let mut job =
             over_ranks(folder.path(), "3", &arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         sleep(Duration::from_millis(500 + 150 * attempt));
-        // the ranks of a dead mpirun end by themselves, and only then can the folder be used again
+        // The ranks of a killed mpirun end by themselves, and only then can the folder be used again.
         let _ = job.kill();
         job.wait().unwrap();
         sleep(Duration::from_millis(500));
@@ -97,7 +97,7 @@ fn ranks_go_on_where_a_job_was_killed() {
 }
 
 #[test]
-fn a_bad_sweep_ends_every_rank() {
+fn an_invalid_sweep_ends_every_rank() {
     let folder = tempfile::tempdir().unwrap();
     let mut bad = sweep(20);
     bad["vary"][0]["field"] = json!("striker.mas_kg");

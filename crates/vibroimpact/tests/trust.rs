@@ -1,4 +1,4 @@
-//! How far an answer can be trusted: the figures against numbers found in other ways.
+//! Limits of the theories: the values compared with numbers found in other ways.
 
 use std::f64::consts::PI;
 
@@ -34,7 +34,7 @@ fn the_contact_by_hertz_from_the_force_alone() {
     scene["yield_strength_pa"] = json!(1e9);
     let (result, found) = checks(&scene);
     let force = result["sub_impacts"][0]["peak_force_n"].as_f64().unwrap();
-    // with E* of two steel bodies: a = (3 F R/(4 E*))^(1/3), p = (6 F E*^2/(pi^3 R^2))^(1/3)
+    // With E* of two steel bodies: a = (3 F R/(4 E*))^(1/3), p = (6 F E*^2/(pi^3 R^2))^(1/3).
     let (modulus, radius): (f64, f64) = (2e11 / (2.0 * 0.91), 0.015);
     let contact = (0.75 * force * radius / modulus).cbrt();
     let pressure = (6.0 * force * modulus.powi(2) / (PI.powi(3) * radius.powi(2))).cbrt();
@@ -52,7 +52,7 @@ fn the_contact_by_hertz_from_the_force_alone() {
     }
 }
 
-/// Ends, steps and edges, by hand: whichever is nearest, in thicknesses.
+/// Ends, steps and edges, computed by hand: the nearest, in thicknesses.
 #[test]
 fn contacts_near_an_end_a_step_or_an_edge_are_not_on_a_half_space() {
     let mut scene = chapter_3();
@@ -88,13 +88,13 @@ fn ball_and_gravity_by_hand() {
     let end = result["end_s"].as_f64().unwrap();
     assert!((named(&found, "gravity").value - 9.80665 * end).abs() < 1e-12);
     assert_eq!(named(&found, "gravity").verdict, Verdict::Outside);
-    // one contact is too short to fall
+    // One contact is too short for a fall.
     let mut small = chapter_3();
     small["striker"]["radius_m"] = json!(0.005);
     assert_eq!(named(&checks(&small).1, "gravity").verdict, Verdict::Within);
 }
 
-/// On a beam so heavy that it hardly moves, a linear spring presses in half a sine, whose spectrum is known.
+/// On a beam so heavy that it hardly moves, the force of a linear spring is half a sine, whose spectrum is known.
 #[test]
 fn the_spectrum_of_half_a_sine() {
     let (h, stiffness, mass): (f64, f64, f64) = (0.5, 1e9, 1.0);
@@ -111,7 +111,7 @@ fn the_spectrum_of_half_a_sine() {
         });
         let k = PI / (6.0 * thickness);
         let limit = k * k * (2e15 * thickness.powi(2) / (12.0 * 7.8e7)).sqrt();
-        // |F|^2 of sin(pi t/T) from 0 to T, by the midpoint rule; int F^2 dt = T/2
+        // |F|^2 of sin(pi t/T) from 0 to T, by the midpoint rule; int F^2 dt = T/2.
         let spectrum = |omega: f64| {
             let x = omega * duration;
             (2.0 * duration / PI * (0.5 * x).cos() / (1.0 - (x / PI).powi(2))).powi(2)
@@ -125,10 +125,10 @@ fn the_spectrum_of_half_a_sine() {
     }
 }
 
-/// The fastest mode that matters to chapter 3's impact lies where Euler-Bernoulli's theory is doubtful, and well within
-/// Timoshenko's; for a heavy soft blow all is within.
+/// The fastest relevant mode of chapter 3's impact is where Euler-Bernoulli's theory is doubtful, and well within Timoshenko's;
+/// for a heavy soft striker everything is within the limits.
 #[test]
-fn waves_need_shear_where_they_are_short() {
+fn short_waves_need_shear() {
     let wavelength = |theory: Option<&str>| {
         let mut scene = chapter_3();
         if let Some(theory) = theory {
@@ -139,7 +139,7 @@ fn waves_need_shear_where_they_are_short() {
     };
     let (slender, thick) = (wavelength(None), wavelength(Some("timoshenko")));
     assert_eq!((slender.verdict, thick.verdict), (Verdict::Doubtful, Verdict::Within));
-    // a mode of the beam: n half waves over its metre
+    // A mode of the beam: n half waves over its metre.
     let waves = 1.0 / (slender.value * 0.011323);
     assert!((waves - waves.round()).abs() < 1e-6 && (15.0..40.0).contains(&waves), "{waves}");
     let mut soft = chapter_3();
@@ -152,7 +152,7 @@ fn waves_need_shear_where_they_are_short() {
 }
 
 #[test]
-fn every_kind_of_answer_ends_with_what_it_can_bear() {
+fn every_kind_of_result_ends_with_its_limits() {
     let mut scene = chapter_3();
     for (model, waves) in [("rigid", false), ("emoc", false), ("infinite-beam", true), ("modal", true)] {
         scene["model"] = json!(model);
@@ -162,7 +162,7 @@ fn every_kind_of_answer_ends_with_what_it_can_bear() {
         let (result, found) = checks(&scene);
         let told: Vec<Check> =
             found.into_iter().filter(|check| ["wavelength", "spectrum"].contains(&check.check)).collect();
-        // the infinite beam answers without a course of its own
+        // The infinite beam has a result without a history of its own.
         assert_eq!(!told.is_empty(), waves && model == "modal", "{model}: {told:?}");
         let listed = result["trust"].as_array().unwrap();
         assert!(listed.iter().any(|check| check["check"] == "contact_radius"), "{model}");
@@ -196,8 +196,8 @@ fn a_yield_strength_out_of_range_is_named() {
     }
 }
 
-/// The first contact on an infinite beam by Timoshenko's theory, found from the mobility, is that on a finite beam, by its
-/// modes, which is so long that no wave comes back in time.
+/// The first contact on an infinite beam by Timoshenko's theory, found from the mobility, agrees with that on a finite beam by
+/// its modes, which is so long that no wave returns in time.
 #[test]
 fn the_early_response_of_an_infinite_beam_is_that_of_a_long_one() {
     let section = json!({ "youngs_modulus_pa": 2e11, "density_kg_m3": 7800, "width_m": 0.02, "thickness_m": 0.02,
@@ -213,7 +213,7 @@ fn the_early_response_of_an_infinite_beam_is_that_of_a_long_one() {
         let early = named(&found, "early_response");
         let slender = result["infinite"]["first_rebound_ratio"].as_f64().unwrap();
 
-        // nothing is faster than 5,064 m/s; a contact lasts less than 0.35 ms
+        // No wave is faster than 5,064 m/s; a contact lasts less than 0.35 ms.
         let mut piece = section.clone();
         piece["length_m"] = json!(2.0);
         scene["structure"] =

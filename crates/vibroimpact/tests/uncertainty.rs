@@ -1,4 +1,4 @@
-//! What an answer says of its own error holds: near supports, at the end of a list of modes, for truncated models.
+//! The uncertainty that a result states covers its error: near supports, at the end of a list of modes, for truncated models.
 
 mod gallery;
 
@@ -15,7 +15,7 @@ fn answer(scene: &Scene) -> Answer {
     scene.answer().unwrap()
 }
 
-/// The beam of a scene with so many modes and the static compliance of the others.
+/// The beam of a scene with this number of modes and the static compliance of the others.
 fn converged(scene: &Scene, modes: usize, tolerance: f64) -> f64 {
     let scene = Scene {
         model: Model::Modal,
@@ -32,7 +32,7 @@ fn near_the_root() -> Scene {
     Scene::read(&path).unwrap()
 }
 
-/// A closed form has no digits beyond those of its arithmetic, on a support as well, where no structure changes anything.
+/// A closed form has no digits beyond those of its arithmetic, on a support as well, where the structure has no effect.
 #[test]
 fn closed_forms_state_their_rounding() {
     let laws = [
@@ -53,11 +53,11 @@ fn closed_forms_state_their_rounding() {
     }
 }
 
-/// Slow modes that hardly move near a support: their static compliance does not answer at once.
+/// Slow modes that hardly move near a support: their static compliance does not respond immediately.
 #[test]
-fn slow_modes_are_no_spring() {
+fn slow_modes_are_not_a_spring() {
     let found = answer(&near_the_root());
-    // with 1,000 and with 2,000 modes
+    // With 1,000 and with 2,000 modes.
     assert!(found.settled && (found.restitution.unwrap() - 0.3675).abs() < 0.01, "{found:?}");
 }
 
@@ -111,9 +111,9 @@ fn listed_beam(count: usize) -> Value {
             "contact": { "law": "hertz", "youngs_modulus_pa": 2e11, "poissons_ratio": 0.3 } })
 }
 
-/// The same modes twice say nothing of the modes that are not there.
+/// A second run with the same modes contains no information about the truncated ones.
 #[test]
-fn a_list_at_its_end_says_so_and_states_the_last_real_change() {
+fn the_end_of_a_list_is_reported_with_the_last_change_of_modes() {
     let listed = |count: usize| {
         let mut tree: Value = serde_json::from_str(&named("simply-supported-plate").to_json()).unwrap();
         tree["structure"] = plate(count);
@@ -139,9 +139,9 @@ fn a_list_at_its_end_says_so_and_states_the_last_real_change() {
     }
 }
 
-/// A list that makes up the whole static compliance leaves nothing out, and the solver alone is in doubt.
+/// A list that makes up the whole static compliance is complete, and only the solver contributes to the uncertainty.
 #[test]
-fn a_complete_list_leaves_nothing_out() {
+fn a_complete_list_has_no_truncation_error() {
     let mut scene = listed_beam(3);
     let sum: f64 = (0..3)
         .map(|k| {
@@ -160,9 +160,9 @@ fn a_complete_list_leaves_nothing_out() {
     assert!(apart <= found.uncertainty.solver.unwrap(), "{apart:e}");
 }
 
-/// Modes stated and truncated: what they leave out is judged, and shown.
+/// Stated and truncated modes: the truncation error is estimated and shown.
 #[test]
-fn truncated_models_state_what_they_leave_out() {
+fn truncated_models_state_their_truncation_error() {
     for name in
         ["pinned-beam", "pinned-beam-small-ball", "pinned-beam-undamped", "hysteretic", "viscous", "stepped-cantilever"]
     {
@@ -179,9 +179,9 @@ fn truncated_models_state_what_they_leave_out() {
     }
 }
 
-/// Judging the modes left out costs no more than the impact.
+/// The estimate of the truncation error costs no more than the impact.
 #[test]
-fn judging_costs_no_more_than_the_impact() {
+fn the_estimate_costs_no_more_than_the_impact() {
     for (name, scene) in gallery::gallery().into_iter().filter(|(_, scene)| scene.modes.count().is_some()) {
         let solution = scene.impact().unwrap().solve().unwrap();
         let counts = solution.counts;
@@ -192,9 +192,9 @@ fn judging_costs_no_more_than_the_impact() {
     }
 }
 
-/// The models in every file: null is written as null, and the program shows as many digits as the whole allows.
+/// The uncertainties in every file: null is written as null, and the program shows as many digits as the total allows.
 #[test]
-fn what_is_printed_has_the_digits_that_are_known() {
+fn printed_numbers_have_the_digits_that_are_certain() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.json");
     let scene = Scene { modes: Modes::Count(40), ..named("pinned-beam") };
@@ -217,10 +217,10 @@ fn what_is_printed_has_the_digits_that_are_known() {
     assert!(modal["answer"]["restitution_uncertainty"].as_f64().unwrap() > 0.03);
 }
 
-/// What stands for the modes that a list does not have is assumed; on lists of the first modes of plates and beams that are
-/// known in full, it comes some six times nearer than leaving them out, and three to five times nearer than a spring did.
+/// The modes in place of those missing from a list are assumed. On lists of the first modes of plates and beams that are known
+/// completely, the error is some six times smaller than without them, and three to five times smaller than with a spring.
 #[test]
-fn what_stands_for_unlisted_modes_comes_nearer() {
+fn remainder_modes_of_a_list_reduce_the_error() {
     let mean = |errors: &[f64]| (errors.iter().map(|e| (e + 1e-6).ln()).sum::<f64>() / errors.len() as f64).exp();
     let (mut plates, mut truncated) = (Vec::new(), Vec::new());
     for place in [[0.2, 0.15], [0.13, 0.11], [0.07, 0.21], [0.31, 0.06], [0.15, 0.17]] {
@@ -238,7 +238,7 @@ fn what_stands_for_unlisted_modes_comes_nearer() {
     assert!(nearer < 0.012 && truncated > 4.0 * nearer, "{nearer:e} {truncated:e}");
 }
 
-/// The first modes of the gallery's plate at a place, frequencies and shapes, by the closed form.
+/// The first modes of the gallery's plate at a location, frequencies and shapes, by the closed form.
 fn plate_at(count: usize, [x, y]: [f64; 2]) -> Vec<(f64, f64)> {
     let (a, b, mass) = (0.4, 0.3, 7800.0 * 0.005 * 0.4 * 0.3);
     let rigidity = 2e11 * 0.005f64.powi(3) / (12.0 * (1.0 - 0.09));
@@ -255,7 +255,7 @@ fn plate_at(count: usize, [x, y]: [f64; 2]) -> Vec<(f64, f64)> {
     modes
 }
 
-/// A steel ball on the plate known by a list of its modes and its static compliance.
+/// A steel ball on the plate given by a list of its modes and its static compliance.
 fn restitution_of_list(list: &[(f64, f64)], place: [f64; 2], radius_m: f64, compliance: bool) -> f64 {
     let whole: f64 = plate_at(usize::MAX, place).iter().map(|(omega, shape)| (shape / omega).powi(2)).sum();
     let (omega, shape): (Vec<f64>, Vec<f64>) = list.iter().copied().unzip();
@@ -269,10 +269,10 @@ fn restitution_of_list(list: &[(f64, f64)], place: [f64; 2], radius_m: f64, comp
     Scene::from_value(&scene).unwrap().impact().unwrap().solve().unwrap().restitution.unwrap()
 }
 
-/// A plate whose static compliance is known least, close to where clamped edges meet: wherever within its uncertainty it lies, the
-/// restitution is within what is stated.
+/// A plate whose static compliance is least certain, close to a corner of clamped edges: for any value within its uncertainty,
+/// the restitution is within the stated one.
 #[test]
-fn an_inexact_static_compliance_is_part_of_it() {
+fn the_uncertainty_of_a_static_compliance_is_included() {
     use beam_modes::{Edge, Plate, PlateTheory};
     let ([x, y], count) = ([0.294, 0.194], 60);
     let plate = Plate {

@@ -32,7 +32,7 @@ pub fn gallery() -> Vec<(String, Scene)> {
         .collect()
 }
 
-/// Scenes of bodies, likewise.
+/// Scenes of bodies in the same form.
 pub fn assemblies() -> Vec<(String, AssemblyScene)> {
     let mut paths: Vec<PathBuf> =
         fs::read_dir(datasets("assemblies")).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -60,7 +60,7 @@ pub fn restitution(scene: &Scene) -> f64 {
     scene.impact().unwrap().solve().unwrap().restitution.unwrap()
 }
 
-/// Holds a generated file against the one that is checked in; with `VIBROIMPACT_BLESS` set, writes it first.
+/// Compares a generated file with the one that is checked in; with `VIBROIMPACT_BLESS` set, writes it first.
 pub fn assert_checked_in(path: &str, text: &str) {
     let path = datasets(path);
     if std::env::var_os("VIBROIMPACT_BLESS").is_some() {

@@ -7,7 +7,7 @@ pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_vibroimpact")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// What was printed by a run that must succeed and have nothing to complain about.
+/// The output of a run that must succeed without warnings.
 pub fn stdout(output: &Output) -> String {
     let complaints = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success() && complaints.is_empty(), "{complaints}");

@@ -4,7 +4,7 @@ use super::*;
 use vibroimpact::assembly::{AnyScene, AssemblyScene, Summary};
 use vibroimpact::sweep::Sweep;
 
-/// A ball between a floor that shakes and a ceiling.
+/// A ball between a vibrating floor and a ceiling.
 fn shaken() -> Value {
     json!({
         "bodies": { "ball": { "kind": "mass", "mass_kg": 0.1, "position_m": 0.001 } },
@@ -32,9 +32,9 @@ fn sweep_of(scene: Value) -> Value {
     })
 }
 
-/// Four values of which one is of the wrong type are refused; with a value that is out of range there are rows with errors.
+/// Four values, one of which has the wrong type, are rejected; with a value that is out of range there are rows with errors.
 #[test]
-fn each_row_is_what_simulate_gives_and_bytes_depend_on_nothing_else() {
+fn each_row_agrees_with_simulate_and_bytes_depend_on_nothing_else() {
     let mut file = sweep_of(shaken());
     let bench = Bench::new(&file);
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
@@ -88,7 +88,7 @@ fn each_row_is_what_simulate_gives_and_bytes_depend_on_nothing_else() {
     assert!(bench.read("one/results.parquet").starts_with(b"PAR1"));
 }
 
-/// Tables that the scene names stand beside its file, and become part of the sweep.
+/// Tables that the scene names are in the same folder as its file, and become part of the sweep.
 #[test]
 fn tables_of_a_scene_of_bodies_are_read() {
     let mut scene = shaken();
@@ -116,12 +116,11 @@ fn tables_of_a_scene_of_bodies_are_read() {
     assert!(told.contains("scene.bodies.bar.file"), "{told}");
 }
 
-/// The ball on a shaken table with one impact in n periods: at Gamma = A w^2/g = 0.9 and restitution 0.8 those with n = 1
-/// and 2 exist and are stable in closed form (from n pi (1-e)/(1+e) = 0.349 and 0.698 up to 1.071 and 1.240), that with
-/// n = 3 does not exist (1.047), and a ball that has come to rest stays, as Gamma is below 1. An impact of it comes at
-/// n g T/(1+e).
+/// The ball on a shaken table with one impact in n periods. At Gamma = A w^2/g = 0.9 and restitution 0.8 those with n = 1 and 2
+/// exist and are stable in closed form (from n pi (1-e)/(1+e) = 0.349 and 0.698 up to 1.071 and 1.240), that with n = 3 does
+/// not exist (1.047), and a ball that has come to rest stays at rest, as Gamma is below 1. The impact speed is n g T/(1+e).
 #[test]
-fn basins_of_the_ball_on_a_shaken_table_hold_the_motions_of_the_closed_form() {
+fn basins_of_the_ball_on_a_shaken_table_contain_the_motions_of_the_closed_form() {
     let datasets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/sweeps");
     let text = fs::read_to_string(datasets.join("shaken-table-basins.json")).unwrap();
     let mut file: Value = serde_json::from_str(&text).unwrap();

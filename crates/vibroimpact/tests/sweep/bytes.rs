@@ -1,4 +1,4 @@
-//! What comes out: right, complete, and the same to the byte for any number of threads.
+//! The output is correct, complete, and the same to the byte for any number of threads.
 
 use super::*;
 use parquet::file::reader::{FileReader, SerializedFileReader};
@@ -28,7 +28,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
 }
 
 #[test]
-fn rows_hold_the_results_of_their_scenes() {
+fn rows_contain_the_results_of_their_scenes() {
     let bench = Bench::new(&super::sweep());
     let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--json"]);
     let rows = bench.rows("out");
@@ -52,7 +52,7 @@ fn rows_hold_the_results_of_their_scenes() {
             continue;
         }
         assert_eq!(error, "");
-        // the columns are the whole scene: solving it by hand gives the same digits
+        // The columns are the whole scene: solving it directly gives the same digits.
         if point % 50 < 2 {
             let mut scene = scene();
             let number = |column: usize| json!(row[column].parse::<f64>().unwrap());
@@ -141,13 +141,13 @@ fn infinite_structures_can_be_swept() {
     bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
     let rows = bench.rows("out");
     assert!(rows.iter().all(|row| &row[11] == "infinite-beam" && row[22].parse::<u64>().unwrap() > 0));
-    // a small ball rebounds, that of S = 15 stays
+    // A small ball rebounds, that of S = 15 stays in contact.
     assert_eq!((&rows[0][2], &rows[5][2]), ("rebound", "sustained"));
     assert!(rows[0][4].parse::<f64>().unwrap() < 1e-6);
 }
 
 #[test]
-fn the_report_stands_alone_and_text_is_for_readers() {
+fn the_report_is_self_contained_and_text_is_for_readers() {
     let bench = Bench::new(&super::sweep());
     let printed = bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
     for part in ["points", "600", "400 rebound", "failed", "point 40: modes = 4", "a second"] {
@@ -159,7 +159,7 @@ fn the_report_stands_alone_and_text_is_for_readers() {
 }
 
 #[test]
-fn the_model_is_the_programs_choice_unless_the_scene_says_which() {
+fn the_program_chooses_the_model_unless_the_scene_states_it() {
     let beam = json!({
         "structure": { "kind": "beam", "ends": ["pinned", "pinned"], "damping_ratio": 0.02,
                        "segments": [{ "length_m": 1, "flexural_rigidity_n_m2": 274, "mass_per_length_kg_m": 1 }] },
@@ -175,7 +175,7 @@ fn the_model_is_the_programs_choice_unless_the_scene_says_which() {
     let rows = bench.rows("out");
     let models: Vec<&str> = rows.iter().map(|row| &row[12]).collect();
     assert_eq!(models, ["rigid", "modal", "rigid", "rigid", "emoc", "emoc"]);
-    // on the support: exact; between them: as well as the default tolerance asks, or as the wall is bounded
+    // On the support the result is exact; elsewhere it has the default tolerance, or the bound for a wall.
     assert_eq!((&rows[0][4], &rows[0][9]), ("1.0", "true"));
     assert_eq!(&rows[1][9], "true");
     assert!(rows[1][5].parse::<f64>().unwrap() <= vibroimpact::model::DEFAULT_TOLERANCE);

@@ -1,4 +1,4 @@
-//! What a sweep file means, and what is refused.
+//! The meaning of a sweep file, and rejected files.
 
 use super::*;
 use vibroimpact::Scene;
@@ -32,7 +32,7 @@ fn the_grid_is_a_product_whose_last_axis_runs_fastest() {
 }
 
 #[test]
-fn every_grid_point_meets_the_same_draws() {
+fn every_grid_point_has_the_same_draws() {
     let sweep = Sweep::from_value(&super::sweep()).unwrap();
     assert_eq!(sweep.points(), 10 * 3 * 20);
     for draw in 0..20 {
@@ -61,7 +61,7 @@ fn whole_objects_and_list_entries_can_vary() {
     assert!(scene.to_json().contains("2000"));
 }
 
-/// A sweep file with one thing changed must be refused before anything is written.
+/// A sweep file with one change must be rejected before anything is written.
 #[track_caller]
 fn refused(change: impl FnOnce(&mut Value), message: &str) {
     let mut file = super::sweep();
@@ -73,7 +73,7 @@ fn refused(change: impl FnOnce(&mut Value), message: &str) {
 }
 
 #[test]
-fn faults_of_the_sweep_file_name_their_field() {
+fn errors_of_the_sweep_file_name_their_field() {
     refused(|file| file["vary"] = json!({}), "vary = {} is not allowed: a list of axes");
     refused(|file| file["vary"][0] = json!(3), "vary[0] = 3 is not allowed: an object");
     refused(|file| file["vary"][0]["from"] = json!("x"), "vary[0].from = \"x\" is not allowed: a finite number");
@@ -124,7 +124,7 @@ fn fields_that_the_scene_does_not_have_are_refused() {
 }
 
 #[test]
-fn values_that_the_field_cannot_hold_are_refused() {
+fn values_that_a_field_cannot_have_are_refused() {
     refused(|file| file["vary"][1]["values"][2] = json!("four"), "vary[1].values[2] = \"four\" is not allowed");
     refused(|file| file["vary"][1]["values"][0] = json!(1.5), "vary[1].values[0] = 1.5 is not allowed");
     refused(
@@ -134,7 +134,7 @@ fn values_that_the_field_cannot_hold_are_refused() {
 }
 
 #[test]
-fn a_base_scene_that_is_broken_is_refused() {
+fn an_invalid_base_scene_is_refused() {
     refused(
         |file| file["scene"]["contact"]["law"] = json!("glue"),
         "scene.contact.law = \"glue\" is not allowed: one of",
@@ -158,7 +158,7 @@ fn huge_sweeps_are_refused() {
 }
 
 #[test]
-fn files_that_cannot_be_read_are_told() {
+fn files_that_cannot_be_read_are_reported() {
     let bench = Bench::new(&json!({ "scene_file": "gone.json", "vary": [{ "field": "modes", "values": [1] }] }));
     assert!(bench.refuses(&["sweep", "sweep.json", "--out", "out"]).contains("cannot read gone.json"));
     fs::write(bench.path("gone.json"), "{ \"structure\": }").unwrap();

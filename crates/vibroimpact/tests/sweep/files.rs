@@ -1,4 +1,4 @@
-//! Sweep files: JSON and TOML, versions, what they name, the schema.
+//! Sweep files: JSON and TOML, versions, the files that they name, the schema.
 
 use super::*;
 use vibroimpact::scene::schema;
@@ -24,11 +24,11 @@ scale = "log"
 "#;
 
 #[test]
-fn toml_says_the_same_as_json() {
+fn toml_is_equivalent_to_json() {
     let sweep = Sweep::from_toml(TOML).unwrap();
     let tree = serde_json::to_value(TOML.parse::<toml::Table>().unwrap()).unwrap();
     assert_eq!(Sweep::from_json(&tree.to_string()).unwrap(), sweep);
-    // neither version nor schema is part of what is computed
+    // Neither version nor schema is part of the computation.
     let mut plain = tree.clone();
     plain.as_object_mut().unwrap().remove("version");
     plain["$schema"] = json!("sweep.schema.json");
@@ -42,7 +42,7 @@ fn toml_says_the_same_as_json() {
 }
 
 #[test]
-fn faults_of_the_text_speak_of_a_sweep_and_of_newer_files() {
+fn errors_of_the_text_name_a_sweep_and_newer_files() {
     let told = |text: &str| Sweep::from_json(text).unwrap_err().to_string();
     let early = told("{ \"vary\": [");
     assert!(
@@ -61,7 +61,7 @@ fn faults_of_the_text_speak_of_a_sweep_and_of_newer_files() {
 }
 
 #[test]
-fn a_scene_may_be_toml_and_name_a_table_of_modes() {
+fn a_scene_can_be_toml_and_name_a_table_of_modes() {
     let named =
         json!({ "scene_file": "scenes/shaft.toml", "vary": [{ "field": "striker.mass_kg", "values": [0.1, 0.2] }] });
     let bench = Bench::new(&named);
@@ -76,7 +76,7 @@ fn a_scene_may_be_toml_and_name_a_table_of_modes() {
     "#;
     fs::write(bench.path("scenes/shaft.toml"), scene).unwrap();
     bench.succeeds(&["sweep", "sweep.json", "--out", "named", "--quiet"]);
-    // the same scene within the sweep, whose table then stands beside the sweep
+    // The same scene within the sweep; its table is then in the folder of the sweep.
     fs::write(bench.path("modes.csv"), table).unwrap();
     let tree = serde_json::to_value(scene.parse::<toml::Table>().unwrap()).unwrap();
     let within = json!({ "scene": tree, "vary": named["vary"] });
@@ -84,7 +84,7 @@ fn a_scene_may_be_toml_and_name_a_table_of_modes() {
     bench.succeeds(&["sweep", "sweep.json", "--out", "within", "--quiet"]);
     assert_same(&bench.path("named"), &bench.path("within"));
     assert!(bench.rows("named").iter().all(|row| &row[2] == "rebound" && &row[12] == "2"), "{:?}", bench.rows("named"));
-    // the folder holds the numbers, so that a part goes on without the table
+    // The folder contains the numbers, so that a part continues without the table.
     assert!(String::from_utf8(bench.read("named/sweep.json")).unwrap().contains("1.5"));
     fs::write(bench.path("modes.csv"), "middle,omega_rad_s\n1.5,-300\n").unwrap();
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
@@ -92,7 +92,7 @@ fn a_scene_may_be_toml_and_name_a_table_of_modes() {
 }
 
 #[test]
-fn the_schema_is_current_and_tells_sweeps_from_others() {
+fn the_schema_is_current_and_distinguishes_sweeps_from_others() {
     let schema = schema_of_sweeps();
     let text = schema::text(&schema);
     let bench = Bench::new(&super::sweep());
@@ -120,7 +120,7 @@ fn the_schema_is_current_and_tells_sweeps_from_others() {
         assert_eq!(valid(&tree), [""; 0], "{:?}", entry.path());
     }
     assert!(toml_files > 0);
-    // slips that the schema finds, and the program too
+    // Mistakes that both the schema and the program find.
     for (place, slip) in [
         ("/version", json!(2)),
         ("/$schema", json!(1)),
@@ -172,7 +172,7 @@ fn the_schema_is_current_and_tells_sweeps_from_others() {
     }
 }
 
-/// A program without MPI says so, and how to have it.
+/// A program without MPI reports this, and how to build one with MPI.
 #[cfg(not(feature = "mpi"))]
 #[test]
 fn mpi_without_the_feature_is_refused() {

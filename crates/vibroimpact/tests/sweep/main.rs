@@ -1,4 +1,4 @@
-//! Sweeps as a user meets them: a file in, a folder out, whatever happens in between.
+//! Sweeps as a user meets them: from a file to a folder, with interruptions.
 
 mod bodies;
 mod bytes;
@@ -16,7 +16,7 @@ use std::process::{Command, Output};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// A structure of three modes, which costs little.
+/// A structure of three modes, which is cheap to solve.
 fn scene() -> Value {
     json!({
         "structure": { "kind": "modal", "omega_rad_s": [120, 700, 2100], "shape_at_location": [1.1, -0.7, 0.9],
@@ -26,7 +26,7 @@ fn scene() -> Value {
     })
 }
 
-/// 600 points in 4 dimensions, of which a sixth fail.
+/// 600 points in 4 dimensions, a sixth of which fail.
 fn sweep() -> Value {
     json!({
         "description": "A test",
@@ -73,7 +73,7 @@ impl Bench {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs the program, which must refuse its input without a word on the standard output, and returns the message.
+    /// Runs the program, which must reject its input without output on the standard output, and returns the message.
     fn refuses(&self, arguments: &[&str]) -> String {
         let output = self.run(arguments);
         let message = String::from_utf8(output.stderr).unwrap();
@@ -95,7 +95,7 @@ impl Bench {
     }
 }
 
-/// Every file of a folder and of those within it, by name, without the lock.
+/// Every file of a folder and its subfolders, by name, without the lock.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
@@ -110,7 +110,7 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     found
 }
 
-/// Two folders hold the same files, to the byte.
+/// Checks that two folders contain the same files, to the byte.
 fn assert_same(a: &Path, b: &Path) {
     let (a, b) = (files(a), files(b));
     let names = |files: &[(String, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! Parts computed alone and joined give the whole, or the reason why not.
+//! Parts that are computed separately and merged give the whole, or the reason why not.
 
 use super::*;
 
@@ -21,12 +21,12 @@ fn merged_parts_are_the_whole() {
     let bench = Bench::new(&super::sweep());
     bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
     let mut names = parts(&bench, 3);
-    // in any order
+    // In any order.
     names.rotate_left(1);
     let printed = bench.succeeds(&merge(&names));
     assert!(printed.contains("600"));
     assert_same(&bench.path("whole"), &bench.path("merged"));
-    // once more changes nothing
+    // A second time changes nothing.
     bench.succeeds(&merge(&names));
     assert_same(&bench.path("whole"), &bench.path("merged"));
 }
@@ -41,7 +41,7 @@ fn there_may_be_more_parts_than_points() {
 }
 
 #[test]
-fn what_is_not_all_parts_of_one_sweep_is_refused() {
+fn incomplete_or_foreign_parts_are_refused() {
     let bench = Bench::new(&super::sweep());
     let names = parts(&bench, 4);
     let told = bench.refuses(&merge(&[names[0].clone(), names[2].clone()]));
@@ -69,7 +69,7 @@ fn what_is_not_all_parts_of_one_sweep_is_refused() {
     assert!(!bench.path("merged").exists());
     fs::write(&progress, kept).unwrap();
 
-    // a digit changed after the part was finished
+    // A digit was changed after the part was finished.
     let results = bench.path("part-3/results.csv");
     let mut rows = fs::read(&results).unwrap();
     let digit = rows.len() - 400 + rows[rows.len() - 400..].iter().position(|byte| byte.is_ascii_digit()).unwrap();

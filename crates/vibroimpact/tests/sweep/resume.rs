@@ -1,4 +1,4 @@
-//! A sweep that is cut off goes on, with nothing lost and nothing doubled.
+//! An interrupted sweep continues, with nothing lost and nothing doubled.
 
 use super::*;
 use std::io::Write;
@@ -19,7 +19,7 @@ fn points_done(bench: &Bench, folder: &str) -> u64 {
 }
 
 #[test]
-fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
+fn killed_at_any_time_it_continues_to_the_same_bytes() {
     let bench = Bench::new(&long_sweep());
     bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
     let arguments = ["sweep", "sweep.json", "--out", "killed", "--threads", "2", "--quiet"];
@@ -27,7 +27,7 @@ fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
     let mut advances = 0;
     for attempt in 0..12u64 {
         let mut child = bench.command(&arguments).stdout(Stdio::null()).spawn().unwrap();
-        // moments spread over the whole course, the first within the start of the program
+        // Times spread over the whole run, the first within the start of the program.
         sleep(Duration::from_millis(2 + attempt * attempt * 4 + attempt * 7919 % 40));
         let _ = child.kill();
         child.wait().unwrap();
@@ -46,7 +46,7 @@ fn a_torn_line_is_dropped() {
     let bench = Bench::new(&super::sweep());
     bench.succeeds(&["sweep", "sweep.json", "--out", "whole", "--quiet"]);
     bench.succeeds(&["sweep", "sweep.json", "--out", "torn", "--quiet"]);
-    // as if cut off while the rows of the second half were being written
+    // As if interrupted while the rows of the second half were being written.
     let all = bench.read("torn/results.csv");
     let half = all.iter().enumerate().filter(|(_, byte)| **byte == b'\n').nth(300).unwrap().0 + 1;
     let mut progress: Value = serde_json::from_slice(&bench.read("torn/progress.json")).unwrap();
@@ -61,7 +61,7 @@ fn a_torn_line_is_dropped() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("300 of 600 points are done; continuing"));
     assert_same(&bench.path("whole"), &bench.path("torn"));
 
-    // but what was noted as safe must be there as it was
+    // But rows that were recorded as written must be unchanged.
     fs::write(bench.path("torn/progress.json"), progress.to_string()).unwrap();
     fs::write(bench.path("torn/results.csv"), &all[..half - 1]).unwrap();
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "torn"]);
@@ -88,7 +88,7 @@ fn another_sweep_in_the_same_folder_is_refused() {
     fs::write(bench.path("sweep.json"), changed.to_string()).unwrap();
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "out"]);
     assert!(told.contains("out holds results of another sweep") && told.contains("choose another folder"), "{told}");
-    // spaces, the order of keys and the way to the scene make no other sweep
+    // Spaces, the order of keys and the path of the scene do not make another sweep.
     let mut same = super::sweep();
     let scene = same.as_object_mut().unwrap().remove("scene").unwrap();
     fs::write(bench.path("scene.json"), format!("{scene:#}")).unwrap();
@@ -121,7 +121,7 @@ fn two_processes_do_not_share_a_folder() {
 
 #[cfg(unix)]
 #[test]
-fn a_signal_stops_it_in_good_order() {
+fn a_signal_stops_it_cleanly() {
     let bench = Bench::new(&long_sweep());
     let arguments = ["sweep", "sweep.json", "--out", "out", "--threads", "1"];
     let child = bench.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

@@ -3,8 +3,8 @@
 use super::*;
 use std::f64::consts::PI;
 
-/// A ball on one mode that is slow against the contact, as on a free mass: `e = (1 - Z)/(1 + Z) = -tanh(ln(Z)/2)` with
-/// `Z = m phi^2`. Below `Z = 1/3`, five standard deviations away, the mode's return does not reach the ball.
+/// A ball on one mode that is slow compared with the contact, like a free mass: `e = (1 - Z)/(1 + Z) = -tanh(ln(Z)/2)` with
+/// `Z = m phi^2`. Below `Z = 1/3`, five standard deviations away, the mode does not return to the ball.
 fn on_a_slow_mode() -> Value {
     json!({
         "scene": {
@@ -23,7 +23,7 @@ fn on_a_slow_mode() -> Value {
 /// Mean and standard deviation of the normal `ln(Z)`.
 const LN_Z: [f64; 2] = [-2.3025850929940455, 0.25];
 
-/// Computes a sweep and gives its summary.
+/// Computes a sweep and returns its summary.
 pub fn summary(sweep: &Value) -> (Bench, Value) {
     let bench = Bench::new(sweep);
     bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
@@ -35,7 +35,7 @@ pub fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// Within four standard errors, which are smaller than `error`; and the draws' own tolerance.
+/// Within four standard errors, which are smaller than `error`, and the tolerance of the draws.
 #[track_caller]
 pub fn holds(figure: &Value, known: f64, error: f64) {
     let (value, s) = (number(&figure["value"]), number(&figure["standard_error"]));
@@ -47,9 +47,9 @@ fn quantiles_are_those_of_the_closed_form() {
     let (_, summary) = summary(&on_a_slow_mode());
     let found = &summary["distributions"]["restitution"];
     assert_eq!((&found["draws"], &found["with_value"]), (&json!(2048), &json!(2048)));
-    // quantiles of the standard normal distribution
+    // Quantiles of the standard normal distribution.
     for (quantile, x) in found["quantiles"].as_array().unwrap().iter().zip([-2.326_348, -1.644_854, -0.674_490, 0.0]) {
-        // e falls with Z
+        // e decreases with Z.
         let known = -(0.5 * (LN_Z[0] - LN_Z[1] * x)).tanh();
         holds(quantile, known, 1e-2);
     }
@@ -60,7 +60,7 @@ fn indices_of_sobol_are_those_of_the_closed_form() {
     let mut sweep = on_a_slow_mode();
     sweep["sampling"] = json!({ "draws": 8192, "indices": true });
     let (bench, summary) = summary(&sweep);
-    // f = -tanh((x + y)/2), x = ln m and y = 2 ln phi: integrals over standard normal numbers by the trapezoidal rule
+    // f = -tanh((x + y)/2), x = ln m and y = 2 ln phi: integrals over standard normal numbers by the trapezoidal rule.
     let steps: Vec<f64> = (-60..=60).map(|k| 0.1 * f64::from(k)).collect();
     let weight = |x: f64| 0.1 * (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
     let f = |x: f64, y: f64| -(0.5 * (LN_Z[0] + 0.15 * x + 0.2 * y)).tanh();
@@ -87,7 +87,7 @@ fn indices_of_sobol_are_those_of_the_closed_form() {
 }
 
 #[test]
-fn it_ends_once_the_sampling_error_is_small_enough_whatever_happens_on_the_way() {
+fn it_ends_once_the_sampling_error_is_small_enough_despite_interruptions() {
     let mut sweep = on_a_slow_mode();
     sweep["sampling"] = json!({ "draws": 1_000_000, "sampling_error": 4e-3 });
     let (bench, summary) = summary(&sweep);
@@ -95,7 +95,7 @@ fn it_ends_once_the_sampling_error_is_small_enough_whatever_happens_on_the_way()
     assert!([1024, 2048, 4096, 8192].contains(&draws), "{draws}");
     let errors = summary["distributions"]["restitution"]["quantiles"].as_array().unwrap();
     assert!(errors.iter().all(|quantile| number(&quantile["standard_error"]) <= 4e-3));
-    // stopped on the way, and on another number of threads
+    // Stopped on the way, and with another number of threads.
     assert_eq!(bench.rows("out").len() as u64, draws);
     let mut child =
         bench.command(&["sweep", "sweep.json", "--out", "again", "--threads", "1", "--quiet"]).spawn().unwrap();
@@ -104,7 +104,7 @@ fn it_ends_once_the_sampling_error_is_small_enough_whatever_happens_on_the_way()
     child.wait().unwrap();
     bench.succeeds(&["sweep", "sweep.json", "--out", "again", "--threads", "3", "--quiet"]);
     assert_same(&bench.path("out"), &bench.path("again"));
-    // parts cannot know when the whole is enough
+    // Parts cannot know when the whole suffices.
     let told = bench.refuses(&["sweep", "sweep.json", "--out", "part", "--shard", "1/2"]);
     assert!(told.contains("sampling.sampling_error = 0.004 must be left out"), "{told}");
     assert!(!bench.path("part").exists());
@@ -121,13 +121,13 @@ fn a_fixed_number_of_draws_can_be_computed_in_parts() {
 }
 
 #[test]
-fn about_the_points_of_a_grid_it_tells_the_width_at_each() {
+fn on_a_grid_each_point_has_its_width() {
     let mut sweep = on_a_slow_mode();
     sweep["vary"] = json!([
         { "field": "structure.shape_at_location[0]", "from": 0.5, "to": 2, "count": 3, "scale": "log" },
         { "field": "striker.mass_kg", "values": [0.01, 0.07] }
     ]);
-    // one per cent of the mass, a hundredth of the shape
+    // One per cent of the mass, a hundredth of the shape.
     sweep["uncertain"] = json!({
         "striker.mass_kg": { "lognormal": [1, 0.01] },
         "structure.shape_at_location[0]": { "uniform": [-0.01, 0.01] }
@@ -149,7 +149,7 @@ fn about_the_points_of_a_grid_it_tells_the_width_at_each() {
         let (phi, mass) = (row[0], row[1]);
         let z = mass * phi * phi;
         assert!((row[at("quantile_0.5")] - (1.0 - z) / (1.0 + z)).abs() < 1e-3);
-        // to first order: de = 2 Z/(1+Z)^2 d ln Z
+        // To first order: de = 2 Z/(1+Z)^2 d ln Z.
         let of_ln_z = (0.01f64.powi(2) + (2.0 * 0.01 / phi).powi(2) / 3.0).sqrt();
         let expected = 2.0 * z / (1.0 + z).powi(2) * of_ln_z;
         assert!((row[at("standard_deviation")] / expected - 1.0).abs() < 0.03, "{row:?}, {expected}");
@@ -157,7 +157,7 @@ fn about_the_points_of_a_grid_it_tells_the_width_at_each() {
 }
 
 #[test]
-fn faults_name_field_value_and_what_is_allowed() {
+fn errors_name_field_value_and_what_is_allowed() {
     let refused = |change: &dyn Fn(&mut Value), message: &str| {
         let mut sweep = on_a_slow_mode();
         change(&mut sweep);
@@ -235,14 +235,15 @@ fn predictability_maps_the_width_under_a_blur() {
     let told = String::from_utf8(output.stdout).unwrap();
     assert!(told.contains("width of 9 in 10"), "{told}");
     assert_eq!(bench.rows("out").len(), 3 * 2 * 256);
-    // the speed blurs about the scene's own 1 m/s, and does not matter with Hertz's law; the shape as to first order
+    // The speed varies about the scene's own 1 m/s, and has no effect with Hertz's law; the shape has the effect of first
+    // order.
     let table = bench.read("out/distribution.csv");
     for row in csv::Reader::from_reader(&table[..]).records().map(Result::unwrap) {
         let at = |place: usize| row[place].parse::<f64>().unwrap();
         let (phi, mass) = (at(0), at(1));
         assert_eq!(&row[2], "restitution");
         let z = mass * phi * phi;
-        // the interval of 9 in 10 of a normal distribution
+        // The interval of 9 in 10 of a normal distribution.
         let width = 2.0 * 1.644_854 * 4.0 * mass * phi / (1.0 + z).powi(2) * 0.01;
         assert!((at(9) / width - 1.0).abs() < 0.05, "{row:?}, {width}");
     }

@@ -1,4 +1,4 @@
-//! Fields of scenes of bodies that are known as distributions.
+//! Fields of scenes of bodies that are given as distributions.
 
 use super::uncertain::{holds, number, summary};
 use super::*;
@@ -22,7 +22,7 @@ fn thrown() -> Value {
     })
 }
 
-/// Quantiles of the standard normal distribution, of the shares 1, 5, 25, 50, 75, 95 and 99 %.
+/// Quantiles of the standard normal distribution, for the shares 1, 5, 25, 50, 75, 95 and 99 %.
 const NORMAL: [f64; 7] = [-2.326_348, -1.644_854, -0.674_490, 0.0, 0.674_490, 1.644_854, 2.326_348];
 
 #[test]
@@ -32,7 +32,7 @@ fn quantiles_and_indices_are_those_of_the_closed_form() {
     sweep["sampling"] = json!({ "draws": 8192, "indices": true, "outputs": outputs });
     let (bench, summary) = summary(&sweep);
     let of = |output: &str| &summary["distributions"][output];
-    // ln F = ln v + (ln k + ln m)/2, ln p = ln 2 + ln m + ln v; the speed after the rebound is that before it
+    // ln F = ln v + (ln k + ln m)/2, ln p = ln 2 + ln m + ln v; the speed after the rebound is that before it.
     let force = (0.1f64 * 1e6).sqrt();
     let known = [
         ("largest_force_n", force, [0.06f64, 0.1, 0.08]),
@@ -46,20 +46,20 @@ fn quantiles_and_indices_are_those_of_the_closed_form() {
         let share = found["with_value"].as_f64().unwrap() / found["draws"].as_f64().unwrap();
         assert_eq!(share, 1.0, "{found}");
         for (quantile, x) in found["quantiles"].as_array().unwrap().iter().zip(NORMAL) {
-            // that of a negative quantity has the opposite order
+            // That of a negative quantity has the opposite order.
             let known = median * (variance.sqrt() * x * median.signum()).exp();
             holds(quantile, known, 0.02 * median.abs());
         }
         holds(&found["mean"], median * (0.5 * variance).exp(), 1e-3 * median.abs());
         for (field, sd) in fields.iter().zip(shares) {
-            // the logarithm's normal parts add: V = e^(s^2) - 1 but for a factor
+            // The normal parts of the logarithm add: V = e^(s^2) - 1 up to a factor.
             let first = (sd * sd).exp_m1() / variance.exp_m1();
             let total = 1.0 - (variance - sd * sd).exp_m1() / variance.exp_m1();
             holds(&found["indices"][field]["first"], first, 0.03);
             holds(&found["indices"][field]["total"], total, 0.03);
         }
     }
-    // one contact in every draw
+    // One contact in every draw.
     assert_eq!(
         (number(&of("wall.count")["mean"]["value"]), of("wall.count").get("indices")),
         (1.0, Some(&Value::Null))
@@ -73,7 +73,7 @@ fn quantiles_and_indices_are_those_of_the_closed_form() {
 
 /// With the default outputs, and a stated error for one of them.
 #[test]
-fn it_ends_by_the_error_of_one_output_and_an_interruption_leaves_no_trace() {
+fn it_ends_by_the_error_of_one_output_and_an_interruption_has_no_effect() {
     let mut sweep = thrown();
     sweep["sampling"] = json!({ "draws": 1_000_000, "sampling_error": { "largest_force_n": 1.5 } });
     let (bench, summary) = summary(&sweep);
@@ -100,7 +100,7 @@ fn over_a_grid_every_output_has_its_width() {
     sweep["uncertain"] = json!({ "bodies.ball.mass_kg": { "lognormal": [1, 0.01] } });
     sweep["sampling"] = json!({ "draws": 256, "outputs": ["largest_force_n", "wall.impulse_n_s"] });
     let (bench, summary) = summary(&sweep);
-    // the width grows with the output: it is least at the first point and greatest at the last
+    // The width grows with the output: it is smallest at the first point and largest at the last.
     for (output, greatest, sd) in [("largest_force_n", 4e5f64.sqrt(), 0.005), ("wall.impulse_n_s", 0.8, 0.01)] {
         let width = &summary["width_90"][output];
         assert_eq!((number(&width["least_index"]), number(&width["greatest_index"])), (0.0, 2.0));
@@ -112,7 +112,7 @@ fn over_a_grid_every_output_has_its_width() {
 }
 
 #[test]
-fn faults_name_field_value_and_what_is_allowed() {
+fn errors_name_field_value_and_what_is_allowed() {
     for (pointer, value, message) in [
         (
             "/sampling/outputs",

@@ -1,8 +1,8 @@
-//! No crate has a circle among its files.
+//! No crate has a cycle among its files.
 //!
-//! A file uses another if a path in its code, tests included, leads to something that the other defines. A re-export is not a
+//! A file uses another if a path in its code, tests included, leads to an item that the other defines. A re-export is not a
 //! use: a path through it leads to the file that defines the item, so that a module may re-export what its children define.
-//! Calls of methods, and of macros by name alone, have no path and are not seen.
+//! Calls of methods, and of macros by name alone, have no path and are not detected.
 
 mod modules;
 
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use modules::Crate;
 
 #[test]
-fn no_crate_has_a_circle_among_its_files() {
+fn no_crate_has_a_cycle_among_its_files() {
     let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap();
     let mut roots = Vec::new();
     collect(&workspace, &mut roots);
@@ -57,7 +57,7 @@ fn collect(folder: &Path, roots: &mut Vec<PathBuf>) {
     }
 }
 
-/// A shortest circle through each file that is on one, beginning at its first file.
+/// A shortest cycle through each file that is on one, beginning at its first file.
 fn circles(uses: &BTreeSet<(usize, usize)>) -> BTreeSet<Vec<usize>> {
     let files: BTreeSet<usize> = uses.iter().map(|(file, _)| *file).collect();
     let circle = |file: &usize| {
@@ -83,7 +83,7 @@ fn circles(uses: &BTreeSet<(usize, usize)>) -> BTreeSet<Vec<usize>> {
     files.iter().filter_map(circle).collect()
 }
 
-/// The circles of a crate with these files besides its root.
+/// The cycles of a crate with these files in addition to its root.
 fn circles_of(root: &str, files: &[(&str, &str)]) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("lib.rs"), root).unwrap();
@@ -98,7 +98,7 @@ fn circles_of(root: &str, files: &[(&str, &str)]) -> Vec<String> {
 }
 
 #[test]
-fn circles_are_found_wherever_a_path_stands() {
+fn cycles_are_found_in_all_kinds_of_paths() {
     let b = ("b.rs", "use super::a::A; pub struct B(A);");
     for (a, is_circle) in [
         ("pub struct A;", false),
@@ -109,30 +109,30 @@ fn circles_are_found_wherever_a_path_stands() {
         ("pub struct A; fn f() { use super::b::B as C; drop(C) }", true),
         ("#[derive(Serialize)] #[serde(with = \"crate::b::B\")] pub struct A;", true),
         ("pub struct A; #[cfg(test)] mod tests { use crate::b::B; }", true),
-        // neither a comment nor a crate, nor a visibility
+        // Neither a comment nor a crate nor a visibility.
         ("/// See [`B`](crate::b::B).\npub struct A; use b::C; pub(in crate) struct D;", false),
     ] {
         let found = circles_of("mod a; mod b;", &[("a.rs", a), b]);
         assert_eq!(found, if is_circle { vec!["a b"] } else { vec![] }, "{a}");
     }
-    // over a third file
+    // Through a third file.
     let files = [("a.rs", "use crate::b::B; pub struct A;"), ("b.rs", "use crate::c::C; pub struct B;")];
     let third = ("c/mod.rs", "use crate::a::A; pub struct C;");
     assert_eq!(circles_of("mod a; mod b; mod c;", &[files[0], files[1], third]), ["a b mod"]);
 }
 
 #[test]
-fn a_parent_may_show_what_its_children_define() {
+fn a_parent_may_re_export_what_its_children_define() {
     let child = ("a.rs", "use crate::{B, Outside}; pub struct A(B, Outside);");
     let other = ("b.rs", "pub struct B;");
     let shown = "mod a; mod b; pub use a::A; pub use b::B; pub use outside::Outside;";
     assert!(circles_of(shown, &[child, other]).is_empty());
-    // a function may have the name of a module
+    // A function may have the name of a module.
     assert!(
         circles_of(&format!("{shown} pub fn b(_: a::A) {{}}"), &[("a.rs", "use super::b::B; pub struct A;"), other])
             .is_empty()
     );
-    // but with items of its own the parent is a file like another
+    // But with items of its own the parent is a file like any other.
     let own = format!("{shown} pub struct Own; fn f(_: A) {{}}");
     assert!(circles_of(&own, &[child, other]).is_empty());
     assert_eq!(circles_of(&own, &[("a.rs", "pub struct A(crate::Own);"), other]), ["lib a"]);
