@@ -1,4 +1,4 @@
-//! What the fuzzer calls. The same functions take every file of the corpus in `cargo test`, without a fuzzer
+//! The functions that the fuzzer calls. `cargo test` applies the same functions to every file of the corpus, without a fuzzer
 //! (`crates/vibroimpact/tests/fuzz_corpus.rs`).
 
 use arbitrary::{Arbitrary, Result, Unstructured};
@@ -10,7 +10,7 @@ use vibroimpact::vibroimpact_sim::infinite;
 use vibroimpact::vibroimpact_sim::modal::{Mode, Settings, Solution, Solver, Start, Striker, Structure};
 use vibroimpact::{Scene, net};
 
-/// A scene file, JSON or TOML: read, written and read again, posed, and solved within limits.
+/// A scene file, JSON or TOML: it is read, written and read again, converted, and solved within limits.
 pub fn scene(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(scene) = Scene::from_json(text).or_else(|_| Scene::from_toml(text)) else { return };
@@ -24,7 +24,7 @@ pub fn scene(bytes: &[u8]) {
         infinite_structure(&impact);
         return;
     }
-    // modes in thousands are sound, but no work for a fuzzer
+    // Thousands of modes are valid, but too expensive for a fuzzer.
     if scene.modes.count().is_some_and(|modes| modes > 50) {
         return;
     }
@@ -37,7 +37,7 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
-/// An impact on an infinite beam or plate: contacts in order, and a body that only slows down.
+/// An impact on an infinite beam or plate: contacts are in order, and the speed of the body never increases.
 fn infinite_structure(impact: &infinite::Impact) {
     let settings = infinite::Settings { max_panels: 200, ..infinite::Settings::default() };
     let Ok(groups) = impact.groups() else { return };
@@ -52,7 +52,7 @@ fn infinite_structure(impact: &infinite::Impact) {
     assert!(solution.rebound_ratio().is_none_or(|e| (0.0..=1.0).contains(&e)), "S = {}", groups.s);
 }
 
-/// A sweep file, JSON or TOML, with its scene in it: read, and scenes of its points posed.
+/// A sweep file, JSON or TOML, with its scene in it: it is read, and scenes of its points are converted.
 pub fn sweep(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(sweep) = Sweep::from_json(text).or_else(|_| Sweep::from_toml(text)) else { return };
@@ -61,7 +61,7 @@ pub fn sweep(bytes: &[u8]) {
         let values = sweep.values(point);
         assert_eq!(values.len(), sweep.fields().count());
         assert_eq!(values, sweep.values(point), "a point is not a function of its number");
-        // values that make no scene are a row with its error
+        // Values that are not a scene are a row with its error.
         let _ = sweep.scene(point);
     }
 }
@@ -76,7 +76,7 @@ pub fn data_table(bytes: &[u8]) {
     }
 }
 
-/// An impact of a few modes and any numbers whatever, solved within limits.
+/// An impact of a few modes and arbitrary numbers, solved within limits.
 pub fn impact(bytes: &[u8]) {
     let mut unstructured = Unstructured::new(bytes);
     if let Ok((structure, striker, law, start, settings)) = posed(&mut unstructured) {
@@ -115,7 +115,7 @@ fn posed(from: &mut Unstructured) -> Result<Posed> {
     ))
 }
 
-/// Mostly a number of moderate size, with few digits; now and then any bits at all.
+/// Mostly a number of moderate size, with few digits; sometimes arbitrary bits.
 fn number(from: &mut Unstructured) -> Result<f64> {
     Ok(match from.int_in_range(0..=9u8)? {
         0 => f64::arbitrary(from)?,

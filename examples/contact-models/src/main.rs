@@ -1,4 +1,4 @@
-//! A steel ball thrown at a wall by a velocity-Verlet loop of one's own, with the force from a law of contact.
+//! A steel ball thrown at a wall by a simple velocity-Verlet loop, with the force from a contact law.
 
 use contact_models::{ContactLaw, Law, Memory, Viscous};
 

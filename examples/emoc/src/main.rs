@@ -1,10 +1,10 @@
-//! How fast balls of several masses leave a pinned beam of one kilogram: no integration, no allocation in the crate, no
-//! dependency.
+//! Rebound speeds of balls of several masses from a pinned beam of one kilogram, without integration, and without allocation or
+//! dependencies in the crate.
 
 use emoc::{Impact, Parameters, Site};
 
 fn main() -> Result<(), emoc::InvalidInput> {
-    // mass-normalised shapes of 30 modes at 0.4 of the length
+    // Mass-normalised shapes of 30 modes at 0.4 of the length.
     let shape = |k: u8| 2f64.sqrt() * (0.4 * std::f64::consts::PI * f64::from(k)).sin();
     let phi: Vec<f64> = (1..=30).map(shape).collect();
     let site = Site::new(&phi)?;

@@ -1,4 +1,4 @@
-//! A fractional oscillator, y'' + 0.5 D^(1/2) y + y = 0 from y = 1 at rest, and the times at which it crosses zero.
+//! A fractional oscillator, y'' + 0.5 D^(1/2) y + y = 0 from rest at y = 1, and the times of its zero crossings.
 
 use fracdiff::{Collocation, Equation, Event, InitialValueProblem, Method};
 

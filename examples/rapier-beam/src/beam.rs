@@ -1,4 +1,4 @@
-//! The bar and the ball, their bounces with every contact resolved, and the EMOC law fitted to a few of them.
+//! The bar and the ball, their bounces with every contact resolved, and the EMOC law fitted to some of them.
 
 use beam_modes::{Beam, End, Modes, RectangularSegment, Segment};
 use contact_models::{Body, Hertz};
@@ -14,20 +14,20 @@ pub const GRAVITY_M_S2: f64 = 9.81;
 const MODULUS_PA: f64 = 2e11;
 const DENSITY_KG_M3: f64 = 7800.0;
 const POISSON: f64 = 0.3;
-/// Modes of the resolved impact; those above answer by their static compliance.
+/// Modes of the resolved impact; the response of those above is their static compliance.
 const MODES: usize = 80;
-/// Modes in the law: to 65 kHz, as far as the 50 of the thesis's beams reach.
+/// Modes in the law: up to 65 kHz, as far as the 50 modes of the thesis's beams reach.
 pub const LAW_MODES: usize = 16;
-/// Entries of the table of locations that the game looks up.
+/// Entries of the table of locations that the game uses.
 const TABLE: usize = 300;
-/// A resolved bounce starts with the ball this high above the bar at rest: more than the bar swings.
+/// A resolved bounce starts with the ball this high above the bar at rest, which is more than the bar's amplitude.
 const ABOVE_M: f64 = 2e-3;
 
 /// A pinned steel bar.
 pub struct Bar {
     beam: Beam,
     modes: Modes,
-    /// Of every mode.
+    /// Damping ratio of every mode.
     damping_ratio: f64,
 }
 
@@ -61,15 +61,15 @@ impl Bar {
         Ok(Bar { modes: beam.modes(MODES)?, beam, damping_ratio })
     }
 
-    /// The bar as the solver sees it from a location.
+    /// The bar in the form of the solver, at a location.
     pub fn structure(&self, x_m: f64) -> Result<Structure, Box<dyn Error>> {
-        // two remainder modes for all others
+        // Two remainder modes for all others.
         let modes = self.modes.seen_from(x_m)?.into_iter().chain(self.beam.remainder(x_m, MODES, 2)?);
         Ok(Structure::from_modes(modes, self.damping_ratio))
     }
 
-    /// Lets the ball fall from a height and resolves every contact of its first bounces. The bar rings on between
-    /// them; gravity acts in flight, and is left out during the few milliseconds of a bounce.
+    /// Drops the ball from a height and resolves every contact of its first bounces. The bar continues to vibrate between them;
+    /// gravity acts in flight, and is neglected during the few milliseconds of a bounce.
     pub fn bounces(&self, ball: Ball, x_m: f64, height_m: f64, count: usize) -> Result<Vec<Bounce>, Box<dyn Error>> {
         let structure = self.structure(x_m)?;
         let displacement =
@@ -78,7 +78,7 @@ impl Bar {
         let mut solver = Solver::new(&structure)?;
         let settings = Settings { estimate_uncertainty: false, ..Settings::default() };
         let mut start = Start::at_rest(structure.modes.len());
-        // as if it had left from there, upwards
+        // As if it had left from there, upwards.
         let (mut from_m, mut speed_m_s) = (height_m, 0.0);
         let mut bounces = Vec::new();
         while bounces.len() < count {
@@ -138,29 +138,29 @@ impl Bar {
 
 /// One bounce, every contact resolved.
 pub struct Bounce {
-    /// Speed afterwards over that before.
+    /// Speed after it over speed before it.
     pub restitution: f64,
-    /// How high the ball then rises.
+    /// Height of the rebound.
     pub height_m: f64,
     /// From the first touch to the last separation.
     pub duration_s: f64,
-    /// From the last separation before, or from where it was let go, to the first touch.
+    /// From the last separation before it, or from the release of the ball, to the first touch.
     pub flight_s: f64,
     /// Speed at the first touch.
     pub fallen_m_s: f64,
-    /// How the bar moves then.
+    /// Motion of the bar at that time.
     pub touch: Start,
 }
 
 // ANCHOR: law
-/// What the game keeps: three numbers, and what the law needs of each location.
+/// The data of the game: three numbers, and the numbers of the law for each location.
 pub struct Law {
     pub parameters: Parameters,
     sites: Vec<Site>,
 }
 
 impl Law {
-    /// Restitution of a ball at a location: a look-up and a closed form.
+    /// Restitution of a ball at a location, from a table and a closed form.
     pub fn restitution(&self, mass_kg: f64, x_m: f64) -> f64 {
         let nearest = (x_m / LENGTH_M * TABLE as f64).round() as usize;
         let site = &self.sites[nearest.min(TABLE)];
@@ -170,13 +170,13 @@ impl Law {
 }
 // ANCHOR_END: law
 
-/// Time and downward speed when a ball thrown upwards has come down by `drop_m`; none if it stays below.
+/// Time and downward speed when a ball thrown upwards has fallen by `drop_m`; `None` if it stays below.
 fn flight(drop_m: f64, speed_m_s: f64) -> Option<(f64, f64)> {
     let squared = speed_m_s.powi(2) + 2.0 * GRAVITY_M_S2 * drop_m;
     (squared > 0.0).then(|| ((speed_m_s + squared.sqrt()) / GRAVITY_M_S2, squared.sqrt()))
 }
 
-/// Lets the bar ring freely.
+/// Free vibration of the bar.
 pub fn ring(modes: &[Mode], state: &mut Start, time_s: f64) {
     for ((mode, a), rate) in modes.iter().zip(&mut state.amplitude).zip(&mut state.rate) {
         let decay = mode.damping_ratio * mode.omega_rad_s;
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ringing_mode_obeys_its_equation() {
+    fn a_free_mode_satisfies_its_equation() {
         let mode = [Mode { omega_rad_s: 30.0, damping_ratio: 0.1, shape: 1.0 }];
         let at = |t| {
             let mut state = Start { amplitude: vec![0.3], rate: vec![-2.0], gap_m: 0.0 };

@@ -1,13 +1,13 @@
-//! The drops that both tables show, and the law that is fitted to them.
+//! The drops of both tables, and the law that is fitted to them.
 
 use crate::beam::{Ball, Bar, LENGTH_M, Law};
 use std::error::Error;
 
-/// A light ball, one in between, and a heavy one.
+/// A light ball, a medium one, and a heavy one.
 pub const BALLS: [Ball; 3] = [Ball { radius_m: 0.008 }, Ball { radius_m: 0.014 }, Ball { radius_m: 0.02 }];
-/// Places that the law is fitted at.
+/// Locations to which the law is fitted.
 const FITTED: usize = 30;
-/// Places from a support to the middle at which it is compared; the fit has seen none of them.
+/// Locations from a support to the middle at which it is compared; none of them was used in the fit.
 pub const COMPARED: usize = 8;
 /// Height of fall (m): 3.1 m/s.
 pub const DROP_M: f64 = 0.5;

@@ -1,21 +1,21 @@
-//! The game's side: a world of rapier with a ball above a bar, and a hook that sets the restitution of each contact.
+//! The side of the game: a rapier world with a ball above a bar, and a hook that sets the restitution of each contact.
 
 use crate::beam::{Ball, GRAVITY_M_S2, LENGTH_M, THICKNESS_M};
 use rapier2d::prelude::*;
 
 /// The engine's time step (s).
 pub const STEP_S: f64 = 1.0 / 2000.0;
-/// Longer than any row of bounces here.
+/// Longer than any sequence of bounces here.
 const MOST_STEPS: u32 = 20_000;
 
 // ANCHOR: hook
-/// Asks for the restitution at the location of each contact.
+/// Evaluates the restitution at the location of each contact.
 struct ByPlace<F>(F);
 
 impl<F: Fn(f64) -> f64 + Sync> PhysicsHooks for ByPlace<F> {
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
         let Some(contact) = context.rigid_mut() else { return };
-        // inside the hook the anchors are points of the world
+        // Inside the hook the anchors are points of the world.
         if let Some(first) = contact.solver_contacts.first() {
             let x_m = f64::from(first.anchor1.x);
             *contact.restitution = (self.0)(x_m) as f32;
@@ -24,13 +24,13 @@ impl<F: Fn(f64) -> f64 + Sync> PhysicsHooks for ByPlace<F> {
 }
 // ANCHOR_END: hook
 
-/// One bounce as the engine made it.
+/// One bounce in the engine.
 pub struct Bounce {
     /// Speed in the last step before (m/s).
     pub speed_before_m_s: f64,
     /// Speed in the first step after (m/s).
     pub speed_after_m_s: f64,
-    /// Highest point afterwards, of the ball's lowest point above the bar (m).
+    /// Highest point after it, of the ball's lowest point above the bar (m).
     pub height_m: f64,
 }
 
@@ -40,7 +40,7 @@ impl Bounce {
     }
 }
 
-/// Drops a ball on the bar and gives its first bounces.
+/// Drops a ball on the bar and returns its first bounces.
 pub fn bounces(
     ball: Ball,
     x_m: f64,
@@ -51,7 +51,7 @@ pub fn bounces(
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, -GRAVITY_M_S2 as f32);
     world.integration_parameters.dt = STEP_S as f32;
-    // a length that is typical of this scene, by which the engine scales its tolerances
+    // A typical length of this scene, by which the engine scales its tolerances.
     world.integration_parameters.length_unit = ball.radius_m as f32;
     let (half_length, half_thickness) = (0.5 * LENGTH_M as f32, 0.5 * THICKNESS_M as f32);
     world.insert(

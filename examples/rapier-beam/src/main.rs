@@ -1,9 +1,9 @@
 //! Balls dropped on a vibrating bar in the physics engine rapier.
 //!
-//! A physics engine knows one restitution a pair of bodies. On a bar that is wrong by a large factor from location to
-//! location. Here the engine asks the EMOC law at each new contact, through its hook for contacts; the law costs some
-//! nanoseconds. Beside it stand the engine with the best constant for each ball, and bounces with every contact
-//! resolved. A second table follows the bar's motion from bounce to bounce.
+//! A physics engine has one restitution for each pair of bodies. On a bar this is wrong by a large factor that depends on the
+//! location. Here the engine evaluates the EMOC law at each new contact, through its hook for contacts; the law takes some
+//! nanoseconds. The results are compared with those of the engine with the best constant for each ball, and with bounces whose
+//! contacts are all resolved. A second table follows the bar's motion from bounce to bounce.
 
 mod beam;
 mod drops;
@@ -15,7 +15,7 @@ use drops::{BALLS, COMPARED, DROP_M, fitted};
 use std::error::Error;
 use std::fmt::Write as _;
 
-/// In a row.
+/// Number of bounces.
 const BOUNCES: usize = 4;
 
 /// Damping ratio of every mode.
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// All that the program prints.
+/// The whole output of the program.
 fn tables() -> Result<String, Box<dyn Error>> {
     let mut out = String::new();
     let bar = Bar::new(DAMPING)?;
@@ -67,7 +67,7 @@ fn tables() -> Result<String, Box<dyn Error>> {
     Ok(out)
 }
 
-/// What becomes of a ball dropped at a location.
+/// The results for a ball dropped at a location.
 struct Row {
     x_m: f64,
     /// Restitution by the law.
@@ -80,7 +80,7 @@ struct Row {
 fn compare(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Row>, Box<dyn Error>> {
     let locations: Vec<f64> = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64).collect();
     let resolved = locations.iter().map(|&x| bar.bounces(ball, x, DROP_M, BOUNCES)).collect::<Result<Vec<_>, _>>()?;
-    // the constant that fits these very locations best: more than a game's author would know
+    // The constant that fits these locations best: more than the author of a game would know.
     let constant = resolved.iter().map(|bounces| bounces[0].restitution).sum::<f64>() / COMPARED as f64;
     let at = |x| law.restitution(ball.mass_kg(), x);
     let row = |(x_m, resolved): (f64, Vec<beam::Bounce>)| Row {
@@ -93,7 +93,7 @@ fn compare(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Row>, Box<dyn Error>>
     Ok(locations.into_iter().zip(resolved).map(row).collect())
 }
 
-/// Of the engine's first bounce, against the resolved one.
+/// Error of the engine's first bounce, compared with the resolved one.
 fn mean_error(rows: &[Row], bounces: impl Fn(&Row) -> &[engine::Bounce]) -> f64 {
     let error = |row| (bounces(row)[0].restitution() - row.resolved[0].restitution).abs();
     rows.iter().map(error).sum::<f64>() / rows.len() as f64
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_engine_rebounds_as_the_law_says() {
+    fn the_engine_rebounds_by_the_law() {
         let bar = Bar::new(DAMPING).unwrap();
         let law = fitted(&bar).unwrap();
         for ball in BALLS {
@@ -122,7 +122,7 @@ mod tests {
                 assert_eq!(bounces.len(), 2);
                 for bounce in bounces {
                     let wanted = law.restitution(ball.mass_kg(), x) * bounce.speed_before_m_s;
-                    // gravity acts on during the step of the contact
+                    // Gravity also acts during the step of the contact.
                     let step = beam::GRAVITY_M_S2 * engine::STEP_S;
                     assert!((bounce.speed_after_m_s - wanted).abs() <= step, "{} {wanted}", bounce.speed_after_m_s);
                 }
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_law_is_nearer_to_the_resolved_bounce_than_the_best_constants() {
+    fn the_law_is_closer_to_the_resolved_bounce_than_the_best_constants() {
         let bar = Bar::new(DAMPING).unwrap();
         let law = fitted(&bar).unwrap();
         let (mut of_law, mut of_constant) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! A bar that still rings when the ball comes back: the law with the bar at rest, and with the bar's motion carried from
-//! bounce to bounce.
+//! A bar that still vibrates when the ball returns: the law with the bar at rest, and with the bar's motion carried from bounce
+//! to bounce.
 
 use crate::beam::{Ball, Bar, Bounce, LAW_MODES, LENGTH_M, Law, ring};
 use crate::drops::{BALLS, COMPARED, DROP_M, fitted};
@@ -9,16 +9,16 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 use vibroimpact_sim::modal::{Mode, Start};
 
-/// Damping ratios of the bar: one that hardly rings any more when the ball is back, and bare steel.
+/// Damping ratios of the bar: one with which it hardly vibrates any more when the ball returns, and that of bare steel.
 const DAMPINGS: [f64; 2] = [0.01, 0.001];
-/// Bounces in a row.
+/// Number of bounces.
 const BOUNCES: usize = 10;
-/// Ways to foretell a bounce.
+/// Ways to predict a bounce.
 const WAYS: [&str; 5] =
     ["constant", "EMOC, bar at rest", "EMOC, its own motion", "EMOC, half sine", "EMOC, true motion"];
 
 // ANCHOR: carried
-/// What the game keeps of the bar between bounces, seen from one location.
+/// The data of the bar that the game keeps between bounces, for one location.
 struct Carried<'a> {
     modes: &'a [Mode],
     motion: Start,
@@ -29,18 +29,18 @@ impl Carried<'_> {
         Carried { modes, motion: Start::at_rest(modes.len()) }
     }
 
-    /// Lets the bar ring on: each mode's free motion, exactly.
+    /// Free vibration of the bar: the exact motion of each mode.
     fn ring(&mut self, time_s: f64) {
         ring(self.modes, &mut self.motion, time_s);
     }
 
-    /// Gives the ball's velocity after it has met the bar at this speed, and strikes the bar: by the speeds of least
-    /// energy that the law works with, or, with a duration of the contact, by the law's impulse as a half sine.
+    /// Returns the ball's velocity after it has met the bar at this speed, and excites the bar: by the speeds of least energy
+    /// in the law, or, with a duration of the contact, by the law's impulse as a half sine.
     fn strike(&mut self, impact: &MovingImpact, half_sine_s: Option<f64>) -> Result<f64, emoc::InvalidInput> {
         let found = MovingImpact { rates: &self.motion.rate, ..*impact }.rebound()?;
         let share = |omega_rad_s: f64, duration_s: f64| {
             let q = omega_rad_s * duration_s / PI;
-            // its limit where the cosine and the difference vanish
+            // Its limit where the cosine and the difference vanish.
             if (q - 1.0).abs() < 1e-6 { PI / 4.0 } else { (0.5 * PI * q).cos() / (1.0 - q * q) }
         };
         let struck = |(k, mode): (usize, &Mode)| match half_sine_s {
@@ -86,7 +86,8 @@ fn mean(errors: &[[f64; WAYS.len()]], way: usize) -> String {
     format!("{:7.3}", errors.iter().map(|of_location| of_location[way]).sum::<f64>() / errors.len() as f64)
 }
 
-/// Errors of each way in each bounce at the locations where there is one. The fall before a bounce is the resolved one's.
+/// Errors of each way in each bounce at the locations where there is one. The fall before a bounce is that of the resolved
+/// motion.
 fn errors(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Vec<[f64; WAYS.len()]>>, Box<dyn Error>> {
     let locations = (1..=COMPARED).map(|i| 0.5 * LENGTH_M * i as f64 / COMPARED as f64);
     let resolved = locations
@@ -108,7 +109,7 @@ fn errors(bar: &Bar, law: &Law, ball: Ball) -> Result<Vec<Vec<[f64; WAYS.len()]>
     Ok(errors)
 }
 
-/// Speeds after each bounce: with the bar at rest, with its motion carried in two ways, and with the motion it has.
+/// Speeds after each bounce: with the bar at rest, with its motion carried in two ways, and with its true motion.
 fn foretold(
     ball: Ball,
     bounces: &[Bounce],
@@ -126,7 +127,7 @@ fn foretold(
         lasted_s = bounce.duration_s;
         let still = vec![0.0; phi.len()];
         let impact = MovingImpact { mass_kg, velocity_m_s: -bounce.fallen_m_s, coefficients, phi, rates: &still };
-        // as long as Hertz's contact with a wall lasts
+        // As long as Hertz contact with a wall lasts.
         let duration_s = 3.218 * (mass_kg.powi(2) / (stiffness.powi(2) * bounce.fallen_m_s)).powf(0.2);
         let known = MovingImpact { rates: &bounce.touch.rate[..LAW_MODES], ..impact }.rebound()?.velocity_m_s;
         let carried = [own.strike(&impact, None)?, half_sine.strike(&impact, Some(duration_s))?];
