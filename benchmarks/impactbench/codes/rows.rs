@@ -1,17 +1,17 @@
-//! What the physics engines in Rust share: the rows of balls that they can take, and the table. A restitution is requested, or
-//! the balls of a row are taken as elastic. The setting is the time step.
+//! Common parts of the physics engines in Rust: the rows of balls that they can simulate, and the table. Either a restitution
+//! is requested, or the balls of a row are taken as elastic. The setting is the time step.
 
 use serde_json::Value;
 use std::path::Path;
 use std::time::Instant;
 
 pub const RADIUS_M: f64 = 0.015;
-/// Steps of the longest run: the balls have met and parted long before.
+/// Steps of the longest run; the balls have met and separated long before.
 pub const MOST_STEPS: usize = 200;
 const STEPS_S: [f64; 4] = [1.0 / 60.0, 1e-3, 1e-4, 1e-5];
 const REPEATS: usize = 20;
 
-/// Balls one above the other, and whether they stand over a ground.
+/// Balls one above the other, and whether there is a ground below.
 pub struct Row {
     /// Mass and velocity (kg, m/s, upwards), the lowest first.
     balls: Vec<(f64, f64)>,
@@ -19,7 +19,7 @@ pub struct Row {
     pub restitution: f64,
 }
 
-/// A ball as it starts.
+/// A ball at the start.
 pub struct Ball {
     pub mass_kg: f64,
     pub velocity_m_s: f64,
@@ -27,7 +27,7 @@ pub struct Ball {
 }
 
 impl Row {
-    /// What of a problem an engine can take; none is a dash.
+    /// The row of balls of a problem if an engine can simulate it; otherwise the table has a dash.
     fn of(problem: &Value) -> Option<Row> {
         if problem["gravity_m_s2"] != 0.0 || problem.get("loads").is_some() {
             return None;
@@ -43,7 +43,7 @@ impl Row {
             }
             balls.push((shape.powi(-2), shape * rate));
         }
-        // the first is the uppermost
+        // The first is the uppermost.
         balls.reverse();
         let law = &contacts.first()?["law"];
         match (law["kind"].as_str()?, problem["family"].as_str()?) {
@@ -63,8 +63,8 @@ impl Row {
     }
 }
 
-/// Offers every problem at every step, and writes the table to standard output. `solve` gives the velocities in the end, the
-/// lowest ball first.
+/// Runs every problem at every step, and writes the table to standard output. `solve` returns the final velocities, the lowest
+/// ball first.
 pub fn run(code: &str, solve: impl Fn(&Row, f64) -> Vec<f64>) -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../problems");
     let mut paths: Vec<_> = std::fs::read_dir(folder)?.map(|entry| entry.map(|e| e.path())).collect::<Result<_, _>>()?;
@@ -80,7 +80,7 @@ pub fn run(code: &str, solve: impl Fn(&Row, f64) -> Vec<f64>) -> Result<(), Box<
                 velocities = solve(&row, step_s);
                 least = least.min(start.elapsed().as_secs_f64());
             }
-            // the first body of a problem is the uppermost
+            // The first body of a problem is the uppermost.
             let values: Vec<String> = velocities.iter().rev().map(|velocity| format!("{velocity:e}")).collect();
             let name = problem["name"].as_str().unwrap_or_default();
             println!("{name},{code},{step_s:e},{least:e},ok,{}", values.join(" "));

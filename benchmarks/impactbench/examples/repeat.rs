@@ -1,6 +1,6 @@
-//! Solves one problem a number of times, to be counted from outside:
+//! Solves one problem a number of times, to be counted by a profiler:
 //! `valgrind --tool=callgrind repeat PROBLEM (assembly | dop853) TOLERANCE COUNT`.
-//! What one run costs is the difference between two counts over the difference of their numbers.
+//! The cost of one run is the difference between two counts over the difference of their numbers of runs.
 
 use impactbench::codes::{dop853, own_assembly};
 use impactbench::problem::Problem;

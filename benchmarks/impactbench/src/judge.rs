@@ -1,33 +1,33 @@
-//! Errors, failures by kind, shares solved.
+//! Errors, kinds of failure, and numbers of problems solved.
 
 use crate::codes::own_assembly;
 use crate::outcome::Outcome;
 use crate::problem::{Family, Problem, What};
 use std::collections::BTreeMap;
 
-/// Errors within which problems are counted as solved.
+/// Errors below which problems count as solved.
 pub const LEVELS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-6];
-/// Share of the scale that counts as nothing.
+/// Share of the scale that counts as zero.
 const NOTHING: f64 = 1e-9;
-/// Distance within which an answer is that of the motion without contacts.
+/// Distance within which a result counts as that of the motion without contacts.
 const MISSED: f64 = 1e-3;
 
-/// What is wrong with a run.
+/// The failure of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Failure {
     /// The ball leaves faster than it came.
     EnergyGained,
-    /// The answer is that of a motion without contacts.
+    /// The result is that of a motion without contacts.
     MissedContact,
     /// The ball still moves into the ground or the structure.
     FellThrough,
-    /// The ball does not leave, but should.
+    /// The ball does not leave, although it should.
     Stuck,
-    /// Wrong by more than a tenth in another way.
+    /// The error is above a tenth in another way.
     Wrong,
-    /// No answer in the time allowed.
+    /// There is no result in the time allowed.
     TooSlow,
-    /// No answer for another reason.
+    /// There is no result for another reason.
     NoAnswer,
 }
 
@@ -62,9 +62,9 @@ impl Failure {
 pub struct Judged<'a> {
     /// The run.
     pub outcome: &'a Outcome,
-    /// Its error, at least the uncertainty of the reference; none without an answer.
+    /// Its error, at least the uncertainty of the reference; `None` without a result.
     pub error: Option<f64>,
-    /// What is wrong with it.
+    /// Its failure, if any.
     pub failure: Option<Failure>,
 }
 
@@ -88,13 +88,13 @@ pub fn judge<'a>(problems: &'a [Problem], outcomes: &'a [Outcome]) -> BTreeMap<&
     judged
 }
 
-/// The answer to a problem whose contacts are left out.
+/// The result of a problem without its contacts.
 fn without_contacts(problem: &Problem) -> Option<Vec<f64>> {
     let free = Problem { contacts: vec![], ..problem.clone() };
     own_assembly(&free, &[], 1e-9).ok().filter(|_| problem.infinite_beam_s.is_none())
 }
 
-/// What is wrong with an answer. The ways in which a rebound fails are told apart where one ball leaves.
+/// The failure of a result. Failures of a rebound are distinguished if one ball leaves.
 fn failure(problem: &Problem, free: Option<&[f64]>, values: &[f64], error: f64) -> Option<Failure> {
     let of_rebound = matches!(problem.family, Family::Law | Family::Restitution | Family::Structure);
     let wrong = (error > 0.1).then_some(Failure::Wrong);
@@ -124,12 +124,12 @@ pub fn codes(outcomes: &[Outcome]) -> Vec<&str> {
     codes
 }
 
-/// The least error of a code on a problem.
+/// The smallest error of a code on a problem.
 pub fn least_error(judged: &[Judged], code: &str) -> Option<f64> {
     judged.iter().filter(|run| run.outcome.code == code).filter_map(|run| run.error).min_by(f64::total_cmp)
 }
 
-/// The least time in which a code comes within an error (s).
+/// The shortest time in which a code comes within an error (s).
 pub fn time_at(judged: &[Judged], code: &str, error: f64) -> Option<f64> {
     let within = judged.iter().filter(|run| run.outcome.code == code && run.error.is_some_and(|found| found <= error));
     within.filter_map(|run| run.outcome.time_s).min_by(f64::total_cmp)
@@ -193,7 +193,7 @@ mod tests {
         use Failure::*;
         let wanted = [EnergyGained, MissedContact, FellThrough, Stuck, Wrong, TooSlow, NoAnswer, NoAnswer].map(Some);
         assert_eq!(found, [[None, None].as_slice(), &wanted].concat());
-        // the error is at least the uncertainty of the reference
+        // The error is at least the uncertainty of the reference.
         assert_eq!(least_error(&judged["p"], "c"), Some(5e-10));
         assert_eq!(time_at(&judged["p"], "c", 0.02), Some(1.0));
         assert_eq!(time_at(&judged["p"], "c", 1e-6), Some(3.0));

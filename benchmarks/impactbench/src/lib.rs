@@ -2,8 +2,8 @@
 //!
 //! `cargo xtask impactbench` runs this package; `docs/impactbench.md` shows the results and how to add a code.
 //!
-//! A problem is a file in `problems`: bodies by their modes, contacts between them, and the requested quantities with
-//! their references. All bodies together obey
+//! A problem is a file in `problems`: bodies by their modes, contacts between them, and the requested quantities with their
+//! references. All bodies together satisfy
 //!
 //! ```text
 //! a_k'' + 2 zeta_k omega_k a_k' + omega_k^2 a_k = sum phi_k F                                             (1)
@@ -17,14 +17,14 @@
 //! xi = sum phi_k a_k (lower) - sum phi_k a_k (upper) - gap.                                              (2)
 //! ```
 //!
-//! | module | what it holds |
+//! | module | content |
 //! |---|---|
 //! | [`problem`] | the file of a problem |
-//! | [`library`] | the problems as they are made, with their references |
+//! | [`library`] | the definitions of the problems, with their references |
 //! | [`system`] | a problem as a system of ordinary differential equations, and as an assembly of this workspace |
 //! | [`codes`] | the codes in Rust, each with its settings |
-//! | [`outcome`] | what a code answers: a line of a table of results |
-//! | [`judge`] | errors, failures by kind, shares solved |
+//! | [`outcome`] | the result of a code: a line of a table of results |
+//! | [`judge`] | errors, kinds of failure, numbers of problems solved |
 //! | [`report`] | the page and its figures |
 
 pub mod codes;

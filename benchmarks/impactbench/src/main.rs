@@ -62,7 +62,7 @@ fn work(cli: &Cli) -> Result<(), String> {
         let effort = if cli.quick {
             Effort::QUICK
         } else {
-            // short repetitions, as there are thousands of runs
+            // Short repetitions, as there are thousands of runs.
             Effort { cap: Duration::from_secs(2), budget: Duration::from_millis(50), ..Effort::FULL }
         };
         let wanted = |problem: &&Problem| cli.only.as_ref().is_none_or(|only| problem.name.contains(only));

@@ -1,4 +1,4 @@
-//! What a code answers: a line of a table of results.
+//! The result of a code: a line of a table of results.
 
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -8,20 +8,20 @@ use std::path::Path;
 pub struct Outcome {
     /// Name of the problem.
     pub problem: String,
-    /// Name of the code, with the way in which it is used.
+    /// Name of the code, including the way in which it is used.
     pub code: String,
     /// Tolerance or step of the run.
     pub setting: f64,
     /// Least wall time of repeated runs (s).
     pub time_s: Option<f64>,
-    /// `ok`, or why there is no answer.
+    /// `ok`, or the reason why there is no result.
     pub status: String,
-    /// What was requested, in the order of the problem, with blanks between.
+    /// The requested quantities, in the order of the problem, separated by blanks.
     pub values: String,
 }
 
 impl Outcome {
-    /// The answer, if there is one.
+    /// The result, if there is one.
     pub fn answer(&self) -> Option<Vec<f64>> {
         let values: Result<Vec<f64>, _> = self.values.split_whitespace().map(str::parse).collect();
         values.ok().filter(|values| self.status == "ok" && !values.is_empty())

@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use vibroimpact_sim::modal::Mode;
 
-/// A problem: what happens, what is requested, and the answer.
+/// A problem: its description, the requested quantities, and the reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Problem {
     /// Short name, that of the file.
     pub name: String,
-    /// The family that it belongs to.
+    /// Its family.
     pub family: Family,
-    /// What happens, for people.
+    /// A description for readers.
     pub statement: String,
-    /// What a code must be able to do to take part.
+    /// Abilities that a code needs to take part.
     pub needs: Vec<String>,
     /// The bodies.
     pub bodies: Vec<Body>,
@@ -32,11 +32,11 @@ pub struct Problem {
     /// The single parameter `S` of an impact on an infinite beam, which then has no bodies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infinite_beam_s: Option<f64>,
-    /// When the quantities are read (s).
+    /// The time of the requested quantities (s).
     pub end_s: f64,
-    /// What is requested.
+    /// The requested quantities.
     pub quantities: Vec<Quantity>,
-    /// How the reference was made.
+    /// The method of the reference.
     pub reference: String,
 }
 
@@ -44,7 +44,7 @@ pub struct Problem {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
-    /// A ball at an immovable ground, its law given.
+    /// A ball at an immovable ground, with a given law.
     Law,
     /// The same, where only the restitution is requested.
     Restitution,
@@ -54,7 +54,7 @@ pub enum Family {
     InfiniteBeam,
     /// Several bodies and contacts at once.
     Several,
-    /// Bodies that swing against elastic stops.
+    /// Bodies that vibrate against elastic stops.
     Stop,
 }
 
@@ -69,7 +69,7 @@ pub struct Body {
     /// Damping ratio of each mode.
     pub damping_ratio: Vec<f64>,
     /// Mass-normalised shape of each mode at the body's point (kg^-1/2), `m^(-1/2)` of a free mass. Contacts, loads and
-    /// quantities refer to this point where they name no other.
+    /// quantities refer to this point unless they name another.
     pub shape: Vec<f64>,
     /// Amplitudes at the start (kg^1/2 m).
     pub amplitude: Vec<f64>,
@@ -77,20 +77,20 @@ pub struct Body {
     pub rate: Vec<f64>,
 }
 
-/// A contact. The ground is on the side that names no body.
+/// A contact. The ground is on the side without a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
     /// Name of the body that is pushed up.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper: Option<String>,
-    /// Shapes of its modes where it is touched, if not at its own point (kg^-1/2).
+    /// Shapes of its modes at the contact, if not at its own point (kg^-1/2).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub upper_shape: Option<Vec<f64>>,
     /// Name of the body that is pushed down.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower: Option<String>,
-    /// Shapes of its modes where it is touched, if not at its own point (kg^-1/2).
+    /// Shapes of its modes at the contact, if not at its own point (kg^-1/2).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_shape: Option<Vec<f64>>,
     /// Distance at zero displacement (m).
@@ -108,7 +108,7 @@ pub struct Load {
     /// Modal force per unit of force, if not the shapes at the body's own point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<Vec<f64>>,
-    /// Amplitude (N, or m/s^2 where the shape is that of an acceleration).
+    /// Amplitude (N, or m/s^2 if the shape is that of an acceleration).
     pub force_n: f64,
     /// Circular frequency (rad/s); 0 for a constant force, whose phase is then a quarter of a turn.
     pub omega_rad_s: f64,
@@ -165,32 +165,32 @@ pub enum LawOfContact {
         effective_radius_m: f64,
         yield_pressure_pa: f64,
     },
-    /// No law is given, but the restitution that is wanted.
+    /// No law is given, but the requested restitution.
     Restitution {
         restitution: f64,
     },
 }
 
-/// A number that is requested.
+/// A requested quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Quantity {
     /// Name of the body; empty for an infinite beam.
     pub body: String,
-    /// Shapes of its modes at the point that is meant, if not its own (kg^-1/2).
+    /// Shapes of its modes at the point of the quantity, if not its own (kg^-1/2).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<Vec<f64>>,
     /// The quantity of its point.
     pub what: What,
-    /// The answer.
+    /// The reference.
     pub value: f64,
-    /// Uncertainty of the answer.
+    /// Uncertainty of the reference.
     pub uncertainty: f64,
     /// The number by which an error is divided.
     pub scale: f64,
 }
 
-/// The quantity of a body's point that is requested at the end.
+/// The requested quantity of a body's point at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum What {
@@ -216,7 +216,7 @@ impl Body {
         }
     }
 
-    /// A structure at rest, in its modes as they are seen from the contact.
+    /// A structure at rest, with its modes at the contact.
     pub fn at_rest(name: &str, modes: &[Mode]) -> Body {
         let zeros = vec![0.0; modes.len()];
         Body {
@@ -244,7 +244,7 @@ impl Body {
 }
 
 impl LawOfContact {
-    /// The law itself; none where only a restitution is requested.
+    /// The law; `None` if only a restitution is requested.
     ///
     /// # Errors
     /// A parameter out of range.
@@ -277,7 +277,7 @@ impl LawOfContact {
 }
 
 impl Contact {
-    /// A contact at the points that the bodies have; the ground for a side without a body.
+    /// A contact at the bodies' own points; the ground for a side without a body.
     pub fn new(upper: &str, lower: Option<&str>, gap_m: f64, law: LawOfContact) -> Contact {
         let (upper, lower) = (Some(upper.to_owned()), lower.map(str::to_owned));
         Contact { upper, upper_shape: None, lower, lower_shape: None, gap_m, law }
@@ -311,24 +311,24 @@ impl Problem {
         Ok(problems)
     }
 
-    /// Uncertainty of the answer itself, divided by its scale.
+    /// Uncertainty of the reference, divided by its scale.
     pub fn floor(&self) -> f64 {
         self.quantities.iter().map(|quantity| quantity.uncertainty / quantity.scale).fold(1e-16, f64::max)
     }
 
-    /// The error of an answer.
+    /// The error of a result.
     pub fn error(&self, values: &[f64]) -> f64 {
         let right: Vec<f64> = self.quantities.iter().map(|quantity| quantity.value).collect();
         self.distance(values, &right)
     }
 
-    /// The distance between two answers: the greatest over the quantities, each divided by its scale.
+    /// The distance between two results: the maximum over the quantities, each divided by its scale.
     pub fn distance(&self, values: &[f64], others: &[f64]) -> f64 {
         let pairs = self.quantities.iter().zip(values.iter().zip(others));
         pairs.map(|(quantity, (value, other))| (value - other).abs() / quantity.scale).fold(0.0, f64::max)
     }
 
-    /// The restitution wanted of the only contact, where no law is given.
+    /// The requested restitution of the only contact, if no law is given.
     pub fn wanted_restitution(&self) -> Option<f64> {
         match self.contacts.as_slice() {
             [Contact { law: LawOfContact::Restitution { restitution }, .. }] => Some(*restitution),

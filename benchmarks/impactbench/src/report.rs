@@ -74,7 +74,7 @@ pub fn page(problems: &[Problem], outcomes: &[Outcome], about: &str) -> Result<P
     Ok(Page { text, figures })
 }
 
-/// The machine and the versions behind the results of each code, from the texts beside the tables.
+/// The machine and the versions of the results of each code, from the texts beside the tables.
 ///
 /// # Errors
 /// A file that cannot be read, by its name.
@@ -92,7 +92,7 @@ pub fn machines(folder: &Path) -> Result<String, String> {
     Ok(text)
 }
 
-/// How many problems each code solves.
+/// Number of problems that each code solves.
 fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     let count = problems.len();
     let mut text = format!(
@@ -120,13 +120,13 @@ fn shares(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     text + "\n"
 }
 
-/// The code that comes within 1e-6 in the least time.
+/// The code that comes within 1e-6 in the shortest time.
 fn fastest<'a>(runs: &[Judged], codes: &[&'a str]) -> Option<&'a str> {
     let times = codes.iter().filter_map(|code| Some((*code, time_at(runs, code, 1e-6)?)));
     times.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(code, _)| code)
 }
 
-/// How many runs of each code fail, by kind.
+/// Number of failures of each code, by kind.
 fn failures(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String {
     let known = |name: &str| problems.iter().any(|problem| problem.name == name);
     let mut text = format!("\n## Failures\n\n{FAILURES}\n\n| code | runs |");
@@ -146,7 +146,7 @@ fn failures(problems: &[Problem], judged: &ByProblem, codes: &[&str]) -> String 
     text + "\n"
 }
 
-/// A cell for each problem and each code that takes part in the family; a dash for what a code cannot do or does not reach.
+/// A cell for each problem and each code that takes part in the family; a dash if a code cannot compute or does not reach it.
 fn table(
     title: &str,
     problems: &[&Problem],
@@ -173,7 +173,7 @@ fn table(
     text + "\n"
 }
 
-/// Greatest error in figures: a run that diverges would hide the others.
+/// Largest error in figures: a run that diverges would hide the others.
 const GREATEST_DRAWN: f64 = 10.0;
 
 /// Error against time: a panel for each problem, two in a row.
@@ -209,7 +209,7 @@ fn figure(title: &str, problems: &[&Problem], judged: &ByProblem, codes: &[&str]
     figure
 }
 
-/// What each problem says, and how it is known.
+/// The description of each problem and the method of its reference.
 fn statements(problems: &[Problem]) -> String {
     let mut text =
         "\n## The problems\n\nUncertainties are those of the error: divided by the scale of the problem.\n\n\
@@ -231,7 +231,7 @@ fn statements(problems: &[Problem]) -> String {
     text
 }
 
-/// A time to two digits, which is what repeats, in a unit that suits it.
+/// A time to two digits, which are the ones that repeat, in a suitable unit.
 fn duration(seconds: f64) -> String {
     let seconds: f64 = format!("{seconds:.1e}").parse().unwrap_or(seconds);
     let (value, unit) = match seconds {

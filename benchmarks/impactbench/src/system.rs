@@ -13,26 +13,26 @@ pub struct System {
     damping: Vec<f64>,
     /// Constant acceleration of each mode.
     constant: Vec<f64>,
-    /// Harmonic loads: frequency, phase, and what each does to every mode.
+    /// Harmonic loads: frequency, phase, and the effect on every mode.
     harmonics: Vec<(f64, f64, Vec<f64>)>,
-    /// The contacts: what each mode adds to the compression, the gap, and the law.
+    /// The contacts: the contribution of each mode to the compression, the gap, and the law.
     contacts: Vec<(Vec<f64>, f64, Law)>,
 }
 
-/// What a contact is doing.
+/// The state of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum State {
-    /// The surfaces are apart and remember this.
+    /// The surfaces are separate, with this memory.
     Open(Memory),
     /// They touch.
     Closed(Branch),
 }
 
 impl System {
-    /// The problem with these laws, one a contact.
+    /// The problem with these laws, one per contact.
     ///
     /// # Errors
-    /// A contact with a body that is not there.
+    /// A contact with a body that does not exist.
     pub fn new(problem: &Problem, laws: &[Law]) -> Result<System, String> {
         let places = places(problem);
         let count = problem.bodies.iter().map(|body| body.shape.len()).sum();
@@ -86,7 +86,7 @@ impl System {
         self.stiffness[k].sqrt()
     }
 
-    /// The modal rate that the loads can drive up by a time, roughly.
+    /// A rough bound on the modal rate that the loads can cause up to a time.
     pub fn driven(&self, time_s: f64) -> f64 {
         let force = |k: usize| {
             let harmonic: f64 = self.harmonics.iter().map(|(_, _, amplitude)| amplitude[k].abs()).sum();
@@ -145,18 +145,18 @@ impl System {
         }
     }
 
-    /// The ends of what a contact is doing: it goes on while neither margin is negative.
+    /// The ends of the state of a contact: it is valid while neither function is negative.
     pub fn margins(&self, contact: usize, state: &State, y: &[f64]) -> [f64; 2] {
         let (xi, rate) = self.compression(contact, y);
         let boundary = |which| match state {
             State::Open(memory) => (which == 0).then_some(Boundary::compression_rises_to(memory.touch_m)),
             State::Closed(branch) => self.contacts[contact].2.boundary(branch, which),
         };
-        // no law here has more than two
+        // No law here has more than two.
         [0, 1].map(|which| boundary(which).unwrap_or(Boundary::NEVER).margin(xi, rate))
     }
 
-    /// What a contact does after it has met an end.
+    /// The state of a contact after it has reached an end.
     pub fn next(&self, state: &State, contact: usize, which: usize, y: &[f64]) -> State {
         let (xi, rate) = self.compression(contact, y);
         let law = &self.contacts[contact].2;
@@ -169,7 +169,7 @@ impl System {
         }
     }
 
-    /// Every contact open, or closed where the surfaces meet at once.
+    /// Every contact is open, or closed if the surfaces meet immediately.
     pub fn first_states(&self, y: &[f64]) -> Vec<State> {
         let of = |c: usize| {
             let open = State::Open(Memory::default());
@@ -180,7 +180,7 @@ impl System {
     }
 }
 
-/// Where each body's modes begin.
+/// Index of the first mode of each body.
 fn places(problem: &Problem) -> Vec<usize> {
     let counts = problem.bodies.iter().map(|body| body.shape.len());
     counts.scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count))).collect()
@@ -192,10 +192,10 @@ pub fn start(problem: &Problem) -> Vec<f64> {
     amplitudes.chain(problem.bodies.iter().flat_map(|body| &body.rate)).copied().collect()
 }
 
-/// What is requested, from amplitudes and rates at the end.
+/// The requested quantities, from amplitudes and rates at the end.
 ///
 /// # Errors
-/// A body that is not there.
+/// A body that does not exist.
 pub fn answers(problem: &Problem, y: &[f64]) -> Result<Vec<f64>, String> {
     let places = places(problem);
     let of = |quantity: &crate::problem::Quantity| {
@@ -210,7 +210,7 @@ pub fn answers(problem: &Problem, y: &[f64]) -> Result<Vec<f64>, String> {
 /// The problem as an assembly.
 ///
 /// # Errors
-/// A contact with a body that is not there.
+/// A contact with a body that does not exist.
 pub fn assembly(problem: &Problem, laws: &[Law]) -> Result<Assembly<Law>, String> {
     let side = |name: &Option<String>, shape: &Option<Vec<f64>>| {
         let Some(name) = name else { return Ok(Point::Ground) };

@@ -1,4 +1,4 @@
-//! The problems' files, their references by further means, and the page.
+//! The files of the problems, further tests of their references, and the page.
 
 use contact_models::Law;
 use impactbench::codes::{diffsol, dop853, own_assembly, run_all};
@@ -21,9 +21,9 @@ fn laws(problem: &Problem) -> Vec<Law> {
     problem.contacts.iter().filter_map(|contact| contact.law.law().unwrap()).collect()
 }
 
-/// The files are those that the library makes, to what the references know.
+/// The files agree with the library, to the uncertainty of the references.
 #[test]
-fn files_are_what_the_library_makes() {
+fn files_agree_with_the_library() {
     let (files, mut made) = (problems(), library::problems().unwrap());
     assert!(files.len() >= 40);
     made.sort_by(|a, b| (a.family, &a.name).cmp(&(b.family, &b.name)));
@@ -35,7 +35,7 @@ fn files_are_what_the_library_makes() {
     }
 }
 
-/// Laws at the ground have closed relations of their own.
+/// Laws at the ground have closed relations.
 #[test]
 fn laws_have_their_closed_relations() {
     for problem in problems().iter().filter(|problem| problem.family == Family::Law) {
@@ -58,7 +58,7 @@ fn stops_have_a_closed_form() {
         let (mass_kg, omega, gap) = (body.shape[0].powi(-2), body.omega_rad_s[0], contact.gap_m);
         let touching = (omega * omega + stiffness_n_m / mass_kg).sqrt();
         let middle = gap * stiffness_n_m / mass_kg / (touching * touching);
-        // downwards from here on
+        // Downwards from here on.
         let (mut x, mut v, mut left_s, mut closed) = (0.0, -body.at_point(&body.rate), problem.end_s, gap <= 0.0);
         loop {
             let (frequency, rest) = if closed { (touching, middle) } else { (omega, 0.0) };
@@ -80,18 +80,18 @@ fn stops_have_a_closed_form() {
 
 /// The exact frequency of SDND122 (Code_Aster's own "analytic" value is another).
 #[test]
-fn sdnd122_swings_at_its_exact_frequency() {
+fn sdnd122_oscillates_at_its_exact_frequency() {
     let mut problem = problems().into_iter().find(|problem| problem.name == "sdnd122").unwrap();
-    // after whole periods the motion is as at the start
+    // After whole periods the motion is that at the start.
     problem.end_s = 3.0 / 0.64663104064;
     let speed = -problem.bodies[0].rate[0];
     let found = own_assembly(&problem, &laws(&problem), 1e-10).unwrap();
     assert!((found[0] / speed + 1.0).abs() < 1e-8, "{found:?} {speed}");
 }
 
-/// SDNL32 against the displacements that the VPCS guide lists, but for its misprint at 3 ms.
+/// SDNL32 compared with the displacements in the VPCS guide, except for its misprint at 3 ms.
 #[test]
-fn sdnl32_moves_as_the_guide_lists() {
+fn sdnl32_agrees_with_the_guide() {
     let mut problem = problems().into_iter().find(|problem| problem.name == "sdnl32").unwrap();
     for (time_s, listed_mm) in [(1e-3, -2.66), (2e-3, -4.33), (5e-3, -3.82), (8e-3, -3.09), (0.012, -0.742)] {
         problem.end_s = time_s;
@@ -100,9 +100,9 @@ fn sdnl32_moves_as_the_guide_lists() {
     }
 }
 
-/// SDNL105 against what its three integrators state.
+/// SDNL105 compared with the results of its three integrators.
 #[test]
-fn sdnl105_ends_as_is_stated() {
+fn sdnl105_ends_as_stated() {
     let problem = problems().into_iter().find(|problem| problem.name == "sdnl105").unwrap();
     let of = |body: &str, what: What| {
         let asked = |quantity: &&Quantity| quantity.body == body && quantity.what == what;
@@ -114,9 +114,9 @@ fn sdnl105_ends_as_is_stated() {
     }
 }
 
-/// General solvers at a tolerance which no reference was made with: DOP853, and diffsol on several bodies too.
+/// General solvers at a tolerance that was not used for any reference: DOP853, and diffsol on several bodies too.
 #[test]
-fn general_solvers_come_near() {
+fn general_solvers_agree() {
     let easy = [Family::Law, Family::Several, Family::Stop];
     let small = |problem: &Problem| problem.bodies.iter().all(|body| body.shape.len() <= 10);
     for problem in problems().iter().filter(|problem| easy.contains(&problem.family) && small(problem)) {
@@ -127,9 +127,9 @@ fn general_solvers_come_near() {
     }
 }
 
-/// Momentum and, where nothing is lost, energy of the rows of balls.
+/// Momentum and, without losses, energy of the rows of balls.
 #[test]
-fn rows_of_balls_keep_what_they_have() {
+fn rows_of_balls_conserve_momentum_and_energy() {
     let row = |problem: &Problem| problem.name.starts_with("cradle") || problem.name.starts_with("row");
     let problems = problems();
     let rows: Vec<&Problem> = problems.iter().filter(|problem| row(problem)).collect();
@@ -147,7 +147,7 @@ fn rows_of_balls_keep_what_they_have() {
     }
 }
 
-/// A quick run of every code, judged and drawn.
+/// A quick run of every code, with judgement and figures.
 #[test]
 fn every_code_runs_and_is_judged() {
     let chosen = ["law-hertz", "restitution-0.5-at-1", "plate", "infinite-beam-1", "cradle-3", "sdnd101"];
@@ -164,15 +164,15 @@ fn every_code_runs_and_is_judged() {
     assert!(codes.len() >= 6, "{codes:?}");
     let page = report::page(&problems, &outcomes, "here").unwrap();
     assert!(page.text.contains("| law-hertz |") && page.figures.len() == 6);
-    // a table can be read back
+    // A table can be read back.
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("some.csv"), outcome::table(&outcomes).unwrap()).unwrap();
     assert_eq!(outcome::read_all(folder.path()).unwrap(), outcomes);
 }
 
-/// The page is the one that follows from the results beside it.
+/// The page agrees with the results beside it.
 #[test]
-fn the_page_shows_the_results() {
+fn the_page_agrees_with_the_results() {
     let outcomes = outcome::read_all(&folder("results")).unwrap();
     let written = std::fs::read_to_string(folder("../../docs/impactbench.md")).unwrap();
     let page = report::page(&problems(), &outcomes, &report::machines(&folder("results")).unwrap()).unwrap();

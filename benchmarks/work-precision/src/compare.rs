@@ -1,8 +1,8 @@
-//! Times at equal error, and what follows from them.
+//! Times at equal error, and comparisons.
 
 use crate::measure::{Origin, Row};
 
-/// The best that a solver reached: points of falling error and rising time, none of which another one beats in both.
+/// The best results of a solver: points of decreasing error and increasing time, none of which another one beats in both.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Front(Vec<(f64, f64)>);
 
@@ -21,8 +21,8 @@ impl Front {
         Front(front)
     }
 
-    /// Time for this error, between two points on the straight line of their logarithms. At errors larger than any
-    /// reached it is the least time; at smaller ones there is none.
+    /// Time for this error, between two points on the straight line of their logarithms. For errors larger than any reached it
+    /// is the shortest time; for smaller ones there is none.
     pub fn time_at(&self, error: f64) -> Option<f64> {
         let next = self.0.iter().position(|point| point.0 <= error)?;
         let (e1, t1) = self.0[next];
@@ -32,7 +32,7 @@ impl Front {
     }
 }
 
-/// The chief norm of a problem: the first that any row names.
+/// The chief norm of a problem: the first in its rows.
 pub fn chief_norm<'a>(rows: &[&'a Row]) -> &'a str {
     rows.iter().map(|row| row.norm.as_str()).find(|norm| !norm.is_empty()).unwrap_or("")
 }
@@ -48,7 +48,7 @@ pub fn names<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     names
 }
 
-/// The fastest solver of those chosen at one error: its name and time.
+/// The fastest of the given solvers at one error: its name and time.
 pub fn fastest<'a>(
     rows: &[&'a Row],
     norm: &str,
@@ -64,7 +64,7 @@ pub fn fastest<'a>(
     times.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The standing of the workspace's solvers on one problem at one error.
+/// The result of the workspace's solvers on one problem at one error.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Standing<'a> {
     /// Time of the fastest peer over that of the fastest own solver, and the peer.
@@ -73,7 +73,7 @@ pub enum Standing<'a> {
     Alone,
     /// No own solver reaches the error; a peer does.
     Behind(&'a str),
-    /// Nobody reaches the error.
+    /// No solver reaches the error.
     Nobody,
 }
 
@@ -94,8 +94,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_read_off_the_front() {
-        // the second point is beaten by the third
+    fn times_are_interpolated_on_the_front() {
+        // The second point is beaten by the third.
         let front = Front::new([(1e-2, 1.0), (1e-3, 9.0), (1e-4, 4.0), (1e-8, 64.0)], 1e-16);
         assert_eq!(front.time_at(0.5), Some(1.0));
         assert!((front.time_at(1e-3).unwrap() - 2.0).abs() < 1e-12);

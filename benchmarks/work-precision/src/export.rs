@@ -6,11 +6,11 @@ use contact_models::Law;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The text of one impact: a name and a value on each line, then a line for each mode (`omega_rad_s`, damping ratio,
-/// shape). Every number reads back to the last bit.
+/// The text of one impact: a name and a value on each line, then a line for each mode (`omega_rad_s`, damping ratio, shape).
+/// Every number is read back to the last bit.
 ///
 /// # Errors
-/// If the law is not one that the readers know.
+/// If the readers do not support the law.
 pub fn text(impact: &Impact) -> Result<String, String> {
     let parameters = match impact.law {
         Law::Hertz(law) => [law.stiffness_n_m1_5, 0.0, 0.0, 0.0, 0.0],
@@ -20,7 +20,7 @@ pub fn text(impact: &Impact) -> Result<String, String> {
     };
     let mut text = String::new();
     let mut line = |arguments: std::fmt::Arguments<'_>| {
-        // writing to a string cannot fail
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{arguments}");
     };
     line(format_args!("name {}", impact.name));

@@ -8,8 +8,8 @@ const COLOURS: [Colour; 6] =
     [Colour::Vermilion, Colour::Green, Colour::Orange, Colour::Purple, Colour::Sky, Colour::Grey];
 const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Plus, Marker::Cross];
 
-/// One problem in its chief norm. Solvers of the workspace are blue and thick; a solver that is given exact flight has
-/// the colour and the marker of the same solver without, and a dashed line.
+/// One problem in its chief norm. Solvers of the workspace are blue and thick; a solver with exact flight has the colour and
+/// the marker of the same solver without it, and a dashed line.
 pub fn figure(problem: &str, rows: &[&Row], floor: f64) -> Figure {
     let norm = chief_norm(rows);
     let rows: Vec<&Row> = rows.iter().copied().filter(|row| row.norm == norm).collect();

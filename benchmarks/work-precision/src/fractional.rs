@@ -4,7 +4,7 @@ use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use fracdiff::test_problems::{self, TestProblem};
 use fracdiff::{Collocation, Convolution, Method, Solution, SumOfExponentials};
 
-/// Until when the problems are followed.
+/// Final time of the problems.
 const UNTIL: f64 = 20.0;
 
 fn largest_error(problem: &TestProblem, solution: &Solution) -> Result<Found, String> {
@@ -38,7 +38,7 @@ pub fn rows(effort: &Effort) -> Vec<Row> {
     for problem in test_problems::all() {
         let name = format!("fractional-{}", problem.name);
         let end = problem.end_before(UNTIL);
-        // both of its runs, the second of which is there for the estimate alone
+        // Cost of both of its runs, the second of which is only for the estimate.
         let chosen = Solver { name: "to a tolerance, with its error", origin: Origin::Own, cost_unit: "evaluations" };
         rows.extend(sweep(&name, chosen, &effort.tolerances(1, 12), effort, |tolerance| {
             let found = problem.volterra.solve_to(tolerance, end).map_err(|error| error.to_string())?;

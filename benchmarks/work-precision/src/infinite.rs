@@ -1,8 +1,8 @@
 //! A ball on an infinite beam: the solver made for it, the general Volterra methods, and the semi-analytical solution.
 //!
-//! First contacts are compared with 25-digit solutions by one global panel (`crates/vibroimpact-sim/tests/data`). The
-//! whole contact history at `S = 15`, four separations and then sustained contact, has no such reference: the two
-//! spectral methods share no code, and each is the reference of the other.
+//! First contacts are compared with 25-digit solutions by one global panel (`crates/vibroimpact-sim/tests/data`). The whole
+//! contact history at `S = 15`, four separations and then sustained contact, has no such reference: the two spectral methods
+//! share no code, and each is the reference of the other.
 
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use fracdiff::{Collocation, Convolution, Direction, Event, GalerkinStates, Method, SumOfExponentials, Term, Volterra};
@@ -11,7 +11,7 @@ use vibroimpact_sim::infinite::{FirstContact, Settings, Solution, Structure, sol
 
 const FIRST_CONTACTS: &str = include_str!("../../../crates/vibroimpact-sim/tests/data/infinite_first_contact.csv");
 
-/// Until when the whole contact history at `S = 15` is followed by methods that have to be told.
+/// Final time of the whole contact history at `S = 15`, for methods that need one.
 const STORY_END: f64 = 200.0;
 
 /// Duration and rebound ratio of the first contact, from the finer of the table's two resolutions.
@@ -24,8 +24,8 @@ pub fn first_contact(s: f64) -> Result<(f64, f64), String> {
     finest.map(|row| (row[2], row[3])).ok_or_else(|| format!("no reference for S = {s}"))
 }
 
-/// Compression and speed of the ball, `x = t - int [(t-s) + sqrt(t-s)] f ds`, `u = 1 - int f ds`, with the changes of
-/// contact as events.
+/// Compression and speed of the ball, `x = t - int [(t-s) + sqrt(t-s)] f ds`, `u = 1 - int f ds`, with the changes of contact
+/// as events.
 fn volterra<'a>(s: f64, terminal: bool) -> Volterra<'a> {
     let term = |unknown, order| Term { unknown, density: 0, order, coefficient: -1.0 };
     let event = Event::new(|_, y: &[f64]| y[0]).direction(if terminal { Direction::Falling } else { Direction::Any });
@@ -49,7 +49,7 @@ fn volterra<'a>(s: f64, terminal: bool) -> Volterra<'a> {
 }
 
 fn own_settings(tolerance: f64) -> Settings {
-    // the tolerance is that of a panel's last coefficients; what it leaves is far less than this many nodes can resolve
+    // The tolerance applies to a panel's last coefficients; the remaining error is far below the resolution of this many nodes.
     let nodes = match tolerance {
         5e-4.. => 8,
         1e-7.. => 12,
@@ -100,7 +100,7 @@ fn general_methods(effort: &Effort) -> Vec<General> {
     ]
 }
 
-/// How far the two spectral methods differ over the whole contact history at `S = 15`: the floor of its errors.
+/// Difference between the two spectral methods over the whole contact history at `S = 15`: the floor of its errors.
 ///
 /// # Errors
 /// If either cannot solve it.
@@ -111,7 +111,7 @@ pub fn story_floor() -> Result<f64, String> {
 
 type Story = (Vec<f64>, Vec<f64>);
 
-/// The story by both methods at their tightest, computed once.
+/// The contact history by both methods at their finest settings, computed once.
 fn story_references() -> &'static Result<Story, String> {
     static STORY: OnceLock<Result<Story, String>> = OnceLock::new();
     STORY.get_or_init(|| story_by_both(1e-12))
@@ -141,7 +141,7 @@ pub fn rows(effort: &Effort) -> Result<Vec<Row>, String> {
         };
         let own = Solver { name: "vibroimpact infinite", origin: Origin::Own, cost_unit: "panels" };
         rows.extend(sweep(name, own, &effort.tolerances(3, 14), effort, |tolerance| {
-            // no further than the others, which stop at the first separation
+            // No further than the others, which stop at the first separation.
             let settings = Settings { max_sub_impacts: 1, ..own_settings(tolerance) };
             let solution = solve(Structure::Beam, s, &settings).map_err(|error| error.to_string())?;
             let first = solution.sub_impacts.first().and_then(|contact| contact.duration).ok_or("no separation")?;
@@ -164,7 +164,7 @@ pub fn rows(effort: &Effort) -> Result<Vec<Row>, String> {
             }));
         }
     }
-    // its reference alone takes seconds
+    // Its reference alone takes seconds.
     if !effort.quick {
         rows.extend(story(effort)?);
     }
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_spectral_methods_tell_the_same_story() {
+    fn two_spectral_methods_agree() {
         let (own, general) = story_by_both(1e-8).unwrap();
         let difference = whole_story(&own, &general);
         assert!(difference[0].1 < 1e-6 && difference[1].1 == 0.0, "{difference:?}");

@@ -1,6 +1,6 @@
 //! Error against time and cost of every solver of the workspace and of its peers.
 //!
-//! `cargo xtask work-precision` runs this package; see `docs/work-precision.md` for what came out.
+//! `cargo xtask work-precision` runs this package; see `docs/work-precision.md` for the results.
 //!
 //! | module | problems |
 //! |---|---|
@@ -10,7 +10,7 @@
 //! | [`net`] | EMOC (chapters 5 and 6) |
 //! | [`fractional`] | fractional test equations |
 //!
-//! [`measure`] times one run, [`compare`] reads times at equal error off the sweeps, [`report`] and [`figures`] present.
+//! [`measure`] times one run, [`compare`] interpolates times at equal error in the sweeps, [`report`] and [`figures`] present.
 
 pub mod compare;
 pub mod export;
@@ -28,7 +28,7 @@ pub mod report;
 
 use measure::{Effort, Row};
 
-/// Every row of the library whose problem's name contains `only`; `progress` is told what comes next.
+/// Every row of the library whose problem's name contains `only`; `progress` receives the name of each part before it starts.
 ///
 /// # Errors
 /// If a reference is missing or a problem cannot be built.

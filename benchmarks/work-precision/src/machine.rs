@@ -1,4 +1,4 @@
-//! On what a report was made.
+//! The machine and the versions of a report.
 
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -1,9 +1,9 @@
-//! What is measured: one run of one solver at one setting, repeated, with its errors and its cost.
+//! Measurement: one run of one solver at one setting, repeated, with its errors and its cost.
 
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// Whose solver it is.
+/// The origin of a solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Origin {
@@ -11,7 +11,7 @@ pub enum Origin {
     Own,
     /// A general solver that does all the work.
     Peer,
-    /// A general solver that is given the workspace's exact free flight between contacts.
+    /// A general solver with the workspace's exact free flight between contacts.
     Assisted,
 }
 
@@ -20,43 +20,43 @@ pub enum Origin {
 pub struct Row {
     /// Name of the problem.
     pub problem: String,
-    /// Name of the solver, with the form in which it is used.
+    /// Name of the solver, including the form in which it is used.
     pub solver: String,
-    /// Whose it is.
+    /// Its origin.
     pub origin: Origin,
-    /// The tolerance or resolution asked for.
+    /// The requested tolerance or resolution.
     pub setting: f64,
-    /// What `error` measures.
+    /// The norm of `error`.
     pub norm: String,
     /// Distance from the reference; empty if the run failed.
     pub error: Option<f64>,
-    /// Least wall time of the repeated runs (s).
+    /// Shortest wall time of the repeated runs (s).
     pub time_s: Option<f64>,
     /// Deterministic cost.
     pub cost: Option<u64>,
-    /// What `cost` counts.
+    /// The unit of `cost`.
     pub cost_unit: String,
-    /// `ok`, or why there is no result.
+    /// `ok`, or the reason why there is no result.
     pub status: String,
 }
 
-/// What one run gave: its deterministic cost, and its error in every norm.
+/// The result of one run: its deterministic cost, and its error in every norm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// Deterministic cost.
     pub cost: u64,
-    /// Norms with the errors in them, the chief one first.
+    /// Norms with their errors, the chief one first.
     pub errors: Vec<(&'static str, f64)>,
 }
 
-/// How long one solver may take.
+/// Limits on the time of a solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// A single run is stopped after this time.
     pub cap: Duration,
-    /// Runs are repeated until they have taken this long together ...
+    /// Runs are repeated until they have taken this long in total,
     pub budget: Duration,
-    /// ... but no more often than this.
+    /// but no more often than this.
     pub most_runs: usize,
     /// Fewer settings, the same code.
     pub quick: bool,
@@ -77,19 +77,19 @@ impl Effort {
     }
 }
 
-/// A solver with its name, whose it is and what its cost counts.
+/// A solver with its name, its origin and the unit of its cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solver<'a> {
     /// Name.
     pub name: &'a str,
-    /// Whose it is.
+    /// Its origin.
     pub origin: Origin,
-    /// What the cost counts.
+    /// The unit of the cost.
     pub cost_unit: &'static str,
 }
 
-/// Least time of one call of `work` over repeated calls, the first of which is a warm-up and counts only if it alone
-/// has used up the budget.
+/// Shortest time of one call of `work` over repeated calls. The first is a warm-up and counts only if it alone has used up the
+/// budget.
 pub fn least_time<T>(effort: &Effort, mut work: impl FnMut() -> T) -> (T, f64) {
     let begin = Instant::now();
     let mut result = work();
@@ -110,8 +110,8 @@ pub fn least_time<T>(effort: &Effort, mut work: impl FnMut() -> T) -> (T, f64) {
     (result, least)
 }
 
-/// Runs a solver over its settings, from the loosest to the tightest. After a run that took too long the tighter
-/// settings are not tried, and said to be so.
+/// Runs a solver over its settings, from the loosest to the finest. After a run that took too long the finer settings are not
+/// tried, and reported as such.
 pub fn sweep(
     problem: &str,
     solver: Solver<'_>,

@@ -1,4 +1,4 @@
-//! Frequencies of a stepped cantilever: exact modes against Hermite finite elements, both judged by 20-digit frequencies
+//! Frequencies of a stepped cantilever: exact modes and Hermite finite elements, both compared with 20-digit frequencies
 //! (`crates/beam-modes/tests/data`).
 
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};

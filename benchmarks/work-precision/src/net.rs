@@ -1,8 +1,8 @@
-//! Net restitution by EMOC: the closed form against quadratic programming.
+//! Net restitution by EMOC: the closed form and quadratic programming.
 //!
-//! The impacts have masses, shapes and coefficients in small whole numbers and halves, so that the conditions of
-//! optimality can be solved exactly: on the basic branch `e = ebar/(1+Z)`, on the outward branch both inequalities hold
-//! with equality. The references are these rational numbers.
+//! The impacts have masses, shapes and coefficients in small integers and halves, so that the conditions of optimality can be
+//! solved exactly: on the basic branch `e = ebar/(1+Z)`, on the outward branch both inequalities are equalities. The references
+//! are these rational numbers.
 
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use clarabel::algebra::CscMatrix;
@@ -28,7 +28,7 @@ fn cases() -> Vec<Case> {
             phi: shapes(8),
             mass_kg: 0.5,
             coefficients: Coefficients { ebar: 0.875, beta0: 0.125, beta1: 0.0 },
-            // sum phi^2 = 7.5, Z = 3.75, 0.875 / 4.75
+            // sum phi^2 = 7.5, Z = 3.75, 0.875 / 4.75.
             reference: (3.5, 19.0),
         },
         Case {
@@ -36,7 +36,7 @@ fn cases() -> Vec<Case> {
             phi: shapes(40),
             mass_kg: 0.5,
             coefficients: Coefficients { ebar: 0.875, beta0: 0.5, beta1: 0.25 },
-            // 0.875 * 0.75 / 1.5
+            // 0.875 * 0.75 / 1.5.
             reference: (7.0, 16.0),
         },
     ]
@@ -55,7 +55,7 @@ impl Program {
         let n = case.phi.len();
         let Coefficients { ebar, beta0, beta1 } = case.coefficients;
         let m = case.mass_kg;
-        // modal speeds in units of sqrt(m) u
+        // Modal speeds in units of sqrt(m) u.
         let psi: Vec<f64> = case.phi.iter().map(|phi| phi.abs() * m.sqrt()).collect();
         let mut diagonal = vec![0.5; 1 + 2 * n];
         diagonal[0] = 1.0;

@@ -1,8 +1,8 @@
-//! The prose of the page.
+//! The text of the page.
 
 use crate::{impact, infinite};
 
-/// What the page shows.
+/// Subject of the page.
 pub const INTRODUCTION: &str = "\
 This page shows how much time each solver of the workspace and its peers need for a given error, on a fixed \
 library of problems: error against time and against a deterministic cost, over a sweep of tolerances. A time is \
@@ -17,19 +17,19 @@ contacts the modes are propagated in closed form and a certified search finds th
 integrates contacts alone. Our solver is measured with all tables built for every impact, and with the tables \
 cached (*tables kept*), as for many impacts on one beam.";
 
-/// What the first table shows.
+/// Explanation of the first table.
 pub const TARGETS: &str = "\
 The times are for an error of 1e-6 in the restitution, interpolated between two measured points on a straight line \
 of the logarithms.";
 
-/// What the second table shows.
+/// Explanation of the second table.
 pub const EVERY_ERROR: &str = "\
 The next table is for other errors. It states the time of the fastest peer divided by that of the fastest solver of \
 the workspace. *alone* means that no peer reaches the error, *none* that it is below what any solver or the \
 reference reaches in double precision. For the infinite beam and the fractional equations the peers are the \
 general methods of `fracdiff`, which are solvers of this workspace too.";
 
-/// Why the workspace is not ahead where it is not.
+/// Reasons where the workspace is not ahead.
 pub const WHY: &str = "\
 A general solver on the whole system spends most of its steps in free flight, on the fastest mode, where nothing \
 happens. This explains the first ratio. Given exact flight, it integrates contacts alone, with some tens of \
@@ -46,7 +46,7 @@ Among the Volterra methods the second-order rules are cheap at two or three digi
 measured here. Only a second run shows how many steps that takes (*to a tolerance, with its error* makes both of \
 its runs). With eight nodes and a long first panel, collocation reaches six more digits in the same time.";
 
-/// What a problem is, what is measured, and what the reference is.
+/// Description of a problem, its norms, and its reference.
 pub fn about(problem: &str) -> String {
     if let Ok(reference) = impact::reference(problem) {
         let what = impact::library().ok().and_then(|all| all.into_iter().find(|impact| impact.name == problem));

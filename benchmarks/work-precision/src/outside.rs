@@ -3,7 +3,7 @@
 use crate::measure::Row;
 use std::path::Path;
 
-/// The rows, and on what machine and with what versions they were made; `None` without the file.
+/// The rows, with the machine and the versions with which they were made; `None` without the file.
 ///
 /// # Errors
 /// If a line is not a row.

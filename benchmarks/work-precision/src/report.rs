@@ -1,4 +1,4 @@
-//! The page: what was measured, on what, against which references, and how it compares with the targets.
+//! The page: measurements, machine, references, and a comparison with the targets.
 
 use crate::compare::{Standing, chief_norm, fastest, names, standing};
 use crate::figures::figure;
@@ -12,7 +12,7 @@ const ERROR: f64 = 1e-6;
 /// Smallest error that is expected of a solver in double precision.
 const ROUNDING: f64 = 1e-15;
 
-/// The smallest error that means something on a problem: the reference's own.
+/// The smallest meaningful error of a problem: that of the reference.
 fn floor(problem: &str) -> f64 {
     let own = match problem {
         "beam-S15-story" => infinite::story_floor().ok(),
@@ -21,7 +21,7 @@ fn floor(problem: &str) -> f64 {
     own.unwrap_or(0.0).max(ROUNDING)
 }
 
-/// A time in a unit that suits it.
+/// A time in a suitable unit.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1e-6 => format!("{:.0} ns", s * 1e9),
@@ -45,7 +45,7 @@ pub struct Page {
     pub figures: Vec<(String, String)>,
 }
 
-/// The page. `about` is what [`machine`](crate::machine::describe) says, `outside` the same for the solvers outside Rust.
+/// The page. `about` is the result of [`machine`](crate::machine::describe), `outside` the same for the solvers outside Rust.
 ///
 /// # Errors
 /// If a figure cannot be drawn.

@@ -1,4 +1,4 @@
-//! The library at a small scale: references hold, every solver gives sane rows, the page is whole.
+//! The library at a small scale: references are reproduced, every solver gives valid rows, the page is complete.
 
 use std::time::{Duration, Instant};
 use vibroimpact_sim::modal::{Settings, Solver};
@@ -19,7 +19,7 @@ fn the_workspaces_solver_agrees_with_quadruple_precision() {
         let solver = Solver::new(&impact.structure).unwrap();
         let solution = solver.solve(&impact.striker, &impact.law, None, &settings).unwrap();
         let error = (solution.restitution.unwrap() - reference.outcome.restitution).abs();
-        // without damping rounding alone is amplified to 1e-6
+        // Without damping, rounding alone is amplified to 1e-6.
         let floor = if impact.name == "pinned-undamped" { 1e-5 } else { 1e-9 };
         assert!(error < floor, "{}: {error:e}", impact.name);
         assert_eq!(solution.sub_impacts.len(), reference.outcome.impulses_n_s.len(), "{}", impact.name);
@@ -27,7 +27,7 @@ fn the_workspaces_solver_agrees_with_quadruple_precision() {
 }
 
 #[test]
-fn every_law_is_exported_in_numbers_that_read_back() {
+fn every_law_is_exported_in_numbers_that_are_read_back() {
     let folder = tempfile::tempdir().unwrap();
     let library = impact::library().unwrap();
     work_precision::export::write(&library, folder.path()).unwrap();
@@ -42,30 +42,30 @@ fn every_law_is_exported_in_numbers_that_read_back() {
 }
 
 #[test]
-fn a_quick_run_on_an_impact_gives_sane_rows_and_a_page() {
+fn a_quick_run_on_an_impact_gives_valid_rows_and_a_page() {
     let effort = Effort { cap: Duration::from_millis(200), ..Effort::QUICK };
     let start = Instant::now();
     let rows = run(Some("pinned-hertz"), &effort, |_| ()).unwrap();
     println!("{:?}", start.elapsed());
     assert!(rows.iter().all(|row| row.problem == "pinned-hertz"));
-    // ours meets what is asked of it, here with an amplification of errors of about 30
+    // Our solver meets the requested tolerance, here with an amplification of errors of about 30.
     for (tolerance, error) in errors(&rows, "vibroimpact", "restitution") {
         assert!(error < 30.0 * tolerance.max(1e-12), "{tolerance:e}: {error:e}");
     }
     let cold = errors(&rows, "vibroimpact", "restitution");
     assert_eq!(cold, errors(&rows, "vibroimpact, tables kept", "restitution"));
-    // the general solver converges to the same number
+    // The general solver converges to the same number
     let peer = errors(&rows, "DOP853 + exact flight", "restitution");
     let (first, last) = (peer.first().unwrap().1, peer.last().unwrap().1);
     assert!(last < 1e-6 && last < 1e-2 * first, "{peer:?}");
-    // and finds the same contacts
+    // and finds the same contacts.
     let times = errors(&rows, "DOP853 + exact flight", "contact times");
     assert!(times.last().unwrap().1 < 1e-6, "{times:?}");
     for row in &rows {
         let complete = row.error.is_some() && row.time_s.is_some() && row.cost.is_some() && !row.norm.is_empty();
         assert_eq!(complete, row.status == "ok", "{row:?}");
     }
-    // whoever is too slow is shown
+    // Slow solvers are shown.
     assert!(rows.iter().any(|row| row.origin == Origin::Peer && row.solver.starts_with("diffsol")));
 
     let text = table(&rows).unwrap();
@@ -80,7 +80,7 @@ fn a_quick_run_on_an_impact_gives_sane_rows_and_a_page() {
 }
 
 #[test]
-fn a_quick_run_on_the_rest_gives_sane_rows() {
+fn a_quick_run_on_the_rest_gives_valid_rows() {
     for only in ["beam-S15", "stepped-modes", "emoc", "fractional-abel"] {
         let rows = run(Some(only), &Effort::QUICK, |_| ()).unwrap();
         let own = rows.iter().filter(|row| row.origin == Origin::Own && row.solver != "semi-analytical");

@@ -1,6 +1,6 @@
-//! The BDF of variable order of `diffsol`, with an exact Jacobian. It is given the equations phase by phase, and its dense
-//! output shows the events. Its own root finding passes over an event function that is zero at the start of a phase, as
-//! those of balls that touch are.
+//! The BDF of variable order of `diffsol`, with an exact Jacobian. It integrates the equations phase by phase, and events are
+//! located on its dense output. Its own root finding misses an event function that is zero at the start of a phase, as those of
+//! balls that touch are.
 
 use super::phases::{End, Phase, follow};
 use super::sweep::{Answer, TOO_SLOW, laws, sweep};
@@ -19,10 +19,10 @@ pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     })
 }
 
-/// The answer at a tolerance.
+/// The result at a tolerance.
 ///
 /// # Errors
-/// Why it could not go on.
+/// The reason why it could not continue.
 pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant) -> Answer {
     follow(problem, laws, tolerance, |phase, tolerances, y| {
         let first_s = phase.first_step_s(tolerance).unwrap_or(1e-5 * phase.left_s);

@@ -1,5 +1,5 @@
-//! The explicit eighth-order pair of Dormand and Prince with its dense output: a general solver that is given the
-//! equations phase by phase and finds the events itself.
+//! The explicit eighth-order pair of Dormand and Prince with its dense output: a general solver that integrates the equations
+//! phase by phase and locates the events itself.
 
 use super::phases::{End, Phase, follow};
 use super::sweep::{Answer, TOO_SLOW, laws, sweep};
@@ -22,10 +22,10 @@ pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     })
 }
 
-/// The answer at a tolerance.
+/// The result at a tolerance.
 ///
 /// # Errors
-/// Why it could not go on.
+/// The reason why it could not continue.
 pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant) -> Answer {
     follow(problem, laws, tolerance, |phase, tolerances, y| {
         let mut watch = Watch { phase, end: (0.0, None), y: y.to_vec(), late: false, deadline };
@@ -37,7 +37,7 @@ pub fn solve(problem: &Problem, laws: &[Law], tolerance: f64, deadline: Instant)
             ..DOP853::default()
         };
         let (rtol, atol) = (Tolerance::Scalar(0.0), Tolerance::Vector(tolerances.to_vec()));
-        // time is counted from the start of the phase, so that short steps are not lost in it
+        // Time is counted from the start of the phase, so that short steps are not lost in it.
         let found = solver.solve(phase, 0.0, y, phase.left_s, rtol, atol, Some(&mut watch));
         let status = found.map_err(|error| error.to_string())?.status;
         if !status.is_success() {
@@ -57,7 +57,7 @@ impl FirstOrderSystem for Phase<'_> {
     }
 }
 
-/// Looks for the first end of the phase in each step.
+/// Searches each step for the first end of the phase.
 struct Watch<'a> {
     phase: &'a Phase<'a>,
     end: End,

@@ -34,7 +34,7 @@ pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
 /// The assembly at a tolerance.
 ///
 /// # Errors
-/// Why it could not be solved.
+/// The reason why it could not be solved.
 pub fn assembly(problem: &Problem, laws: &[Law], tolerance: f64) -> Answer {
     let assembly = assembly_of(problem, laws)?;
     let settings = Settings { tolerance, stop_at_rest: false, ..Settings::until(problem.end_s) };
@@ -46,7 +46,7 @@ pub fn assembly(problem: &Problem, laws: &[Law], tolerance: f64) -> Answer {
     answers(problem, &y)
 }
 
-/// A law for a wanted restitution: Hunt and Crossley's, so stiff that the contact is short; none below 0.001.
+/// A law with the requested restitution: that of Hunt and Crossley, so stiff that the contact is short; `None` below 0.001.
 fn made_to_measure(problem: &Problem) -> Option<Vec<Law>> {
     let [ball] = problem.bodies.as_slice() else { return None };
     let (restitution, mass_kg) = (problem.wanted_restitution()?, ball.free_mass_kg()?);

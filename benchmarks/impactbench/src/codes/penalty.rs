@@ -1,5 +1,5 @@
-//! Semi-implicit Euler with a fixed step, as engines step, with the law of the problem as a penalty. It is not a product: it
-//! shows what a page of code can do that knows the law and does not locate its events.
+//! The semi-implicit Euler rule with a fixed step, as in physics engines, with the law of the problem as a penalty. It is not a
+//! product: it shows what a page of code can do that uses the law but does not locate its events.
 
 use super::sweep::{Answer, TOO_SLOW, laws, sweep};
 use crate::outcome::Outcome;
@@ -8,10 +8,10 @@ use crate::system::{System, answers, start};
 use std::time::Instant;
 use work_precision::measure::Effort;
 
-/// Ends of branches that a step may pass.
+/// Largest number of ends of branches within a step.
 const PASSED: usize = 4;
 
-/// All runs, over steps of a thousandth to a few millionths of the time.
+/// All runs, with steps from a thousandth to a few millionths of the time.
 pub(super) fn runs(problem: &Problem, effort: &Effort) -> Vec<Outcome> {
     let Some(laws) = laws(problem).filter(|laws| !laws.is_empty()) else { return Vec::new() };
     let Ok(system) = System::new(problem, &laws) else { return Vec::new() };

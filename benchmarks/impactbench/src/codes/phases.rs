@@ -1,32 +1,32 @@
-//! A problem as general solvers take it: phase by phase. In a phase no contact changes, so that the equations are smooth; it
-//! ends where an event function falls below zero.
+//! A problem in the form for general solvers: phase by phase. In a phase no contact changes, so that the equations are smooth;
+//! it ends where an event function becomes negative.
 
 use super::sweep::Answer;
 use crate::problem::Problem;
 use crate::system::{State, System, answers, start};
 use contact_models::Law;
 
-/// Most changes of phase.
+/// Largest number of changes of phase.
 const MOST_PHASES: usize = 20_000;
 
-/// The end of a phase: when it is, counted from the start of the phase (s), and which contact meets which of its ends.
+/// The end of a phase: its time, counted from the start of the phase (s), and the contact that reaches one of its ends.
 pub(super) type End = (f64, Option<(usize, usize)>);
 
 /// The equations while no contact changes.
 pub(super) struct Phase<'a> {
     pub system: &'a System,
     pub states: &'a [State],
-    /// When the phase begins (s).
+    /// Start of the phase (s).
     pub start_s: f64,
-    /// Time that is left to the problem (s).
+    /// Remaining time of the problem (s).
     pub left_s: f64,
-    /// Subtracted from the margins: a phase that begins beyond its own end by a rounding does not end there.
+    /// Subtracted from the event functions, so that a phase that begins beyond its own end by rounding does not end there.
     offsets: Vec<[f64; 2]>,
 }
 
 impl Phase<'_> {
-    /// A first step that is short enough; none where the equations tell it. The force begins as a power 3/2 of time,
-    /// which error estimates do not see.
+    /// A first step that is short enough; `None` if the equations determine it. The force begins as a power 3/2 of time, which
+    /// error estimates do not detect.
     pub fn first_step_s(&self, tolerance: f64) -> Option<f64> {
         let closed = self.states.iter().any(|state| matches!(state, State::Closed(_)));
         closed.then(|| (1e-3 * (self.start_s + self.left_s) * tolerance.powf(0.4)).min(self.left_s))
@@ -39,7 +39,7 @@ impl Phase<'_> {
         self.system.accelerations(self.states, self.start_s + time_s, y, rates);
     }
 
-    /// The first end between two times, the first of which is within the phase, by bisection of a solver's dense output.
+    /// The first end between two times, the first of which is within the phase, by bisection on a solver's dense output.
     pub fn first_end<E>(
         &self,
         (before_s, after_s): (f64, f64),
@@ -72,7 +72,7 @@ impl Phase<'_> {
     }
 }
 
-/// The answer by a solver that advances the state to the end of a phase, or to that of the problem, with these absolute
+/// The result of a solver that advances the state to the end of a phase, or to that of the problem, with these absolute
 /// tolerances.
 pub(super) fn follow(
     problem: &Problem,
@@ -101,8 +101,8 @@ pub(super) fn follow(
     Err(format!("more than {MOST_PHASES} events"))
 }
 
-/// Absolute tolerances that let every component add alike: speeds to the fastest, displacements to what it covers in the
-/// time that matters to them.
+/// Absolute tolerances for which every component contributes equally: for velocities relative to the fastest, for displacements
+/// relative to its distance travelled in the relevant time.
 fn tolerances(problem: &Problem, system: &System, y: &[f64], tolerance: f64) -> Vec<f64> {
     let rates = &y[system.modes()..];
     let driven = system.driven(problem.end_s);

@@ -1,4 +1,4 @@
-//! What every code needs: the laws of a problem, and runs over its settings.
+//! Common parts of all codes: the laws of a problem, and runs over the settings.
 
 use crate::outcome::Outcome;
 use crate::problem::Problem;
@@ -6,15 +6,15 @@ use contact_models::Law;
 use std::time::Instant;
 use work_precision::measure::{Effort, least_time};
 
-/// An answer, or why there is none.
+/// A result, or the reason why there is none.
 pub type Answer = Result<Vec<f64>, String>;
 
-/// The laws of the contacts; none if a restitution is requested in their place.
+/// The laws of the contacts; `None` if a restitution is requested in their place.
 pub(super) fn laws(problem: &Problem) -> Option<Vec<Law>> {
     problem.contacts.iter().map(|contact| contact.law.law().ok().flatten()).collect()
 }
 
-/// Runs a code over its settings. After a run that took too long no tighter setting is tried.
+/// Runs a code over its settings. After a run that took too long no finer setting is tried.
 pub(super) fn sweep(
     problem: &Problem,
     code: &str,
@@ -49,5 +49,5 @@ pub(super) fn sweep(
     outcomes
 }
 
-/// Why a run was stopped.
+/// The reason why a run was stopped.
 pub(super) const TOO_SLOW: &str = "too slow";

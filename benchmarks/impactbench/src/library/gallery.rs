@@ -11,7 +11,7 @@ use vibroimpact::model::Modes;
 use vibroimpact::{Impact, Scene};
 use vibroimpact_sim::assembly::{Force, Point};
 
-/// All of them; their references are still to be computed.
+/// All of them, without their references.
 pub(super) fn problems() -> Result<Vec<Problem>, String> {
     let mut problems = Vec::new();
     for (file, name, count, end_s) in [
@@ -66,15 +66,15 @@ fn ball(file: &str, name: &str, count: Option<usize>, end_s: f64) -> Result<Prob
     Ok(on_structure(name, statement, body, ball, by_name(&found.law)?, end_s))
 }
 
-/// A structure that moves against an immovable stop, which it touches at the start. A scene has the stop above, a problem
-/// has it below.
+/// A structure that moves against an immovable stop, which it touches at the start. In a scene the stop is above, in a problem
+/// below.
 fn against_ground(name: &str, body: &str, found: &Impact) -> Result<Problem, String> {
     let start = found.start.as_ref().ok_or("a structure at rest meets no stop")?;
     let mut body = Body::at_rest(body, &found.structure.modes);
     body.amplitude = start.amplitude.iter().map(|amplitude| 0.0 - amplitude).collect();
     body.rate = start.rate.iter().map(|rate| 0.0 - rate).collect();
     let mut problem = on_structure(name, String::new(), body, (1.0, 1.0), by_name(&found.law)?, 0.0);
-    // the ground takes the place of the ball
+    // The ground takes the place of the ball.
     problem.bodies.remove(0);
     problem.contacts = vec![Contact::new(&problem.bodies[0].name, None, 0.0, by_name(&found.law)?)];
     problem.needs = needs(&["a moving body in its modes", "immovable ground", "the law of the contact"]);
@@ -116,7 +116,7 @@ fn turning_beam() -> Result<Problem, String> {
     Ok(problem)
 }
 
-/// What a scene of several bodies shows, and which figures of its source are wrong.
+/// The subject of a scene of several bodies, and the values of its source that are wrong.
 fn statement(file: &str) -> &'static str {
     match file {
         "sdnd102" => "Code_Aster's SDND102: an oscillator on a shaken base strikes a wall.",
@@ -190,7 +190,7 @@ fn bodies(file: &str, family: Family, end_s: f64) -> Result<Problem, String> {
             |of: &&mut Load| of.body == names[load.body] && (of.omega_rad_s, of.phase_rad) == (omega_rad_s, phase_rad);
         let whole = load.shape.iter().map(|shape| shape * force_n);
         match loads.iter_mut().find(alike) {
-            // several forces of one frequency on one body are one
+            // Several forces of one frequency on one body are one force.
             Some(Load { shape: Some(sum), .. }) => sum.iter_mut().zip(whole).for_each(|(sum, more)| *sum += more),
             _ => loads.push(Load {
                 body: names[load.body].clone(),
@@ -235,7 +235,7 @@ fn scale(problem: &mut Problem) -> Result<(), String> {
         }
     }
     for quantity in &mut problem.quantities {
-        // two digits are enough of a scale
+        // Two digits suffice for a scale.
         quantity.scale = format!("{:.1e}", largest[at(quantity.what)]).parse().map_err(|_| "a scale is a number")?;
     }
     Ok(())

@@ -1,9 +1,9 @@
-//! The problems as they are made, with their references.
+//! The definitions of the problems, with their references.
 //!
-//! A reference is exact where there is a closed form. Otherwise two methods that share no code must agree. Where every law
-//! is a power of the compression, one of them is the program `reference/quad.c` in quadruple precision, which takes the
-//! numbers of the file to be exact and whose results are in `reference/quad.csv`. The other is this workspace's assembly,
-//! which propagates modes exactly and collocates forces. For other laws it is compared with DOP853.
+//! A reference is exact if there is a closed form. Otherwise two methods that share no code must agree. If every law is a power
+//! of the compression, one of them is the program `reference/quad.c` in quadruple precision, which takes the numbers of the
+//! file as exact and whose results are in `reference/quad.csv`. The other is this workspace's assembly, which propagates modes
+//! exactly and collocates forces. For other laws it is compared with DOP853.
 
 mod gallery;
 mod pieces;
@@ -16,20 +16,20 @@ use serde::Deserialize;
 use std::time::{Duration, Instant};
 use work_precision::{impact, infinite};
 
-/// Hertz's stiffness of it on steel.
+/// Hertz's stiffness of the ball on steel.
 const K_H: f64 = 1.7945e10;
 const HERTZ: LawOfContact = LawOfContact::Hertz { stiffness_n_m1_5: K_H };
 /// Longest run of a method that computes references.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// Largest difference allowed between the two methods.
+/// Largest allowed difference between the two methods.
 const AGREED: f64 = 1e-8;
-/// Least uncertainty of a reference, relative to its scale: rounding to double precision.
+/// Smallest uncertainty of a reference, relative to its scale: rounding in double precision.
 const ROUNDING: f64 = 4e-16;
 
 /// Every problem.
 ///
 /// # Errors
-/// A problem whose reference cannot be made.
+/// A problem whose reference cannot be computed.
 pub fn problems() -> Result<Vec<Problem>, String> {
     let quad = quad()?;
     let mut problems = restitutions();
@@ -82,7 +82,7 @@ struct Quad {
     uncertainty: f64,
 }
 
-/// The numbers in quadruple precision, in the order of problems and quantities.
+/// The results in quadruple precision, in the order of problems and quantities.
 fn quad() -> Result<Vec<Quad>, String> {
     let mut reader = csv::Reader::from_reader(include_str!("../../reference/quad.csv").as_bytes());
     reader.deserialize().collect::<Result<_, _>>().map_err(|error| format!("reference/quad.csv: {error}"))
@@ -122,7 +122,7 @@ fn laws() -> Vec<Problem> {
     laws.map(problem).into()
 }
 
-/// Restitutions asked for.
+/// Requested restitutions.
 fn restitutions() -> Vec<Problem> {
     let at_one = [0.0, 0.25, 0.5, 0.75, 0.95, 1.0].map(|restitution| (restitution, 1.0));
     let cases = at_one.into_iter().chain([1e-3, 0.1, 10.0].map(|speed| (0.5, speed)));
@@ -142,7 +142,7 @@ fn restitutions() -> Vec<Problem> {
     cases.map(problem).collect()
 }
 
-/// Hertz's contact with infinite beams.
+/// Hertz contact with infinite beams.
 fn infinite_beams() -> Result<Vec<Problem>, String> {
     let problem = |s: f64| {
         let (_, ratio) = infinite::first_contact(s)?;
@@ -177,7 +177,7 @@ fn infinite_beams() -> Result<Vec<Problem>, String> {
 /// Balls on beams and plates.
 fn structures() -> Result<Vec<Problem>, String> {
     let mut problems = Vec::new();
-    // remainder modes stand for modes that other codes would have: these problems are of work-precision alone
+    // Remainder modes represent modes that other codes would have: these problems are only in work-precision.
     let of_all_codes = |of: &impact::Impact| !of.name.starts_with("remainder-");
     for of in impact::library()?.into_iter().filter(of_all_codes) {
         let reference = impact::reference(of.name)?;
@@ -185,7 +185,8 @@ fn structures() -> Result<Vec<Problem>, String> {
         let statement = format!("{}. How fast does the ball leave after the last contact?", of.about);
         let ball = (of.striker.mass_kg, of.striker.speed_m_s);
         let mut problem = on_structure(of.name, statement, body, ball, gallery::by_name(&of.law)?, reference.end_s());
-        // the hysteretic law is no power of the compression; a program of its own computes its reference in quadruple precision
+        // The hysteretic law is not a power of the compression; a program of its own computes its reference in quadruple
+        // precision.
         if matches!(of.law, Law::Hysteretic(_)) {
             problem.quantities[0].value = reference.outcome.restitution * of.striker.speed_m_s;
             problem.quantities[0].uncertainty = reference.restitution_error.max(ROUNDING);
@@ -251,7 +252,7 @@ fn several() -> Vec<Problem> {
     ]
 }
 
-/// Masses on springs that meet elastic stops: straight pieces, each with a closed form.
+/// Masses on springs that meet elastic stops: piecewise linear problems, each with a closed form.
 fn stops() -> Vec<Problem> {
     let oscillator = |name: &str, mass_kg: f64, omega: f64, speed_m_s: f64| Body {
         name: name.into(),
@@ -279,7 +280,7 @@ fn stops() -> Vec<Problem> {
             reference: String::new(),
         }
     };
-    // Code_Aster's SDND122 at three quarters of its tenth period, whose exact frequency is 0.64663104064 Hz
+    // Code_Aster's SDND122 at three quarters of its tenth period, whose exact frequency is 0.64663104064 Hz.
     let energy_j: f64 = 0.00650108331626;
     let speed = (2.0 * energy_j).sqrt();
     let sdnd101 = problem(

@@ -1,4 +1,4 @@
-//! What problems are put together from.
+//! Parts of the definitions of problems.
 
 use crate::problem::{Body, Contact, Family, LawOfContact, Problem, Quantity, What};
 

@@ -1,4 +1,4 @@
-//! An impact, and what a solver finds.
+//! An impact, and the result of a solver.
 
 use contact_models::Law;
 use vibroimpact_sim::modal::{Striker, Structure};
@@ -8,7 +8,7 @@ use vibroimpact_sim::modal::{Striker, Structure};
 pub struct Impact {
     /// Short name.
     pub name: &'static str,
-    /// What it is.
+    /// A description.
     pub about: &'static str,
     /// The beam in its modes.
     pub structure: Structure,
@@ -18,12 +18,12 @@ pub struct Impact {
     pub law: Law,
 }
 
-/// What a solver found, in the terms of the norms.
+/// The result of a solver, in terms of the norms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// Speed of the rebound over that of the impact.
+    /// Speed of the rebound divided by that of the impact.
     pub restitution: f64,
-    /// Beginnings and ends of all contacts, in order (s).
+    /// Starts and ends of all contacts, in order (s).
     pub contact_times_s: Vec<f64>,
     /// Impulse of every contact (N s).
     pub impulses_n_s: Vec<f64>,
@@ -33,7 +33,7 @@ impl Outcome {
     /// The norms in which an outcome is compared with the reference, the chief one first.
     pub fn errors(&self, reference: &Outcome) -> Vec<(&'static str, f64)> {
         let end = reference.contact_times_s.last().copied().unwrap_or(1.0);
-        // where the number of contacts differs, so does the contact history: no time is right then
+        // If the number of contacts differs, so does the contact history, and no time is right.
         let worst = |found: &[f64], wanted: &[f64], unit: f64| {
             if found.len() == wanted.len() {
                 found.iter().zip(wanted).map(|(a, b)| (a - b).abs() / unit).fold(0.0, f64::max)

@@ -24,7 +24,7 @@ struct Diffsol {
     tolerance: f64,
 }
 
-/// Steps until an event or the end; returns which event.
+/// Steps until an event or the end; returns the event.
 fn run<'a, E, S>(mut solver: S, t: &mut f64, y: &mut [f64], deadline: Instant) -> Result<Option<usize>, String>
 where
     E: OdeEquationsImplicit<M = Matrix, T = f64, V = <Matrix as diffsol::MatrixCommon>::V> + 'a,
@@ -75,7 +75,7 @@ impl Integrator for Diffsol {
             .root(|x: &[f64], _p: &[f64], _t: f64, g: &mut [f64]| g.copy_from_slice(&equations.margins(x)), 2)
             .build()
             .map_err(|error| error.to_string())?;
-        // time is counted from the start of the phase, so that short steps are not lost in it
+        // Time is counted from the start of the phase, so that short steps are not lost in it.
         let mut elapsed = 0.0;
         let end = end_s - *t_s;
         let text = |error: DiffsolError| error.to_string();
@@ -105,7 +105,7 @@ pub(super) fn rows(
     judge: impl Fn(Outcome, u64) -> Found,
 ) -> Vec<Row> {
     let mut rows = Vec::new();
-    // free flight with every mode in it takes an implicit solver seconds: fewer settings there
+    // Free flight with all modes takes an implicit solver seconds, so that there are fewer settings.
     let tolerances: Vec<f64> = match flight {
         Flight::Integrated => effort.tolerances(3, 12).into_iter().step_by(if effort.quick { 1 } else { 3 }).collect(),
         Flight::Exact => effort.tolerances(4, 13),

@@ -1,7 +1,7 @@
 //! The explicit eighth-order pair of Dormand and Prince (DOP853), the fastest general solver for these systems.
 //!
-//! Events: a sign change over a step is located by taking the step anew with other lengths, which keeps the full order
-//! and spares every other step the three evaluations that dense output would cost.
+//! Events: a sign change over a step is located by repeating the step with other lengths, which keeps the full order and saves
+//! the three evaluations of dense output in every other step.
 
 use super::definition::{Impact, Outcome};
 use super::drive::{Flight, Integrator, follow};
@@ -26,7 +26,7 @@ impl FirstOrderSystem for System<'_, '_> {
     }
 }
 
-/// Looks for sign changes after every step, and keeps the state before it.
+/// Checks for sign changes after every step, and stores the state before it.
 struct Watch<'a, 'b> {
     equations: &'a Equations<'b>,
     before: (f64, Vec<f64>),
@@ -58,13 +58,13 @@ impl Dop853 {
             }
         }
         let solver = DOP853 { first_step: Some(length), dense_output: false, ..DOP853::default() };
-        // the step was accepted at its full length
+        // The step was accepted at its full length.
         let (rtol, atol) = (Tolerance::Scalar(0.0), Tolerance::Scalar(f64::MAX));
         let end = solver.solve(&System(equations), 0.0, from, length, rtol, atol, Some(&mut End(y)));
         end.map(|_| ()).map_err(|error| error.to_string())
     }
 
-    /// Time within the step of `length` after `from` at which the first margin falls below zero, and which it is.
+    /// Time within the step of `length` after `from` at which the first event function becomes negative, and its number.
     fn locate(
         &self,
         equations: &Equations<'_>,
@@ -78,7 +78,7 @@ impl Dop853 {
             let (mut low, mut high) = (0.0, length);
             let (mut at_low, mut at_high) = (equations.margins(from)[which], margins[which]);
             if at_low <= 0.0 {
-                // begins on the boundary, leaves it and comes back within one step
+                // The function begins at zero, becomes positive and returns within one step.
                 low = 1e-3 * length;
                 self.step(equations, from, low, y)?;
                 at_low = equations.margins(y)[which];
@@ -86,7 +86,7 @@ impl Dop853 {
                     (low, high) = (0.0, 0.0);
                 }
             }
-            // regula falsi with the Illinois rule
+            // Regula falsi with the Illinois rule.
             let mut side = 0;
             for _ in 0..60 {
                 if high - low <= 1e-15 * length {
@@ -136,7 +136,7 @@ impl Integrator for Dop853 {
         let solver = DOP853 {
             dense_output: false,
             max_steps: 10_000_000,
-            // the test for stiffness only stops the run
+            // The test for stiffness would only stop the run.
             stiff_test: usize::MAX,
             first_step: equations.first_step(self.tolerance),
             ..DOP853::default()
@@ -144,7 +144,7 @@ impl Integrator for Dop853 {
         let start = (0.0, y.to_vec());
         let mut watch = Watch { equations, before: start.clone(), now: start, met: false, late: false, deadline };
         let (rtol, atol) = (Tolerance::Scalar(0.0), Tolerance::Vector(equations.tolerances(self.tolerance)));
-        // time is counted from the start of the phase, so that short steps are not lost in it
+        // Time is counted from the start of the phase, so that short steps are not lost in it.
         let length = end_s - *t_s;
         let result = solver
             .solve(&System(equations), 0.0, &watch.now.1.clone(), length, rtol, atol, Some(&mut watch))

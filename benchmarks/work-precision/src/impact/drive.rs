@@ -6,10 +6,10 @@ use super::system::{Equations, Phase, Tables};
 use contact_models::{After, ContactLaw, Memory};
 use std::time::Instant;
 
-/// Who takes care of free flight.
+/// The method of free flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flight {
-    /// The general solver, like everything else.
+    /// The general solver, as for contacts.
     Integrated,
     /// Exact propagation of the modes and a certified search for the next contact.
     Exact,
@@ -17,11 +17,11 @@ pub enum Flight {
 
 /// A general solver with its own location of events.
 pub trait Integrator {
-    /// Integrates from `t_s` until a margin falls below zero or `end_s` comes. Leaves time and state there, and says
-    /// which margin it was.
+    /// Integrates from `t_s` until an event function becomes negative or `end_s` is reached. Updates time and state, and
+    /// returns the number of the event function.
     ///
     /// # Errors
-    /// Why it could not go on.
+    /// The reason why it could not continue.
     fn advance(
         &mut self,
         equations: &Equations<'_>,
@@ -32,14 +32,14 @@ pub trait Integrator {
     ) -> Result<Option<usize>, String>;
 }
 
-/// Most changes of phase; the library's impacts need up to a hundred or two.
+/// Largest number of changes of phase; the library's impacts need up to a hundred or two.
 const MOST_PHASES: usize = 2000;
 
-/// Follows an impact until `end_s`, which the caller knows from the reference: a general solver has no means of telling
-/// that no further contact can come. Returns what was found and the number of evaluations of the right-hand side.
+/// Computes an impact until `end_s`, which the caller knows from the reference: a general solver cannot know that no further
+/// contact follows. Returns the result and the number of evaluations of the right-hand side.
 ///
 /// # Errors
-/// Why the solver could not go on, or that it met far too many events.
+/// The reason why the solver could not continue, or that it met far too many events.
 pub fn follow(
     impact: &Impact,
     integrator: &mut impl Integrator,

@@ -1,9 +1,9 @@
-//! Exact free flight: modes in closed form, and a search for the next contact that can miss none.
+//! Exact free flight: modes in closed form, and a search for the next contact that cannot miss one.
 //!
-//! The gap `u = z - sum phi_k a_k` is followed by steps before whose end no contact can come. If the modes above a cut
-//! move the surface by at most `H`, and the others bend the gap by at most `B`, then `u(t) >= u - H + u' t - B t^2/2`
-//! with the gap of the modes below the cut; the best of these parabolas gives the step. When the gap closes and is
-//! nearly zero, Newton's method finishes.
+//! The gap `u = z - sum phi_k a_k` is followed in steps within which no contact is possible. If the modes above a cut move the
+//! surface by at most `H`, and the second derivative of the gap due to the others is at most `B`, then
+//! `u(t) >= u - H + u' t - B t^2/2` with the gap of the modes below the cut; the best of these parabolas gives the step. When
+//! the gap closes and is nearly zero, Newton's method finishes.
 
 use vibroimpact_sim::modal::Mode;
 
@@ -18,7 +18,7 @@ pub(super) fn fly(modes: &[Mode], t_s: &mut f64, y: &mut [f64], end_s: f64) -> O
         }
         let mut step = cuts.safe_time(modes, y);
         if step * fastest < 0.02 {
-            // so near that the gap is a parabola to many digits; the least step only matters after a graze
+            // So close that the gap is a parabola to many digits; the smallest step only matters after a grazing contact.
             step = if opening < 0.0 { gap / -opening } else { step.max(1e-4 / fastest) };
             if step <= 1e-15 * (*t_s).max(1.0 / fastest) {
                 return Some(0);
@@ -67,7 +67,7 @@ struct Cuts(Vec<(usize, f64, f64)>);
 impl Cuts {
     fn new(modes: &[Mode], y: &[f64]) -> Cuts {
         let n = modes.len();
-        // a free mode never exceeds the amplitude that its energy allows
+        // The amplitude of a free mode never exceeds the one that its energy allows.
         let reach = |k: usize| modes[k].shape.abs() * y[2 + k].hypot(y[2 + n + k] / modes[k].omega_rad_s);
         let mut above: f64 = (0..n).map(reach).sum();
         let mut bend = 0.0;
@@ -76,7 +76,7 @@ impl Cuts {
             above -= reach(k);
             bend += (1.0 + 2.0 * modes[k].damping_ratio) * modes[k].omega_rad_s.powi(2) * reach(k);
             let above = if k + 1 == n { 0.0 } else { above.max(0.0) };
-            // every cut up to 4, then fewer
+            // Every cut up to 4, then fewer.
             if k < 4 || k + 1 == n || k % 4 == 0 {
                 cuts.push((k + 1, above, bend));
             }
@@ -96,7 +96,7 @@ impl Cuts {
             let clear = gap - above;
             if clear > 0.0 || (clear == 0.0 && opening > 0.0) {
                 let root = opening + (opening * opening + 2.0 * bend * clear).sqrt();
-                // the larger root of the parabola, in the form without cancellation
+                // The larger root of the parabola, in the form without cancellation.
                 let time = if opening >= 0.0 { root / bend } else { 2.0 * clear / (root - 2.0 * opening) };
                 best = best.max(if time.is_nan() { f64::INFINITY } else { time });
             }

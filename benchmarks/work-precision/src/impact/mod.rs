@@ -25,8 +25,8 @@ const YOUNGS_MODULUS_PA: f64 = 2e11;
 const DENSITY_KG_M3: f64 = 7800.0;
 /// (sqrt 5 - 1) / 2, the thesis's second location on the unit beam.
 const GOLDEN_M: f64 = 0.618_033_988_749_894_9;
-/// The modes that the program keeps beside two remainder modes if it is left to choose, on the beam of chapter 3 under Hertz's
-/// contact at the default tolerance.
+/// Number of modes that the program uses, with two remainder modes, if it chooses their number for the beam of chapter 3 with
+/// Hertz contact at the default tolerance.
 const CONVERGED: usize = 83;
 
 /// A steel ball of this diameter at 1 m/s, and the Hertz stiffness of its contact.
@@ -37,7 +37,7 @@ fn ball(diameter_m: f64) -> Result<(Striker, f64), String> {
     Ok((Striker { mass_kg, speed_m_s: 1.0 }, hertz.stiffness_n_m1_5))
 }
 
-/// Steel beam of unit length; `thickness` of its halves as fractions of the thesis's side.
+/// Steel beam of unit length; `thickness` is that of its halves relative to the thesis's side.
 fn steel(ends: [End; 2], thickness: &[f64]) -> Beam {
     let length = 1.0 / thickness.len() as f64;
     let segment = |part: &f64| {
@@ -52,13 +52,13 @@ fn steel(ends: [End; 2], thickness: &[f64]) -> Beam {
     Beam { segments: thickness.iter().map(segment).collect(), ends }
 }
 
-/// The first modes of a beam, seen from a place.
+/// The first modes of a beam at a location.
 fn modes(beam: &Beam, modes: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
     let seen = beam.modes(modes).and_then(|found| found.seen_from(x_m)).map_err(|e| e.to_string())?;
     Ok(Structure::from_modes(seen, damping_ratio))
 }
 
-/// The same with two remainder modes for all others, damped alike, as the program integrates a beam by default.
+/// The same with two remainder modes for all others and the same damping, as the program integrates a beam by default.
 fn modes_and_remainder(beam: &Beam, kept: usize, damping_ratio: f64, x_m: f64) -> Result<Structure, String> {
     let mut structure = modes(beam, kept, damping_ratio, x_m)?;
     let remainder = beam.remainder(x_m, kept, 2).map_err(|e| e.to_string())?;
@@ -71,7 +71,7 @@ pub fn library() -> Result<Vec<Impact>, String> {
     let text = |error: contact_models::InvalidInput| error.to_string();
     let hertz = |k: f64| Hertz::new(k).map(Law::from).map_err(text);
     let viscous = |k: f64| Viscous::new(k, 0.08).map(Law::from).map_err(text);
-    // the stiffness of the first loading is that of Hertz
+    // The stiffness of the first loading is that of Hertz.
     let hysteretic = |k: f64| {
         Hysteretic { stiffness_n_m1_5: k / 4.0, theta_m: 1.6, beta: 1.4, k_bar: 0.4, epsilon_m: 5e-8 }
             .validated()

@@ -4,7 +4,7 @@ use super::definition::{Impact, Outcome};
 use crate::measure::{Effort, Found, Origin, Row, Solver, sweep};
 use vibroimpact_sim::modal::{self, Settings, Solution};
 
-/// The outcome in the terms of the norms.
+/// The result in terms of the norms.
 pub(super) fn outcome(solution: &Solution) -> Result<Outcome, String> {
     Ok(Outcome {
         restitution: solution.restitution.ok_or_else(|| solution.outcome.as_str().to_string())?,
@@ -13,8 +13,8 @@ pub(super) fn outcome(solution: &Solution) -> Result<Outcome, String> {
     })
 }
 
-/// The sweep of tolerances: once with all tables built for every impact, once with the tables kept from the last one,
-/// as for many impacts on one beam. No uncertainty is estimated, since no peer gives one.
+/// The sweep of tolerances: once with all tables built for every impact, once with the tables cached from the last one, as for
+/// many impacts on one beam. No uncertainty is estimated, since no peer estimates one.
 pub(super) fn rows(impact: &Impact, effort: &Effort, judge: impl Fn(Outcome, u64) -> Found) -> Vec<Row> {
     let cost_unit = "evaluations of the law";
     let settings = |tolerance| Settings { tolerance, estimate_uncertainty: false, ..Settings::default() };

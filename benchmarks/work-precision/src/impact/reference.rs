@@ -10,12 +10,12 @@ const TABLE: &str = include_str!("../../reference/impacts.csv");
 pub struct Reference {
     /// The solution.
     pub outcome: Outcome,
-    /// Difference of the restitution to that of a second run with a tolerance a million times larger.
+    /// Difference of the restitution from that of a second run with a tolerance a million times larger.
     pub restitution_error: f64,
 }
 
 impl Reference {
-    /// Time until which a solver has to follow the impact: a little beyond the last separation (s).
+    /// Time until which a solver has to compute the impact: slightly beyond the last separation (s).
     pub fn end_s(&self) -> f64 {
         1.02 * self.outcome.contact_times_s.last().copied().unwrap_or(0.0)
     }
@@ -24,7 +24,7 @@ impl Reference {
 /// The reference of an impact of the library.
 ///
 /// # Errors
-/// If the table does not hold it.
+/// If the table does not contain it.
 pub fn reference(name: &str) -> Result<Reference, String> {
     let fault = || format!("reference/impacts.csv: no valid reference for {name}");
     let mut found = None;

@@ -1,16 +1,16 @@
-//! The equations of an impact as a general solver takes them: one smooth phase at a time.
+//! The equations of an impact in the form for general solvers: one smooth phase at a time.
 //!
-//! The state is `[z, z', a_1 .. a_N, a_1' .. a_N']`, with `z` positive away from the structure. In a phase the contact
-//! force is a smooth function of the state; the phase ends when a margin falls below zero.
+//! The state is `[z, z', a_1 .. a_N, a_1' .. a_N']`, with `z` positive away from the structure. In a phase the contact force is
+//! a smooth function of the state; the phase ends when an event function becomes negative.
 
 use super::definition::Impact;
 use contact_models::{Boundary, Branch, ContactLaw, Force};
 use std::cell::Cell;
 
-/// What the bodies are doing.
+/// The state of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Phase {
-    /// Apart, until the surfaces meet.
+    /// Separate, until the surfaces meet.
     Flight,
     /// In contact, on this branch of the law.
     Contact(Branch),
@@ -24,7 +24,7 @@ pub struct Equations<'a> {
     shape: &'a [f64],
     stiffness: &'a [f64],
     damping: &'a [f64],
-    /// Subtracted from the margins: what they are at the start, where a phase begins on its own boundary.
+    /// Subtracted from the event functions: their initial values, if a phase begins on its own boundary.
     offset: [f64; 2],
     evaluations: &'a Cell<u64>,
 }
@@ -58,7 +58,7 @@ impl<'a> Equations<'a> {
     pub(super) fn new(impact: &'a Impact, tables: &'a Tables, phase: Phase, start: &[f64]) -> Equations<'a> {
         let Tables { shape, stiffness, damping, evaluations } = tables;
         let mut equations = Equations { impact, phase, shape, stiffness, damping, offset: [0.0; 2], evaluations };
-        // a phase that begins beyond its own boundary by a rounding does not end there
+        // A phase that begins beyond its own boundary by rounding does not end there.
         equations.offset = equations.margins(start).map(|margin| margin.min(0.0));
         equations
     }
@@ -118,12 +118,12 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// How far the phase is from either of its ends: positive inside.
+    /// Event functions of the phase, positive inside it.
     pub fn margins(&self, y: &[f64]) -> [f64; 2] {
         let (xi, rate) = self.compression(y);
         let margins = match &self.phase {
             Phase::Flight => [-xi, 1.0],
-            // no law here has more than two
+            // No law here has more than two.
             Phase::Contact(branch) => [0, 1].map(|which| {
                 let boundary = self.impact.law.boundary(branch, which).unwrap_or(Boundary::NEVER);
                 boundary.margin(xi, rate)
@@ -132,8 +132,8 @@ impl<'a> Equations<'a> {
         [margins[0] - self.offset[0], margins[1] - self.offset[1]]
     }
 
-    /// Absolute tolerances that let every component add alike to the error of the force: speeds to the striker's,
-    /// displacements to what it covers in the time that matters to them.
+    /// Absolute tolerances for which every component contributes equally to the error of the force: for velocities relative to
+    /// the striker's, for displacements relative to its distance travelled in the relevant time.
     pub fn tolerances(&self, tolerance: f64) -> Vec<f64> {
         let speed = self.impact.striker.speed_m_s;
         let modal = speed * self.impact.striker.mass_kg.sqrt();
@@ -144,8 +144,8 @@ impl<'a> Equations<'a> {
         all.map(|scale| tolerance * scale).collect()
     }
 
-    /// A first step after touch that does not spoil what follows: the force begins as a power 3/2 of time, so that a step
-    /// from its start errs by the power 5/2 of its length whatever the order, and error estimates do not see it.
+    /// A first step after touch that does not spoil the following ones: the force begins as a power 3/2 of time, so that the
+    /// error of a step from its start is the power 5/2 of its length for any order, which error estimates do not detect.
     pub fn first_step(&self, tolerance: f64) -> Option<f64> {
         matches!(self.phase, Phase::Contact(_)).then(|| 3e-5 * tolerance.powf(0.4))
     }

@@ -1,5 +1,5 @@
-//! Avian on the problems of impactbench: its default substeps, swept collision so that no ball passes through another, and no
-//! speed below which bodies do not bounce (1 m/s unless it is told otherwise).
+//! Avian on the problems of impactbench: with its default substeps, with swept collision so that no ball passes through
+//! another, and without the speed below which bodies do not bounce (1 m/s by default).
 
 #[path = "../../rows.rs"]
 mod rows;
