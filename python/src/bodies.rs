@@ -17,7 +17,7 @@ use crate::output;
 /// Time between two checks for Ctrl-C.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
-/// Checks for signals from time to time.
+/// Checks for signals at intervals.
 struct Signals {
     looked: Instant,
     found: Option<PyErr>,
@@ -28,7 +28,7 @@ impl Signals {
         Signals { looked: Instant::now(), found: None }
     }
 
-    /// Whether there was one.
+    /// Whether a signal was received.
     fn look(&mut self) -> bool {
         if self.found.is_none() && self.looked.elapsed() >= BETWEEN_LOOKS {
             self.looked = Instant::now();
@@ -37,7 +37,7 @@ impl Signals {
         self.found.is_some()
     }
 
-    /// The result so far, unless a signal came.
+    /// The result so far, unless a signal was received.
     fn unless<T>(self, found: Result<T, Fault>) -> PyResult<T> {
         match self.found {
             Some(signal) => Err(signal),
@@ -46,7 +46,7 @@ impl Signals {
     }
 }
 
-/// A scene of bodies, solved.
+/// The solution of a scene of bodies.
 pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> PyResult<Bound<'py, PyDict>> {
     let mut signals = Signals::new();
     let stop = AtomicBool::new(false);
@@ -75,13 +75,13 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 
 /// Find the periodic motion of a scene of bodies under a harmonic load, or follow a branch of them over a field.
 ///
-/// After `transient` periods of the load from the scene's start, Newton's method looks for a motion that repeats itself after
-/// `periods` of them. Returns what `vibroimpact orbit --json` prints, with `points` as a structured array and
+/// After `transient` periods of the load from the scene's start, Newton's method finds a motion with a period of `periods` of
+/// them. Returns the object that `vibroimpact orbit --json` prints, with `points` as a structured array and
 /// `floquet_multipliers` as a complex one.
 ///
-/// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value
-/// in the scene) to `to`; `step` is the first step as a share of that range. The entry `columns` then holds a
-/// dictionary of arrays, a value for each of the `orbits`: those of the table that `--csv` writes.
+/// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value in the
+/// scene) to `to`; `step` is the first step as a share of that range. The entry `columns` is then a dictionary of arrays with a
+/// value for each of the `orbits`: those of the table that `--csv` writes.
 ///
 /// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends a branch.
 #[pyfunction]

@@ -15,8 +15,8 @@ use crate::output;
 
 /// Net restitution without integration in time: energy minimisation under outward constraints.
 ///
-/// Returns what `vibroimpact emoc --json` prints. `modes` is the number of modes in the law, by default that of
-/// the scene. Parameters for a beam come from `fit`.
+/// Returns the object that `vibroimpact emoc --json` prints. `modes` is the number of modes in the law, by default that of the
+/// scene. Parameters for a beam come from `fit`.
 #[pyfunction]
 #[pyo3(signature = (scene, *, mu0 = 1.0, alpha0 = 1.0, alpha1 = 1.0, modes = None))]
 pub fn emoc(
@@ -34,9 +34,9 @@ pub fn emoc(
 
 /// Net restitution by the law of `emoc` for many impacts at once.
 ///
-/// `mass_kg` holds the strikers' masses; the last axis of `shapes` the mass-normalised mode shapes at the point of
-/// impact, from the lowest (kg^-1/2, as `modes` returns them; rigid-body modes are left out). `mass_kg` and the other
-/// axes of `shapes` are broadcast against each other, and the result has their common shape.
+/// `mass_kg` contains the strikers' masses; the last axis of `shapes` contains the mass-normalised mode shapes at the point of
+/// impact, from the lowest (kg^-1/2, as `modes` returns them; rigid-body modes are omitted). `mass_kg` and the other axes of
+/// `shapes` are broadcast against each other, and the result has their common shape.
 #[pyfunction]
 #[pyo3(signature = (mass_kg, shapes, *, mu0 = 1.0, alpha0 = 1.0, alpha1 = 1.0))]
 pub fn emoc_restitution<'py>(
@@ -58,7 +58,7 @@ pub fn emoc_restitution<'py>(
     let common: Vec<usize> = common.extract()?;
     let parameters = Parameters { mu0, alpha0, alpha1, ..Parameters::default() };
     let restitution = py.detach(|| restitution(&mass_kg, &shapes, &common, &parameters))?;
-    // an array without axes becomes a number
+    // An array without axes becomes a number.
     restitution.into_pyarray(py).get_item(PyTuple::empty(py))
 }
 
@@ -76,7 +76,7 @@ fn restitution(
     };
     let sites = shapes.map_axis(last, |phi| Site::new(&phi.to_vec()).map_err(&mut keep).ok());
     let mut restitution = ArrayD::from_elem(common, f64::NAN);
-    // numpy has found the common shape, to which both can be spread
+    // numpy has determined the common shape, to which both can be broadcast.
     if let (Some(mass_kg), Some(sites)) = (mass_kg.broadcast(common), sites.broadcast(common)) {
         Zip::from(&mut restitution).and(mass_kg).and(sites).for_each(|e, &mass_kg, site| {
             let Some(site) = site else { return };
@@ -91,9 +91,9 @@ fn restitution(
 
 /// Fit the three parameters of `emoc` to observed restitutions on the scene's beam.
 ///
-/// `mass_kg`, `location_m` and `restitution` are arrays of one length, at least three; mass and location of the scene
-/// itself are not used. Returns what `vibroimpact fit --json` prints; `intervals`, an array of shape (3, 2), is `None`
-/// where the observations do not determine the parameters.
+/// `mass_kg`, `location_m` and `restitution` are arrays of one length, at least three; mass and location of the scene itself
+/// are not used. Returns the object that `vibroimpact fit --json` prints; `intervals`, an array of shape (3, 2), is `None` if
+/// the observations do not determine the parameters.
 #[pyfunction]
 #[pyo3(signature = (scene, mass_kg, location_m, restitution, *, modes = 50))]
 pub fn fit<'py>(

@@ -1,4 +1,4 @@
-//! Errors of the library as exceptions, in the same words.
+//! Errors of the library as exceptions with the same text.
 
 use std::io;
 
@@ -62,7 +62,7 @@ impl From<Failure> for Fault {
     }
 }
 
-/// `FileNotFoundError` and its kin.
+/// `FileNotFoundError` and similar exceptions.
 fn of_system(source: io::Error, said: String) -> Fault {
     Fault(io::Error::new(source.kind(), said).into())
 }

@@ -9,7 +9,7 @@ use crate::errors::Fault;
 use crate::input::{Columns, Source};
 use crate::output;
 
-/// Free fields, as the command line has them.
+/// Free fields in the form of the command line.
 pub struct FreeFields(Vec<String>);
 
 impl<'a, 'py> FromPyObject<'a, 'py> for FreeFields {
@@ -23,16 +23,16 @@ impl<'a, 'py> FromPyObject<'a, 'py> for FreeFields {
 
 /// Find fields of a scene from measurements, by resolved impacts.
 ///
-/// `data` holds a measured impact in each row: columns under their names (a dictionary of arrays, or a data frame of pandas),
-/// or the path of a CSV file. Columns are fields of the scene, such as `"striker.speed_m_s"`, which take the place of the
-/// scene's own; what was measured, such as `"restitution"` or `"first_contact_s"`; and standard deviations of that, such
-/// as `"restitution_sd"`. NaN marks what was not measured.
+/// `data` has a row for each measured impact: columns under their names (a dictionary of arrays, or a data frame of pandas), or
+/// the path of a CSV file. Columns are fields of the scene, such as `"striker.speed_m_s"`, which replace those of the scene;
+/// measured quantities, such as `"restitution"` or `"first_contact_s"`; and their standard deviations, such as
+/// `"restitution_sd"`. NaN marks a missing measurement.
 ///
-/// `free` lists the fields to find, each within a factor of three of the scene's value; or maps each to the two
-/// limits of its search. `level` is the probability with which an interval holds its field, `starts` the number of
-/// starting points of the search. `candidates` holds possible experiments, which are ranked by how much they would tell.
+/// `free` lists the fields to find, each within a factor of three of the scene's value; or maps each to the two limits of its
+/// search. `level` is the probability with which an interval contains the true value, `starts` the number of starting points of
+/// the search. `candidates` contains possible experiments, which are ranked by the information that they would add.
 ///
-/// Returns what `vibroimpact identify --json` prints.
+/// Returns the object that `vibroimpact identify --json` prints.
 #[pyfunction]
 #[pyo3(signature = (scene, data, free, *, level = 0.95, starts = 4, candidates = None))]
 pub fn identify(

@@ -14,19 +14,18 @@ use crate::errors::Fault;
 use crate::input::Source;
 use crate::output;
 
-/// Solve a scene: one impact, with every contact, the rebound, and where the energy went; or bodies, contacts and loads
-/// over time.
+/// Solve a scene: one impact, with every contact, the rebound, and the energy balance; or bodies, contacts and loads over time.
 ///
-/// Returns what `vibroimpact simulate --json` prints, with `sub_impacts` (the `contacts` of an infinite structure, the
-/// `intervals` of each contact between bodies, and `points`) as structured arrays and energies of modes as an array.
+/// Returns the object that `vibroimpact simulate --json` prints, with `sub_impacts` (the `contacts` of an infinite structure,
+/// the `intervals` of each contact between bodies, and `points`) as structured arrays and energies of modes as an array.
 ///
-/// `history=True` adds two entries. For one impact: `history`, motion and force over time as a dictionary of arrays;
-/// and `modal_energies`, a dictionary of `time_s` and `energy_j`, the latter with a row for each time and a column for
-/// each mode; either is `None` if the model does not resolve it. For bodies: `history`, and `section`, the same once in
-/// each period of a harmonic load, `None` without one.
+/// `history=True` adds two entries. For one impact they are `history`, motion and force over time as a dictionary of arrays,
+/// and `modal_energies`, a dictionary of `time_s` and `energy_j`, the latter with a row for each time and a column for each
+/// mode; either is `None` if the model does not resolve it. For bodies they are `history`, and `section`, the same once per
+/// period of a harmonic load, or `None` without one.
 ///
-/// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact,
-/// and a computation that stopped, are results: see `outcome`. Ctrl-C ends a run of bodies.
+/// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact, and a
+/// computation that stopped, are results: see `outcome`. Ctrl-C ends a run of bodies.
 #[pyfunction]
 #[pyo3(signature = (scene, *, history = false))]
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {
@@ -50,9 +49,9 @@ fn one_impact<'py>(py: Python<'py>, scene: &Scene, history: bool) -> PyResult<Bo
     Ok(result)
 }
 
-/// Say which model would be used for a scene and why, and what each would cost; nothing costly is solved.
+/// State which model would be used for a scene and why, and the cost of each model; nothing costly is solved.
 ///
-/// Returns what `vibroimpact plan --json` prints.
+/// Returns the object that `vibroimpact plan --json` prints.
 #[pyfunction]
 pub fn plan(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
     let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.plan()?)?))?;
@@ -61,18 +60,18 @@ pub fn plan(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
 
 /// Solve a scene with every model, side by side.
 ///
-/// Returns what `vibroimpact compare --json` prints: differences are from the model with the smallest uncertainty.
+/// Returns the object that `vibroimpact compare --json` prints: differences are from the model with the smallest uncertainty.
 #[pyfunction]
 pub fn compare(py: Python<'_>, scene: Source) -> PyResult<Bound<'_, PyDict>> {
     let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.scene()?.compare()?)?))?;
     output::result(py, &json)
 }
 
-/// Differentiate a scene, of one impact or of bodies, by its fields, such as `"striker.mass_kg"`; by every number of it if
-/// none is named.
+/// Differentiate a scene, of one impact or of bodies, with respect to fields such as `"striker.mass_kg"`, or to all its numbers
+/// if none is named.
 ///
-/// Returns what `vibroimpact sensitivity --json` prints: `derivatives[output][field]` has a `value` and its `uncertainty`,
-/// in the unit of the output over that of the field.
+/// Returns the object that `vibroimpact sensitivity --json` prints: `derivatives[output][field]` has a `value` and its
+/// `uncertainty`, in the unit of the output over that of the field.
 #[pyfunction]
 #[pyo3(signature = (scene, by = Vec::new()))]
 pub fn sensitivity(py: Python<'_>, scene: Source, by: Vec<String>) -> PyResult<Bound<'_, PyDict>> {
@@ -85,7 +84,7 @@ pub fn sensitivity(py: Python<'_>, scene: Source, by: Vec<String>) -> PyResult<B
     output::result(py, &json)
 }
 
-/// Natural frequencies, and mode shapes at the point of impact.
+/// Compute natural frequencies, and mode shapes at the point of impact.
 ///
 /// Returns a dictionary of arrays of length `count`, from the lowest mode: `omega_rad_s`, `frequency_hz`, and
 /// `shape_at_location`, mass-normalised (kg^-1/2). Rigid-body modes come first, with frequency 0.
@@ -100,11 +99,11 @@ pub fn modes(py: Python<'_>, scene: Source, count: usize) -> PyResult<Bound<'_, 
     Ok(table)
 }
 
-/// Solve the impact on an infinite beam, given by its single parameter S = C^10 k_H^2 m^8 v.
+/// Solve the impact on an infinite beam, given by its only parameter S = C^10 k_H^2 m^8 v.
 ///
-/// Returns what `vibroimpact infinite-beam --json` prints, with `contacts` as a structured array. Times are in units
-/// of T, speeds of v, forces of F (thesis Eqs. 2.9 and 2.10). `history=True` adds the entry `history`: motion and
-/// force over time as a dictionary of arrays.
+/// Returns the object that `vibroimpact infinite-beam --json` prints, with `contacts` as a structured array. Times are in units
+/// of T, speeds of v, forces of F (thesis Eqs. 2.9 and 2.10). `history=True` adds the entry `history`: motion and force over
+/// time as a dictionary of arrays.
 #[pyfunction]
 #[pyo3(signature = (s, *, history = false))]
 pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_, PyDict>> {
@@ -120,10 +119,10 @@ pub fn infinite_beam(py: Python<'_>, s: f64, history: bool) -> PyResult<Bound<'_
     Ok(result)
 }
 
-/// The critical S of the infinite beam, and the turning points, at which the n-th separation disappears.
+/// Compute the critical S of the infinite beam, and the turning points, at which the n-th separation disappears.
 ///
-/// Returns what `vibroimpact infinite-beam turning-points --json` prints, with `turning_points` as a structured array
-/// of `n`, `s` and `uncertainty`; `count` is from 1 to 60.
+/// Returns the object that `vibroimpact infinite-beam turning-points --json` prints, with `turning_points` as a structured
+/// array of `n`, `s` and `uncertainty`; `count` is from 1 to 60.
 #[pyfunction]
 pub fn turning_points(py: Python<'_>, count: usize) -> PyResult<Bound<'_, PyDict>> {
     let json = py.detach(|| Ok::<_, Fault>(export::json(&TurningPoints::first(count)?)?))?;

@@ -32,7 +32,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Source {
     }
 }
 
-/// The name of a file, where something else could have been given too.
+/// The name of a file, if another type would have been accepted too.
 fn path(given: Borrowed<'_, '_, PyAny>, or: &str) -> PyResult<PathBuf> {
     given.extract().map_err(|_| {
         let kind = given.get_type().name().map_or_else(|_| String::new(), |name| format!(", not {name}"));
@@ -52,7 +52,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Columns {
     type Error = PyErr;
 
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Columns> {
-        // a mapping, or what has columns as pandas does
+        // A mapping, or an object with columns as in pandas.
         if given.hasattr("keys")? {
             let convert = given.py().import("vibroimpact._convert")?;
             return Ok(Columns::Text(convert.call_method1("to_csv", (given,))?.extract()?));
@@ -62,7 +62,7 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Columns {
 }
 
 impl Columns {
-    /// Measured impacts. Force histories that the table names stand beside its file, or in the current folder.
+    /// Measured impacts. Force histories that the table names are in its folder, or in the current folder.
     pub fn measured(&self) -> Result<Data, SceneError> {
         match self {
             Columns::Text(table) => Data::from_table(table.as_bytes(), Path::new("")),
@@ -70,7 +70,7 @@ impl Columns {
         }
     }
 
-    /// Experiments that could be made.
+    /// Possible experiments.
     pub fn candidates(&self) -> Result<Data, SceneError> {
         match self {
             Columns::Text(table) => Data::parse_candidates(table.as_bytes()),

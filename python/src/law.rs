@@ -8,12 +8,12 @@ use vibroimpact::{InvalidInput, export};
 use crate::errors::Fault;
 use crate::output;
 
-/// Parameters of the laws of contact that have a restitution (0.001 to 1) for a mass and a speed of approach.
+/// Compute the parameters of the laws of contact that have a restitution (0.001 to 1) for a mass and a speed of approach.
 ///
-/// Returns what `vibroimpact law --json` prints. `other_mass_kg` is the mass of the other body, which is immovable by default;
-/// `compression_m` is the largest compression. `step_s` is the step of an engine that steps by semi-implicit Euler: each law
-/// then states its restitution with this step, and parameters that correct for the step. `law` selects a single law: `mujoco`,
-/// `kelvin-voigt`, `hunt-crossley`, `flores`, `lankarani-nikravesh`.
+/// Returns the object that `vibroimpact law --json` prints. `other_mass_kg` is the mass of the other body, which is immovable
+/// by default; `compression_m` is the largest compression. `step_s` is the step of an engine that uses the semi-implicit Euler
+/// rule: each law then states its restitution with this step, and parameters that correct for the step. `law` selects a single
+/// law: `mujoco`, `kelvin-voigt`, `hunt-crossley`, `flores`, `lankarani-nikravesh`.
 #[pyfunction]
 #[pyo3(signature = (restitution, mass_kg, speed_m_s, *, other_mass_kg = None, compression_m = None, step_s = None, law = None))]
 #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]

@@ -1,7 +1,7 @@
 //! The Python package `vibroimpact`.
 //!
-//! Input comes as JSON text or the name of a file, and is read by the library, so that its errors are those of the
-//! command line. Results leave as the JSON that the command line prints, and as columns of numbers.
+//! Input arrives as JSON text or the name of a file, and is read by the library, so that its errors are those of the command
+//! line. Results are returned as the JSON that the command line prints, and as columns of numbers.
 
 mod bodies;
 mod emoc;

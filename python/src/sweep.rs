@@ -14,12 +14,12 @@ use crate::input::Source;
 /// Largest number of threads.
 const MOST_THREADS: usize = 1024;
 
-/// Compute many scenes that differ in some fields, on all cores.
+/// Solve many scenes that differ in some fields, on all cores.
 ///
-/// `definition` is a sweep file or its content: `scene` with `vary` or `random` or both. Returns the columns of
-/// `results.csv` as a dictionary of arrays: `index`, the varied fields under their paths, the results. Missing numbers
-/// are NaN; a scene that cannot be solved says why in `error`, which is empty otherwise. The values
-/// do not depend on `threads`, which is the number of cores by default. Ctrl-C ends the sweep.
+/// `definition` is a sweep file or its content: `scene` with `vary` or `random` or both. Returns the columns of `results.csv`
+/// as a dictionary of arrays: `index`, the varied fields under their paths, and the results. Missing numbers are NaN; a scene
+/// that cannot be solved has the reason in `error`, which is empty otherwise. The values do not depend on `threads`, which is
+/// the number of cores by default. Ctrl-C ends the sweep.
 #[pyfunction]
 #[pyo3(signature = (definition, *, threads = None))]
 pub fn sweep(py: Python<'_>, definition: Source, threads: Option<usize>) -> PyResult<Bound<'_, PyDict>> {

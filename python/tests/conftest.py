@@ -1,4 +1,4 @@
-"""Where the repository is, and the command line against which the package is held."""
+"""The path of the repository, and the command line with which the package is compared."""
 
 import json
 import os
@@ -14,7 +14,7 @@ ASSEMBLIES = REPOSITORY / "datasets" / "assemblies"
 
 @pytest.fixture(scope="session")
 def command_line():
-    """Runs the program and returns what it printed as JSON; its complaint if it refused."""
+    """Runs the program and returns its JSON output, or its message if it rejected the input."""
     program = os.environ.get("VIBROIMPACT")
     if program is None:
         pytest.skip("VIBROIMPACT does not name the program")

@@ -1,4 +1,4 @@
-"""What is written about the package runs."""
+"""The code in the documents about the package runs."""
 
 import doctest
 import os
@@ -14,7 +14,7 @@ def test_readme():
 
 
 HOW_TO = REPOSITORY / "docs" / "how-to"
-# pages with snippets, and what they need beside numpy
+# Pages with snippets, and the packages that they need besides numpy.
 PAGES = {
     "python.md": ["matplotlib", "pandas"],
     "structures-calculix.md": [],
@@ -37,7 +37,7 @@ def test_how_to(page, monkeypatch, capsys):
     names = {}
     for snippet in snippets:
         exec(compile(snippet, page, "exec"), names)
-    # what is printed follows the snippet that prints it
+    # The output follows the snippet that prints it.
     printed = re.findall(r"^```python\n.*?^```\n\n```text\n(.*?)^```", text, flags=re.DOTALL | re.MULTILINE)
     assert capsys.readouterr().out == "".join(printed)
 
@@ -49,7 +49,7 @@ def test_readme_of_the_workspace(capsys):
     assert capsys.readouterr().out == "0.333 after 5 contacts\n"
 
 
-# notebooks, the pictures that they draw, and the tables that they show
+# Notebooks, the numbers of their figures, and those of their tables.
 NOTEBOOKS = {"thesis.ipynb": (6, 0), "identification.ipynb": (3, 3)}
 
 

@@ -1,4 +1,4 @@
-"""Fields found from measurements, as the command line finds them."""
+"""Fields found from measurements are those of the command line."""
 
 import csv
 import json
@@ -30,19 +30,19 @@ def test_the_command_line_finds_the_same(found, command_line):
     assert plain(found) == command_line("identify", TABLES / "rubber-ball.csv", "--scene", BAR, "--free", ",".join(FREE))
 
 
-def test_columns_are_as_good_as_a_file(found):
+def test_columns_are_equivalent_to_a_file(found):
     table = columns(TABLES / "rubber-ball.csv")
     assert vibroimpact.identify(json.loads(BAR.read_text()), table, FREE) == found
     pandas = pytest.importorskip("pandas")
     assert vibroimpact.identify(BAR, pandas.DataFrame(table), FREE) == found
 
 
-def test_the_answer_by_name(found):
+def test_the_result_by_name(found):
     assert list(found.parameters) == FREE
     for field, value in found.parameters.items():
         low, high = found.intervals[field]
         assert low < value < high
-    # the truth behind the table
+    # The true values of the table.
     assert found.intervals[FREE[0]][0] < 4.2e6 < found.intervals[FREE[0]][1]
     assert found.intervals[FREE[1]][0] < 0.74 < found.intervals[FREE[1]][1]
 
@@ -68,7 +68,7 @@ def test_limits_candidates_and_level():
     assert same == narrow
 
 
-def test_what_cannot_be_used():
+def test_invalid_input():
     table = columns(TABLES / "rubber-ball.csv")
     with pytest.raises(vibroimpact.InvalidInput, match="^column location_m = 3 values is not allowed: as many"):
         vibroimpact.identify(BAR, table | {"location_m": [0.1, 0.2, 0.3]}, FREE)

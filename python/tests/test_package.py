@@ -1,4 +1,4 @@
-"""What is Python's own: kinds of input, arrays, exceptions, threads, signals."""
+"""The parts that only Python has: kinds of input, arrays, exceptions, threads, signals."""
 
 import _thread
 import pickle
@@ -27,14 +27,14 @@ def test_kinds_of_scenes(scene):
         vibroimpact.modes(scene | {"location_m": {1}}, 5)
 
 
-def test_the_exception_tells_the_field():
+def test_the_exception_names_the_field():
     with pytest.raises(vibroimpact.InvalidInput) as found:
         vibroimpact.infinite_beam(-1)
     fault = found.value
     assert isinstance(fault, ValueError)
     assert (fault.field, fault.value) == ("s", "-1")
     assert str(fault) == f"s = -1 is not allowed: {fault.allowed}"
-    # as multiprocessing sends it
+    # As multiprocessing sends it.
     again = pickle.loads(pickle.dumps(fault))
     assert (str(again), again.field, again.value, again.allowed) == (str(fault), "s", "-1", fault.allowed)
     with pytest.raises(vibroimpact.InvalidInput) as missing:
@@ -70,7 +70,7 @@ def test_the_exception_tells_the_field():
         lambda: vibroimpact.orbit(ASSEMBLIES / "shaken-table.json", over="contacts[0].name", to=1),
     ],
 )
-def test_what_cannot_be_used(call):
+def test_invalid_input(call):
     with pytest.raises(vibroimpact.InvalidInput, match="is (not allowed|missing): .|^line 1, column"):
         call()
 
@@ -81,7 +81,7 @@ def test_a_large_sweep_belongs_in_a_folder(scene):
         vibroimpact.sweep({"scene": scene, "vary": [axis]})
 
 
-def test_faults_in_arrays_name_the_element(scene):
+def test_errors_in_arrays_name_the_element(scene):
     mass, place, restitution = [0.01, 0.1, 0.5], [0.3, 0.6, 0.9], [0.5, 0.4, 0.3]
     with pytest.raises(vibroimpact.InvalidInput) as found:
         vibroimpact.fit(scene, mass, [0.3, 0.6, 7], restitution)
@@ -101,13 +101,13 @@ def test_arrays_of_a_simulation(scene):
     history = found["history"]
     shapes = {column.shape for column in history.values()}
     assert len(shapes) == 1 and all(column.dtype == np.float64 for column in history.values())
-    # the impulse of the force is the striker's change of momentum
+    # The impulse of the force is the striker's change of momentum.
     impulse = (np.diff(history["time_s"]) * (history["force_n"][1:] + history["force_n"][:-1]) / 2).sum()
     mass = 2 * found["energy"]["initial_j"] / scene["striker"]["speed_m_s"] ** 2
     change = mass * (found["striker_velocity_m_s"] + scene["striker"]["speed_m_s"])
     assert abs(impulse / change - 1) < 1e-3
     assert abs(found["sub_impacts"]["impulse_n_s"].sum() / change - 1) < 1e-8
-    # the energy of the modes at the last separation
+    # The energy of the modes at the last separation.
     energies = found["modal_energies"]
     assert energies["energy_j"].shape == (len(energies["time_s"]), found["modes"] + found["remainder_modes"])
     at_end = [np.interp(found["end_s"], energies["time_s"], mode) for mode in energies["energy_j"].T]
@@ -115,7 +115,7 @@ def test_arrays_of_a_simulation(scene):
 
 
 def test_no_contact_has_an_empty_table(scene):
-    # a free body that moves away faster than the ball follows
+    # A free body that moves away faster than the ball approaches.
     scene["structure"] = {"kind": "modal", "omega_rad_s": [0], "shape_at_location": [1]}
     del scene["location_m"], scene["modes"]
     away = {"moving_modes": [{"mode": 1, "velocity_m_s": -2}]}
@@ -134,7 +134,7 @@ def test_emoc_of_arrays(scene):
         for k, place in enumerate(places):
             one = scene | {"location_m": place, "striker": {"mass_kg": mass, "radius_m": 0.015, "speed_m_s": 1}}
             assert vibroimpact.emoc(one, mu0=0.5, alpha0=8, alpha1=0.3)["restitution"] == table[i, k]
-    # a number for numbers; any order in memory, and any kind of number
+    # Numbers give a number; any order in memory and any kind of number is accepted.
     assert np.ndim(vibroimpact.emoc_restitution(1, shapes[0])) == 0
     turned = vibroimpact.emoc_restitution(masses[:, np.newaxis], np.asfortranarray(shapes), mu0=0.5, alpha0=8, alpha1=0.3)
     np.testing.assert_array_equal(table, turned)
@@ -144,7 +144,7 @@ def test_emoc_of_arrays(scene):
         vibroimpact.emoc_restitution([1, 2], np.ones((3, 5)))
 
 
-def test_a_fit_finds_the_parameters_that_made_the_data(scene):
+def test_a_fit_finds_the_true_parameters(scene):
     chosen = {"mu0": 0.4, "alpha0": 6.0, "alpha1": 0.8}
     mass, place = map(np.ravel, np.meshgrid(np.geomspace(0.01, 10, 12), [0.1, 0.25, 0.4, 0.5]))
     shapes = [vibroimpact.modes(scene | {"location_m": x}, 50)["shape_at_location"] for x in place]
@@ -200,7 +200,7 @@ def test_other_threads_run_meanwhile(name, scene):
     other.join()
     within = [t for t in ticks if began + 0.002 < t < ended - 0.002]
     assert ended - began > 0.02, "too short to tell"
-    # the ticks lie all over the call, not at its ends, where arguments and results are converted
+    # The ticks are distributed over the whole call, not at its ends, where arguments and results are converted.
     assert len(within) >= 5
     assert max(np.diff([began, *within, ended])) < 0.5 * (ended - began)
 

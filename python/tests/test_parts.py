@@ -40,7 +40,7 @@ def test_a_scene_of_parts_is_that_of_the_file(scene):
 
 
 def rebuilt(name, tree):
-    """A part from a tree as it stands in a file."""
+    """A part from a tree as in a file."""
     if name in make_parts.TAGGED:
         tag = make_parts.TAGGED[name]
         name = "".join(word.capitalize() for word in tree[tag].split("-"))

@@ -1,4 +1,4 @@
-"""What results know beside their entries: names, pictures, notebooks, data frames."""
+"""Results beyond their entries: names, pictures, notebooks, data frames."""
 
 import sys
 from html.parser import HTMLParser
@@ -33,9 +33,9 @@ def test_entries_by_name(scene):
     assert type(vibroimpact.plan(scene)) is vibroimpact.Result
 
 
-def test_an_impact_draws_itself(scene, pyplot):
+def test_an_impact_is_plotted(scene, pyplot):
     with_history = vibroimpact.simulate(scene, history=True)
-    # a result without history is solved once more, with the same outcome
+    # A result without history is solved once more, with the same outcome.
     for found in (with_history, vibroimpact.simulate(scene)):
         motion, force = found.plot().axes
         np.testing.assert_array_equal(force.lines[0].get_ydata(), with_history.history["force_n"])
@@ -45,11 +45,11 @@ def test_an_impact_draws_itself(scene, pyplot):
         vibroimpact.simulate(scene | {"model": "emoc", "modes": "auto"}).plot()
 
 
-def test_bodies_draw_themselves(pyplot):
+def test_bodies_are_plotted(pyplot):
     found = vibroimpact.simulate(ASSEMBLIES / "dropped-ball.json")
     gaps, forces = found.plot().axes
     assert len(gaps.lines) == len(found.contacts)
-    # the ball rises some millimetres, sinks into the ground by less than a tenth of one, and is pushed only there
+    # The ball rises some millimetres, sinks into the ground by less than a tenth of one, and has a force only there.
     gap_mm, force_n = gaps.lines[0].get_ydata(), forces.lines[0].get_ydata()
     assert 1 < gap_mm.max() < 10 and -0.1 < gap_mm.min() < 0
     assert force_n.max() > 0 and not force_n[gap_mm > 1e-6].any()
@@ -62,7 +62,7 @@ def test_without_matplotlib(scene, monkeypatch):
 
 
 class Reader(HTMLParser):
-    """Reads a page and holds its tags against each other."""
+    """Reads a page and checks that its tags match."""
 
     def __init__(self):
         super().__init__()

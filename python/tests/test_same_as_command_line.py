@@ -1,4 +1,4 @@
-"""The numbers, keys and words are those of the command line."""
+"""The numbers, keys and messages are those of the command line."""
 
 import csv
 import json
@@ -12,7 +12,7 @@ GALLERY = sorted(path for path in SCENES.iterdir() if path.suffix in (".json", "
 
 
 def plain(value):
-    """A result with its arrays as JSON has them."""
+    """A result with its arrays as lists, as in JSON."""
     if isinstance(value, np.ndarray) and value.dtype.names:
         return [dict(zip(value.dtype.names, map(plain, row.tolist()))) for row in value]
     if isinstance(value, np.ndarray) and value.dtype.kind == "c":
@@ -109,7 +109,7 @@ def test_sensitivity(command_line, path, by):
     assert plain(vibroimpact.sensitivity(path, by)) == command_line("sensitivity", path, "--by", ",".join(by))
 
 
-def test_a_model_without_a_course_in_time(scene, command_line, tmp_path):
+def test_a_model_without_a_history(scene, command_line, tmp_path):
     file = tmp_path / "scene.json"
     file.write_text(json.dumps(scene | {"model": "emoc"}))
     found = vibroimpact.simulate(file, history=True)
@@ -159,7 +159,7 @@ SWEEP = {
     "scene": json.loads((SCENES / "pinned-beam.json").read_text()),
     "vary": [
         {"field": "striker.speed_m_s", "from": 0.1, "to": 10, "count": 4, "scale": "log"},
-        # the last place is beyond the beam, which is a row too
+        # The last location is beyond the beam, which gives a row too.
         {"field": "location_m", "values": [0.0, 0.31, 0.5, 7]},
         {"field": "contact.law", "values": ["hertz"]},
     ],
@@ -198,7 +198,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize("field, value", FAULTS)
-def test_faults(field, value, scene, command_line, tmp_path):
+def test_errors(field, value, scene, command_line, tmp_path):
     *path, last = field.replace("[0]", ".0").split(".")
     entry = scene
     for name in path:

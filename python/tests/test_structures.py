@@ -1,4 +1,4 @@
-"""Structures from other programs, held against our own beam, and what their readers refuse."""
+"""Structures from other programs, compared with our own beam, and input that their readers reject."""
 
 import json
 import math
@@ -23,7 +23,7 @@ def own_beam(location_m, theory="euler-bernoulli"):
                           "width_m": 0.02, "thickness_m": 0.01}],
         },
         "striker": {"mass_kg": 0.05, "radius_m": 0.0115, "speed_m_s": 1},
-        # soft, so that the contact lasts longer than the highest listed modes take
+        # The contact is soft, so that it lasts longer than a period of the highest listed modes.
         "contact": {"law": "hertz", "stiffness_n_m1_5": 1e7},
         "location_m": location_m,
     }
@@ -64,9 +64,9 @@ def universal():
     return structures.from_universal(FILES / "universal" / "cantilever.uff", {"tip": (2, 3), "middle": (1, 3)}, "tip", 3)
 
 
-# the theory by which our beam bends, and the largest relative errors of three frequencies, of shapes beside the largest, and
-# of compliances: solids bend by Timoshenko's theory, and their clamp also keeps the section from widening; MYSTRAN's bars have their mass in the
-# nodes, twenty of them; Hermite's elements are exact to what they are wide; the responses are noisy
+# The theory of our beam, and the largest relative errors of three frequencies, of shapes relative to the largest, and of
+# compliances. Solids bend by Timoshenko's theory, and their clamp also prevents lateral contraction; MYSTRAN's bars have their mass
+# in twenty nodes; the error of Hermite elements follows from their length; the responses are noisy.
 @pytest.mark.parametrize(
     ("reader", "theory", "errors"),
     [
@@ -89,7 +89,7 @@ def test_readers_agree_with_our_own_beam(reader, theory, errors, tmp_path):
         assert compliance == pytest.approx(exact[name], rel=errors[2])
     assert "tip" in structure.static_compliances_m_n
 
-    # an impact on the table, remainder modes for all that it leaves out, beside one on our beam with all its modes
+    # An impact on the table, with remainder modes for the modes that it does not list, and one on our beam with all its modes.
     scene = own_beam(0.5) | {"structure": structure.write(tmp_path / "modes.csv"), "location": "tip"}
     del scene["location_m"]
     scene["residual_compliance"] = True
@@ -98,27 +98,27 @@ def test_readers_agree_with_our_own_beam(reader, theory, errors, tmp_path):
     ours = vibroimpact.simulate(own_beam(0.5, theory) | {"tolerance": 1e-4})
     assert read["remainder_modes"] > 0
     assert read["restitution"] == pytest.approx(ours["restitution"], abs=0.005)
-    # the same numbers within the scene
+    # The same numbers within the scene.
     inside = vibroimpact.simulate(scene | {"structure": structure.modal()})
     assert inside["restitution"] == read["restitution"]
 
 
 def test_a_free_structure_has_the_compliance_of_its_elastic_modes():
     pytest.importorskip("scipy")
-    # three masses in a row on two springs: modes by hand
+    # Three masses in a row on two springs: the modes are known.
     k, m = 1e5, 0.5
     stiffness = k * np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
     found = structures.from_matrices(stiffness, m * np.eye(3), {"end": 0}, 2)
     assert found.omega_rad_s[0] == 0.0
     assert found.omega_rad_s[1] == pytest.approx(math.sqrt(k / m), rel=1e-10)
-    # elastic modes (1, 0, -1)/sqrt 2 and (1, -2, 1)/sqrt 6 with k/m and 3 k/m
+    # Elastic modes (1, 0, -1)/sqrt 2 and (1, -2, 1)/sqrt 6 with k/m and 3 k/m.
     exact = 0.5 / k + (1 / 6) / (3 * k)
     assert found.static_compliances_m_n["end"] == pytest.approx(exact, rel=1e-10)
 
 
-def test_units_of_a_model_are_brought_to_si():
+def test_units_of_a_model_are_converted_to_si():
     pytest.importorskip("scipy")
-    # one mass on a spring, in millimetres and tonnes: N/mm and t
+    # One mass on a spring, in millimetres and tonnes: N/mm and t.
     pair = structures.from_matrices(
         np.array([[2.0, -1], [-1, 2.0]]), 1e-3 * np.eye(2), {"p": 0}, 1, length_m=1e-3, mass_kg=1e3
     )
@@ -130,7 +130,7 @@ def test_units_of_a_model_are_brought_to_si():
     assert pair.static_compliances_m_n["p"] == pytest.approx(same.static_compliances_m_n["p"])
 
 
-def test_measured_modes_carry_their_uncertainty(tmp_path):
+def test_measured_modes_have_their_uncertainty(tmp_path):
     table = tmp_path / "test.csv"
     table.write_text(
         "frequency_hz,frequency_hz_sd,damping_ratio,damping_ratio_sd,tip,tip_sd,middle\n"
@@ -170,7 +170,7 @@ def test_tables_that_cannot_be_used_are_refused_by_name(text, told, tmp_path):
         structures.from_table(tmp_path / "test.csv")
 
 
-def test_what_a_file_does_not_hold_is_told():
+def test_missing_content_of_a_file_is_reported():
     folder = FILES / "calculix"
     files = (folder / "cantilever.dat", folder / "cantilever.frd")
     with pytest.raises(ValueError, match="node 7 is not in"):
@@ -187,7 +187,7 @@ def test_what_a_file_does_not_hold_is_told():
         structures.from_calculix(*files, {"tip": (293, UP)}, mass_kg=0)
 
 
-def test_what_cannot_be_solved_or_read_is_told():
+def test_unsolvable_or_unreadable_input_is_reported():
     pytest.importorskip("scipy")
     eye = np.eye(3)
     with pytest.raises(ValueError, match="count = 3"):
@@ -200,7 +200,7 @@ def test_what_cannot_be_solved_or_read_is_told():
         structures.from_matrices(np.diag([-1.0, 1, 2]), eye, {"p": 0}, 2)
     pytest.importorskip("pyuff")
     file = FILES / "universal" / "cantilever.uff"
-    with pytest.raises(ValueError, match="holds no response"):
+    with pytest.raises(ValueError, match="contains no response"):
         structures.from_universal(file, {"tip": (2, 3), "other": (9, 3)}, "tip", 3)
     with pytest.raises(ValueError, match="driving = 'end'"):
         structures.from_universal(file, {"tip": (2, 3)}, "end", 3)

@@ -16,16 +16,16 @@ HERE = Path(__file__).parents[1]
 SCHEMA = HERE.parent / "datasets" / "schema" / "scene.schema.json"
 PARTS = HERE / "vibroimpact" / "parts.py"
 
-# definitions that are one of several kinds, and the field that tells which
+# Definitions that are one of several kinds, and the field that names the kind.
 TAGGED = {"Structure": "kind", "Contact": "law"}
-# the other objects that a scene of one impact holds
+# The other objects of a scene of one impact.
 OBJECTS = ["Attachment", "Support", "Segment", "Point", "MovingMode", "Start", "Striker"]
 WIDTH = 124
 
 HEADER = '''"""The parts of a scene of one impact: dataclasses with the fields of the scene file, in SI units.
 
-Written by ``tools/make_parts.py`` from the JSON Schema of scenes. A field that is left out is ``None`` here and does not stand in the
-scene; what a field may hold is checked where the scene is used.
+Written by ``tools/make_parts.py`` from the JSON Schema of scenes. An omitted field is ``None`` here and is not written to the
+scene; the values of fields are checked when the scene is used.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from ._part import Part
 
 
 class Maker:
-    """The text of the module, a definition after the other."""
+    """The text of the module, one definition after the other."""
 
     def __init__(self) -> None:
         self.definitions: dict[str, Any] = json.loads(SCHEMA.read_text(encoding="utf-8"))["$defs"]
@@ -62,7 +62,7 @@ class Maker:
         return HEADER + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(self.text)
 
     def tagged(self, tag: str, schema: dict[str, Any]) -> str:
-        """A kind of structure or a law, under the name that its tag has."""
+        """A kind of structure or a law, under the name of its tag."""
         value = schema["properties"][tag]["const"]
         name = "".join(word.capitalize() for word in value.split("-"))
         self.part(name, schema, (tag, value))
@@ -88,7 +88,7 @@ class Maker:
         return self.definitions[schema["$ref"].rsplit("/", 1)[1]]
 
     def kind(self, schema: dict[str, Any]) -> str:
-        """The type of a field; whether it may be left out stands beside it."""
+        """The type of a field, without the information whether the field is optional."""
         if "$ref" in schema:
             name = schema["$ref"].rsplit("/", 1)[1]
             return name if name in OBJECTS or name in TAGGED else self.kind(self.resolved(schema))
@@ -115,7 +115,7 @@ class Maker:
 
 
 def told(description: str) -> str:
-    """The first paragraph of a description, without the marks of Rust's documentation."""
+    """The first paragraph of a description, without the markup of Rust's documentation."""
     first = description.split("\n\n")[0].replace("\n", " ")
     first = re.sub(r'^`"[a-z-]+"`: (a |an |the )?', lambda found: found[1] or "", first)
     first = re.sub(r",? ?`(?:\w+::)+\w+`", "", first)

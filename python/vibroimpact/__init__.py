@@ -1,9 +1,9 @@
-"""What happens when a compact body strikes a slender vibrating one, and when many bodies strike each other.
+"""Impacts of a compact body on a slender vibrating one, and of many bodies on each other.
 
-A scene of one impact is a :class:`Scene`; it may also be a mapping, or the path of a JSON or TOML file, as the command line takes
-it. Every quantity is in SI units, and its name says which. Results are dictionaries with the keys that the command line prints
-with ``--json``; histories and tables are numpy arrays, of which ``pandas.DataFrame`` makes a data frame. All functions release
-the interpreter's lock while they compute.
+A scene of one impact is a :class:`Scene`; it may also be a mapping, or the path of a JSON or TOML file, as for the command line.
+Every quantity is in SI units, and its name ends in the unit. Results are dictionaries with the keys that the command line prints
+with ``--json``; histories and tables are numpy arrays, which ``pandas.DataFrame`` converts into a data frame. All functions
+release the interpreter's lock while they compute.
 """
 
 from ._errors import InvalidInput

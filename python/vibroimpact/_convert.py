@@ -1,4 +1,4 @@
-"""Between Python's values and the JSON that the library reads and writes."""
+"""Conversion between Python's values and the JSON that the library reads and writes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._result import Identification, Impact, Motion, Result
 if TYPE_CHECKING:
     from _typeshed import SupportsKeysAndGetItem
 
-# lists of objects that become structured arrays: their fields, by the name of the list
+# Lists of objects that become structured arrays: the fields, by the name of the list.
 _TABLES: dict[str, list[list[str]]] = {
     "sub_impacts": [["start_s", "end_s", "impulse_n_s", "peak_force_n", "peak_compression_m"]],
     "contacts": [
@@ -36,7 +36,7 @@ _TABLES: dict[str, list[list[str]]] = {
         ],
     ],
 }
-# the intervals of a contact between bodies
+# The intervals of a contact between bodies.
 _INTERVALS = [
     [
         "start_s",
@@ -48,14 +48,14 @@ _INTERVALS = [
         "separation_speed_m_s",
     ]
 ]
-# classes of results, by an entry that only this kind of result has
+# Classes of results, by an entry that only this kind of result has.
 _KINDS: dict[str, type[Result]] = {"striker_velocity_m_s": Impact, "steady_motion": Motion, "profiles": Identification}
 _WHOLE = ("n", "side", "intervals_per_period")
 _ARRAYS = ("modes_j", "intervals")
 
 
 def to_json(tree: Mapping[str, Any]) -> str:
-    """A scene or a sweep as JSON text; it may hold arrays and numbers of numpy."""
+    """A scene or a sweep as JSON text; it may contain arrays and numbers of numpy."""
     return json.dumps(dict(tree), default=_plain)
 
 
@@ -66,7 +66,7 @@ def _plain(value: object) -> object:
         return dict(value)
     if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray)):
         return list(value)
-    raise TypeError(f"a scene cannot hold a {type(value).__name__}")
+    raise TypeError(f"a scene cannot contain a {type(value).__name__}")
 
 
 def to_csv(table: SupportsKeysAndGetItem[str, Any]) -> str:
@@ -93,7 +93,7 @@ def _cell(value: Any) -> str:
 
 
 def to_free(free: Mapping[str, Any] | Iterable[str]) -> list[str]:
-    """Free fields as the command line has them: by their names, or ``field=low..high``."""
+    """Free fields in the form of the command line: by their names, or ``field=low..high``."""
     if isinstance(free, str):
         raise TypeError("free must be a list of fields, or a mapping from fields to limits of the search, not one text")
     if not isinstance(free, Mapping):
@@ -102,7 +102,7 @@ def to_free(free: Mapping[str, Any] | Iterable[str]) -> list[str]:
 
 
 def from_json(text: str) -> Result:
-    """A result of the class of its kind, with its tables as arrays."""
+    """A result in the class for its kind, with its tables as arrays."""
     tree = json.loads(text, object_hook=_with_arrays)
     kind = next((kind for entry, kind in _KINDS.items() if entry in tree), Result)
     return kind(tree)
@@ -128,7 +128,7 @@ def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
     for name, kinds in tables.items():
         rows = entry.get(name)
         if isinstance(rows, list):
-            # a scene has lists of these names, too
+            # A scene has lists of these names, too.
             fields = next((fields for fields in kinds if not rows or fields == list(rows[0])), None)
             if fields is not None:
                 entry[name] = _table(rows, fields)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 
 class InvalidInput(ValueError):
-    """Input that cannot be used; its text is that of the command line.
+    """Input that cannot be used; the text is that of the command line.
 
-    ``field`` is the path of the field, as in ``structure.segments[0].length_m``; ``value`` what was found there, as
-    JSON text, ``None`` where the field is missing; ``allowed`` what would be allowed.
+    ``field`` is the path of the field, as in ``structure.segments[0].length_m``; ``value`` is its value as
+    JSON text, or ``None`` if the field is missing; ``allowed`` states what would be allowed.
     """
 
     field: str

@@ -1,4 +1,4 @@
-"""What all parts of a scene have in common."""
+"""The base class of all parts of a scene."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any, ClassVar
 
 
 class Part(Mapping[str, Any]):
-    """A part of a scene is a mapping as well: the content of the scene file, without the fields left out.
+    """A part of a scene is also a mapping: the content of the scene file, without the omitted fields.
 
-    Functions take it as they take a dictionary; ``dataclasses.replace`` makes another with some fields changed.
+    Functions accept it like a dictionary; ``dataclasses.replace`` returns a copy with some fields changed.
     """
 
-    # the field of the file that tells which kind of structure, or which law, and its value
+    # The field of the file that names the kind of structure or the law, and its value.
     tag: ClassVar[tuple[str, str] | None] = None
 
     def __getitem__(self, name: str) -> Any:

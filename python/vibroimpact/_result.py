@@ -1,4 +1,4 @@
-"""Results: dictionaries with their most frequent entries as attributes, which draw themselves."""
+"""Results: dictionaries with their main entries as attributes, and a method to plot them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Columns = dict[str, NDArray[np.float64]]
 
 
 class Result(dict[str, Any]):
-    """What the command line prints with ``--json``, under the same keys, with tables as arrays.
+    """The object that the command line prints with ``--json``, under the same keys, with tables as arrays.
 
     A notebook shows it as a table.
     """
@@ -26,7 +26,7 @@ class Result(dict[str, Any]):
 
 
 class Impact(Result):
-    """One impact, solved."""
+    """The solution of one impact."""
 
     @property
     def outcome(self) -> str:
@@ -40,18 +40,18 @@ class Impact(Result):
 
     @property
     def restitution_uncertainty(self) -> float | None:
-        """Uncertainty of the restitution; ``None`` where it is not known."""
+        """Uncertainty of the restitution; ``None`` if it is not known."""
         return self["restitution_uncertainty"]  # type: ignore[no-any-return]
 
     @property
     def sub_impacts(self) -> NDArray[Any] | None:
         """The contacts as a structured array, with the columns ``start_s``, ``end_s``, ``impulse_n_s``, ``peak_force_n`` and
-        ``peak_compression_m``; ``None`` where the model follows no contacts."""
+        ``peak_compression_m``; ``None`` if the model does not resolve contacts."""
         return self["sub_impacts"]  # type: ignore[no-any-return]
 
     @property
     def history(self) -> Columns | None:
-        """Motion and force over time, a column by its name; ``None`` unless it was requested and the model resolves it."""
+        """Motion and force over time, as columns by name; ``None`` unless requested and resolved by the model."""
         return self.get("history")
 
     def plot(self) -> Figure:
@@ -77,21 +77,21 @@ class Impact(Result):
 
 
 class Motion(Result):
-    """A scene of bodies, solved."""
+    """The solution of a scene of bodies."""
 
     @property
     def outcome(self) -> str:
-        """How the run ended."""
+        """The way in which the run ended."""
         return str(self["outcome"])
 
     @property
     def contacts(self) -> dict[str, Any]:
-        """The contacts by their names; of each, ``intervals`` is a structured array."""
+        """The contacts by their names; ``intervals`` of each is a structured array."""
         return self["contacts"]  # type: ignore[no-any-return]
 
     @property
     def history(self) -> Columns | None:
-        """Gaps, forces and motions over time, a column by its name; ``None`` unless it was requested."""
+        """Gaps, forces and motions over time, as columns by name; ``None`` unless requested."""
         return self.get("history")
 
     def plot(self) -> Figure:
@@ -108,7 +108,7 @@ class Motion(Result):
 
 
 class Identification(Result):
-    """Fields of a scene, found from measurements."""
+    """Fields of a scene that were found from measurements."""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -117,7 +117,7 @@ class Identification(Result):
 
     @property
     def intervals(self) -> dict[str, tuple[float | None, float | None]]:
-        """The interval of each free field by the likelihood profile; an end is ``None`` where the data give none."""
+        """The interval of each free field by the likelihood profile; an end is ``None`` if the data do not determine it."""
         return {found["field"]: tuple(found["profile_interval"]) for found in self["parameters"]}
 
     def plot(self) -> Figure:

@@ -1,7 +1,7 @@
 """The parts of a scene of one impact: dataclasses with the fields of the scene file, in SI units.
 
-Written by ``tools/make_parts.py`` from the JSON Schema of scenes. A field that is left out is ``None`` here and does not stand in the
-scene; what a field may hold is checked where the scene is used.
+Written by ``tools/make_parts.py`` from the JSON Schema of scenes. An omitted field is ``None`` here and is not written to the
+scene; the values of fields are checked when the scene is used.
 """
 
 from __future__ import annotations

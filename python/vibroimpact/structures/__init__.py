@@ -1,9 +1,9 @@
 """Structures from other programs and from tests, as a ``modes-file`` for scenes.
 
 Each reader returns a :class:`Structure`: frequencies, shapes at named points, and the static compliance at these points
-where it is known. ``structure.write("bat.csv")`` writes the table and returns what a scene says under ``structure``. All
-numbers must be in SI units; a model in millimetres and tonnes is brought to them by ``length_m`` and ``mass_kg``, the
-metres of its unit of length and the kilograms of its unit of mass.
+if it is known. ``structure.write("bat.csv")`` writes the table and returns the entry ``structure`` of a scene. All numbers must
+be in SI units; a model in millimetres and tonnes is converted by ``length_m`` and ``mass_kg``, its unit of length in metres and
+its unit of mass in kilograms.
 
 ====================================  ==========================================  =================
 reader                                reads                                       needs

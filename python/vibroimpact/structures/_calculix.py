@@ -27,8 +27,8 @@ def from_calculix(
 ) -> Structure:
     """Modes of a ``*FREQUENCY`` step.
 
-    ``points`` gives the node and the direction of each place that may be struck, ``{"tip": (293, (0, 0, 1))}``.
-    ``static`` names, for points whose compliance is to be known, the ``.frd`` of a ``*STATIC`` step that loads the point
+    ``points`` gives the node and the direction of each point that may be struck, ``{"tip": (293, (0, 0, 1))}``.
+    ``static`` names, for points whose compliance is needed, the ``.frd`` of a ``*STATIC`` step that loads the point
     by ``force`` along its direction. CalculiX writes displacements to the ASCII ``.frd`` with six digits; its shapes are
     mass-normalised.
     """
@@ -37,7 +37,7 @@ def from_calculix(
     nodes = {name: (node, direction(name, along)) for name, (node, along) in points.items()}
     blocks = _displacements(Path(frd))
     if len(blocks) < len(omega):
-        raise ValueError(f"{frd} holds {len(blocks)} shapes, and {dat} {len(omega)} frequencies: write U for every mode")
+        raise ValueError(f"{frd} contains {len(blocks)} shapes, and {dat} {len(omega)} frequencies: write U for every mode")
     shapes = {name: [_at(block, node, frd) @ along for block in blocks[: len(omega)]] for name, (node, along) in nodes.items()}
     compliances = {}
     for name, file in (static or {}).items():
@@ -46,7 +46,7 @@ def from_calculix(
         node, along = nodes[name]
         loaded = _displacements(Path(file))
         if not loaded:
-            raise ValueError(f"{file} holds no displacements: *NODE FILE with U")
+            raise ValueError(f"{file} contains no displacements: *NODE FILE with U")
         compliances[name] = float(_at(loaded[-1], node, file) @ along) / force * compliance_factor
     damping = None if damping_ratios is None else np.broadcast_to(np.asarray(damping_ratios, dtype=float), omega.shape)
     return Structure(
@@ -64,17 +64,17 @@ def _at(block: dict[int, Floats], node: int, file: str | PathLike[str]) -> Float
 
 
 def _frequencies(path: Path) -> Floats:
-    """Angular frequencies; an eigenvalue that is negative by rounding is that of a rigid-body mode."""
+    """Angular frequencies; an eigenvalue that is zero to rounding is that of a rigid-body mode."""
     text = path.read_text(encoding="ascii", errors="replace")
     table = text.partition("E I G E N V A L U E   O U T P U T")[2].partition("P A R T I C I P A T I O N")[0]
     eigenvalues = [float(found[1]) for found in re.finditer(rf"^\s*\d+\s+({_NUMBER})\s+{_NUMBER}", table, re.MULTILINE)]
     if not eigenvalues:
-        raise ValueError(f"{path} holds no eigenvalues: run a *FREQUENCY step")
+        raise ValueError(f"{path} contains no eigenvalues: run a *FREQUENCY step")
     values = np.asarray(eigenvalues)
-    # what is nothing beside the largest is a rigid-body mode
+    # An eigenvalue that is negligible relative to the largest is that of a rigid-body mode.
     values[np.abs(values) < 1e-9 * np.abs(values).max()] = 0.0
     if np.any(values < 0.0):
-        raise ValueError(f"{path} holds the eigenvalue {values.min()}: an unstable structure has no modes")
+        raise ValueError(f"{path} contains the eigenvalue {values.min()}: an unstable structure has no modes")
     return np.asarray(np.sqrt(values))
 
 

@@ -1,9 +1,9 @@
 """Modes and static compliances from stiffness and mass matrices.
 
 With ``K`` and ``M`` the pencil ``K x = omega^2 M x`` is solved for its lowest modes by Lanczos' method with a shift
-(scipy's ``eigsh``). The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``; of a structure that
+(scipy's ``eigsh``). The static compliance at a point with the load vector ``f`` is ``f^T K^-1 f``. For a structure that
 moves freely, it is that of the elastic modes alone: the load is balanced by inertia, ``g = f - M R R^T f`` with the
-mass-normalised rigid-body modes ``R``, and the rigid part of the answer is taken out.
+mass-normalised rigid-body modes ``R``, and the rigid-body part of the solution is removed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from ._structure import Floats, Structure, units
 
-# an eigenvalue below this share of the largest found is that of a rigid-body mode
+# An eigenvalue below this share of the largest one computed is that of a rigid-body mode.
 _RIGID = 1e-8
 
 
@@ -32,12 +32,12 @@ def from_matrices(
     length_m: float = 1.0,
     mass_kg: float = 1.0,
 ) -> Structure:
-    """The ``count`` lowest modes.
+    """Computes the ``count`` lowest modes.
 
     ``stiffness`` and ``mass`` are Matrix Market files or scipy.sparse matrices, symmetric, without the fixed degrees of freedom.
-    ``points`` gives, for each place that may be struck, its degree of freedom (from 0) or a vector of weights over all
-    of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those sought; left out, it is chosen: slightly negative, so that
-    a structure that moves freely can be factorised.
+    ``points`` gives, for each point that may be struck, its degree of freedom (from 0) or a vector of weights over all
+    of them. ``shift`` is an eigenvalue (rad^2/s^2) near and below those to be computed. The default is slightly negative, so that
+    the matrix of a structure that moves freely can be factorised.
     """
     from scipy.sparse.linalg import eigsh, splu
 
@@ -50,9 +50,9 @@ def from_matrices(
     shape_factor, compliance_factor = units(length_m, mass_kg)
     loads = {name: _load(name, point, size) for name, point in points.items()}
     if shift is None:
-        # far below any elastic mode of a sound mesh, yet above rounding
+        # This is far below any elastic mode of a reasonable mesh, but above rounding.
         shift = -1e-9 * float(abs(k.diagonal()).sum() / abs(m.diagonal()).sum())
-    # a start of its own would make every run differ
+    # A random start would make every run differ.
     start = np.random.default_rng(0).standard_normal(size)
     eigenvalues, vectors = eigsh(k, count, m, sigma=shift, which="LM", v0=start)
     order = np.argsort(eigenvalues)
@@ -62,7 +62,7 @@ def from_matrices(
     if np.any(eigenvalues[~rigid] < 0.0):
         raise ValueError(f"stiffness is not allowed: the eigenvalue {eigenvalues.min()} is negative, the structure unstable")
     modes = vectors[:, rigid]
-    # with rigid-body modes the shifted matrix is factorised in place of K, and its error is taken out by iteration
+    # With rigid-body modes the shifted matrix is factorised in place of K, and iteration removes the error.
     factors = splu((k - shift * m).tocsc() if rigid.any() else k.tocsc())
 
     def compliance(load: Floats) -> float:

@@ -21,12 +21,12 @@ def from_nastran(
     length_m: float = 1.0,
     mass_kg: float = 1.0,
 ) -> Structure:
-    """Modes of SOL 103.
+    """Reads the modes of SOL 103.
 
-    ``points`` gives the grid point and the direction of each place that may be struck, ``{"tip": (21, (0, 0, 1))}``;
-    ``static`` names, for points whose compliance is to be known, the ``.op2`` of SOL 101 in which ``force`` loads the
-    point along its direction. Shapes of any normalisation are brought to unit modal mass by the table of
-    eigenvalues; a file without one (MYSTRAN's) must hold mass-normalised shapes, ``NORM=MASS`` of EIGRL.
+    ``points`` gives the grid point and the direction of each point that may be struck, ``{"tip": (21, (0, 0, 1))}``;
+    ``static`` names, for points whose compliance is needed, the ``.op2`` of SOL 101 in which ``force`` loads the
+    point along its direction. Shapes of any normalisation are scaled to unit modal mass by the table of
+    eigenvalues; a file without one (MYSTRAN's) must contain mass-normalised shapes, ``NORM=MASS`` of EIGRL.
     """
     shape_factor, compliance_factor = units(length_m, mass_kg)
     nodes = {name: (node, direction(name, along)) for name, (node, along) in points.items()}
@@ -34,7 +34,7 @@ def from_nastran(
     vectors = _first(model.eigenvectors, op2, "eigenvectors: DISPLACEMENT(PLOT) = ALL")
     count = vectors.data.shape[0]
     eigenvalues = np.asarray(vectors.eigns, dtype=np.float64)
-    # by rounding, rigid-body modes have small eigenvalues of either sign
+    # Rigid-body modes have small eigenvalues of either sign, due to rounding.
     omega = np.where(eigenvalues < 1e-9 * eigenvalues.max(), 0.0, np.sqrt(np.abs(eigenvalues)))
     table = next(iter(model.eigenvalues.values()), None)
     masses = np.ones(count) if table is None else np.asarray(table.generalized_mass, dtype=np.float64)[:count]
@@ -64,7 +64,7 @@ def _read(path: str | PathLike[str]) -> Any:
 
 def _first(results: Mapping[Any, Any], path: str | PathLike[str], what: str) -> Any:
     if not results:
-        raise ValueError(f"{fspath(path)} holds no {what}")
+        raise ValueError(f"{fspath(path)} contains no {what}")
     return next(iter(results.values()))
 
 

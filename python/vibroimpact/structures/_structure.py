@@ -1,4 +1,4 @@
-"""What every reader returns, and how it is written."""
+"""The result of every reader, and its output."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Floats = NDArray[np.float64]
 
-# columns of the table that no point may be called by
+# Names of columns that a point cannot have.
 _TAKEN = ("omega_rad_s", "frequency_hz", "damping_ratio", "modal_mass_kg")
 
 
@@ -24,9 +24,9 @@ _TAKEN = ("omega_rad_s", "frequency_hz", "damping_ratio", "modal_mass_kg")
 class Structure:
     """Modes of a structure at named points.
 
-    ``shapes`` are mass-normalised (kg^-1/2), an array for each point over the modes. ``static_compliances_m_n`` are
-    those of the whole elastic structure, from which the program makes remainder modes for all that are not listed.
-    ``standard_deviations`` belong to ``omega_rad_s``, ``damping_ratios`` and the shapes, by these names and
+    ``shapes`` are mass-normalised (kg^-1/2), with an array over the modes for each point. ``static_compliances_m_n`` are
+    those of the whole elastic structure, from which the program computes remainder modes for all modes that are not listed.
+    ``standard_deviations`` are those of ``omega_rad_s``, ``damping_ratios`` and the shapes, by these names and
     ``points.NAME.shape``.
     """
 
@@ -58,7 +58,7 @@ class Structure:
                 raise ValueError(f"static compliance of {name} = {compliance} is not allowed: 0 or a positive number")
 
     def write(self, path: str | PathLike[str]) -> dict[str, Any]:
-        """Writes the table of modes, and returns the ``structure`` of a scene that stands in the same folder."""
+        """Writes the table of modes, and returns the ``structure`` of a scene in the same folder."""
         path = Path(path)
         columns: dict[str, Floats] = {"omega_rad_s": self.omega_rad_s}
         if self.damping_ratios is not None:
@@ -74,7 +74,7 @@ class Structure:
         return structure
 
     def modal(self) -> dict[str, Any]:
-        """The same as a ``structure`` of kind ``modal``, which stands in the scene itself."""
+        """The same as a ``structure`` of kind ``modal``, which is part of the scene itself."""
         points: dict[str, dict[str, Any]] = {name: {"shape": shape.tolist()} for name, shape in self.shapes.items()}
         for name, compliance in self.static_compliances_m_n.items():
             points[name]["static_compliance_m_n"] = float(compliance)
@@ -84,9 +84,9 @@ class Structure:
         return structure
 
     def uncertain(self, location: str | None = None) -> dict[str, dict[str, list[float]]]:
-        """What a sweep says under ``uncertain``: a normal distribution for each number with a standard deviation.
+        """The entry ``uncertain`` of a sweep: a normal distribution for each number with a standard deviation.
 
-        With ``location``, shapes of other points are left out: they do not matter to an impact there.
+        With ``location``, shapes of other points are omitted, because they do not affect an impact there.
         """
         means: dict[str, Floats] = {"omega_rad_s": self.omega_rad_s}
         if self.damping_ratios is not None:
@@ -101,7 +101,7 @@ class Structure:
         return found
 
     def write_sweep(self, path: str | PathLike[str], scene: Mapping[str, Any]) -> None:
-        """Writes a sweep in which the numbers of this structure are uncertain; ``scene`` says all but ``structure``."""
+        """Writes a sweep in which the numbers of this structure are uncertain; ``scene`` has all entries but ``structure``."""
         whole = {**scene, "structure": self.modal()}
         sweep = {"scene": whole, "uncertain": self.uncertain(scene.get("location"))}
         Path(path).write_text(json.dumps(sweep, indent=2) + "\n", encoding="utf-8")
@@ -126,9 +126,9 @@ def direction(name: str, given: Sequence[float]) -> Floats:
 
 
 def units(length_m: float, mass_kg: float) -> tuple[float, float]:
-    """The factors that bring mass-normalised shapes and compliances of a model to SI, whose unit of time is the second."""
+    """The factors to SI for mass-normalised shapes and compliances of a model whose unit of time is the second."""
     for name, value in (("length_m", length_m), ("mass_kg", mass_kg)):
         if not (value > 0.0 and math.isfinite(value)):
             raise ValueError(f"{name} = {value} is not allowed: a finite number greater than 0")
-    # a shape is 1/sqrt(mass); a compliance is length/force = s^2/mass
+    # A shape is 1/sqrt(mass); a compliance is length/force = s^2/mass.
     return mass_kg**-0.5, 1.0 / mass_kg

@@ -16,10 +16,10 @@ _SD = "_sd"
 
 
 def from_table(path: str | PathLike[str], static_compliances_m_n: Mapping[str, float] | None = None) -> Structure:
-    """Modes from a table with the columns of a ``modes-file``, and beside each, if it is known, its standard deviation.
+    """Reads modes from a table with the columns of a ``modes-file`` and, if they are known, their standard deviations.
 
     The columns are ``frequency_hz`` or ``omega_rad_s``, ``damping_ratio``, and shapes at points (mass-normalised); a column
-    ``NAME_sd`` holds the standard deviations of ``NAME``.
+    ``NAME_sd`` contains the standard deviations of ``NAME``.
     """
     columns = _columns(Path(path))
     frequencies = [name for name in ("omega_rad_s", "frequency_hz") if name in columns]

@@ -1,14 +1,14 @@
-"""Frequency responses in universal files (data set 58), and the modes that explain them.
+"""Modes from frequency responses in universal files (data set 58).
 
-At the point ``i`` of the structure, struck at ``j``, the receptance is that of the modes and of what lies beyond the
-band on either side,
+At the point ``i`` of the structure, struck at ``j``, the receptance is that of the modes and of residual terms for the modes
+below and above the band,
 
     H_i(w) = sum_k phi_ik phi_jk / (w_k^2 - w^2 + 2 i z_k w_k w) + U_i + U'_i w^2 + U''_i w^4 - L_i / w^2.
 
-First poles come from all responses together by the eigensystem realisation of their impulse responses (Juang and Pappa
-1985), with more poles than are asked for, of which those that explain most are kept. Least squares of the responses,
-each weighed by its own size, then refine them; shapes and residual terms are linear in it and are eliminated (variable
-projection). At the driving point the static compliance is ``sum phi_j^2 / w_k^2 + U_j``.
+First estimates of the poles come from all responses together by the eigensystem realisation algorithm (Juang and Pappa 1985) on
+their impulse responses, with more poles than requested, of which those with the largest contributions are selected. A
+least-squares fit of the responses, each weighted by its own size, then refines them; shapes and residual terms are linear
+parameters and are eliminated (variable projection). At the driving point the static compliance is ``sum phi_j^2 / w_k^2 + U_j``.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from ._structure import Floats, Structure
 
 Complex = NDArray[np.complex128]
 
-# rows and columns of the matrix of Hankel: as many as there are samples, up to this
+# Largest number of rows and columns of the Hankel matrix, which is otherwise that of the samples.
 _MOST_ROWS = 400
 # U, U', U'' and L
 _RESIDUAL_TERMS = 4
-# a pole is one of vibration below this damping ratio
+# A pole counts as a vibration below this damping ratio.
 _MOST_DAMPING = 0.3
-# kinds of response by their number in the file, and the power of i w by which a receptance is multiplied
+# Kinds of response by their number in the file, and the power of i w by which a receptance is multiplied.
 _KINDS = {8: 0, 11: 1, 12: 2}
 
 
@@ -42,11 +42,11 @@ def from_universal(
     count: int,
     band_hz: tuple[float, float] | None = None,
 ) -> Structure:
-    """``count`` modes from the responses of a file to a force at one point.
+    """Identifies ``count`` modes from the responses of a file to a force at one point.
 
     ``points`` gives node and direction (1, 2, 3 for x, y, z) of each response; ``driving`` names the point at which the
     force acts and the response is measured. Responses are displacement, velocity or acceleration over force. Standard
-    deviations follow from what the responses leave unexplained.
+    deviations follow from the residuals of the fit.
     """
     if driving not in points:
         raise ValueError(f"driving = {driving!r} is not allowed: one of the points {list(points)}")
@@ -69,7 +69,7 @@ def from_universal(
         wrong = frequency[own <= 0.0] / (2.0 * math.pi)
         raise ValueError(f"{fspath(path)}: the response at {driving} does not show the modes at {wrong} Hz as a driving point does")
     shapes = {name: residues[i] / np.sqrt(own) for i, name in enumerate(names)}
-    # the standard deviation of a shape: that of its residue over the shape at the driving point, half of it there
+    # The standard deviation of a shape is that of its residue over the shape at the driving point; half of this there.
     spread = {
         f"points.{name}.shape": scatter[i] / np.sqrt(own) * (0.5 if i == drive else 1.0) for i, name in enumerate(names)
     }
@@ -106,7 +106,7 @@ def _read(
         found[int(data["rsp_node"]), abs(int(data["rsp_dir"]))] = (omega[omega > 0.0], receptance[omega > 0.0])
     missing = [name for name, (at, along) in points.items() if (at, along) not in found]
     if missing:
-        raise ValueError(f"{fspath(path)} holds no response of {missing} to a force at {driving}; it holds {sorted(found)}")
+        raise ValueError(f"{fspath(path)} contains no response of {missing} to a force at {driving}; it contains {sorted(found)}")
     omega = found[node, axis][0]
     responses = [found[at, along] for at, along in points.values()]
     if any(len(other) != len(omega) or not np.allclose(other, omega) for other, _ in responses):
@@ -117,14 +117,14 @@ def _read(
 def _poles(omega: Floats, responses: Complex, count: int) -> Complex:
     """Poles of vibration with positive frequency, from the lowest."""
     step = omega[1] - omega[0]
-    # the band moved to zero: poles of its analytic impulse response are those of the structure, moved likewise
+    # The band is shifted to zero: poles of its analytic impulse response are those of the structure with the same shift.
     accelerations = responses * -(omega**2)
     impulse = np.fft.ifft(accelerations, axis=1)
     interval = 2.0 * math.pi / (step * omega.size)
     length = min(omega.size // 2, 2 * _MOST_ROWS)
     rows = length // 2
     outputs = len(responses)
-    # the first sample holds what lies beyond the band
+    # The first sample contains the contribution of modes outside the band.
     places = np.arange(rows)[:, None] + np.arange(length - rows)[None, :] + 1
     hankel = impulse[:, places].transpose(1, 0, 2).reshape(rows * outputs, -1)
     left, singular, _ = np.linalg.svd(hankel, full_matrices=False)
@@ -132,15 +132,15 @@ def _poles(omega: Floats, responses: Complex, count: int) -> Complex:
     observed = left[:, :order]
     transition = np.linalg.lstsq(observed[:-outputs], observed[outputs:], rcond=None)[0]
     poles = np.log(np.linalg.eigvals(transition).astype(complex)) / interval
-    # frequencies are known up to the width of the band
+    # Frequencies are determined up to a multiple of the width of the band.
     width = 2.0 * math.pi / interval
     poles = poles.real + 1j * (np.mod(poles.imag, width) + omega[0])
     damping = -poles.real / np.abs(poles)
     inside = (poles.imag < omega[-1]) & (poles.imag > omega[0]) & (damping > 0.0) & (damping < _MOST_DAMPING)
     poles = poles[inside]
     if poles.size < count:
-        raise ValueError(f"the responses show {poles.size} modes, not {count}: ask for fewer, or give another band")
-    # those that explain most of the responses, one by one
+        raise ValueError(f"the responses show {poles.size} modes, not {count}: request fewer, or state another band")
+    # The poles with the largest contributions to the responses, one by one.
     residues, _, _ = _residues(omega, responses, poles)
     strength = np.sqrt((residues**2).sum(axis=0)) / (-2.0 * poles.real * np.abs(poles))
     chosen = poles[np.argsort(-strength)[:count]]
@@ -159,7 +159,7 @@ def _refined(omega: Floats, responses: Complex, poles: Complex) -> tuple[Complex
 
     start = np.concatenate([np.log(np.abs(poles)), np.log(-poles.real / np.abs(poles))])
     found = least_squares(lambda u: _rest(omega, responses, unpacked(u))[0].ravel(), start, x_scale="jac", method="lm")
-    # residues and residual terms have been eliminated, and count as parameters
+    # Residues and residual terms have been eliminated, but count as parameters.
     values = 2 * responses.size
     freedom = max(values - 2 * count - responses.shape[0] * (count + _RESIDUAL_TERMS), 1)
     covariance = np.linalg.pinv(found.jac.T @ found.jac) * float(found.fun @ found.fun) / freedom
@@ -171,16 +171,16 @@ def _refined(omega: Floats, responses: Complex, poles: Complex) -> tuple[Complex
 
 
 def _rest(omega: Floats, responses: Complex, poles: Complex) -> tuple[Floats, Floats, Floats]:
-    """What poles leave unexplained of each response over its size at each frequency; the linear terms that explain
-    most, and their standard deviations."""
+    """Residuals of each response relative to its size at each frequency, the best linear terms, and their standard
+    deviations."""
     frequency = np.abs(poles)
     modes = 1.0 / (frequency**2 - omega[:, None] ** 2 - 2j * poles.real * omega[:, None])
     share = (omega[:, None] / omega[-1]) ** 2
-    # the first column after the modes is the upper residual term U, a compliance
+    # The first column after the modes is the upper residual term U, a compliance.
     columns = np.hstack([modes, np.ones_like(share), share, share**2, 1.0 / share])
     rests, terms, spreads = [], [], []
     for response in responses:
-        # noise of a test is a share of the response; antiresonances are held up by a floor
+        # Noise of a test is proportional to the response; a floor limits the weights of antiresonances.
         size = np.abs(response) + 1e-3 * np.median(np.abs(response))
         weighed = columns / size[:, None]
         real = np.vstack([weighed.real, weighed.imag])
