@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds docs/play.html, the page in which one can play with an impact: the library as WebAssembly inside one file.
+# Builds docs/play.html, the interactive page: one file that contains the library as WebAssembly.
 # Needs the target: rustup target add wasm32-unknown-unknown. Other arguments are passed to cargo.
 set -euo pipefail
 cd "$(dirname "$0")"

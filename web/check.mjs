@@ -1,5 +1,5 @@
-// The page in a real browser: it loads, the ball moves by mouse and keys, the restitution is that of the native program,
-// nothing is complained about on the console. Usage: node check.mjs PAGE PROGRAM, with playwright-core installed.
+// Tests the page in a real browser: it loads, the ball moves by mouse and keys, the restitution is that of the native program,
+// and there are no errors on the console. Usage: node check.mjs PAGE PROGRAM, with playwright-core installed.
 import { chromium } from "playwright-core";
 import { execFileSync } from "node:child_process";
 import { statSync } from "node:fs";
@@ -24,13 +24,13 @@ try {
   await page.waitForSelector("html[data-ready=yes]", { timeout: 60_000 });
   must(await page.evaluate(() => drawing.result.sub_impact_count) > 1, "several contacts are shown");
 
-  // the animation moves
+  // The animation runs.
   const clock = () => page.textContent("#clock");
   const before = await clock();
   await page.waitForTimeout(400);
   must(before !== await clock(), "the animation moves");
 
-  // the same scene by the native program
+  // Compares with the same scene solved by the native program.
   const agree = async name => {
     const [scene, here] = await page.evaluate(() => [JSON.stringify(scene()), drawing.result]);
     const native = JSON.parse(execFileSync(program, ["simulate", "-", "--json"], { input: scene, encoding: "utf8" }));
@@ -64,7 +64,7 @@ try {
   await page.waitForFunction(() => drawing && drawing.result.scene.striker.speed_m_s === 2);
   await agree("faster, on aluminium");
 
-  // by keys alone: the focus passes every control once and shows where it is
+  // With keys alone: the focus reaches every control once and is visible.
   const controls = await page.evaluate(() => [...document.querySelectorAll("[role=slider], button, input, select")].map(e => e.id));
   await page.focus(`#${controls[0]}`);
   const passed = [controls[0]];
@@ -74,7 +74,7 @@ try {
     const seen = await page.evaluate(() => document.activeElement.matches(":focus-visible"));
     if (!seen) throw new Error(`the focus on ${passed.at(-1)} is not shown`);
   }
-  must(passed.join() === controls.join(), `the tabulator reaches all ${controls.length} controls in the order of the page`);
+  must(passed.join() === controls.join(), `the tab key reaches all ${controls.length} controls in the order of the page`);
   await page.focus("#play");
   const label = await page.textContent("#play");
   await page.keyboard.press("Space");
@@ -82,7 +82,7 @@ try {
   await page.focus("#time");
   await page.keyboard.press("Home");
   await page.keyboard.press("PageUp");
-  must(/time .*force/.test(await page.getAttribute("#time", "aria-valuetext")), "the slider of time says time and force");
+  must(/time .*force/.test(await page.getAttribute("#time", "aria-valuetext")), "the time slider announces time and force");
   await page.focus("#radius");
   const radius = await page.inputValue("#radius");
   await page.keyboard.press("ArrowLeft");
@@ -90,13 +90,13 @@ try {
   await page.waitForFunction(() => drawing && drawing.result.scene.striker.radius_m === state.radius / 1000);
   await agree("a smaller ball");
 
-  // for readers of screens: the tree that they read
+  // The accessibility tree for screen readers.
   const tree = await page.locator("body").ariaSnapshot();
   for (const wanted of [/main/, /heading "Play with an impact" \[level=1\]/, /slider "Location of impact"/, /group "Beam and ball"/,
     /button "(Play|Pause)"/, /form "Ball and beam"/, /status/, /row "Restitution/, /img "Contact force over time: \d+ contacts/]) {
-    if (!wanted.test(tree)) throw new Error(`a reader of screens does not find ${wanted} in\n${tree}`);
+    if (!wanted.test(tree)) throw new Error(`a screen reader does not find ${wanted} in\n${tree}`);
   }
-  console.log("ok: a reader of screens finds headings, controls, results and the picture");
+  console.log("ok: a screen reader finds headings, controls, results and the picture");
   const nameless = await page.evaluate(() => [...document.querySelectorAll("input, select, button, [role=slider]")]
     .filter(e => !(e.labels?.length || e.textContent.trim() || e.getAttribute("aria-label"))).map(e => e.id));
   must(nameless.length === 0, "every control has a name");
@@ -106,7 +106,7 @@ try {
   await page.waitForFunction(() => document.getElementById("copy").textContent === "Copied");
   console.log("ok: the scene is copied");
   if (picture) await page.screenshot({ path: picture, fullPage: true });
-  must(asked.length === 0, `no address is asked for ${asked}`);
+  must(asked.length === 0, `no address is requested ${asked}`);
   must(said.length === 0, `nothing on the console ${said}`);
 } finally {
   await browser.close();

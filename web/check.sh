@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks docs/play.html in headless Chromium (Debian's package chromium, or $CHROMIUM) with playwright-core from npm, beside the
-# native program.
+# Checks docs/play.html in headless Chromium (Debian's package chromium, or $CHROMIUM) with playwright-core from npm, and compares
+# its results with those of the native program.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --workspace --locked --bin vibroimpact

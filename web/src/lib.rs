@@ -1,7 +1,8 @@
-//! One impact, solved in a web page: a scene as JSON in, what the page draws as JSON out.
+//! Solves one impact in a web page: the input is a scene as JSON, the output is JSON for the page.
 //!
-//! The page and this library share two texts in the memory of the module. The page calls [`reserve`], writes the scene at
-//! the address that it gets, calls [`solve`], and reads so many bytes at [`answer`]. No tool for bindings is needed.
+//! The page and this library share two texts in the memory of the module. The page calls [`reserve`], writes the scene at the
+//! address that it returns, calls [`solve`], and reads the returned number of bytes at [`answer`]. No tool for bindings is
+//! needed.
 
 use std::cell::RefCell;
 
@@ -13,23 +14,23 @@ use vibroimpact::emoc::Parameters;
 use vibroimpact::export::Failure;
 use vibroimpact::simulate::Simulation;
 
-/// Pieces of the length and of the time in which the deflection is given.
+/// Number of intervals of length and of time for the deflection.
 const PIECES: [usize; 2] = [60, 300];
-/// Modes that are listed, and heard.
+/// Number of modes that are listed and played.
 const LISTED_MODES: usize = 12;
 
-/// What the page draws.
+/// The data for the page.
 #[derive(Serialize)]
 struct Drawing {
-    /// As `vibroimpact simulate --json` prints it.
+    /// The object that `vibroimpact simulate --json` prints.
     result: Value,
-    /// The motion; null where there is no beam that moves.
+    /// The motion; null if there is no beam that moves.
     deflection: Option<Deflection>,
     /// Time (s) and contact force (N) with every step in contact.
     force: Option<[Vec<f64>; 2]>,
     /// The first elastic modes: frequency (Hz), damping ratio, and energy at the end (J).
     modes: Vec<[f64; 3]>,
-    /// Net restitution by the law of energy minimisation under outward constraints; null where it does not apply.
+    /// Net restitution by the law of energy minimisation under outward constraints; null if it does not apply.
     emoc: Option<f64>,
 }
 
@@ -66,7 +67,7 @@ thread_local! {
     static ANSWER: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Makes room for a scene of so many bytes of UTF-8, and tells where.
+/// Allocates memory for a scene of this number of bytes of UTF-8, and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn reserve(bytes: usize) -> *mut u8 {
     SCENE.with_borrow_mut(|scene| {
@@ -76,7 +77,7 @@ pub extern "C" fn reserve(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Solves the scene that was written there; how many bytes the answer has.
+/// Solves the scene in this memory, and returns the number of bytes of the result.
 #[unsafe(no_mangle)]
 pub extern "C" fn solve() -> usize {
     let solved = SCENE.with_borrow(|scene| solve_text(&String::from_utf8_lossy(scene)));
@@ -86,7 +87,7 @@ pub extern "C" fn solve() -> usize {
     })
 }
 
-/// Where the answer stands.
+/// Address of the result.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())
