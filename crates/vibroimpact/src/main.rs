@@ -44,7 +44,7 @@ lankarani-nikravesh, flores, elastoplastic.
 
 vibroimpact COMMAND --help shows examples of a command, vibroimpact schema the whole format for editors."#;
 
-/// What happens when a compact body strikes a slender vibrating one.
+/// Impacts of a compact body on a slender vibrating one.
 #[derive(Parser)]
 #[command(version, after_help = EXAMPLE, arg_required_else_help = true)]
 struct Cli {
