@@ -4,8 +4,8 @@ mod common;
 
 use beam_modes::{Beam, End, Segment};
 use common::random::{EdgeImpact, cases, decades, edge_impact, ordinary_damping, ordinary_impact, ordinary_striker};
-use common::{hertz, pinned, runge_kutta, seen_from, settings};
-use contact_models::{Law, LinearSpring, Viscous};
+use common::{hertz, pinned, pinned_with_remainder, runge_kutta, seen_from, settings};
+use contact_models::{KelvinVoigt, Law, LinearSpring, Viscous};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
@@ -15,9 +15,10 @@ use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::infinite;
 use vibroimpact_sim::modal::{Outcome, Settings, Solver, Striker};
 
-/// The same row of random values on every machine.
+/// The same row of random values on every machine; `VIBROIMPACT_SEED` (0 to 255) draws another one.
 fn draw<T>(strategy: impl Strategy<Value = T>, count: u32) -> Vec<T> {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[19; 32]);
+    let seed = std::env::var("VIBROIMPACT_SEED").ok().and_then(|text| text.parse().ok()).unwrap_or(19);
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]);
     let mut runner = TestRunner::new_with_rng(ProptestConfig::default(), rng);
     (0..cases(count)).map(|_| strategy.new_tree(&mut runner).unwrap().current()).collect()
 }
@@ -29,6 +30,8 @@ struct Coverage {
     ratios: Vec<f64>,
     /// What the largest belongs to.
     worst: (f64, String),
+    /// Steps of all solutions, with those of their uncertainties.
+    steps: u64,
 }
 
 impl Coverage {
@@ -39,16 +42,25 @@ impl Coverage {
         }
     }
 
-    /// As many cases as `at_least`, of which 99.9 % (all but one, where they are fewer than 2,000) are covered, and none is
-    /// more than three times as far off as stated. With `--nocapture` the figures are printed.
-    fn assert(&mut self, name: &str, at_least: usize) {
+    /// Prints the figures (`--nocapture` shows them).
+    fn print(&mut self, name: &str) {
         self.ratios.sort_by(f64::total_cmp);
-        let (count, worst) = (self.ratios.len(), &self.worst);
-        let outside = self.ratios.iter().filter(|ratio| **ratio > 1.0).count();
-        let median = self.ratios[count / 2].recip();
+        let count = self.ratios.len();
+        let (outside, median) = (self.outside(), self.ratios[count / 2].recip());
+        let (steps, worst) = (self.steps as f64 / count as f64, &self.worst);
         println!(
-            "{name}: {count} cases, {outside} not covered, stated over true {median:.0} in the median, worst {worst:?}"
+            "{name}: {count} cases, {outside} not covered, stated over true {median:.0} in the median, {steps:.1} steps, worst {worst:?}"
         );
+    }
+
+    fn outside(&self) -> usize {
+        self.ratios.iter().filter(|ratio| **ratio > 1.0).count()
+    }
+
+    /// As many cases as `at_least`, of which 99.9 % (all but one, where they are fewer than 2,000) are covered, and none is
+    /// more than three times as far off as stated.
+    fn assert(&self, name: &str, at_least: usize) {
+        let (count, outside, worst) = (self.ratios.len(), self.outside(), &self.worst);
         assert!(count >= at_least, "{name}: {count}");
         assert!(outside <= (count / 1_000).max(1), "{name}: {outside} of {count}, worst {worst:?}");
         assert!(worst.0 <= 3.0, "{name}: {worst:?}");
@@ -64,21 +76,24 @@ impl Coverage {
 /// True errors from a solution at 1e-13, whose own uncertainty is taken off. Where rounding does not let the steps
 /// become that exact, it ends with its limit, and one at 1e-12 or 1e-11 takes its place.
 fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
-    let tight = |impact: &EdgeImpact, tolerance: f64| {
-        let settings = Settings { max_steps: 40_000, ..settings(tolerance) };
-        let solution = impact.solve(&settings);
-        solution.restitution.zip(solution.restitution_uncertainty).filter(|(_, rest)| *rest < 1e-3)
-    };
-    let reference =
-        |impact: &EdgeImpact| [1e-13, 1e-12, 1e-11].into_iter().find_map(|tolerance| tight(impact, tolerance));
-    let references: Vec<Option<(f64, f64)>> = impacts.iter().map(reference).collect();
-    // some are so chaotic that no double-precision solution is known to 1e-3
-    let known = references.iter().flatten().count();
-    assert!(100 * known >= 95 * impacts.len(), "{name}: {known} of {}", impacts.len());
-    for tolerance in [1e-9, 1e-7, 1e-5, 1e-3] {
-        let mut coverage = Coverage::default();
-        for (impact, (reference, rest)) in impacts.iter().zip(&references).filter_map(|(i, r)| Some((i, (*r)?))) {
-            let solution = impact.solve(&Settings { max_steps: 40_000, ..settings(tolerance) });
+    let tolerances = [1e-9, 1e-7, 1e-5, 1e-3];
+    let mut coverages = tolerances.map(|_| Coverage::default());
+    let mut known = 0;
+    for impact in impacts {
+        let solver = Solver::new(&impact.structure).unwrap();
+        let solve = |tolerance: f64| {
+            let settings = Settings { max_steps: 40_000, ..settings(tolerance) };
+            solver.solve(&impact.striker, &impact.law, impact.start.as_ref(), &settings).unwrap()
+        };
+        let tight = |tolerance: f64| {
+            let solution = solve(tolerance);
+            solution.restitution.zip(solution.restitution_uncertainty).filter(|(_, rest)| *rest < 1e-3)
+        };
+        // some are so chaotic that no double-precision solution is known to 1e-3
+        let Some((reference, rest)) = [1e-13, 1e-12, 1e-11].into_iter().find_map(tight) else { continue };
+        known += 1;
+        for (tolerance, coverage) in tolerances.into_iter().zip(&mut coverages) {
+            let solution = solve(tolerance);
             // at loose tolerances an impact that amplifies errors may be given up
             let Some(restitution) = solution.restitution else {
                 assert!(tolerance > 1e-6, "{name}: {:?} {impact:?}", solution.outcome);
@@ -86,12 +101,15 @@ fn modal_restitution(name: &str, impacts: &[EdgeImpact], median: f64) {
             };
             let beyond = ((restitution - reference).abs() - rest).max(0.0);
             coverage.note(beyond, solution.restitution_uncertainty.unwrap(), || format!("{tolerance:e} {impact:?}"));
+            coverage.steps += solution.counts.steps();
         }
-        let name = format!("{name} at {tolerance:e}");
-        coverage.assert(&name, 95 * known / 100);
-        if tolerance < 1e-4 {
-            coverage.assert_not_wider(&name, median);
-        }
+    }
+    assert!(100 * known >= 95 * impacts.len(), "{name}: {known} of {}", impacts.len());
+    let names = tolerances.map(|tolerance| format!("{name} at {tolerance:e}"));
+    names.iter().zip(&mut coverages).for_each(|(name, coverage)| coverage.print(name));
+    for (name, coverage) in names.iter().zip(&coverages) {
+        coverage.assert(name, 95 * known / 100);
+        coverage.assert_not_wider(name, median);
     }
 }
 
@@ -102,12 +120,28 @@ fn ordinary_impacts() {
         EdgeImpact { structure, striker, law, start: None }
     };
     let impacts: Vec<EdgeImpact> = draw(ordinary_impact(), 150).into_iter().map(as_edge).collect();
-    modal_restitution("ordinary", &impacts, 150.0);
+    modal_restitution("ordinary", &impacts, 125.0);
 }
 
 #[test]
 fn impacts_from_the_edges() {
-    modal_restitution("edges", &draw(edge_impact(), 100), 150.0);
+    modal_restitution("edges", &draw(edge_impact(), 100), 125.0);
+}
+
+/// A ball on a beam whose restitution changes by less than 2e-13 if its tolerance is a little coarser, since all of its contacts
+/// then have the same steps, and by 3e-12 in another unit of time, by accident. Its error is 2e-10.
+#[test]
+fn steps_that_agree_do_not_make_an_answer_certain() {
+    let structure = pinned_with_remainder(3, 0.0023504225284975717, 0.48299437723430444);
+    let striker = Striker { mass_kg: 0.26168664329662267, speed_m_s: 5.774084727775018 };
+    let law = KelvinVoigt::new(47453647.13321301, 594.7797935165977).unwrap();
+    let solver = Solver::new(&structure).unwrap();
+    let [truth, found] =
+        [1e-13, 1e-9].map(|tolerance| solver.solve(&striker, &law, None, &settings(tolerance)).unwrap());
+    let error = (found.restitution.unwrap() - truth.restitution.unwrap()).abs();
+    let stated = found.restitution_uncertainty.unwrap();
+    assert!(error > 1e-10 && truth.restitution_uncertainty.unwrap() < 0.1 * error, "{error:e} {truth:?}");
+    assert!(error <= stated && stated < 100.0 * error, "{error:e}, stated {stated:e}");
 }
 
 /// Two impacts that amplify errors, by the double-double Taylor series of their equations.
@@ -170,6 +204,7 @@ fn the_modal_restitution_against_runge_kutta() {
         let what = || format!("{n} {damping} {b} {striker:?}");
         coverage.note(beyond, solution.restitution_uncertainty.unwrap(), what);
     }
+    coverage.print("Runge-Kutta");
     coverage.assert("Runge-Kutta", 24);
 }
 
@@ -218,6 +253,7 @@ fn the_dropped_rod() {
             coverage.note((error - rest).max(0.0), stated, || format!("{tolerance:e} {speed_m_s} m/s {rod:?}"));
         }
     }
+    coverage.print("dropped rod");
     coverage.assert("dropped rod", 160);
 }
 
@@ -245,5 +281,6 @@ fn the_infinite_structures() {
         let beyond = (error - reference.relative_uncertainty.unwrap().max(1e-13)).max(0.0);
         coverage.note(beyond, stated, || format!("{structure:?} S = {s}, {nodes} nodes, 10^{tolerance}"));
     }
+    coverage.print("infinite");
     coverage.assert("infinite", 80);
 }

@@ -22,11 +22,13 @@
 //! panel. A bound on the motion gives a time before which no contact can occur, and the impact ends when none can occur any
 //! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws, and threads share them.
 //!
-//! The uncertainty of the restitution is estimated from two coarser solutions: one with 32 times the tolerance, and one with
-//! eight times, whose steps all lie between those of the others (see `time_unit.rs`). It is two and a half times the larger
-//! difference from them. If that exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and
-//! more), and two solutions may agree by accident. A third solution is then computed, and the largest difference counts five
-//! times.
+//! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each is
+//! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). What is
+//! compared is the restitution, and what it would be if the impact ended in each flight between two contacts: two solutions may
+//! agree in one number by accident, but hardly in all. The uncertainty is two and a half times the largest difference. If that difference
+//! exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and more); if the numbers of contacts
+//! differ, it is close to a graze, where errors do not grow in proportion. A further solution, with 8 times the tolerance in the
+//! first unit, is then computed, and its difference counts twice.
 
 mod differentiate;
 mod history;

@@ -4,7 +4,7 @@ use super::history::{History, Recorded, all_modes};
 use super::posed;
 use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
-use super::time_unit;
+use super::time_unit::Unit;
 use crate::StopReason;
 use crate::assembly::dense::Stretch;
 use crate::assembly::responses::Responses;
@@ -14,22 +14,25 @@ use crate::assembly::tables::Tables;
 use crate::assembly::{self, Assembly, Interval, Ledger, Observer};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
+use std::f64::consts::SQRT_2;
 use std::fmt;
 use std::sync::OnceLock;
 
 /// Loosest tolerance of a solution. At looser tolerances the steps, and thus the costs, hardly differ any more, and their errors
 /// would not be noticed.
 pub(crate) const LOOSEST: f64 = 1e-4;
-/// Factors of the tolerance for the coarser solutions that give the uncertainty: in the same unit of time, in
-/// another one, and a third where these differ by more than the tolerance.
-const COARSER: f64 = 32.0;
-const OTHERWISE: f64 = 8.0;
-const THIRD: f64 = 8.0;
-/// Factors from the difference to the uncertainty, without and with the third solution, and the share of the tolerance that is
-/// always added.
-const ORDINARY: f64 = 2.5;
-const AMPLIFIED: f64 = 5.0;
-const LEAST: f64 = 3e-3;
+/// Units of time of the coarser solutions that give the uncertainty, so many to a second, and factors of their tolerances. No
+/// two of the three solutions share a step. The second unit is that of a factor `2^(1/4)`.
+const COARSER: [(Unit, f64); 2] = [(Unit(SQRT_2), 16.0), (Unit(1.189_207_115_002_721), 8.0)];
+/// The solver's own unit of time.
+const SECOND: Unit = Unit(1.0);
+/// Factor of the tolerance of a further solution in this unit, where these differ by more than the tolerance or in the number
+/// of their contacts.
+const FURTHER: f64 = 8.0;
+/// Factor from the largest difference to the uncertainty; the difference from the further solution counts twice.
+const WIDENED: f64 = 2.5;
+/// Share of the tolerance that each contact adds, as its error may vanish in all differences by accident.
+const LEAST: f64 = 2.5e-3;
 
 /// Solves impacts on one structure. Tables of the structure are built as they are needed and kept, so that further
 /// strikers, speeds and laws cost less. Threads may share one solver: each finds, to the last bit, what it would find alone.
@@ -56,8 +59,8 @@ pub struct Solver {
     moved: Vec<usize>,
     /// Tables of the structure with a striker, and with a stop at rest, which adds no mode.
     tables: [OnceLock<Tables>; 2],
-    /// The same structure in another unit of time, once it was needed.
-    otherwise: OnceLock<Box<Solver>>,
+    /// The same structure in the other units of time, once they were needed.
+    others: [OnceLock<Box<Solver>>; 2],
 }
 
 /// An impact to be solved.
@@ -98,6 +101,19 @@ pub(crate) struct Run {
     contact_work_j: f64,
     energy: Option<Ledger>,
     pub stretches: Vec<Stretch>,
+}
+
+/// The restitution of an impact, and those that it would have if it ended after each of its contacts.
+struct Restitutions {
+    flights: Vec<Flight>,
+    last: f64,
+}
+
+/// The motion after a contact.
+struct Flight {
+    /// When the contact began and ended (s).
+    contact_s: [f64; 2],
+    restitution: f64,
 }
 
 /// Collects the intervals of contact.
@@ -144,8 +160,10 @@ impl Solver {
     }
 
     fn turn_to_modes(&mut self, modes: Vec<Mode>) {
-        if let Some(otherwise) = self.otherwise.get_mut() {
-            otherwise.turn_to_modes(time_unit::modes(&modes));
+        for (other, (unit, _)) in self.others.iter_mut().zip(COARSER) {
+            if let Some(other) = other.get_mut() {
+                other.turn_to_modes(unit.modes(&modes));
+            }
         }
         let moved = moved(&modes);
         let same = moved.len() == self.moved.len()
@@ -159,7 +177,7 @@ impl Solver {
     }
 
     fn unchecked(modes: Vec<Mode>) -> Solver {
-        Solver { moved: moved(&modes), modes, tables: Default::default(), otherwise: OnceLock::new() }
+        Solver { moved: moved(&modes), modes, tables: Default::default(), others: Default::default() }
     }
 
     /// Solves one impact. `start` is the structure's motion at the start; `None` means at rest and touching.
@@ -234,10 +252,11 @@ impl Solver {
         let mut lowered = self.lower(&impact);
         let mut run = self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
         let mut counts = run.counts;
-        let restitution = self.restitution(&run, striker, start);
-        let restitution_uncertainty = restitution
+        let restitutions = self.restitutions(&run, &impact, SECOND);
+        let restitution = restitutions.as_ref().map(|known| known.last);
+        let restitution_uncertainty = restitutions
             .filter(|_| settings.estimate_uncertainty)
-            .map(|value| self.uncertainty(value, &impact, &mut lowered, &mut counts));
+            .map(|known| self.uncertainty(&known, &impact, &mut lowered, &mut counts));
         let solution = Solution {
             outcome: run.outcome,
             restitution,
@@ -254,33 +273,27 @@ impl Solver {
 
     /// How far off the restitution may be, from solutions of the same impact. One that ends otherwise says that nothing is
     /// certain.
-    fn uncertainty(&self, value: f64, impact: &Impact, lowered: &mut Lowered, counts: &mut Counts) -> f64 {
-        let settings = impact.settings;
-        let coarser = |factor: f64| factor * settings.tolerance.min(LOOSEST);
-        let same = self.again(impact, lowered, coarser(COARSER), counts);
-        let other = {
-            let modes = &self.modes;
-            let solver = self.otherwise.get_or_init(|| Box::new(Solver::unchecked(time_unit::modes(modes))));
-            let (striker, start) = (time_unit::striker(impact.striker), time_unit::start(impact.start));
-            let law = time_unit::Law(impact.law);
-            let impact = Impact { striker: &striker, law: &law, start: &start, settings };
-            solver.again(&impact, &mut solver.lower(&impact), coarser(OTHERWISE), counts)
-        };
-        let (Some(same), Some(other)) = (same, other) else { return 1.0 };
-        let mut spread = (same - value).abs().max((other - value).abs());
-        let mut times = ORDINARY;
-        if spread > settings.tolerance {
-            let Some(third) = self.again(impact, lowered, coarser(THIRD), counts) else { return 1.0 };
-            (spread, times) = (spread.max((third - value).abs()), AMPLIFIED);
+    fn uncertainty(&self, known: &Restitutions, impact: &Impact, lowered: &mut Lowered, counts: &mut Counts) -> f64 {
+        let tolerance = impact.settings.tolerance.min(LOOSEST);
+        let (mut spread, mut same_contacts) = (0.0f64, true);
+        for (other, (unit, factor)) in self.others.iter().zip(COARSER) {
+            let solver = other.get_or_init(|| Box::new(Solver::unchecked(unit.modes(&self.modes))));
+            let (striker, start, law) = (unit.striker(impact.striker), unit.start(impact.start), unit.law(impact.law));
+            let impact = Impact { striker: &striker, law: &law, start: &start, ..*impact };
+            let run = solver.run_lowered(&impact, &mut solver.lower(&impact), factor * tolerance, Keep::Result);
+            *counts += run.counts;
+            let Some(coarser) = solver.restitutions(&run, &impact, unit) else { return 1.0 };
+            spread = spread.max(known.difference(&coarser));
+            same_contacts &= known.flights.len() == coarser.flights.len();
         }
-        (LEAST * settings.tolerance + times * spread).min(f64::MAX)
-    }
-
-    /// The restitution of the same impact at another tolerance.
-    fn again(&self, impact: &Impact, lowered: &mut Lowered, tolerance: f64, counts: &mut Counts) -> Option<f64> {
-        let run = self.run_lowered(impact, lowered, tolerance, Keep::Result);
-        *counts += run.counts;
-        self.restitution(&run, impact.striker, impact.start)
+        if spread > tolerance || !same_contacts {
+            let run = self.run_lowered(impact, lowered, FURTHER * tolerance, Keep::Result);
+            *counts += run.counts;
+            let Some(further) = self.restitutions(&run, impact, SECOND) else { return 1.0 };
+            spread = spread.max(2.0 * known.difference(&further));
+        }
+        let contacts = known.flights.len() as f64;
+        (WIDENED * spread + LEAST * contacts * tolerance).min(f64::MAX)
     }
 
     pub(crate) fn modes(&self) -> &[Mode] {
@@ -353,16 +366,58 @@ impl Solver {
     }
 
     pub(crate) fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
-        let rigid = |rate: &[f64]| {
-            let rigid = self.modes.iter().zip(rate).filter(|(mode, _)| mode.is_rigid());
-            rigid.map(|(mode, rate)| mode.shape * rate).sum::<f64>()
-        };
-        let before = striker.speed_m_s + rigid(&start.rate);
+        let before = self.approach(striker, start);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_excited());
-        let ratio = (run.striker_velocity_m_s - rigid(&run.rate)) / before;
+        let ratio = (run.striker_velocity_m_s - self.rigid_motion(|k| run.rate[k])) / before;
         // an approach of 1e-310 m/s on a structure that moves has no ratio to speak of
         (ended && before > 0.0 && free && ratio.is_finite()).then_some(ratio)
+    }
+
+    /// The restitution of a run in this unit of time, with those that an end after each contact would have had.
+    fn restitutions(&self, run: &Run, impact: &Impact, unit: Unit) -> Option<Restitutions> {
+        let Impact { striker, start, .. } = *impact;
+        let last = self.restitution(run, striker, start)?;
+        let mobility = striker.mass_kg.recip() + self.rigid_motion(|k| self.modes[k].shape);
+        let (approach, mut impulse_n_s) = (self.approach(striker, start), 0.0);
+        let after = |contact: &SubImpact| {
+            impulse_n_s += contact.impulse_n_s;
+            let contact_s = [contact.start_s, contact.end_s].map(|time| unit.seconds(time));
+            Flight { contact_s, restitution: mobility * impulse_n_s / approach - 1.0 }
+        };
+        Some(Restitutions { flights: run.sub_impacts.iter().map(after).collect(), last })
+    }
+
+    /// Velocity of approach of the rigid-body motions (m/s).
+    fn approach(&self, striker: &Striker, start: &Start) -> f64 {
+        striker.speed_m_s + self.rigid_motion(|k| start.rate[k])
+    }
+
+    /// Motion of the contact with the rigid-body modes, which move by so much each.
+    fn rigid_motion(&self, of: impl Fn(usize) -> f64) -> f64 {
+        let rigid = self.modes.iter().enumerate().filter(|(_, mode)| mode.is_rigid());
+        rigid.map(|(k, mode)| mode.shape * of(k)).sum()
+    }
+}
+
+impl Restitutions {
+    /// The largest difference from another solution of the same impact, of the last restitutions and of those in the middle of
+    /// each flight. The times are compared and not the numbers of the contacts, since a graze may be missing from one of them.
+    fn difference(&self, other: &Restitutions) -> f64 {
+        let of = |pair: &[Flight]| {
+            let [from_s, to_s] = [pair[0].contact_s[1], pair[1].contact_s[0]];
+            Some((pair[0].restitution - other.at(0.5 * (from_s + to_s))?).abs())
+        };
+        self.flights.windows(2).filter_map(of).fold((self.last - other.last).abs(), f64::max)
+    }
+
+    /// The restitution if the impact ended at this time; `None` during a contact.
+    fn at(&self, time_s: f64) -> Option<f64> {
+        let begun = self.flights.partition_point(|flight| flight.contact_s[0] < time_s);
+        match begun.checked_sub(1).map(|i| &self.flights[i]) {
+            Some(flight) => (flight.contact_s[1] <= time_s).then_some(flight.restitution),
+            None => Some(-1.0),
+        }
     }
 }
 

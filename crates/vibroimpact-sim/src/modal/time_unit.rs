@@ -1,57 +1,72 @@
 //! The same impact in another unit of time: its result is the same, while its dyadic steps differ.
 //!
 //! Steps are powers of two of a second. Two solutions of different tolerances share many of them, and so what these steps
-//! get wrong. With times written in units of `sqrt(1/2)` s all steps lie between those of before.
+//! get wrong. With times written in another unit all steps lie between those of before.
 
 use super::problem::{Mode, Start, Striker};
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
-use std::f64::consts::SQRT_2;
 
-/// So many units make a second.
-const UNITS: f64 = SQRT_2;
-
-/// Modes with their frequencies per unit.
-pub(crate) fn modes(modes: &[Mode]) -> Vec<Mode> {
-    modes.iter().map(|mode| Mode { omega_rad_s: mode.omega_rad_s / UNITS, ..*mode }).collect()
-}
-
-/// The striker with its speed per unit.
-pub(crate) fn striker(striker: &Striker) -> Striker {
-    Striker { speed_m_s: striker.speed_m_s / UNITS, ..*striker }
-}
-
-/// The motion at the start with its rates per unit.
-pub(crate) fn start(start: &Start) -> Start {
-    Start { rate: start.rate.iter().map(|rate| rate / UNITS).collect(), ..start.clone() }
-}
+/// A unit of time, of which so many make a second.
+#[derive(Clone, Copy)]
+pub(crate) struct Unit(pub f64);
 
 /// A law between compressions and their rates per unit.
-pub(crate) struct Law<'a>(pub &'a dyn ContactLaw);
+struct Law<'a> {
+    law: &'a dyn ContactLaw,
+    units: f64,
+}
+
+impl Unit {
+    /// Modes with their frequencies per unit.
+    pub fn modes(self, modes: &[Mode]) -> Vec<Mode> {
+        modes.iter().map(|mode| Mode { omega_rad_s: mode.omega_rad_s / self.0, ..*mode }).collect()
+    }
+
+    /// The striker with its speed per unit.
+    pub fn striker(self, striker: &Striker) -> Striker {
+        Striker { speed_m_s: striker.speed_m_s / self.0, ..*striker }
+    }
+
+    /// The motion at the start with its rates per unit.
+    pub fn start(self, start: &Start) -> Start {
+        Start { rate: start.rate.iter().map(|rate| rate / self.0).collect(), ..start.clone() }
+    }
+
+    /// A time in this unit in seconds.
+    pub fn seconds(self, time: f64) -> f64 {
+        time / self.0
+    }
+
+    /// The law between compressions and their rates per unit.
+    pub fn law(self, law: &dyn ContactLaw) -> impl ContactLaw + '_ {
+        Law { law, units: self.0 }
+    }
+}
 
 impl ContactLaw for Law<'_> {
     fn touch(&self, memory: &Memory, approach_speed_m_s: f64) -> Branch {
-        self.0.touch(memory, approach_speed_m_s * UNITS)
+        self.law.touch(memory, approach_speed_m_s * self.units)
     }
 
     fn force(&self, branch: &Branch, compression_m: f64, rate_m_s: f64) -> Force {
-        let force = self.0.force(branch, compression_m, rate_m_s * UNITS);
+        let force = self.law.force(branch, compression_m, rate_m_s * self.units);
         Force {
-            force_n: force.force_n / (UNITS * UNITS),
-            per_compression_n_m: force.per_compression_n_m / (UNITS * UNITS),
-            per_rate_n_s_m: force.per_rate_n_s_m / UNITS,
+            force_n: force.force_n / (self.units * self.units),
+            per_compression_n_m: force.per_compression_n_m / (self.units * self.units),
+            per_rate_n_s_m: force.per_rate_n_s_m / self.units,
         }
     }
 
     fn stored_energy_j(&self, branch: &Branch, compression_m: f64) -> f64 {
-        self.0.stored_energy_j(branch, compression_m) / (UNITS * UNITS)
+        self.law.stored_energy_j(branch, compression_m) / (self.units * self.units)
     }
 
     fn boundary(&self, branch: &Branch, which: usize) -> Option<Boundary> {
-        let boundary = self.0.boundary(branch, which)?;
-        Some(Boundary { per_rate: boundary.per_rate * UNITS, ..boundary })
+        let boundary = self.law.boundary(branch, which)?;
+        Some(Boundary { per_rate: boundary.per_rate * self.units, ..boundary })
     }
 
     fn cross(&self, branch: &Branch, which: usize, compression_m: f64, rate_m_s: f64) -> After {
-        self.0.cross(branch, which, compression_m, rate_m_s * UNITS)
+        self.law.cross(branch, which, compression_m, rate_m_s * self.units)
     }
 }

@@ -53,7 +53,7 @@ impl Known {
     pub fn new(scene: &Scene, solver: Option<f64>, modes_left_out: Result<f64, String>) -> Known {
         let mut not_known = Vec::new();
         if solver.is_none() {
-            not_known.push("solver: the impact was not solved a second time".to_owned());
+            not_known.push("solver: the impact was not solved with coarser tolerances".to_owned());
         }
         let modes_left_out =
             modes_left_out.map_err(|why| not_known.push(format!("modes left out: {why}"))).ok().filter(|u| !u.is_nan());
