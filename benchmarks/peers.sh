@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Runs the solvers outside Rust on the problems of the work-precision report: scipy's DOP853, LSODA, Radau and BDF,
-# SUNDIALS CVODE (scikit-sundae) and Octave's ode15s on the impacts, DAQP on the quadratic programs. Makes a Python
-# environment by itself under out/peers, and installs Octave where apt-get may. Writes
-# benchmarks/work-precision/outside/{outside.csv,versions.txt}, and the next report takes them in; a run on some of the
+# SUNDIALS CVODE (scikit-sundae) and Octave's ode15s on the impacts, DAQP on the quadratic programs. Creates a Python
+# environment under out/peers, and installs Octave if apt-get is permitted. Writes
+# benchmarks/work-precision/outside/{outside.csv,versions.txt}, which the next report includes; a run on some of the
 # problems writes to out/peers instead.
 #
 #     benchmarks/peers.sh [--seconds 60] [--minutes 11]
 #     benchmarks/peers.sh --problems pinned-hertz,emoc-N8-basic
 #
-# One solve takes at most so many seconds, all of them together so many minutes: what is left of those is shared evenly
-# over what is still to be done, and what does not fit is told in the table.
+# The options limit the seconds of one solve and the total minutes. The remaining time is shared evenly over the remaining
+# solves, and the table lists those that were not run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 work=out/peers

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs every code on the problems of impactbench, and writes the results and the page.
-# Codes outside Rust are installed: from PyPI into target/impactbench, and, where apt-get may, from Debian (calculix-ccx,
-# python3-siconos, libsundials-dev). A code that does not install is left out, and its results stay as they are.
+# Codes outside Rust are installed: from PyPI into target/impactbench, and, if apt-get is permitted, from Debian (calculix-ccx,
+# python3-siconos, libsundials-dev). A code that cannot be installed is omitted, and its results do not change.
 # With names of codes only these are run: run.sh siconos cvode
 set -euo pipefail
 cd "$(dirname "$0")"

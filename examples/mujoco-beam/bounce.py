@@ -3,10 +3,10 @@
     pip install mujoco numpy
     python bounce.py
 
-MuJoCo knows no restitution but the stiffness and damping of a contact. Before a ball touches, the law EMOC (the C header of the
-crate `emoc`, built by the C compiler here) tells the restitution at its location, with the ringing that earlier bounces have left
-in the bar; the damping ratio that has this restitution is written into the ball's `solref`; MuJoCo does the contact. The
-program prints what the law asks for and what MuJoCo makes of it, and fails if the two are apart.
+MuJoCo has no restitution, but the stiffness and damping of a contact. Before a ball touches, the law EMOC (the C header of the
+crate `emoc`, compiled here) gives the restitution at its location, with the vibration of the bar after earlier bounces. The damping
+ratio for this restitution is written into the ball's `solref`, and MuJoCo simulates the contact. The program prints the
+restitution of the law and that of MuJoCo, and fails if they differ.
 """
 
 import ctypes
@@ -19,11 +19,11 @@ import mujoco
 import numpy
 
 HERE = pathlib.Path(__file__).resolve().parent
-# the bar and the law of examples/rapier-beam
+# The bar and the law of examples/rapier-beam.
 LENGTH_M, WIDTH_M, THICKNESS_M, MODULUS_PA, DENSITY_KG_M3 = 0.3, 0.02, 0.01, 2e11, 7800.0
 DAMPING_RATIO, MODES, LAW = 0.001, 16, (0.159, 8.957, 1.506)
 HEIGHT_M, GRAVITY_M_S2, BOUNCES = 0.5, 9.81, 3
-# the contact of MuJoCo: a step, and a duration that many steps resolve
+# The contact in MuJoCo: the step, and a duration that many steps resolve.
 STEP_S, CONTACT_S = 2e-5, 2e-3
 
 
@@ -44,7 +44,7 @@ def array(values):
 
 
 def damping_ratio(restitution):
-    """That of a spring and dashpot which do not pull, e = exp(-2 z acos(z)/sqrt(1 - z^2)), by bisection."""
+    """The damping ratio of a spring and dashpot that do not pull, from e = exp(-2 z acos(z)/sqrt(1 - z^2)), by bisection."""
     low, high = 0.0, 1.0 - 1e-12
     for _ in range(60):
         middle = 0.5 * (low + high)

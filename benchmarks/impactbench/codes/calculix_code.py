@@ -1,6 +1,6 @@
-"""CalculiX: implicit dynamics with a fixed step and no numerical damping. A mode is a unit mass on a spring, the point of a
-contact hangs on the modes by an equation, and a contact is a nonlinear spring that is slack across the gap. Dashpots are for
-steady states in CalculiX, so that problems without any damping remain. The setting is the number of steps."""
+"""CalculiX: implicit dynamics with a fixed step and without numerical damping. A mode is a unit mass on a spring, an equation ties
+the point of a contact to the modes, and a contact is a nonlinear spring that has no force across the gap. Dashpots work only in
+steady states in CalculiX, so that only problems without damping are solved. The setting is the number of steps."""
 
 import os
 import pathlib
@@ -13,22 +13,22 @@ import numpy
 from template import System, bench
 
 COUNTS = [30, 100, 300, 1000]
-# points of a curved force, of which CalculiX makes straight pieces
+# Number of points of a nonlinear force, which CalculiX interpolates linearly.
 POINTS = 100
 
 
 def number(value):
-    """As it fits into the twenty characters of a field."""
+    """A number in the twenty characters of a field."""
     return f"{float(value):.11E}"
 
 
 def table(system, gap, law):
-    """Force against elongation of a spring that is pressed by the compression."""
+    """Force as a function of elongation, for a spring under compression."""
     k, n, _, _ = law
     if n == 1.0:
         depths = [1.0]
     else:
-        # from the energy of all the motion, with something to spare
+        # From the total energy of the motion, with a margin.
         deepest = 2 * ((n + 1) / (2 * k) * system.scale() ** 2) ** (1 / (n + 1))
         depths = deepest * (numpy.arange(POINTS, 0, -1) / POINTS) ** 2
     lines = [f"{number(-k * depth**n)},{number(-gap - depth)}" for depth in depths]

@@ -1,7 +1,7 @@
 """Exudyn: all bodies as one system of second order with unit mass matrix, whose contacts are a user function in Python.
 
 Two of its integrators: the implicit generalised alpha with fixed steps, whose setting is their number, and the explicit
-Dormand-Prince pair of order 5 with steps of its own choice, whose setting is the tolerance. Neither knows of contacts.
+Dormand-Prince pair of order 5 with adaptive steps, whose setting is the tolerance. Neither detects contacts.
 """
 
 import exudyn

@@ -1,4 +1,4 @@
-"""MuJoCo: contacts and joint limits are springs with dashpots per unit of mass, which is what solref states.
+"""MuJoCo: contacts and joint limits are springs with dashpots per unit of mass, as stated by solref.
 
 A restitution is asked for in two ways: by the exact relation of a dashpot that does not pull, which `vibroimpact law` prints,
 and by the field's formula. The setting is the time step over the duration of the contact.
@@ -62,7 +62,7 @@ def solve(ratio):
             return None
         law, mass = ball["law"], ball["mass_kg"]
         if law["kind"] == "restitution":
-            # a contact of a tenth of a second; without any restitution, heavily damped
+            # A contact of a tenth of a second; without restitution it is heavily damped.
             omega = 10 * math.pi
             zeta = ratio(max(law["restitution"], 1e-3)) if law["restitution"] < 1 else 0.0
             return drop(omega**2, 2 * zeta * omega, ball["speed_m_s"], share * 0.1)

@@ -1,5 +1,5 @@
-"""PyBullet: rigid bodies with a restitution. The setting is the time step. The ball starts where it touches, as the problem
-has it: from a distance the rebound depends on how far it still has to go in the step of the contact, by up to 0.5."""
+"""PyBullet: rigid bodies with a restitution. The setting is the time step. The ball starts in contact, as in
+the problem: from a distance, the rebound depends by up to 0.5 on the remaining distance in the step of the contact."""
 
 import pybullet
 
@@ -14,7 +14,7 @@ def solve(problem, step):
     if ball is None or ball["law"]["kind"] != "restitution":
         return None
     pybullet.resetSimulation()
-    # the least speed at which it lets bodies bounce is 0.2 m/s unless it is told otherwise
+    # By default bodies bounce only above 0.2 m/s.
     pybullet.setPhysicsEngineParameter(fixedTimeStep=step, restitutionVelocityThreshold=0.0)
     ground = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
     shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.015)
@@ -23,7 +23,7 @@ def solve(problem, step):
         pybullet.changeDynamics(each, -1, restitution=1.0 if each == ground else ball["law"]["restitution"],
                                 linearDamping=0, angularDamping=0, lateralFriction=0,
                                 activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING)
-    # without it a fast ball passes through the ground within a step
+    # Without it a fast ball passes through the ground within a step.
     pybullet.changeDynamics(body, -1, ccdSweptSphereRadius=0.01)
     pybullet.resetBaseVelocity(body, [0, 0, -ball["speed_m_s"]])
     for _ in range(40):

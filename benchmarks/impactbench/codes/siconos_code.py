@@ -25,7 +25,7 @@ def bounce(problem, count):
     model = siconos.NonSmoothDynamicalSystem(0, 2 * system.end)
     balls = []
     for amplitude, rate in zip(system.amplitude, system.rate):
-        # in modal coordinates every mass is one
+        # In modal coordinates every mass is one.
         balls.append(siconos.LagrangianLinearTIDS([float(amplitude)], [float(rate)], numpy.eye(1)))
         model.insertDynamicalSystem(balls[-1])
     for psi, gap, _ in system.contacts:
@@ -52,7 +52,7 @@ def press(problem, count):
     b[n : 2 * n] = system.constant
     start[: 2 * n] = numpy.concatenate([system.amplitude, system.rate])
     for h, (omega, phase, row) in enumerate(system.harmonics):
-        # a harmonic load is a further oscillator
+        # A harmonic load is an additional oscillator.
         sine, cosine = 2 * n + 2 * h, 2 * n + 2 * h + 1
         a[sine, cosine], a[cosine, sine] = omega, -omega
         start[sine], start[cosine] = numpy.sin(phase), numpy.cos(phase)

@@ -1,15 +1,15 @@
-"""What every code outside Rust shares: it reads the problems, times a function on each, and writes the table.
+"""The common part of the codes outside Rust: it reads the problems, times a function on each, and writes the table.
 
-A code is a program beside this one:
+A code is a program in the same folder:
 
     from template import bench, only_ball
 
     def solve(problem, setting):
         ball = only_ball(problem)               # None unless a free mass meets the ground
         if ball is None:
-            return None                         # a dash: this code cannot do it
+            return None                         # a dash: this code cannot solve it
         ...
-        return [velocity_at_the_end]            # the numbers asked for, in order
+        return [velocity_at_the_end]            # the requested quantities, in order
 
     bench("mycode", "my code, as it is used", [1e-3, 1e-4], solve, versions="mycode 1.0")
 """
@@ -35,7 +35,7 @@ os.environ |= {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS",
 
 
 def problems():
-    """Every problem, as its file has it."""
+    """Every problem, as in its file."""
     return [json.loads(path.read_text()) for path in sorted((HERE.parent / "problems").glob("*.json"))]
 
 
@@ -68,7 +68,7 @@ def oscillator(problem):
 
 
 def power_law(law):
-    """Stiffness k, exponent n, damping d and dashpot c of a force k xi^n (1 + d xi') + c xi', which does not pull; none for
+    """Stiffness k, exponent n, damping d and dashpot c of a force k xi^n (1 + d xi') + c xi', which does not pull; `None` for
     another law."""
     k = law.get("stiffness_n_m1_5", law.get("stiffness_n_m", law.get("stiffness_n_m_n")))
     if law["kind"] in ("hertz", "viscous"):
@@ -134,18 +134,18 @@ class System:
         return total
 
     def powers(self):
-        """The laws as `power_law` has them; none if one of them is another, or there is no contact."""
+        """The laws in the form of `power_law`; `None` if one of them is different, or if there is no contact."""
         laws = [power_law(law) for _, _, law in self.contacts]
         return None if not laws or None in laws else laws
 
     def scale(self):
-        """A modal rate that the motion has."""
+        """A typical modal rate of the motion."""
         driven = abs(self.constant) + sum(abs(row) for _, _, row in self.harmonics)
         driven = driven * numpy.minimum(self.end, 1 / numpy.maximum(self.omega, 1e-12))
         return float(max(numpy.linalg.norm(self.rate), numpy.linalg.norm(driven)))
 
     def text(self):
-        """The system as `cvode/system.h` reads it; none where a law is no power."""
+        """The system in the form of `cvode/system.h`; `None` if a law is not a power."""
         laws = self.powers()
         if laws is None:
             return None
@@ -158,7 +158,7 @@ class System:
         return "\n".join(" ".join(repr(float(value)) for value in line) for line in lines) + "\n"
 
     def answers(self, q, rate):
-        """The numbers asked for."""
+        """The requested quantities."""
         values = [float(row @ (rate if velocity else q)) for row, velocity in self.asked]
         if not numpy.all(numpy.isfinite(values)):
             raise ArithmeticError("not a number")
@@ -166,7 +166,7 @@ class System:
 
 
 def damping_ratio(restitution):
-    """That of spring and dashpot which do not pull, by bisection on e = exp(-2 z acos(z)/sqrt(1 - z^2))."""
+    """The damping ratio of a spring and dashpot that do not pull, by bisection on e = exp(-2 z acos(z)/sqrt(1 - z^2))."""
 
     def obtained(z):
         if z < 1:
@@ -184,7 +184,7 @@ def damping_ratio(restitution):
 
 
 def timed(run):
-    """What a run gives, and the mean processor time of repeated ones, which another program on the machine does not change."""
+    """The result of a run, and the mean processor time of repeated runs, which does not depend on other programs."""
     began, count = time.process_time(), 0
     while True:
         found = run()
@@ -195,13 +195,13 @@ def timed(run):
 
 
 def attempt(run, pipe):
-    """Sends what a run comes to: its values or none, its time, its status."""
-    # this process and the programs that it starts are ended when they take longer
+    """Sends the result of a run: its values or `None`, its time, its status."""
+    # This process and the programs that it starts are ended if they take longer.
     resource.setrlimit(resource.RLIMIT_CPU, (int(2 * LONGEST_S),) * 2)
     try:
         values, seconds = timed(run)
         if isinstance(values, tuple):
-            # a program of its own, which has measured itself
+            # A separate program, which has measured its own time.
             values, seconds = values
         pipe.send((values, seconds, "ok"))
     except Exception as fault:
@@ -209,7 +209,7 @@ def attempt(run, pipe):
 
 
 def guarded(run):
-    """The same from a process of its own, which may crash or take too long."""
+    """The same from a separate process, which may crash or take too long."""
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=attempt, args=(run, theirs))
@@ -226,7 +226,7 @@ def guarded(run):
 
 
 def bench(name, code, settings, solve, versions):
-    """Offers every problem at every setting, from coarse to fine, and writes NAME.csv and NAME.txt."""
+    """Runs every problem at every setting, from coarse to fine, and writes NAME.csv and NAME.txt."""
     results = HERE.parent / "results"
     cpu = pathlib.Path("/proc/cpuinfo")
     models = [line.split(": ")[1] for line in cpu.read_text().splitlines() if line.startswith("model name")] if cpu.exists() else []
@@ -243,7 +243,7 @@ def bench(name, code, settings, solve, versions):
 
 
 def sweep(problem, code, settings, solve):
-    """The rows of a problem: none where the code cannot take part."""
+    """The rows of a problem; empty if the code cannot take part."""
     rows = []
     for setting in settings:
         row = {"problem": problem["name"], "code": code, "setting": setting, "time_s": "", "status": "ok", "values": ""}

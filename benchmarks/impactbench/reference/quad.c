@@ -1,10 +1,10 @@
 /* References in quadruple precision: quad PROBLEM. See reference/run.sh.
  *
  * Gragg's midpoint rule, extrapolated in eight columns (16th order) with step control. A phase ends inside a step where one of
- * its boundaries changes sign; that step is done again with the length that leads to it, by the Illinois rule. No step is longer
- * than two radians of the fastest mode, so that boundaries are watched as closely as anything moves. Prints the state at the
- * end by a tolerance of 1e-23, and by 1e-20, whose difference bounds the error of the first. Shares nothing with the
- * workspace but the equations. */
+ * its event functions changes sign; that step is repeated with the length that leads to it, by the Illinois rule. No step is longer
+ * than two radians of the fastest mode, so that event functions are sampled finely enough. Prints the final state for the
+ * tolerances 1e-23 and 1e-20, whose difference bounds the error of the first. Only the equations are common to this program
+ * and the workspace. */
 #include <quadmath.h>
 #define REAL __float128
 #define SQRT sqrtq
@@ -47,7 +47,7 @@ static REAL step(System *s, REAL t, const REAL *y, REAL h, REAL *out) {
     return error;
 }
 
-/* A boundary, positive before it is met. */
+/* An event function, positive before the event. */
 static REAL margin(const System *s, int i, int which, const REAL *y) {
     REAL values[2];
     int directions[2];
@@ -55,11 +55,11 @@ static REAL margin(const System *s, int i, int which, const REAL *y) {
     return directions[which] == 0 ? 1 : -directions[which] * values[which];
 }
 
-/* Follows a phase; returns 1 if a boundary ended it, which is then crossed. */
+/* Integrates a phase; returns 1 if an event ended it, after which the next phase begins. */
 static int phase(System *s, REAL *y, REAL tolerance, REAL longest) {
     int size = 2 * s->modes, count = 2 * s->contacts;
     REAL t = 0, end = s->end - s->zero, next[MOST], tried[MOST];
-    /* a force begins as a power of time, which does not extrapolate: steps grow from next to nothing */
+    /* A force begins as a power of time, which cannot be extrapolated: steps grow from a very small one. */
     REAL h = 1e-13Q * s->end, least[2 * 64];
     for (int b = 0; b < count; b++) least[b] = fminq(margin(s, b / 2, b % 2, y), 0);
     while (t < end) {
@@ -78,7 +78,7 @@ static int phase(System *s, REAL *y, REAL tolerance, REAL longest) {
             REAL low = 0, high = length, above, below = margin(s, b / 2, b % 2, met < 0 ? next : tried);
             if (below >= least[b] || margin(s, b / 2, b % 2, y) <= least[b]) continue;
             above = margin(s, b / 2, b % 2, y);
-            /* the step is done again with the length that ends at the boundary */
+            /* The step is repeated with the length that ends at the event. */
             int side = 0;
             for (int trial = 0; trial < 200 && high - low > 1e-30Q * s->end; trial++) {
                 REAL middle = (low * below - high * above) / (below - above);
@@ -109,7 +109,7 @@ static int phase(System *s, REAL *y, REAL tolerance, REAL longest) {
         memcpy(y, next, sizeof(REAL) * size);
         t += h;
         h *= factor;
-        /* a boundary that was left counts from zero */
+        /* The function of an event that has just occurred starts from zero. */
         for (int b = 0; b < count; b++)
             if (margin(s, b / 2, b % 2, y) > 0) least[b] = 0;
     }

@@ -5,10 +5,10 @@
 % PROBLEM is a file of `work-precision export`, END the time to follow (s), EXACT 1 to take free flight in closed form.
 % Prints the striker's speed over that of the impact, contact times (s), impulses (N s), right-hand sides and seconds.
 %
-% As well tuned as it allows: analytic Jacobian (sparse in free flight), its own Events, tolerances in the scale of each
-% unknown, a consistent initial slope (from the default it often fails to start), a first step that respects the touch.
-% It places an event by linear interpolation of its last step (error of the square of the step, 1e-7 of the time at a
-% tolerance of 1e-9), so the place is found anew on the cubic through the states and slopes at the step's two ends.
+% It is tuned as well as it allows: analytic Jacobian (sparse in free flight), its own Events, tolerances in the scale of each
+% unknown, a consistent initial slope (with the default it often fails to start), a first step that resolves the touch.
+% It locates an event by linear interpolation of its last step (error of the square of the step, 1e-7 of the time at a
+% tolerance of 1e-9), so the event is located again on the cubic through the states and slopes at the two ends of the step.
 1;
 
 function p = read_impact(path)

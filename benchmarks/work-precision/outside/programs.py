@@ -1,7 +1,7 @@
 """The quadratic programs of the work-precision report (EMOC's P_1) by DAQP, a dual active-set method written in C.
 
-Nothing is to be tuned: at every tolerance it ends on the same active set, and the solution is that of the linear system
-which belongs to it.
+It has no tuning parameters: at every tolerance it ends with the same active set, and the solution is that of the
+corresponding linear system.
 """
 
 import time

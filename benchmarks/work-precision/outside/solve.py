@@ -1,8 +1,8 @@
 """Solvers outside Rust on the problems of the work-precision report; called by benchmarks/peers.sh.
 
-Every impact is integrated phase by phase, as the Rust peers do it: free flight, and one smooth branch of the contact law,
-each ended by the solver's own event location. The equations are vectorised; a call of them costs a few microseconds,
-most of it Python's own (in Octave, ten times as much). Times are therefore an upper bound for the methods; numbers of
+Every impact is integrated phase by phase, as by the Rust peers: free flight, and one smooth branch of the contact law,
+each ended by the solver's own event location. The equations are vectorised; a call takes a few microseconds,
+most of which is Python's overhead (in Octave, ten times as much). Times are therefore an upper bound for the methods; numbers of
 evaluations are not. Quadratic programs are in programs.py, Octave's part in ode15s.m.
 """
 
@@ -25,7 +25,7 @@ from sksundae.cvode import CVODE
 from programs import Program
 
 TOLERANCES = {"flight": [1e-4, 1e-6, 1e-8, 1e-10, 1e-12], "whole": [1e-4, 1e-8, 1e-12]}
-# what Octave takes before it begins to solve, on a busy machine
+# Time that Octave needs before it starts to solve, on a busy machine.
 START_OF_OCTAVE_S = 5
 
 
@@ -181,7 +181,7 @@ def by_cvode(method):
         if not found.success:
             raise RuntimeError(str(found.message))
         if found.t_events is not None and len(found.t_events):
-            # which margin it was
+            # The number of the event function.
             last = found.y[-1]
             margins = [margin - offset for margin, offset in zip(phase.margins(last), offsets)]
             return t + found.t[-1], last, int(np.argmin(np.abs(margins)))
@@ -228,7 +228,7 @@ def follow(impact, advance, exact_flight, end, tolerance):
 
 
 def by_octave(impact, exact_flight, end, tolerance, limit):
-    """Octave's ode15s, in a process of its own; its clock runs from when it has read its files."""
+    """Octave's ode15s, in a separate process; its time is counted from when it has read its files."""
     script = os.path.join(os.path.dirname(__file__), "ode15s.m")
     words = ["octave-cli", "--no-gui", "--quiet", "--norc", script, impact.path, repr(tolerance), repr(end),
              str(int(exact_flight))]
@@ -245,7 +245,7 @@ def by_octave(impact, exact_flight, end, tolerance, limit):
 
 
 def in_python(advance):
-    """A solver that is stopped by an alarm."""
+    """A solver with a time limit by an alarm."""
 
     def solve(impact, exact_flight, end, tolerance, limit):
         signal.setitimer(signal.ITIMER_REAL, limit)
@@ -348,7 +348,7 @@ def main():
     impacts = chosen(Impact(path) for path in files if os.path.basename(path).startswith("impact-"))
     programs = chosen(Program(path) for path in files if os.path.basename(path).startswith("program-"))
     known = references(os.path.join(options.package, "reference", "impacts.csv"))
-    # with exact flight first, as it costs little: what one solver leaves of its share, the others may use
+    # With exact flight first, as it costs little: the unused time of one solver is available to the others.
     jobs = [(impact, exact, name) for exact in [True, False] for impact in impacts for name in solvers]
     if not jobs and not programs:
         sys.exit(f"error: no problem of the names {options.problems}")

@@ -4,8 +4,8 @@
  *     gcc -O2 -o impacts impacts.c -lquadmath -lm && ./impacts problems/impact-*.txt > impacts.csv
  *
  * Contacts are integrated by Gragg's extrapolated midpoint rule with 16th-order columns and step control, free flight in
- * closed form with a search for sign changes at a sixtieth of the shortest period and for peaks between. Nothing is
- * shared with the workspace but the equations: theta of the hysteretic law is a differential equation here.
+ * closed form with a search for sign changes at a sixtieth of the shortest period and for peaks between. Only the equations
+ * are common to this program and the workspace: theta of the hysteretic law is a differential equation here.
  * Every problem is solved twice, with tolerances 1e-23 and 1e-20; the difference is stated as the error of the second,
  * and bounds that of the first. */
 #include <quadmath.h>
@@ -87,7 +87,7 @@ static Real step(const Real *y, Real h, Real *out, Real tolerance) {
     return error / tolerance;
 }
 
-/* What ends the branch: negative beyond it. */
+/* The event function of the branch, negative beyond its end. */
 static Real margin(const Real *y) {
     Real xi, rate;
     compression(y, &xi, &rate);
@@ -103,7 +103,7 @@ static Real second(const Real *y) {
 
 static Real guess; /* length of step that suited last */
 
-/* Integrates until the branch ends; returns 0 for its margin, 1 for a new loading. */
+/* Integrates until the branch ends; returns 0 for its event function, 1 for a new loading. */
 static int contact(Real *t, Real *y, Real tolerance) {
     Real h = guess, next[2 * MOST + 3];
     int fresh = 1;
@@ -166,7 +166,7 @@ static void propagate(const Real *y, Real time, Real *out) {
     out[2 + 2 * n] = y[2 + 2 * n];
 }
 
-/* Closed form to the next touch, 1, or the certainty that there is none, 0. */
+/* Closed form up to the next touch (returns 1), or until it is certain that there is none (returns 0). */
 static int flight(Real *t, Real *y) {
     Real shortest = 0, here[2 * MOST + 3], there[2 * MOST + 3], probe[2 * MOST + 3];
     for (int k = 0; k < n; k++) if (omega[k] > shortest) shortest = omega[k];
@@ -184,7 +184,7 @@ static int flight(Real *t, Real *y) {
         Real left = (i - 1) * h, right = i * h;
         int touch = next_xi >= 0;
         if (!touch && rate > 0 && next_rate < 0) {
-            /* a peak between: bisect the rate, and look whether it reaches the surface */
+            /* There is a peak in between: bisect the rate, and check whether it reaches the surface. */
             Real low = left, high = right;
             for (int j = 0; j < 110; j++) {
                 Real middle = (low + high) / 2, x, r;

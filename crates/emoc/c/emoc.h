@@ -7,8 +7,8 @@
  *     v - beta0 sum |phi_k a_k'|  >= beta1 ebar u
  *     |a_k' - a_k'(0)|            <= |phi_k| p              p: impulse on the striker
  *
- * The mathematics is stated in the documentation of the crate. Nothing is allocated, nothing is kept, no state is shared;
- * every function is static, and returns EMOC_INVALID for input out of range and leaves its results as they were.
+ * The mathematics is stated in the documentation of the crate. There is no allocation and no shared state. Every function is
+ * static; for input out of range it returns EMOC_INVALID and does not change its results.
  * emoc_ring and emoc_half_sine need <math.h>.
  *
  *     double phi[2] = {1.0, 0.6}, amplitudes[2] = {0.0, 0.0}, rates[2] = {0.0, 0.0};
@@ -17,7 +17,7 @@
  *     emoc_rebound rebound;
  *     emoc_coefficients_at(&law, 0.2, phi, 2, &of_location);          // once for each location and striker
  *     emoc_meet(&of_location, 0.2, -1.0, phi, rates, 2, &rebound);    // rebound.velocity_m_s is the striker's
- *     for (k = 0; k < 2; k++)                                         // strike the structure, and let it ring
+ *     for (k = 0; k < 2; k++)                                         // strike the structure, and let it vibrate
  *         rates[k] -= phi[k] * rebound.impulse_n_s * emoc_half_sine(omega[k], contact_s);
  *     emoc_ring(omega[k], damping_ratio[k], time_s, &amplitudes[k], &rates[k]);
  */
@@ -32,7 +32,7 @@
 extern "C" {
 #endif
 
-/* What a function says of its input. */
+/* Status that a function returns. */
 typedef enum { EMOC_DONE = 0, EMOC_INVALID = 1 } emoc_status;
 
 /* Fitted parameters of a structure. */
@@ -41,14 +41,14 @@ typedef struct {
     double notional_restitution; /* without vibration, 0 to 1 */
 } emoc_parameters;
 
-/* The coefficients of the inequalities, of a striker at a location. */
+/* The coefficients of the inequalities for a striker at a location. */
 typedef struct {
     double ebar;  /* 0 to 1 */
     double beta0; /* not negative */
     double beta1; /* 0 to 1 */
 } emoc_coefficients;
 
-/* What the impact leaves behind. */
+/* The result of an impact. */
 typedef struct {
     double velocity_m_s; /* of the striker, positive away from the structure */
     double impulse_n_s;  /* on the striker; zero if the two were not closing */
@@ -56,7 +56,7 @@ typedef struct {
     double share;        /* of the demands: 1 unless the energy would grow */
 } emoc_rebound;
 
-/* Largest number that is taken, and impulse beyond which none is looked for. */
+/* Largest number that is accepted, and largest impulse that is searched for. */
 #define EMOC_LARGEST 1e60
 #define EMOC_FARTHEST 1e200
 
@@ -107,7 +107,7 @@ static inline emoc_status emoc_restitution(const emoc_coefficients *c, double z,
     return EMOC_DONE;
 }
 
-/* A meeting: what the functions below share. */
+/* An impact: the common data of the functions below. */
 typedef struct {
     const emoc_coefficients *c;
     double mass_kg, velocity_m_s;
@@ -136,7 +136,7 @@ static inline double emoc_energy_(const emoc_meeting_ *m, double impulse, double
     return 0.5 * (m->mass_kg * v * v + sum);
 }
 
-/* Speed at which the two open. */
+/* Speed at which the contact opens. */
 static inline double emoc_opening_(const emoc_meeting_ *m, double impulse, double level) {
     double sum = 0.0;
     size_t k;
@@ -152,7 +152,7 @@ static inline double emoc_outward_(const emoc_meeting_ *m, double impulse, doubl
     return emoc_velocity_(m, impulse) - m->c->beta0 * sum;
 }
 
-/* Slope of the least energy over the impulse. */
+/* Derivative of the least energy with respect to the impulse. */
 static inline double emoc_slope_(const emoc_meeting_ *m, double impulse, double level) {
     double sum = 0.0;
     size_t k;
@@ -163,7 +163,7 @@ static inline double emoc_slope_(const emoc_meeting_ *m, double impulse, double 
     return emoc_velocity_(m, impulse) - level / m->mass_kg - sum;
 }
 
-/* The least level at which the two open as fast as demanded; 0 if none does. */
+/* The smallest level at which the contact opens as fast as demanded; 0 if there is none. */
 static inline int emoc_level_(const emoc_meeting_ *m, double impulse, double opening, double *level) {
     double low = 0.0, high = 0.0, below, above, tried[2];
     size_t k;
@@ -180,7 +180,7 @@ static inline int emoc_level_(const emoc_meeting_ *m, double impulse, double ope
     for (i = 0; i < 2200 && high - low > DBL_EPSILON * high; i++) {
         below = emoc_opening_(m, impulse, low) - opening;
         above = emoc_opening_(m, impulse, high) - opening;
-        /* between the ends of the modes' ranges the secant is exact */
+        /* Between the ends of the modes' ranges the secant is exact. */
         tried[0] = low - below * ((high - low) / (above - below));
         tried[1] = 0.5 * (low + high);
         for (j = 0; j < 2; j++) {
@@ -200,7 +200,7 @@ static inline int emoc_enough_(
         && emoc_slope_(m, impulse, *level) >= 0.0;
 }
 
-/* The least energy for these demands; 0 if numbers run out or the energy would grow. */
+/* The least energy for these demands; 0 if numbers overflow or the energy would grow. */
 static inline int emoc_solve_(const emoc_meeting_ *m, double opening, double outward, double energy, double found[2]) {
     double low = 0.0, high = m->mass_kg * fabs(opening - m->velocity_m_s), level = 0.0, trial, middle;
     int i, met = 0;
@@ -227,7 +227,7 @@ static inline int emoc_solve_(const emoc_meeting_ *m, double opening, double out
 }
 
 /* The impact of a striker (velocity positive away from the structure) on a structure with these modal speeds
- * (kg^1/2 m/s). Where the two are not closing, nothing happens. */
+ * (kg^1/2 m/s). If the contact is not closing, nothing happens. */
 static inline emoc_status emoc_meet(
     const emoc_coefficients *c,
     double mass_kg,
@@ -259,7 +259,7 @@ static inline emoc_status emoc_meet(
     result->impulse_n_s = result->level = 0.0;
     result->share = 1.0;
     if (closing <= 0.0) return EMOC_DONE;
-    /* the impact without demands, in which every mode takes the whole impulse */
+    /* The impact without demands, in which every mode takes up the whole impulse. */
     best[0] = closing / inverse;
     best[1] = DBL_MAX;
     demanded[0] = c->ebar * closing;
@@ -291,19 +291,19 @@ static inline emoc_status emoc_meet(
     return EMOC_DONE;
 }
 
-/* Modal speed of least energy after the impact, of a mode with this shape and this speed before it. */
+/* Modal speed of least energy after the impact, for a mode with this shape and this initial speed. */
 static inline double emoc_modal_rate(const emoc_rebound *rebound, double phi, double rate) {
     return emoc_rate_(rebound->impulse_n_s, rebound->level, phi, rate);
 }
 
-/* Share of an impulse that a mode takes of a force that is half a sine and lasts this long. */
+/* Share of the impulse that a mode takes up from a half-sine force of this duration. */
 static inline double emoc_half_sine(double omega_rad_s, double duration_s) {
     const double pi = 3.14159265358979323846;
     double q = omega_rad_s * duration_s / pi;
     return fabs(q - 1.0) < 1e-6 ? pi / 4.0 : cos(0.5 * pi * q) / (1.0 - q * q);
 }
 
-/* Lets a mode ring freely: its exact motion. The damping ratio is from 0 to below 1; a mode with omega 0 drifts. */
+/* Free vibration of a mode: its exact motion. The damping ratio is from 0 to below 1; a mode with omega 0 drifts. */
 static inline emoc_status emoc_ring(
     double omega_rad_s, double damping_ratio, double time_s, double *amplitude, double *rate) {
     double decay = damping_ratio * omega_rad_s, a = *amplitude, b = *rate, damped, along, shrunk, s, c;

@@ -1,7 +1,7 @@
 /* A system of modes with contacts by SUNDIALS CVODE: solve PROBLEM adams|bdf TOLERANCE SCALE SECONDS
  *
- * Root finding stops where a phase ends, and the integration begins anew. Prints the least time of repeated runs and the
- * state at the end. SCALE is the modal rate that errors are compared with. */
+ * Root finding stops at the end of a phase, and the integration restarts. Prints the shortest time of repeated runs and the
+ * final state. SCALE is the modal rate to which errors are relative. */
 #define REAL double
 #define SQRT sqrt
 #define POW pow
@@ -30,7 +30,7 @@ static int roots(double t, N_Vector y, double *values, void *data) {
     return 0;
 }
 
-/* One run; the state is left in y. Returns 0 if it came to its end. */
+/* One run; y returns the final state. Returns 0 if the end was reached. */
 static int run(System *s, SUNContext context, N_Vector y, N_Vector tolerances, int bdf) {
     int n = 2 * s->modes, status = 1;
     memcpy(NV_DATA_S(y), s->start, sizeof(double) * n);
@@ -58,7 +58,7 @@ static int run(System *s, SUNContext context, N_Vector y, N_Vector tolerances, i
     for (;;) {
         for (int i = 0; i < s->contacts; i++) boundaries(s, i, NV_DATA_S(y), values, direction + 2 * i);
         CVodeSetRootDirection(cvode, direction);
-        /* time is counted from the start of the phase */
+        /* Time is counted from the start of the phase. */
         double left = s->end - s->zero, t = 0;
         if (left <= 0) {
             status = 0;
@@ -101,7 +101,7 @@ int main(int count, char **words) {
     SUNContext_Create(NULL, &context);
     N_Vector y = N_VNew_Serial(2 * s.modes, context), tolerances = N_VNew_Serial(2 * s.modes, context);
     for (int k = 0; k < s.modes; k++) {
-        /* a rigid body counts by what it covers in a hundredth of the time */
+        /* The scale of a rigid body is its distance in a hundredth of the time. */
         double slowest = 1 / (0.01 * s.end), omega = s.omega[k] > slowest ? s.omega[k] : slowest;
         NV_DATA_S(tolerances)[k] = tolerance / omega;
         NV_DATA_S(tolerances)[s.modes + k] = tolerance;
