@@ -28,26 +28,27 @@
 //!
 //! # The laws
 //!
-//! | law | force | parameters | source | valid for | where the formula gives tension |
+//! | law | force | parameters | source | valid for | tension |
 //! |---|---|---|---|---|---|
-//! | [`Hertz`] | `k_H xi^1.5` | `k_H`, or two bodies | Hertz 1882; thesis 3.12 | small contact, elastic | never does |
+//! | [`Hertz`] | `k_H xi^1.5` | `k_H`, or two bodies | Hertz 1882; thesis 3.12 | small contact, elastic | none |
 //! | [`Viscous`] | `k_H xi^1.5 (1 + c xi')` | `k_H`, `c` | thesis 3.15 | `c xi'` well below 1 | slack |
-//! | [`Hysteretic`] | `k_H xi^1.5 (1 + theta)` | `k_H`, `theta_m`, `beta`, `K`, `eps` | thesis 3.16, 3.17 | damping without rate, no indentation | never does |
-//! | [`LinearSpring`] | `k xi` | `k` | textbook | constant contact area, penalty | never does |
-//! | [`Power`] | `k xi^n` | `k`, `n` | textbook | any curve that a power fits, no losses | never does |
+//! | [`Hysteretic`] | `k_H xi^1.5 (1 + theta)` | `k_H` and four more | thesis 3.16, 3.17 | damping without rate | none |
+//! | [`LinearSpring`] | `k xi` | `k` | textbook | constant contact area, penalty | none |
+//! | [`Power`] | `k xi^n` | `k`, `n` | textbook | any curve that a power fits, no losses | none |
 //! | [`KelvinVoigt`] | `k xi + c xi'` | `k`, `c` | Schwager and Poschel 2007 | simple model, `e` without speed | slack |
 //! | [`HuntCrossley`] | `k xi^n (1 + D xi')` | `k`, `n`, `D` | Hunt and Crossley 1975 | light damping | slack |
 //! | [`LankaraniNikravesh`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Lankarani and Nikravesh 1990 | `e` near 1 | slack |
 //! | [`Flores`] | `k_H xi^1.5 (1 + D xi')` | `k_H`, `e` | Flores et al. 2011 | any `e`, approximately | slack |
 //! | [`Felt`] | `Q0 (xi^p + alpha d(xi^p)/dt)` | `Q0`, `p`, `alpha` | Stulov 2004 | piano hammers | slack |
-//! | [`Thornton`] | Hertz, line after yield, flattened Hertz back | `E*`, `R*`, `p_y` | Thornton 1997 | moderate plastic indentation | never does |
+//! | [`Thornton`] | Hertz, line after yield, Hertz back | `E*`, `R*`, `p_y` | Thornton 1997 | moderate plastic indentation | none |
 //!
-//! *Slack* means that the surfaces recover without touching: the force is zero until the formula is positive again or the
-//! compression is zero. It is a branch of its own ([`Stage::Slack`]), and the force is continuous at both of its ends. [`Law`]
-//! contains any of them; [`Law::wall_restitution`] is the restitution of a rigid striker at a wall, for any law. The difference
-//! between the work received and the [stored](ContactLaw::stored_energy_j) energy is what the contact has dissipated. [`trace`]
-//! evaluates a law along a prescribed motion, and [`check_contract`] tests whether your own law has the properties on which an
-//! integrator relies.
+//! The last column states what replaces the formula where it would give tension. *Slack* means that the surfaces recover
+//! without touching: the force is zero until the formula is positive again or the compression is zero. It is a branch of its
+//! own ([`Stage::Slack`]), and the force is continuous at both of its ends. [`Law`] contains any of them;
+//! [`Law::wall_restitution`] is the restitution of a rigid striker at a wall, for any law. The difference between the work
+//! received and the [stored](ContactLaw::stored_energy_j) energy is what the contact has dissipated. [`trace`] evaluates a law
+//! along a prescribed motion, and [`check_contract`] tests whether your own law has the properties on which an integrator
+//! relies.
 //!
 //! Conversely, [`Wanted`] gives the parameters of a law for a required restitution, exactly and not by the papers'
 //! approximations, and [`stepped_restitution`] the restitution of these parameters in an engine with a fixed step.

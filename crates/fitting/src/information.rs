@@ -40,7 +40,7 @@ impl Information {
     /// There is no coordinate, the rows are not a multiple of `n` numbers, or a number is not finite.
     ///
     /// ```
-    /// // two readings of the sum of two coordinates tell nothing of their difference
+    /// // two readings of the sum of two coordinates contain no information about their difference
     /// let readings = fitting::Information::of(&[1.0, 1.0, 1.0, 1.0], 2)?;
     /// let directions = readings.directions();
     /// assert!(directions[0].standard_deviation.is_infinite());

@@ -27,7 +27,7 @@
 //! | `f` | density, the integrand besides the kernel | [`Volterra::density`] | |
 //! | `a`, `c` | order and factor of a kernel `c t^(a-1)` | [`Term`] | |
 //! | `D^a` | Caputo or Riemann-Liouville derivative | [`operators`] | thesis A.1 |
-//! | `A`, `B`, `c` | matrices of the Galerkin recipe | [`DasChatterjee`] | thesis Eq. A.1 |
+//! | `A`, `B`, `c` | matrices of the Galerkin method | [`DasChatterjee`] | thesis Eq. A.1 |
 //! | `q` | mapping `t - t0 = x^q` of panels | [`Collocation::mapping`] | |
 //!
 //! Times and values have the units of the problem.
@@ -36,14 +36,15 @@
 //!
 //! | [`Method`] | order | cost | memory | when to use it |
 //! |---|---|---|---|---|
-//! | [`Collocation`](Method::Collocation) | spectral | `O(P^2 n^2)`, `P` panels of `n` nodes | `O(P n)` | first choice; reaches 12 digits |
+//! | [`Collocation`](Method::Collocation) | spectral | `O(P^2 n^2)` | `O(P n)` | first choice; reaches 12 digits |
 //! | [`Trapezoidal`](Method::Trapezoidal) | 2 | `O(n log^2 n)` | `O(n)` | rough densities, many equal steps |
 //! | [`SumOfExponentials`](Method::SumOfExponentials) | 2 | `O(n log n)` | `O(log n)` | long runs in bounded memory; graded steps |
-//! | [`GalerkinStates`](Method::GalerkinStates) | 2 down to the floor of `N` states | `O(n N)` | `O(N)` | the recipe of the literature |
+//! | [`GalerkinStates`](Method::GalerkinStates) | 2, down to a floor | `O(n N)` | `O(N)` | the method of the literature |
 //! | [`L1`](Method::L1) | 1; `2 - a` if smooth | `O(n log^2 n)` | `O(n)` | comparison |
 //! | [`GrunwaldLetnikov`](Method::GrunwaldLetnikov) | 1 | `O(n log^2 n)` | `O(n)` | comparison |
 //!
-//! [`Volterra::solve_to`] chooses the settings for a requested accuracy and estimates the error.
+//! Collocation has `P` panels of `n` nodes, the other methods take `n` steps. [`Volterra::solve_to`] chooses the settings for a
+//! requested accuracy and estimates the error.
 //!
 //! *Convolution methods* replace the integral by `h^a sum_j w_(n-j) f_j` on equal steps. For Gruenwald-Letnikov, `w` are the
 //! coefficients of `(1-z)^-a`; for L1, those of the inverse of the L1 formula for the derivative of the fractional order, times

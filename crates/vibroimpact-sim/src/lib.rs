@@ -3,7 +3,7 @@
 //! | module | structure | method | thesis |
 //! |---|---|---|---|
 //! | [`modal`] | any that is described by its modes, at rest or moving | treated as the smallest assembly | chapters 3, 4 |
-//! | [`infinite`] | an infinite beam or plate, or any whose impulse response is a sum of powers of time | one scalar Volterra equation | chapter 2 |
+//! | [`infinite`] | infinite: the impulse response is a sum of powers of time | one scalar Volterra equation | chapter 2 |
 //! | [`assembly`] | many bodies, contacts and loads, over long times | modes exact, the forces by collocation | not in the thesis |
 //! | [`dropped_rod`] | a tilted rod that falls on an immovable surface, treated as a modal impact | as `modal` | chapter 8 |
 //!

@@ -143,7 +143,7 @@ impl March<'_, '_, '_> {
         let mut reached = 0.0;
         let start = self.start_value(&segment)?;
         let mut guess = start.clone();
-        // The last fault met. If it lies ahead, it tells more than the reason why the shortest panel failed.
+        // The last fault met. If it lies ahead, it is more informative than the reason why the shortest panel failed.
         let mut fault: Option<Fault> = None;
         let mut rejected_before = false;
         while reached < segment.length() {

@@ -125,7 +125,7 @@ pub(crate) struct FlightBounds {
     uses: u32,
 }
 
-/// New bounds are taken after so many uses.
+/// Number of uses after which new bounds are computed.
 const USES: u32 = 16;
 
 impl FlightBounds {

@@ -586,7 +586,7 @@ mod tests {
                 assert!(error < 1e-4, "{i} {j}: {} {}", exact[(i, j)], differences[(i, j)]);
             }
         }
-        // the volume of the states shrinks by the modes' damping alone, whatever the springs do
+        // only the damping of the modes reduces the volume in the space of states; springs do not
         let damping: f64 =
             map.assembly.bodies.iter().flat_map(|body| &body.modes).map(|mode| 0.06 * mode.omega_rad_s).sum();
         let volume = (-damping * map.period_s()).exp();

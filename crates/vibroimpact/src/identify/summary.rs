@@ -7,7 +7,7 @@ use serde::Serialize;
 /// The object that `vibroimpact identify --json` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Identification {
-    /// The parameters, in the order asked for.
+    /// The parameters, in the requested order.
     pub parameters: Vec<Identified>,
     /// Probability with which an interval holds its parameter.
     pub level: f64,

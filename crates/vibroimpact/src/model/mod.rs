@@ -3,8 +3,8 @@
 //! | model | assumption | chosen if |
 //! |---|---|---|
 //! | [`Model::Rigid`] | the location cannot move | a bound on the energy that the structure can take up proves it |
-//! | [`Model::InfiniteBeam`] | no wave returns from an end | the contact ends earlier, and the beam never reaches the striker again |
-//! | [`Model::Modal`] | finitely many modes, and a few remainder modes for the others | all other cases; the number of modes is raised until the restitution has converged |
+//! | [`Model::InfiniteBeam`] | no wave returns from an end | the contact ends earlier, and the beam never meets the striker again |
+//! | [`Model::Modal`] | some modes and remainder modes | all other cases; the number of modes is raised to convergence |
 //! | [`Model::Emoc`] | no motion in time | it is requested, or the tolerance is as wide as the law's validated error |
 //!
 //! [`Scene::answer`] chooses and solves ([`Scene::answer_with`] is faster for many scenes of one beam), [`Scene::plan`] shows the

@@ -111,7 +111,7 @@ fn require_vibration(modes: &[Mode]) -> Result<(), InvalidInput> {
     if modes.iter().any(|mode| mode.omega_rad_s > 0.0) {
         return Ok(());
     }
-    let allowed = "enough for at least one mode that vibrates; rigid-body modes are none";
+    let allowed = "enough for at least one mode that vibrates; rigid-body modes do not count";
     Err(InvalidInput::new("modes", modes.len().to_string(), allowed))
 }
 

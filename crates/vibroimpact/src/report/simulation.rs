@@ -109,7 +109,7 @@ pub fn of_infinite_impact(
     report.table(&["result", ""], &rows);
     report.heading("What was modelled, and why");
     report.list(&[
-        "An infinite structure, because the scene says so: no wave ever returns from an end or an edge.".to_owned(),
+        "An infinite structure, as stated in the scene: no wave ever returns from an end or an edge.".to_owned(),
         match (summary.s, scene) {
             (Some(s), _) => format!("Hertz contact. The impact depends on one number, S = {s}."),
             (None, Some(scene)) => format!("Contact by the law {}.", scene.contact.law_name()),

@@ -5,14 +5,14 @@
 //!
 //! | check | figure | within | outside |
 //! |---|---|---|---|
-//! | `wavelength` | half wavelength of the fastest relevant mode, over the thickness | at least 6 (0.5 with shear) | below 2.2 (0.25) |
+//! | `wavelength` | half wavelength of the fastest relevant mode over the thickness | from 6 (with shear 0.5) | below 2.2 (0.25) |
 //! | `spectrum` | share of the contact force's spectrum that is faster than the first of these limits | at most 0.01 | above 0.1 |
 //! | `pressure` | largest Hertz pressure over the yield strength, where that is given | at most 1.6 | above 4.5 |
 //! | `contact_radius` | largest contact radius over the radius of the ball | at most 0.1 | above 0.3 |
 //! | `indentation` | the same over the thickness of the structure | at most 0.2 | above 0.5 |
-//! | `edge` | distance of a Hertzian contact from the nearest end, edge, support or step, over the thickness | at least 1 | below 0.25 |
+//! | `edge` | distance from the nearest end, edge, support or step over the thickness (Hertz contact) | at least 1 | below 0.25 |
 //! | `ball` | duration of the hardest contact over the lowest period of the ball | at least 5 | below 2 |
-//! | `early_response` | change of the first contact on an infinite beam by Timoshenko's theory, as a share of the speed of impact | at most 0.01 | above 0.05 |
+//! | `early_response` | change of the first contact by Timoshenko's theory over the speed of impact | at most 0.01 | above 0.05 |
 //! | `gravity` | speed gained in a fall as long as the interaction, over the speed of impact | at most 0.01 | above 0.1 |
 //!
 //! *Waves.* Euler-Bernoulli's frequencies are 5 % too high where half a wavelength is six times the thickness, and 27 %
