@@ -126,7 +126,7 @@ pub(crate) fn add_corrections(weights: &mut Weights, order: f64, exponents: &[f6
 }
 
 /// Weights for the first values, in units of the step, that correct the trapezoidal rule for `s^gamma` in a segment that is
-/// entirely in the past. The error of the rule is `-zeta(-gamma) h^(1+gamma)` times the kernel at the start of the segment
+/// entirely in the past. The integral minus the rule is `-zeta(-gamma) h^(1+gamma)` times the kernel at the start of the segment
 /// (Euler-Maclaurin formula of Navot), and vanishes to this order for the exponents 0 and 1.
 pub(crate) fn start_corrections(exponents: &[f64]) -> Vec<f64> {
     let points = exponents.len();
