@@ -5,10 +5,10 @@
 //! above with the fourth power of the element length.
 
 use crate::definition::{Beam, End};
+use crate::dense::{cholesky, eigen, solve_lower, solve_upper};
 use crate::location::require_on;
 use crate::point_mode::{PointMode, point_modes};
-use faer::linalg::solvers::{Llt, SelfAdjointEigen};
-use faer::{Mat, Side};
+use faer::Mat;
 use invalid_input::InvalidInput;
 
 /// The quantity of a degree of freedom.
@@ -125,17 +125,16 @@ impl Model {
             let scale: Vec<f64> = (0..n).map(|i| 1.0 / self.mass[i * n + i].sqrt()).collect();
             let stiffness = Mat::from_fn(n, n, |i, j| self.stiffness[i * n + j] * scale[i] * scale[j]);
             let mass = Mat::from_fn(n, n, |i, j| self.mass[i * n + j] * scale[i] * scale[j]);
-            let factor = Llt::new(mass.as_ref(), Side::Lower).map_err(|_| unsolved())?;
+            let lower = cholesky(mass.as_ref()).ok_or_else(unsolved)?;
             // L^-1 K L^-T, whose eigenvectors y give v = L^-T y.
             let mut reduced = stiffness;
-            factor.L().solve_lower_triangular_in_place(reduced.as_mut());
+            solve_lower(lower.as_ref(), reduced.as_mut());
             let mut reduced = reduced.transpose().to_owned();
-            factor.L().solve_lower_triangular_in_place(reduced.as_mut());
-            let eigen = SelfAdjointEigen::new(reduced.as_ref(), Side::Lower).map_err(|_| unsolved())?;
-            let mut vectors = eigen.U().to_owned();
-            factor.L().transpose().solve_upper_triangular_in_place(vectors.as_mut());
+            solve_lower(lower.as_ref(), reduced.as_mut());
+            let (values, mut vectors) = eigen(reduced.as_ref()).ok_or_else(unsolved)?;
+            solve_upper(lower.transpose(), vectors.as_mut());
             for k in 0..n {
-                let lambda = eigen.S()[k].max(0.0);
+                let lambda = values[k].max(0.0);
                 omega_rad_s.push(if k < self.rigid { 0.0 } else { lambda.sqrt() });
                 nodal.push(self.spread(|row| scale[row] * vectors[(row, k)]));
             }

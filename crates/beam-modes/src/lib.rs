@@ -84,6 +84,7 @@ mod buckling;
 mod chain;
 mod compliance;
 mod definition;
+mod dense;
 pub mod fem;
 mod flexure;
 mod krylov;

@@ -3,9 +3,8 @@
 //! With diagonal blocks `D_t` and the blocks `E_t` below them, `D_t - F_(t-1) F_(t-1)^T = L_t L_t^T` and `F_t = E_t L_t^(-T)`.
 //! All operations are products of small dense matrices.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::Llt;
-use faer::{Accum, Mat, MatMut, Par, Side};
+use crate::dense::{cholesky, solve_lower, solve_upper, subtract_product};
+use faer::{Mat, MatMut};
 
 /// The factor `L` of `A = L L^T`.
 pub(super) struct Factor {
@@ -32,13 +31,13 @@ impl Factor {
             }
         }
         for t in 0..sizes.len() {
-            diagonal[t] = Llt::new(diagonal[t].as_ref(), Side::Lower).ok()?.L().to_owned();
+            diagonal[t] = cholesky(diagonal[t].as_ref())?;
             if t < below.len() {
                 let mut turned = below[t].transpose().to_owned();
-                diagonal[t].solve_lower_triangular_in_place(turned.as_mut());
+                solve_lower(diagonal[t].as_ref(), turned.as_mut());
                 below[t] = turned.transpose().to_owned();
                 let (here, next) = (&below[t], diagonal[t + 1].as_mut());
-                matmul(next, Accum::Add, here.as_ref(), here.transpose(), -1.0, Par::Seq);
+                subtract_product(next, here.as_ref(), here.transpose());
             }
         }
         Some(Factor { starts, diagonal, below })
@@ -51,9 +50,9 @@ impl Factor {
             let mut here = after.subrows_mut(0, self.starts[t + 1] - self.starts[t]);
             if t > 0 {
                 let last = before.as_ref().subrows(self.starts[t - 1], self.starts[t] - self.starts[t - 1]);
-                matmul(here.as_mut(), Accum::Add, self.below[t - 1].as_ref(), last, -1.0, Par::Seq);
+                subtract_product(here.as_mut(), self.below[t - 1].as_ref(), last);
             }
-            self.diagonal[t].solve_lower_triangular_in_place(here);
+            solve_lower(self.diagonal[t].as_ref(), here);
         }
     }
 
@@ -64,9 +63,9 @@ impl Factor {
             let mut here = before.subrows_mut(self.starts[t], self.starts[t + 1] - self.starts[t]);
             if t < self.below.len() {
                 let next = after.as_ref().subrows(0, self.starts[t + 2] - self.starts[t + 1]);
-                matmul(here.as_mut(), Accum::Add, self.below[t].transpose(), next, -1.0, Par::Seq);
+                subtract_product(here.as_mut(), self.below[t].transpose(), next);
             }
-            self.diagonal[t].transpose().solve_upper_triangular_in_place(here);
+            solve_upper(self.diagonal[t].transpose(), here);
         }
     }
 }

@@ -6,9 +6,8 @@
 //! decrease so fast that a space of little more than twice the requested number of dimensions contains them to all digits. The
 //! residual of every eigenvector is known without a product, and the space grows until it is small.
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::solvers::{Llt, SelfAdjointEigen};
-use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use crate::dense::{cholesky, eigen, product, solve_lower, subtract_product};
+use faer::{Mat, MatMut};
 
 /// Number of vectors in a block.
 const WIDTH: usize = 8;
@@ -33,9 +32,9 @@ pub(super) fn largest(rows: usize, wanted: usize, apply: impl Fn(MatMut<'_, f64>
     }
     let mut matrix = Mat::identity(rows, rows);
     apply(matrix.as_mut());
-    let eigen = SelfAdjointEigen::new(matrix.as_ref(), Side::Lower).ok()?;
-    let values = (0..wanted).map(|k| eigen.S()[rows - 1 - k]).collect();
-    Some((values, Mat::from_fn(rows, wanted, |p, k| eigen.U()[(p, rows - 1 - k)])))
+    let (values, vectors) = eigen(matrix.as_ref())?;
+    let largest = (0..wanted).map(|k| values[rows - 1 - k]).collect();
+    Some((largest, Mat::from_fn(rows, wanted, |p, k| vectors[(p, rows - 1 - k)])))
 }
 
 /// The space built so far, and the matrix in it.
@@ -80,18 +79,18 @@ impl Space {
             next.copy_from(last);
             apply(next.as_mut());
             // First against the two blocks of the recurrence, then against all, because of rounding.
-            let diagonal = last.transpose() * next.as_ref();
-            matmul(next.as_mut(), Accum::Add, last, diagonal.as_ref(), -1.0, Par::Seq);
+            let diagonal = product(last.transpose(), next.as_ref());
+            subtract_product(next.as_mut(), last, diagonal.as_ref());
             if let Some(below) = self.below.last() {
                 let before = known.subcols((step - 1) * WIDTH, WIDTH);
-                matmul(next.as_mut(), Accum::Add, before, below.transpose(), -1.0, Par::Seq);
+                subtract_product(next.as_mut(), before, below.transpose());
             }
             let Some(first) = orthonormal(next.as_mut()) else { return false };
-            let rest = known.transpose() * next.as_ref();
-            matmul(next.as_mut(), Accum::Add, known, rest.as_ref(), -1.0, Par::Seq);
+            let rest = product(known.transpose(), next.as_ref());
+            subtract_product(next.as_mut(), known, rest.as_ref());
             let Some(second) = orthonormal(next) else { return false };
             self.diagonal.push(diagonal);
-            self.below.push(second * first);
+            self.below.push(product(second.as_ref(), first.as_ref()));
         }
         true
     }
@@ -106,22 +105,21 @@ impl Space {
                 matrix.as_mut().submatrix_mut((step + 1) * WIDTH, step * WIDTH, WIDTH, WIDTH).copy_from(below);
             }
         }
-        let eigen = SelfAdjointEigen::new(matrix.as_ref(), Side::Lower).ok()?;
-        let values: Vec<f64> = (0..wanted).map(|k| eigen.S()[size - 1 - k]).collect();
-        let vectors = Mat::from_fn(size, wanted, |p, k| eigen.U()[(p, size - 1 - k)]);
-        let residuals = self.below.last()? * vectors.as_ref().subrows(size - WIDTH, WIDTH);
+        let (ascending, eigenvectors) = eigen(matrix.as_ref())?;
+        let values: Vec<f64> = (0..wanted).map(|k| ascending[size - 1 - k]).collect();
+        let vectors = Mat::from_fn(size, wanted, |p, k| eigenvectors[(p, size - 1 - k)]);
+        let residuals = product(self.below.last()?.as_ref(), vectors.as_ref().subrows(size - WIDTH, WIDTH));
         let small = |k: usize| residuals.col(k).norm_l2() <= RESIDUAL * values[k];
-        (0..wanted).all(small).then(|| (values, self.basis.as_ref().subcols(0, size) * vectors))
+        (0..wanted).all(small).then(|| (values, product(self.basis.as_ref().subcols(0, size), vectors.as_ref())))
     }
 }
 
 /// Makes the columns orthonormal, and returns the upper triangular `R` with the old columns = new columns times `R`; `None` if
 /// they are linearly dependent.
 fn orthonormal(mut columns: MatMut<'_, f64>) -> Option<Mat<f64>> {
-    let gram = columns.as_ref().transpose() * columns.as_ref();
-    let factor = Llt::new(gram.as_ref(), Side::Lower).ok()?;
-    let lower: MatRef<'_, f64> = factor.L();
-    lower.solve_lower_triangular_in_place(columns.as_mut().transpose_mut());
+    let gram = product(columns.as_ref().transpose(), columns.as_ref());
+    let lower = cholesky(gram.as_ref())?;
+    solve_lower(lower.as_ref(), columns.as_mut().transpose_mut());
     Some(lower.transpose().to_owned())
 }
 

@@ -1,8 +1,8 @@
 //! One set of remainder modes for several points of a body: block Gauss quadrature with one block.
 
 use super::{ASYMPTOTIC_MEAN, highest, require_mode};
-use faer::linalg::solvers::SelfAdjointEigen;
-use faer::{Mat, Side};
+use crate::dense::{eigen, product};
+use faer::Mat;
 use invalid_input::InvalidInput;
 
 /// A mode at several points of a structure.
@@ -80,20 +80,20 @@ pub fn remainder_at_points(tail: &[PointsMode], static_rest_m_n: &[f64]) -> Resu
     let first = Mat::from_fn(points, points, |i, j| over(moment(i, j, 1), i, j));
     let second = Mat::from_fn(points, points, |i, j| over(moment(i, j, 2), i, j));
     let unsolved = || InvalidInput::new("tail", "as given", "modes whose moments double precision resolves");
-    let eigen = SelfAdjointEigen::new(first.as_ref(), Side::Lower).map_err(|_| unsolved())?;
-    let largest = (0..points).map(|r| eigen.S()[r]).fold(0.0, f64::max);
-    let kept: Vec<usize> = (0..points).filter(|&r| eigen.S()[r] > DEPENDENT * largest).collect();
+    let (values, vectors) = eigen(first.as_ref()).ok_or_else(unsolved)?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let kept: Vec<usize> = (0..points).filter(|&r| values[r] > DEPENDENT * largest).collect();
     // Columns Q D^(-1/2) of the part of M_1 that is not singular.
-    let whiten = Mat::from_fn(points, kept.len(), |i, r| eigen.U()[(i, kept[r])] / eigen.S()[kept[r]].sqrt());
-    let reduced = whiten.transpose() * &second * &whiten;
-    let poles = SelfAdjointEigen::new(reduced.as_ref(), Side::Lower).map_err(|_| unsolved())?;
-    let shapes = &first * &whiten * poles.U();
+    let whiten = Mat::from_fn(points, kept.len(), |i, r| vectors[(i, kept[r])] / values[kept[r]].sqrt());
+    let reduced = product(product(whiten.transpose(), second.as_ref()).as_ref(), whiten.as_ref());
+    let (poles, directions) = eigen(reduced.as_ref()).ok_or_else(unsolved)?;
+    let shapes = product(product(first.as_ref(), whiten.as_ref()).as_ref(), directions.as_ref());
 
     let mode = |r: usize| {
-        let omega_rad_s = highest / poles.S()[r].sqrt();
+        let omega_rad_s = highest / poles[r].sqrt();
         let shapes = (0..points).map(|i| omega_rad_s * scale[i] * shapes[(i, r)]).collect();
         PointsMode { omega_rad_s, shapes }
     };
     // x > 0 except for rounding in directions of little weight.
-    Ok((0..kept.len()).rev().filter(|&r| poles.S()[r] > 0.0).map(mode).collect())
+    Ok((0..kept.len()).rev().filter(|&r| poles[r] > 0.0).map(mode).collect())
 }

@@ -1,8 +1,8 @@
 //! Gauss quadrature (W. Gautschi, Orthogonal Polynomials, 2004): of a discrete measure by the Lanczos process (2.2.3), of
 //! a power law by Jacobi's recurrence (1.5).
 
-use faer::linalg::solvers::SelfAdjointEigen;
-use faer::{Mat, Side};
+use crate::dense::eigen;
+use faer::Mat;
 
 /// A point mass of a measure on the positive axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,8 +77,8 @@ fn of_recurrence(diagonal: &[f64], off_diagonal: &[f64]) -> Vec<(f64, f64)> {
         1 => off_diagonal[i.min(j)],
         _ => 0.0,
     });
-    match SelfAdjointEigen::new(jacobi.as_ref(), Side::Lower) {
-        Ok(eigen) => (0..n).map(|r| (eigen.S()[r], eigen.U()[(0, r)].powi(2))).collect(),
-        Err(_) => vec![(diagonal[0], 1.0)],
+    match eigen(jacobi.as_ref()) {
+        Some((values, vectors)) => (0..n).map(|r| (values[r], vectors[(0, r)].powi(2))).collect(),
+        None => vec![(diagonal[0], 1.0)],
     }
 }

@@ -1,0 +1,60 @@
+//! Dense linear algebra in one thread.
+//!
+//! The short forms of faer take as many threads as there are where any package of a build turns on its feature `rayon`, and
+//! other numbers of threads round otherwise. These forms ask for one thread by name, so that modes have the same bits in
+//! every build.
+
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::linalg::zip::Diag as Diagonal;
+use faer::{Accum, Mat, MatMut, MatRef, Par};
+
+/// Cholesky's factor `L` of a symmetric matrix, of which the lower triangle is read; `None` if it is not positive definite.
+pub(crate) fn cholesky(matrix: MatRef<'_, f64>) -> Option<Mat<f64>> {
+    let n = matrix.nrows();
+    let mut lower = Mat::zeros(n, n);
+    lower.copy_from_triangular_lower(matrix);
+    let mut buffer = MemBuffer::new(cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default()));
+    let stack = MemStack::new(&mut buffer);
+    cholesky_in_place(lower.as_mut(), Default::default(), Par::Seq, stack, Default::default()).ok()?;
+    faer::zip!(lower.as_mut()).for_each_triangular_upper(Diagonal::Skip, |faer::unzip!(above)| *above = 0.0);
+    Some(lower)
+}
+
+/// The eigenvalues of a symmetric matrix in ascending order, and its orthonormal eigenvectors as columns; the lower triangle
+/// is read. `None` if they cannot be computed.
+pub(crate) fn eigen(matrix: MatRef<'_, f64>) -> Option<(Vec<f64>, Mat<f64>)> {
+    let n = matrix.nrows();
+    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
+    let scratch = self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, Default::default());
+    let mut buffer = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut buffer);
+    self_adjoint_evd(matrix, values.as_mut(), Some(vectors.as_mut()), Par::Seq, stack, Default::default()).ok()?;
+    Some((values.column_vector().iter().copied().collect(), vectors))
+}
+
+/// `A B`.
+pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(a.nrows(), b.ncols());
+    matmul(product.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    product
+}
+
+/// Takes `A B` off `from`.
+pub(crate) fn subtract_product(from: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    matmul(from, Accum::Add, a, b, -1.0, Par::Seq);
+}
+
+/// `L^(-1) x` in place of every column `x`.
+pub(crate) fn solve_lower(lower: MatRef<'_, f64>, columns: MatMut<'_, f64>) {
+    solve_lower_triangular_in_place(lower, columns, Par::Seq);
+}
+
+/// `U^(-1) x` in place of every column `x`.
+pub(crate) fn solve_upper(upper: MatRef<'_, f64>, columns: MatMut<'_, f64>) {
+    solve_upper_triangular_in_place(upper, columns, Par::Seq);
+}
