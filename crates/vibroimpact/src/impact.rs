@@ -58,6 +58,13 @@ impl Impact {
         let solver = Solver::new(&self.structure).map_err(in_scene)?;
         solver.record(&self.striker, &self.law, self.start.as_ref(), &self.settings).map_err(in_scene)
     }
+
+    /// As [`Impact::record`], of an impact whose uncertainty is known: with cached tables, and without the comparison runs.
+    pub(crate) fn record_again(&self, kept: &mut Kept) -> Result<(Solution, History<Law>), InvalidInput> {
+        let settings = Settings { estimate_uncertainty: false, ..self.settings };
+        let solver = kept.solver(&self.structure)?;
+        solver.record(&self.striker, &self.law, self.start.as_ref(), &settings).map_err(in_scene)
+    }
 }
 
 impl Impact {

@@ -96,7 +96,14 @@ impl Simulation {
     /// As [`Scene::simulate`], for a simulation of another scene.
     pub fn json(&self, scene: &Scene) -> Result<String, Failure> {
         let scene = &self.scene(scene);
-        let trust = scene.trust(self)?;
+        self.json_with(scene, scene.trust(self)?)
+    }
+
+    /// The same from the scene as it was solved, [`Simulation::scene`], and its checks, [`Scene::trust`].
+    ///
+    /// # Errors
+    /// As [`Simulation::json`].
+    pub fn json_with(&self, scene: &Scene, trust: Vec<Check>) -> Result<String, Failure> {
         let result = match self {
             Simulation::Modal(found) => ResultFile::of_modes(scene, &found.summary),
             Simulation::Infinite { scale, solution } => ResultFile::of_infinite(scene, scale, solution)?,

@@ -82,7 +82,7 @@ mod terminal;
 mod transition;
 mod trial;
 mod watch;
-mod wave;
+pub(crate) mod wave;
 
 pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};

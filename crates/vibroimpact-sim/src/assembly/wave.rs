@@ -33,7 +33,17 @@ pub(crate) fn integral(omega: f64, from_s: f64, to_s: f64) -> Complex64 {
 
 /// `int_0^1 e^{i angle x} sum_n f_n P_n(2x-1) dx`.
 pub(crate) fn turned_mean(angle: f64, force: &Nodal) -> Complex64 {
+    turned(&turned_means(angle), force)
+}
+
+/// The same from the integrals of the polynomials.
+pub(crate) fn turned(means: &[Complex64; Q], force: &Nodal) -> Complex64 {
+    (0..Q).map(|n| force[n] * means[n]).sum()
+}
+
+/// `int_0^1 e^{i angle x} P_n(2x-1) dx`.
+pub(crate) fn turned_means(angle: f64) -> [Complex64; Q] {
     // seen from the other end, where odd polynomials change their sign
     let moments = exponential_moments(Complex64::new(0.0, angle));
-    (0..Q).map(|n| if n % 2 == 0 { force[n] * moments[n] } else { -force[n] * moments[n] }).sum()
+    std::array::from_fn(|n| if n % 2 == 0 { moments[n] } else { -moments[n] })
 }

@@ -1,6 +1,7 @@
 //! The record of an impact: motion and force at any time, and the energy balance.
 
 use super::problem::{Mode, Start, Striker};
+use super::pulse::{self, Pulse};
 use super::solution::{Outcome, Solution};
 use crate::assembly::dense::{Panel, Stretch};
 use crate::assembly::load::Loads;
@@ -128,6 +129,16 @@ impl<L: ContactLaw> History<L> {
             compression_m: contact.overlap_m,
             force_n: contact.force_n,
         }
+    }
+
+    /// The contact force from one time to another (s), such as those of a sub-impact, where panels begin and end.
+    pub fn pulse(&self, from_s: f64, to_s: f64) -> Pulse {
+        let within = |stretch: &&Stretch| (from_s..to_s).contains(&(stretch.start_s + 0.5 * stretch.length_s));
+        let panels = self.recorded.stretches.iter().filter(within).flat_map(|stretch| {
+            let Stretch { start_s, length_s, .. } = *stretch;
+            stretch.forces.iter().map(move |&(_, force)| pulse::Panel { start_s, length_s, force })
+        });
+        Pulse { from_s, panels: panels.collect() }
     }
 
     /// Energy of each mode at `time_s` (J), in the order of `Structure::modes`.

@@ -34,6 +34,7 @@ mod differentiate;
 mod history;
 mod posed;
 pub(crate) mod problem;
+mod pulse;
 mod solution;
 mod solve;
 mod time_unit;
@@ -43,5 +44,6 @@ pub use differentiate::{
 };
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};
+pub use pulse::Pulse;
 pub use solution::{Counts, Outcome, Solution, SubImpact};
 pub use solve::Solver;

@@ -117,16 +117,17 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
     let found = watched("simulate", || scene.simulate())?;
     let scene = found.scene(&scene);
     let trust = scene.trust(&found)?;
+    let json = found.json_with(&scene, trust.clone())?;
     match &found {
-        Simulation::Modal(resolved) => in_modes(&scene, found.json(&scene)?, &trust, resolved, &extent, products),
+        Simulation::Modal(resolved) => in_modes(&scene, json, &trust, resolved, &extent, products),
         Simulation::Infinite { scale, solution } => {
             extent.require_still()?;
-            infinite_beam::of_scene(&scene, (scale, solution), &trust, until, found.json(&scene)?, products)
+            infinite_beam::of_scene(&scene, (scale, solution), &trust, until, json, products)
         }
         Simulation::Net(answer) => extent
             .require_still()
             .map_err(Failure::from)
-            .and_then(|()| without_course(&scene, found.json(&scene)?, &trust, answer, products)),
+            .and_then(|()| without_course(&scene, json, &trust, answer, products)),
     }
 }
 

@@ -40,7 +40,12 @@ impl Scene {
     /// # Errors
     /// As [`Scene::answer`].
     pub fn choose(&self) -> Result<Choice, InvalidInput> {
-        let choice = self.choose_with(&mut Kept::default())?;
+        self.choose_and_judge(&mut Kept::default())
+    }
+
+    /// The same, with cached data.
+    pub(crate) fn choose_and_judge(&self, kept: &mut Kept) -> Result<Choice, InvalidInput> {
+        let choice = self.choose_with(kept)?;
         let mut cost = choice.answer.cost;
         let answer = self.judge_theory(choice.answer, &mut cost)?;
         Ok(Choice { answer: Answer { cost, ..answer }, ..choice })

@@ -6,14 +6,12 @@ use crate::infinite::history;
 use crate::model::Model;
 use crate::scene::{InvalidInput, Scene};
 use crate::simulate::Simulation;
-use vibroimpact_sim::modal::Mode;
+use vibroimpact_sim::modal::{self, Mode};
 
 /// Number of contacts whose force is analysed: those with the largest impulses.
 const CONTACTS: usize = 8;
-/// Samples of each.
-const SAMPLES: usize = 256;
-/// Frequency times duration beyond which the spectrum of a contact is neglected: the spectrum of a smooth force decreases as
-/// `omega^(-5/2)`, and the samples resolve no more than three times this frequency.
+/// Frequency times duration beyond which the spectrum of a contact is neglected: that of a smooth force decreases as
+/// `omega^(-5/2)`.
 const FASTEST: f64 = 200.0;
 /// Steps of Simpson's rule over the frequency, in units of the inverse duration, over which the spectrum varies.
 const STEP: f64 = 1.0;
@@ -24,8 +22,17 @@ pub(super) struct Pulse {
     pub impulse_n_s: f64,
     pub peak_force_n: f64,
     pub peak_compression_m: f64,
-    /// Time and force; empty if the contact is not analysed.
-    force: Vec<[f64; 2]>,
+    force: Force,
+}
+
+/// The force of a contact.
+enum Force {
+    /// As it was computed.
+    Computed(modal::Pulse),
+    /// Time and force.
+    Samples(Vec<[f64; 2]>),
+    /// The contact is not analysed.
+    Unknown,
 }
 
 /// The data of an impact for these checks.
@@ -48,19 +55,15 @@ impl Course {
                 let mut contacts = found.summary.sub_impacts.clone();
                 let first = contacts.first().map_or(0.0, |contact| contact.start_s);
                 contacts.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
-                let pulse = |(rank, contact): (usize, &crate::summary::Contact)| {
-                    let at = |i: usize| {
-                        let share = i as f64 / SAMPLES as f64;
-                        let time_s = contact.start_s + share * (contact.end_s - contact.start_s);
-                        [time_s, found.history.at(time_s).force_n]
-                    };
-                    Pulse {
-                        duration_s: contact.end_s - contact.start_s,
-                        impulse_n_s: contact.impulse_n_s,
-                        peak_force_n: contact.peak_force_n,
-                        peak_compression_m: contact.peak_compression_m,
-                        force: if rank < CONTACTS { (0..=SAMPLES).map(at).collect() } else { Vec::new() },
-                    }
+                let pulse = |(rank, contact): (usize, &crate::summary::Contact)| Pulse {
+                    duration_s: contact.end_s - contact.start_s,
+                    impulse_n_s: contact.impulse_n_s,
+                    peak_force_n: contact.peak_force_n,
+                    peak_compression_m: contact.peak_compression_m,
+                    force: match rank < CONTACTS {
+                        true => Force::Computed(found.history.pulse(contact.start_s, contact.end_s)),
+                        false => Force::Unknown,
+                    },
                 };
                 let ends = ["rebound", "no contact"].contains(&found.summary.outcome);
                 Course {
@@ -90,7 +93,7 @@ impl Course {
                         impulse_n_s: integral(&force, |[_, f]| f),
                         peak_force_n: peak(&|f| f),
                         peak_compression_m: scale.displacement_m * deepest.map(|e| e.compression).fold(0.0, f64::max),
-                        force,
+                        force: Force::Samples(force),
                     });
                 }
                 pulses.sort_by(|a, b| b.impulse_n_s.total_cmp(&a.impulse_n_s));
@@ -106,7 +109,7 @@ impl Course {
                     impulse_n_s: contact.impulse_n_s,
                     peak_force_n: contact.peak_force_n,
                     peak_compression_m: contact.peak_compression_m,
-                    force: Vec::new(),
+                    force: Force::Unknown,
                 };
                 let pulses = solution.sub_impacts.iter().map(pulse).collect();
                 Course { pulses, modes: Vec::new(), interaction_s: None, moves: false }
@@ -153,7 +156,7 @@ impl Course {
             let values: Vec<f64> = (0..=2 * steps).map(|i| pulse.spectrum(0.5 * h * i as f64)).collect();
             let part = |three: &[f64]| (three[0] + 4.0 * three[1] + three[2]) * h / 6.0;
             below += values.windows(3).step_by(2).map(part).sum::<f64>();
-            whole += PI * integral(&pulse.force, |[_, f]| f * f);
+            whole += PI * pulse.square_n2_s();
         }
         (whole > 0.0).then(|| (1.0 - below / whole).clamp(0.0, 1.0))
     }
@@ -164,17 +167,24 @@ impl Pulse {
         if omega_rad_s * self.duration_s > FASTEST {
             return 0.0;
         }
-        let from = self.force.first().map_or(0.0, |[time, _]| *time);
-        let turned = |&[t, f]: &[f64; 2]| {
-            let (sin, cos) = (omega_rad_s * (t - from)).sin_cos();
-            [t, f * cos, f * sin]
+        let [re, im] = match &self.force {
+            Force::Computed(pulse) => pulse.transform_n_s(omega_rad_s),
+            Force::Samples(samples) => {
+                let from = samples.first().map_or(0.0, |[time, _]| *time);
+                let angle = |t: f64| omega_rad_s * (t - from);
+                [integral(samples, |[t, f]| f * angle(t).cos()), integral(samples, |[t, f]| f * angle(t).sin())]
+            }
+            Force::Unknown => [0.0; 2],
         };
-        let turned: Vec<[f64; 3]> = self.force.iter().map(turned).collect();
-        let sums = turned.windows(2).fold([0.0; 2], |[re, im], pair| {
-            let half = 0.5 * (pair[1][0] - pair[0][0]);
-            [re + half * (pair[0][1] + pair[1][1]), im + half * (pair[0][2] + pair[1][2])]
-        });
-        sums[0] * sums[0] + sums[1] * sums[1]
+        re * re + im * im
+    }
+
+    fn square_n2_s(&self) -> f64 {
+        match &self.force {
+            Force::Computed(pulse) => pulse.square_n2_s(),
+            Force::Samples(samples) => integral(samples, |[_, f]| f * f),
+            Force::Unknown => 0.0,
+        }
     }
 }
 
