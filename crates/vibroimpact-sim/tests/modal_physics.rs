@@ -203,3 +203,34 @@ fn bad_input_names_field_value_and_what_is_allowed() {
     let error = Solver::new(&Structure::default()).unwrap().solve(&wall, &hertz(), None, &fine).unwrap_err();
     assert!(error.to_string().starts_with("mass_kg = inf is not allowed: a finite mass"), "{error}");
 }
+
+/// The closed forms of a pulse against Simpson's rule on the recorded motion.
+#[test]
+fn integrals_of_the_force_are_those_of_its_samples() {
+    let solver = Solver::new(&pinned(30, 0.02, GOLDEN)).unwrap();
+    let (solution, history) = solver.record(&ball(), &hertz(), None, &settings(1e-10)).unwrap();
+    for contact in &solution.sub_impacts {
+        let (from_s, length_s) = (contact.start_s, contact.end_s - contact.start_s);
+        let pulse = history.pulse(from_s, contact.end_s);
+        let count = 4000;
+        let force: Vec<[f64; 2]> = (0..=count)
+            .map(|i| length_s * f64::from(i) / f64::from(count))
+            .map(|after_s| [after_s, history.at(from_s + after_s).force_n])
+            .collect();
+        let simpson = |of: &dyn Fn(f64, f64) -> f64| {
+            let values: Vec<f64> = force.iter().map(|[after_s, force_n]| of(*after_s, *force_n)).collect();
+            let parts = values.windows(3).step_by(2).map(|three| three[0] + 4.0 * three[1] + three[2]);
+            parts.sum::<f64>() * length_s / f64::from(3 * count)
+        };
+        let near = |a: f64, b: f64, size: f64| assert!((a - b).abs() < 1e-6 * size, "{a} {b} {contact:?}");
+        let square = simpson(&|_, force_n| force_n * force_n);
+        near(pulse.square_n2_s(), square, square);
+        near(pulse.transform_n_s(0.0)[0], contact.impulse_n_s, contact.impulse_n_s);
+        for turns in [0.1, 1.0, 5.0, 20.0] {
+            let omega = std::f64::consts::TAU * turns / length_s;
+            let [re, im] = pulse.transform_n_s(omega);
+            near(re, simpson(&|after_s, force_n| force_n * (omega * after_s).cos()), contact.impulse_n_s);
+            near(im, simpson(&|after_s, force_n| force_n * (omega * after_s).sin()), contact.impulse_n_s);
+        }
+    }
+}

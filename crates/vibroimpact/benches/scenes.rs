@@ -1,4 +1,4 @@
-//! Time from the text of a scene to the solver's problem, and to the rebound.
+//! Time from the text of a scene to the solver's problem, to the rebound, and to the result that `simulate --json` prints.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -13,6 +13,12 @@ fn scenes(criterion: &mut Criterion) {
     let impact = scene.impact().expect("a scene of the gallery");
     criterion.bench_function("scene/solve", |bencher| bencher.iter(|| black_box(&impact).solve()));
     criterion.bench_function("scene/solve and record", |bencher| bencher.iter(|| black_box(&impact).record()));
+    let simulate = |text: &str| -> Result<String, Box<dyn std::error::Error>> {
+        let scene = Scene::from_json(text)?;
+        scene.simulate()?.json(&scene)
+    };
+    assert!(simulate(SCENE).is_ok(), "a scene of the gallery");
+    criterion.bench_function("scene/simulate", |bencher| bencher.iter(|| simulate(black_box(SCENE))));
 }
 
 criterion_group!(benches, scenes);

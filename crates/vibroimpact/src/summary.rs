@@ -106,7 +106,7 @@ pub struct Energy {
     pub modes_j: Vec<f64>,
 }
 
-/// Deterministic counts of the solver's work.
+/// Deterministic counts of the work for the recorded solution, without those for its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Cost {
     /// Steps accepted in contact.

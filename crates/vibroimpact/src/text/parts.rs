@@ -87,7 +87,11 @@ pub(crate) fn restitution(value: f64, uncertainty: Option<f64>) -> String {
     match uncertainty {
         Some(error) if error > 0.0 => {
             let decimals = (-error.log10()).ceil().clamp(1.0, 12.0) as usize;
-            format!("{value:.decimals$} ± {error:.0e}")
+            // Up to four decimals are read more easily than an exponent.
+            match decimals {
+                ..=4 => format!("{value:.decimals$} ± {error:.decimals$}"),
+                _ => format!("{value:.decimals$} ± {error:.0e}"),
+            }
         }
         _ => format!("{value:.6}"),
     }
@@ -120,7 +124,8 @@ mod tests {
     #[test]
     fn a_restitution_shows_the_digits_it_has() {
         assert_eq!(restitution(0.17738912345, Some(3e-6)), "0.177389 ± 3e-6");
-        assert_eq!(restitution(0.2, Some(0.3)), "0.2 ± 3e-1");
+        assert_eq!(restitution(0.2, Some(0.3)), "0.2 ± 0.3");
+        assert_eq!(restitution(0.17738912345, Some(0.055)), "0.18 ± 0.06");
         assert_eq!(restitution(0.2, None), "0.200000");
     }
 }
