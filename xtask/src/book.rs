@@ -5,11 +5,11 @@
 //! `# exits with 2`. Rust snippets are documentation tests of the package `book-snippets`. Formulas are fences named `math` and
 //! code between dollar signs, which GitHub and `docs/theme/math.js` typeset.
 
-use crate::failure::Failure;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, Options, Parser, Tag, TagEnd};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use tasks::Failure;
 use vibroimpact::Scene;
 
 /// Parts of a page that are checked.

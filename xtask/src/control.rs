@@ -16,8 +16,7 @@ use serde_json::json;
 use vibroimpact::assembly::AnyScene;
 use vibroimpact::sweep::Sweep;
 
-use crate::failure::Failure;
-use crate::progress::Progress;
+use tasks::{Failure, Progress};
 
 /// Radius (m) of the ball and uncertainty of its speed. The smallest ball has one contact, the others have several.
 const BALLS: [(f64, f64); 3] = [(0.004, 0.01), (0.0124, 0.05), (0.015, 0.01)];

@@ -1,10 +1,10 @@
 //! Runs the example programs. Each must succeed and print something.
 
-use crate::failure::Failure;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use tasks::Failure;
 
 fn cargo() -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo")))

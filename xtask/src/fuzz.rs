@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::failure::Failure;
+use tasks::Failure;
 
 /// Time limit of one input (s). The targets limit the size of the problems that they solve.
 const HANG_S: u32 = 20;

@@ -11,8 +11,7 @@ use serde_json::{Value, json};
 use vibroimpact::Scene;
 use vibroimpact::identify::{Data, Free, Identification, Request, identify};
 
-use crate::failure::Failure;
-use crate::progress::Progress;
+use tasks::{Failure, Progress};
 
 /// Tables fitted side by side before their rows are written.
 const BATCH: usize = 32;

@@ -5,15 +5,12 @@ mod book;
 mod chapters;
 mod control;
 mod examples;
-mod failure;
 mod fuzz;
 mod identification;
 mod pages;
-mod progress;
 mod soak;
 
 use std::ffi::OsString;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::str::FromStr;
@@ -21,7 +18,7 @@ use std::time::Duration;
 
 use chapters::{Part, RandomScenes};
 use clap::{Parser, Subcommand};
-use failure::{BadInput, Failure};
+use tasks::{BadInput, Failure, ended, say};
 
 /// Development tasks: checks, benchmarks, chapters of the thesis.
 #[derive(Parser)]
@@ -133,14 +130,7 @@ enum Task {
 }
 
 fn main() -> ExitCode {
-    match run(Cli::parse().task) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            // 2 for invalid input, as in `vibroimpact` itself
-            if failure.is::<BadInput>() { ExitCode::from(2) } else { ExitCode::FAILURE }
-        }
-    }
+    ended(run(Cli::parse().task))
 }
 
 fn run(task: Task) -> Result<(), Failure> {
@@ -221,14 +211,6 @@ impl FromStr for Chapters {
 fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) -> Result<(), Failure> {
     say(&match chapter {
         Chapters::All => chapters::run_all(out, quick, data)?,
-        Chapters::One(part) => chapters::run(part, out, quick, data)?.summary,
+        Chapters::One(part) => chapters::run(part, out, quick, data)?.study.summary,
     })
-}
-
-fn say(text: &str) -> Result<(), Failure> {
-    match writeln!(std::io::stdout(), "{text}") {
-        // a reader that closes the pipe early is not an error
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
-        _ => Ok(()),
-    }
 }

@@ -5,9 +5,9 @@
 use crate::chapters::statement::Verdict;
 use crate::chapters::tally::{Row, Tally, tell};
 use crate::chapters::{Part, run_all};
-use crate::failure::Failure;
 use std::fs;
 use std::path::{Path, PathBuf};
+use tasks::Failure;
 use vibroimpact::report::{Report, write_whole};
 
 /// The table of a page is written between these two lines.

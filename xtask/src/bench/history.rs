@@ -1,10 +1,10 @@
 //! Every value that was ever recorded, and a figure of the history.
 
 use super::record::Record;
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure, Marker, Panel, Series};
 
 /// One recorded value. A recording adds only the values that changed.

@@ -1,9 +1,9 @@
 //! Impacts on modal structures (thesis chapters 3, 4 and 8) and on infinite ones (chapter 2).
 
 use super::problem::{Found, Problem};
-use crate::failure::Failure;
 use contact_models::Law;
 use std::path::Path;
+use tasks::Failure;
 use vibroimpact::model::Modes;
 use vibroimpact::{Impact, Scene};
 use vibroimpact_sim::dropped_rod::DroppedRod;

@@ -1,11 +1,11 @@
 //! Instruction counts, by running this program under callgrind.
 
 use super::problem::measured_problem;
-use crate::failure::Failure;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use tasks::Failure;
 
 /// The task that runs every problem once.
 pub const RUN_TASK: &str = "bench-run";

@@ -2,10 +2,10 @@
 //! equations. Reading a scene is measured here too.
 
 use super::problem::{Found, Problem};
-use crate::failure::Failure;
 use beam_modes::{Beam, End, Segment};
 use std::f64::consts::PI;
 use std::path::Path;
+use tasks::Failure;
 
 fn uncounted(values: Vec<f64>) -> Found {
     Found { values, costs: Vec::new() }

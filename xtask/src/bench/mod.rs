@@ -9,8 +9,6 @@ mod page;
 mod problem;
 mod record;
 
-use crate::failure::Failure;
-use crate::progress::Progress;
 use history::Stamp;
 pub use instructions::RUN_TASK;
 use problem::{Problem, Reference, error, measured_problem};
@@ -19,6 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use tasks::{Failure, Progress};
 
 /// True results of the problems that have no closed form.
 type References = BTreeMap<String, Vec<f64>>;

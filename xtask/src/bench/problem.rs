@@ -1,7 +1,7 @@
 //! A problem of the record: the work that is run, the result that is expected, and the cost.
 
-use crate::failure::Failure;
 use std::hint::black_box;
+use tasks::Failure;
 
 /// Results of a run, and the costs that the solver itself counts.
 pub struct Found {

@@ -4,9 +4,9 @@ use super::statement::{Kind, Verdict};
 use super::study::Finished;
 use super::tally::{Row, Tally, csv, tell};
 use super::{Part, run};
-use crate::failure::Failure;
 use std::path::Path;
 use std::time::Instant;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Report, write_whole};
 
@@ -34,11 +34,11 @@ pub fn run_all(out: &Path, quick: bool, data: Option<&Path>) -> Result<String, F
 
     let mut summary = String::new();
     for (folder, found) in &finished {
-        summary += &format!("{folder}: {} impacts. {}\n", found.impacts, Tally::of(&found.rows()).headline());
+        summary += &format!("{folder}: {} impacts. {}\n", found.study.impacts, Tally::of(&found.rows()).headline());
     }
     Ok(format!(
         "{summary}all: {} impacts in {:.1} s with all files. {}\nReport: {}",
-        finished.iter().map(|(_, found)| found.impacts).sum::<usize>(),
+        finished.iter().map(|(_, found)| found.study.impacts).sum::<usize>(),
         started.elapsed().as_secs_f64(),
         Tally::of(&rows).headline(),
         out.join("report.html").display()
@@ -50,7 +50,7 @@ const EDGE: f64 = 12.0;
 
 /// Plots the deviation of our value from every number of the text, in units of its tolerance.
 fn deviations(finished: &[(String, Finished)]) -> Figure {
-    let statements = finished.iter().flat_map(|(_, found)| &found.statements);
+    let statements = finished.iter().flat_map(|(_, found)| &found.study.stated);
     let all: Vec<(Kind, f64, Verdict)> =
         statements.filter_map(|one| Some((one.kind, one.deviation()?, one.verdict()))).collect();
     let x = Axis::new("number of the text, in the order of the chapters").integers();
@@ -128,9 +128,9 @@ fn report(finished: &[(String, Finished)], quick: bool) -> Result<Report, Failur
         }
     }
     for (_, found) in finished {
-        report.heading(&found.title);
+        report.heading(&found.study.title);
         tell(&mut report, &found.rows());
-        report.append(found.shown.clone());
+        report.append(found.study.shown.clone());
     }
     Ok(report)
 }
@@ -138,17 +138,17 @@ fn report(finished: &[(String, Finished)], quick: bool) -> Result<Report, Failur
 #[cfg(test)]
 mod tests {
     use super::super::statement::Statement;
-    use super::super::study::Study;
+    use super::super::study::{Study, finish};
     use super::*;
 
     fn found(folder: &Path, ours: f64) -> Vec<(String, Finished)> {
-        let mut study = Study::new(2, folder, true).unwrap();
-        study.claim(Statement::printed("S", "2.5", "1.56", ours));
-        study.claim(Statement::trend("a rise", "2.5", "it rises", (0.0, 1.0), "any amount", 0.5).missing("the scale"));
-        study.claim(Statement::identity("energy", ["2.1", "kept", "rounding"], (0.0, 1e-9), 0.0));
+        let mut study = Study::new(folder, true).unwrap().part_of_a_larger_one("chapter 2");
+        study.state(Statement::printed("S", "2.5", "1.56", ours));
+        study.state(Statement::trend("a rise", "2.5", "it rises", (0.0, 1.0), "any amount", 0.5).missing("the scale"));
+        study.state(Statement::identity("energy", ["2.1", "kept", "rounding"], (0.0, 1e-9), 0.0));
         let line = Figure::new("Main").row([Panel::new(Axis::new("x"), Axis::new("y"))]);
         study.main_figure("fig-2-08", &line, "A main figure.").unwrap();
-        vec![("chapter-2".to_owned(), study.finish("Chapter 2", "").unwrap())]
+        vec![("chapter-2".to_owned(), finish(study, 2, "Chapter 2", "").unwrap())]
     }
 
     #[test]

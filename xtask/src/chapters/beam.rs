@@ -1,9 +1,9 @@
 //! Beams of the chapters and their modes.
 
 use super::material::Material;
-use crate::failure::Failure;
 use beam_modes::{BeamSystem, MOST_REMAINDER_MODES, Modes, ShearSection};
 use serde::Deserialize;
+use tasks::Failure;
 use vibroimpact_sim::modal::Structure;
 
 /// Number of remainder modes that represent the truncated modes. For an Euler-Bernoulli beam it is the program's default, for a

@@ -6,6 +6,14 @@ use serde::Serialize;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact_sim::modal::{History, Sample};
 
+/// A figure's number as part of a file name that sorts: `3.5` becomes `3-05`.
+pub(super) fn slug(figure: &str) -> String {
+    match figure.split_once('.') {
+        Some((chapter, number)) => format!("{}-{number:0>2}", chapter.to_lowercase()),
+        None => figure.to_lowercase(),
+    }
+}
+
 /// Results that are drawn in the same style.
 pub(super) struct Curve {
     pub label: String,

@@ -2,10 +2,10 @@
 
 use super::beam::Beam;
 use super::material::Material;
-use crate::failure::Failure;
 use contact_models::{Body, Hertz, Law};
 use serde::Serialize;
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact_sim::modal::{History, Settings, Solution, Solver, Striker, Structure};
 
 /// A solid ball.

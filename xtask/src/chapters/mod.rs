@@ -21,14 +21,14 @@ mod study;
 pub mod tally;
 mod theories;
 
-use crate::failure::{BadInput, Failure};
 pub use choice::RandomScenes;
 use std::path::Path;
 use std::str::FromStr;
+use tasks::{BadInput, Failure, targets};
 
 pub use all::run_all;
 pub use study::Finished;
-use study::Study;
+use study::{Study, finish};
 
 /// Parts of the thesis that can be reproduced separately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +73,14 @@ impl Part {
         }
     }
 
+    /// Name of the part of the thesis to which its impacts and figures belong.
+    fn of_the_thesis(self) -> String {
+        match self {
+            Part::Theories => self.folder(),
+            part => format!("chapter {}", part.chapter()),
+        }
+    }
+
     fn title(self) -> String {
         match self {
             Part::Chapter(number) => format!("Chapter {number} of the thesis, computed anew"),
@@ -91,8 +99,12 @@ impl FromStr for Part {
             Part::Ensemble => text == "ensemble",
             Part::Theories => text == "theories",
         };
-        Part::ALL.into_iter().find(named).ok_or_else(|| BadInput::chapter(text))
+        Part::ALL.into_iter().find(named).ok_or_else(|| unknown(text))
     }
+}
+
+fn unknown(chapter: &str) -> BadInput {
+    BadInput(format!("chapter = {chapter} is not allowed: 2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"))
 }
 
 /// Runs a part and writes its folder. `quick` computes fewer points with the same code. `data` are measured points for
@@ -102,7 +114,7 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         let fault = format!("--data is not allowed with {}: only chapter 8 takes measured points", part.folder());
         return Err(BadInput(fault).into());
     }
-    let mut study = Study::new(part.chapter(), out, quick)?;
+    let mut study = Study::new(out, quick)?.part_of_a_larger_one(part.of_the_thesis());
     let introduction = match part {
         Part::Chapter(2) => chapter2::run(&mut study)?,
         Part::Chapter(3) => chapter3::run(&mut study)?,
@@ -113,25 +125,23 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         Part::Chapter(6) => chapter6::run(&mut study)?,
         Part::Chapter(7) => chapter7::run(&mut study)?,
         Part::Chapter(8) => chapter8::run(&mut study, data)?,
-        Part::Chapter(other) => return Err(BadInput::chapter(&other.to_string()).into()),
+        Part::Chapter(other) => return Err(unknown(&other.to_string()).into()),
     };
-    study.finish(&part.title(), introduction)
+    finish(study, part.chapter(), &part.title(), introduction)
 }
 
 /// Tests the automatic choice of the model, and writes the folder of that study.
 pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
-    let mut study = Study::new(0, &wanted.out, wanted.quick)?;
-    study.claims("Targets, and what was found");
+    let mut study = tasks::Study::new(&wanted.out, wanted.quick)?;
     let introduction = choice::run(&mut study, wanted)?;
-    Ok(study.finish("The automatic choice of the model", introduction)?.summary)
+    Ok(study.finish("The automatic choice of the model", introduction, targets)?.summary)
 }
 
 /// Fits the distribution of the restitution about the law to the tables of chapter 4, and writes the folder of that study.
 pub fn study_scatter(out: &Path, quick: bool) -> Result<String, Failure> {
-    let mut study = Study::new(0, out, quick)?;
-    study.claims("Targets, and what was found");
+    let mut study = tasks::Study::new(out, quick)?;
     let introduction = scatter::run(&mut study)?;
-    Ok(study.finish("The scatter of the law", introduction)?.summary)
+    Ok(study.finish("The scatter of the law", introduction, targets)?.summary)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Statements as rows of `statements.csv` and as tables of reports and pages, and counts of their verdicts.
 
 use super::statement::{Kind, Statement, Verdict};
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
+use tasks::Failure;
 use vibroimpact::report::{Report, significant};
 
 /// One statement in `statements.csv`; numbers in the unit that the quantity names.

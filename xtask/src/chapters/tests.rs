@@ -1,5 +1,5 @@
+use super::figures::slug;
 use super::statement::{Statement, Verdict};
-use super::study::{Study, slug};
 use super::*;
 use std::collections::BTreeMap;
 use std::fs;
@@ -44,8 +44,8 @@ fn every_statement_that_counts_can_be_turned(statements: &[Statement]) {
 fn check_chapter(part: Part, figures: &[&str], tables: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let finished = on_threads(1, part, folder.path());
-    every_statement_that_counts_can_be_turned(&finished.statements);
-    let summary = finished.summary;
+    every_statement_that_counts_can_be_turned(&finished.study.stated);
+    let summary = finished.study.summary;
     assert!(summary.contains("agree") && summary.contains("impacts in"), "{summary}");
     let first = contents(folder.path());
     let manifest = String::from_utf8(first[&folder.path().join("manifest.json")].clone()).unwrap();
@@ -149,7 +149,7 @@ fn the_theories_are_complete_and_find_what_others_found() {
     check_chapter(Part::Theories, &figures, &[&tables[..], &["tables.csv", "law.csv", "law-compared.csv"]].concat());
     // a quick run computes the limits and the errors of the phase speeds in the same way
     let folder = tempfile::tempdir().unwrap();
-    let statements = run(Part::Theories, folder.path(), true, None).unwrap().statements;
+    let statements = run(Part::Theories, folder.path(), true, None).unwrap().study.stated;
     assert!(statements.len() >= 8 && statements.iter().all(|one| one.verdict() == Verdict::Agrees), "{statements:?}");
 }
 
@@ -251,17 +251,6 @@ fn other_chapters_and_unwritable_folders_are_errors() {
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     assert!(run(Part::Chapter(3), &file.join("below"), true, None).is_err());
-}
-
-#[test]
-fn a_quick_study_keeps_both_ends_of_a_list() {
-    let folder = tempfile::tempdir().unwrap();
-    let all: Vec<usize> = (1..=65).collect();
-    let quick = Study::new(0, folder.path(), true).unwrap().thin(&all, 13);
-    assert_eq!((quick.len(), quick[0], quick[12]), (13, 1, 65));
-    assert!(quick.windows(2).all(|pair| pair[0] < pair[1]));
-    assert_eq!(Study::new(0, folder.path(), false).unwrap().thin(&all, 13), all);
-    assert_eq!(Study::new(0, folder.path(), true).unwrap().thin(&all[..4], 13), all[..4]);
 }
 
 #[test]

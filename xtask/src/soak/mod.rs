@@ -11,10 +11,9 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::failure::Failure;
-use crate::progress::Progress;
 use cases::case;
 use checks::{Verdict, judge};
+use tasks::{Failure, Progress};
 
 /// Number of impacts that are solved in parallel before they are counted. They are counted in order, for any number of threads.
 const BATCH: u64 = 4096;

@@ -3,8 +3,8 @@
 use super::{Parameters, in_ratio, solved};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::FirstContact;
@@ -92,7 +92,7 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
     for (pair, letter) in parameters.first_contact.iter().zip(["c", "d"]) {
         let contact = FirstContact::at_speed(pair.speed, THESIS)?;
         let quantity = format!("m for v = {}, N = 6", pair.speed);
-        study.claim(Statement::printed(quantity, "Fig. 2.6", &pair.mass, contact.mass));
+        study.state(Statement::printed(quantity, "Fig. 2.6", &pair.mass, contact.mass));
         marks.0.push(pair.speed);
         marks.1.push(contact.mass);
         let full = solved(contact.s, 0.0)?;
@@ -108,7 +108,7 @@ fn masses_and_forces(study: &mut Study, parameters: &Parameters) -> Result<(Pane
             .collect();
         let largest = rows.iter().map(|row| row.force).fold(0.0, f64::max);
         let worst = rows.iter().map(|row| (row.force - row.force_semi_analytical).abs()).fold(0.0, f64::max);
-        study.claim(Statement::trend(
+        study.state(Statement::trend(
             format!("largest difference of the forces for v = {}, over the largest force", pair.speed),
             "Fig. 2.6",
             "near-identical",
@@ -175,7 +175,7 @@ fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), 
     );
     study.table(&["N", "S ≤ 1", "1 to 100", "100 to 1.2×10⁴", "above"], &table);
     let good = of(THESIS).filter(|row| row.s <= parameters.semi_analytical_until).map(|row| row.error.unwrap_or(1.0));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "largest error of v_f / v for S ≤ 1.2×10⁴, N = 6",
         "2.3",
         "good for S ≲ 1.2×10⁴",
@@ -186,7 +186,7 @@ fn ratios(study: &mut Study, parameters: &Parameters) -> Result<(Panel, Panel), 
     let fine = in_ratio(1e3, LARGEST, 50);
     let reached = study.sweep(&fine, 1, |&s| Ok(FirstContact::at_s(s, THESIS).is_ok()))?;
     let reach = fine.iter().zip(reached).filter(|(_, reached)| *reached).map(|(s, _)| *s).fold(0.0, f64::max);
-    study.claim(
+    study.state(
         Statement::trend(
             "largest S to which the solution with N = 6 can be followed while its force pushes",
             "2.3",

@@ -3,9 +3,9 @@
 use super::{Parameters, Units, solved};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact_sim::infinite::{Groups, Impact, Material, Structure};
 
@@ -27,7 +27,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
     for row in &parameters.table_2_1 {
         let impact = Impact::sphere_on_beam(Material::STEEL, row.side_m, row.side_m, row.radius_m, row.speed_m_s)?;
         let quantity = format!("S for b = {} m, R = {} m, v = {} m/s", row.side_m, row.radius_m, row.speed_m_s);
-        study.claim(Statement::printed(quantity, "Table 2.1", &row.s, impact.groups()?.s));
+        study.state(Statement::printed(quantity, "Table 2.1", &row.s, impact.groups()?.s));
     }
     let mut rows = Vec::new();
     let mut curves = Vec::new();
@@ -42,7 +42,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             let statement = Statement::printed(format!("{name} of parameter set {set}"), "Table A.1", printed, ours);
             // Eqs. 2.49 to 2.51 make the third set's units of time and force 1
             let reason = "exactly 1 by Eqs. 2.49 to 2.51, from inputs of four digits";
-            study.claim(if printed == "1" { statement.held_to(5e-4, reason) } else { statement });
+            study.state(if printed == "1" { statement.held_to(5e-4, reason) } else { statement });
         }
         let (curve, difference) = in_own_units(set, units, &groups)?;
         largest = largest.max(difference);
@@ -50,7 +50,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         curves.push(curve);
     }
     study.csv("fig-a-01.csv", &rows)?;
-    study.claim(
+    study.state(
         Statement::identity(
             "largest difference of the nondimensional forces, over the largest force",
             ["Fig. A.1", "the same graph", "two methods, each exact to ten digits"],

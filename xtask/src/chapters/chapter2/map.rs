@@ -3,9 +3,9 @@
 use super::{Parameters, in_ratio, solved};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
 use std::time::Instant;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::{CriticalS, Outcome, SubImpact, TurningPoint, critical_s, turning_points};
@@ -85,7 +85,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         "half a unit of the only digit",
         shortest,
     );
-    study.claim(statement.note("The shortest first contact ends a little below the first turning point."));
+    study.state(statement.note("The shortest first contact ends a little below the first turning point."));
 
     // the curves of start and end of a contact meet at its turning point
     let ends: Vec<f64> = turnings.iter().map(|t| critical.s + (t.s - critical.s) * (1.0 - CLOSE)).collect();
@@ -109,17 +109,17 @@ fn turning_table(
     for row in &rows {
         let Some(thesis) = &row.s_thesis else { continue };
         let quantity = format!("turning point {}", row.n);
-        study.claim(Statement::printed(quantity, "2.5", thesis, row.s).uncertain(row.uncertainty));
+        study.state(Statement::printed(quantity, "2.5", thesis, row.s).uncertain(row.uncertainty));
     }
     for (row, rounded) in rows.iter().zip(["3.53e4", "5.22e2"]) {
         let quantity = format!("turning point {}, to three digits", row.n);
-        study.claim(Statement::printed(quantity, "2.5", rounded, row.s).uncertain(row.uncertainty));
+        study.state(Statement::printed(quantity, "2.5", rounded, row.s).uncertain(row.uncertainty));
     }
     for (source, thesis) in [("2.5, last of the list", parameters.critical_s.as_str()), ("2.3, 2.5, 9", "1.56")] {
         let statement =
             Statement::printed("S at which the first rebound velocity vanishes", source, thesis, critical.s);
         let note = format!("Ours: {:.13} ± {:.0e}.", critical.s, critical.uncertainty);
-        study.claim(statement.uncertain(critical.uncertainty).note(note));
+        study.state(statement.uncertain(critical.uncertainty).note(note));
     }
     study.text(&format!(
         "Critical S: {:.14} ± {:.0e}. The n-th separation exists for S below the n-th turning point; the numbers go on \
@@ -148,7 +148,7 @@ fn regimes(study: &mut Study, points: &[Point], critical: CriticalS, turnings: &
         let counted = point.s < critical.s || beyond == turnings.len() || point.separations == beyond;
         point.outcome != expected || (point.s < critical.s && point.separations != 1) || !counted
     });
-    study.claim(Statement::self_check(
+    study.state(Statement::self_check(
         "values of S at which outcome or separations contradict critical S and turning points",
         [
             "Fig. 2.4",
@@ -200,7 +200,7 @@ fn inset(study: &mut Study) -> Result<(), Failure> {
         1e-5 * last,
     );
     let middle = ends.get(TRACKED / 2).map_or(f64::NAN, |end| 1e-5 * end);
-    study.claim(statement.note(format!(
+    study.state(statement.note(format!(
         "The text does not print the factor of the axis, but it is linear and its times go up to 5×10⁵. Between contact {} \
          at {} and contact {TRACKED} at {} the curves crowd there.",
         TRACKED / 2 + 1,

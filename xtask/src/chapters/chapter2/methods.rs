@@ -2,10 +2,10 @@
 
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use fracdiff::{Collocation, Convolution, GalerkinStates, Method, SumOfExponentials, test_problems};
 use serde::Serialize;
 use std::time::Instant;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact_sim::infinite::{Settings, Solution, Structure, solve};
 
@@ -156,13 +156,13 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
             let errors = rows.iter().filter(|row| row.s == s && row.method == name).map(|row| row.error);
             errors.fold(f64::INFINITY, f64::min)
         };
-        study.claim(Statement::self_check(
+        study.state(Statement::self_check(
             format!("S = {s}: difference of general collocation and specialised solver, over the largest |x|"),
             ["A.1", "convergence was checked", "two methods of ours, each exact to ten digits"],
             (0.0, 1e-8),
             best("collocation"),
         ));
-        study.claim(Statement::trend(
+        study.state(Statement::trend(
             format!("S = {s}: error of the thesis's recipe with its N = 50, over the largest |x|"),
             "A.1",
             "significantly more accurate than plotting accuracy",

@@ -10,8 +10,8 @@ mod relatives;
 mod sustained;
 
 use super::study::Study;
-use crate::failure::Failure;
 use parameters::{Course, Motion, Parameters, Units, in_ratio, solved};
+use tasks::Failure;
 
 const INTRODUCTION: &str = "A body strikes an infinite Euler-Bernoulli beam; contact is Hertzian, and the beam answers \
 an impulse P at once and for ever with the displacement P C √t. One number, S = C¹⁰ k² m⁸ v, decides everything: one \

@@ -3,7 +3,7 @@
 use super::{Course, Motion, Parameters, solved};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::infinite::samples;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
@@ -30,7 +30,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         let force =
             Panel::new(time, force).height(150.0).with(Series::line(&course.time, &drawn).colour(Colour::Black));
         figure = figure.row([motion, force]);
-        study.claim(Statement::printed(
+        study.state(Statement::printed(
             format!("separations at S = {}", significant(*s, 3)),
             "2.2.5, Fig. 2.3",
             &separations.to_string(),
@@ -51,7 +51,7 @@ fn oscillations(study: &mut Study) -> Result<(), Failure> {
     const PLACES: [f64; 4] = [5.0, 15.0, 50.0, 500.0];
     let found = study.sweep(&PLACES, 1, |s| growth_of_swings(*s))?;
     let told: Vec<String> = found.iter().map(|ratio| significant(*ratio, 2)).collect();
-    study.claim(
+    study.state(
         Statement::trend(
             "largest ratio of a swing of the compression, about the mean of its neighbours, to the one before; four S",
             "2.2.5, Fig. 2.3",

@@ -1,7 +1,7 @@
 //! The chapter's parameters, and what its sections share.
 
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
+use tasks::Failure;
 use vibroimpact::infinite::Sample;
 use vibroimpact_sim::infinite::{Settings, Solution, Structure, solve};
 

@@ -4,9 +4,9 @@
 use super::{in_ratio, solved};
 use crate::chapters::statement::{FALLS, Statement};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use fracdiff::{Collocation, Method, Volterra};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::report::significant;
 use vibroimpact_sim::infinite::{Settings, Solution, Structure, critical_s, solve};
 
@@ -50,7 +50,7 @@ fn plate(study: &mut Study) -> Result<(), Failure> {
         lines.push([s, ratio, dashpot].map(|number| significant(number, 6)).to_vec());
     }
     study.table(&["S", "v_f / v on a plate", "on a dashpot"], &lines);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest difference of v_f / v between plate and dashpot",
         ["2.1, Fig. 2.1", "mathematically the same as a point mass falling on a dashpot", "the Runge-Kutta rule"],
         (0.0, 1e-5),
@@ -112,7 +112,7 @@ fn linear_stiffness(study: &mut Study) -> Result<(), Failure> {
         significant(hard.stiffness, 2),
         hard.contacts
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "contacts of the softest and of the hardest linear spring together",
         "2.1",
         "identifying single contact at two extremes",
@@ -120,7 +120,7 @@ fn linear_stiffness(study: &mut Study) -> Result<(), Failure> {
         "one each",
         (soft.contacts + hard.contacts) as f64,
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "most contacts between them",
         "2.1",
         "the intermediate regime where multiple impact events are possible",
@@ -190,7 +190,7 @@ fn late_contacts(study: &mut Study) -> Result<(), Failure> {
             "0.05 tells a straight line from a curve; less, either way, does not",
             gains.fold(f64::INFINITY, f64::min),
         );
-        study.claim(statement.open((-0.05, 1.0)).note(format!(
+        study.state(statement.open((-0.05, 1.0)).note(format!(
             "At S = {}: {} of the logarithm and {} of the quantity itself.",
             PLACES.map(|s| significant(s, 3)).join(", "),
             told(&|pair| pair.0),
@@ -222,7 +222,7 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
         &lines,
     );
     let power = |k: usize| (times[1][k] / times[0][k]).ln() / (distances[1] / distances[0]).ln();
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "power of the distance from the critical S with which the second contact's time goes",
         [
             "2.3",
@@ -232,7 +232,7 @@ fn second_contact(study: &mut Study) -> Result<(), Failure> {
         (-2.05, -1.95),
         power(0),
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         format!("the same power for contact {LATE}"),
         "2.5",
         "all the contact-time curves approach the same vertical asymptote at S ≈ 1.56",

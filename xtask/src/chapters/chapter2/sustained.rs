@@ -3,9 +3,9 @@
 use super::{Course, Motion, Parameters, in_ratio, solved};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact::infinite::samples;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
@@ -47,7 +47,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         if !parameters.motion.iter().any(|motion| motion.s == *s) {
             let quantity = format!("separations at S = {}", significant(*s, 3));
             let ours = solution.separations() as f64;
-            study.claim(Statement::printed(quantity, "2.4, Fig. 2.7", &separations.to_string(), ours));
+            study.state(Statement::printed(quantity, "2.4, Fig. 2.7", &separations.to_string(), ours));
         }
         let start = solution.sub_impacts.last().map_or(1.0, |contact| contact.start).max(1.0);
         let own: Vec<ErrorRow> = in_ratio(1.01 * start, until, 60)
@@ -86,7 +86,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             ]);
         }
         let late = own.iter().filter(|row| row.time >= 100.0).map(|row| row.error_eq_2_47).fold(0.0, f64::max);
-        study.claim(Statement::trend(
+        study.state(Statement::trend(
             format!("largest relative error of z by Eq. 2.47 in sustained contact from t = 100 on, S = {name}"),
             "2.4, Fig. 2.7",
             "the match is excellent",
@@ -95,7 +95,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
             late,
         ));
         let half = own.iter().filter(|row| row.time >= 0.5 * shown).map(|row| row.error_compression);
-        study.claim(Statement::trend(
+        study.state(Statement::trend(
             format!(
                 "largest relative error of y − z by Eq. 2.47 over the second half of the figure and beyond, S = {name}"
             ),

@@ -3,11 +3,11 @@
 
 use super::Case;
 use super::scatter::{self, AtBoth, MANY, extremes, off_the_mean, reduction, scatter};
-use crate::chapters::figures::{Column, Curve, restitution, restitution_and_sub_impacts};
+use crate::chapters::figures::{Column, Curve, restitution, restitution_and_sub_impacts, slug};
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::statement::{RISES, Statement};
-use crate::chapters::study::{Study, slug};
-use crate::failure::Failure;
+use crate::chapters::study::Study;
+use tasks::Failure;
 use vibroimpact::plot::Axis;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
@@ -149,7 +149,7 @@ fn speeds(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let of = |chosen: &dyn Fn(f64) -> bool| {
         ratios.iter().filter(|(speed, _)| chosen(*speed)).map(|(_, ratio)| *ratio).fold(0.0, f64::max)
     };
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "that ratio at 0.25 m/s minus the larger of those at 0.5 and 0.1 m/s",
         "3.4.2, Fig. 3.13",
         "for the 0.25 m/s case the convergence appears relatively a little slower",
@@ -182,7 +182,7 @@ fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
     let words = "for the ball diameter of 4 cm, the behavior is qualitatively similar";
     let quantity = "scatter of e for N ≥ 25, damped over undamped, 4 cm ball".to_owned();
     reduction(study, quantity, "3.4.2, Fig. 3.14", words, large);
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "larger scatter of e for N ≥ 25 of the 2 cm ball, with and without damping",
         "3.4.2, Fig. 3.14",
         "results are regular in both cases",
@@ -191,14 +191,14 @@ fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
         small.iter().map(|curve| scatter(&curve.rows, MANY)).fold(0.0, f64::max),
     ));
     let contacts = small.iter().flat_map(|c| &c.rows).map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.claim(Statement::printed(
+    study.state(Statement::printed(
         "most contacts of the 2 cm ball, any N, with and without damping",
         "3.4.2",
         "1",
         contacts as f64,
     ));
     let apart = small[0].rows.iter().zip(&small[1].rows).map(|(a, b)| (a.e() - b.e()).abs()).fold(0.0, f64::max);
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "largest change of the 2 cm ball's e by damping",
         "3.4.2",
         "damping plays essentially no role",
@@ -206,7 +206,7 @@ fn balls(study: &mut Study, case: &Case, usual: f64) -> Result<(), Failure> {
         "a line's width, a fiftieth of a figure's height",
         apart,
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "scatter of e for N ≥ 25, damped: 4 cm ball over 3 cm ball",
         "3.4.2, Fig. 3.14",
         "for the ball diameter of 4 cm the convergence is more convincing",
@@ -235,7 +235,7 @@ fn heavy(study: &mut Study, case: &Case, of_4_cm: &[Row]) -> Result<(), Failure>
         "one in ten",
         off_the_mean(&rows, OFF) as f64,
     );
-    study.claim(statement.note(format!(
+    study.state(statement.note(format!(
         "Of the 4 cm ball {} are. {:.1} kg on a beam of 1 kg: restitution {:.3} with {} modes, in {} sub-impacts.",
         off_the_mean(of_4_cm, OFF),
         ball.mass_kg,
@@ -274,7 +274,7 @@ fn scan(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let figure =
         restitution_and_sub_impacts("Fig. 3.15  A ball of 4 cm, N = 40, ζ = 0.02", &axis, |r| r.location_m, &columns);
     study.figure("fig-3-15", &figure.width(560.0), "Above: restitution; below: sub-impacts; against the location.")?;
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "change of e for b from 0.60 to 0.62 m, 4 cm ball",
         "3.4.2, Fig. 3.15",
         "visibly (though not dramatically)",

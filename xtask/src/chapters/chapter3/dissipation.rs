@@ -1,14 +1,14 @@
 //! Dissipative contact laws: Figs. 3.2, 3.5, 3.6, 3.8 and 3.9.
 
 use super::Case;
-use crate::chapters::figures::Course;
+use crate::chapters::figures::{Course, slug};
 use crate::chapters::impact::Setup;
 use crate::chapters::statement::Statement;
-use crate::chapters::study::{Study, slug};
-use crate::failure::Failure;
+use crate::chapters::study::Study;
 use contact_models::{Hysteretic, Law, trace};
 use serde::Serialize;
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure, Panel, Series};
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
@@ -70,7 +70,7 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let silent = |r: &&LoopRow| r.force_n == 0.0;
     let deepest = rows.iter().filter(silent).map(|r| r.compression_m).fold(f64::NEG_INFINITY, f64::max);
     let reason = "a smaller one gives a force below the smallest number";
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest compression without force, hysteretic law (Fig. 3.2)",
         ["3.2.1", "F = 0 only when ξ ≤ 0", reason],
         (f64::NEG_INFINITY, 1e-200),
@@ -80,7 +80,7 @@ fn prescribed(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let pressed = rows.iter().filter(|r| r.compression_m > 1e-6);
     let theta = pressed.map(|r| r.force_n / (p.stiffness_n_m1_5.unwrap_or(1.0) * r.compression_m.powf(1.5)) - 1.0);
     let beyond = theta.map(|theta| (theta - p.theta_m).abs() - p.beta).fold(f64::NEG_INFINITY, f64::max);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "farthest that θ leaves θ_m ± β, hysteretic law (Fig. 3.2)",
         ["3.2.1", "θ varies between θ_m ± β", "rounding"],
         (f64::NEG_INFINITY, 1e-9),
@@ -121,7 +121,7 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
     )?;
 
     let at_one = Setup { law, ..case.setup(case.golden_m(), 0) }.solve()?;
-    study.claim(Statement::loose(
+    study.state(Statement::loose(
         format!("restitution of the {name} law at 1 m/s, N = 0"),
         &format!("3.3, Fig. {figure}"),
         "about 0.95",
@@ -130,7 +130,7 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
         at_one.e(),
     ));
     let contacts = rows.iter().map(|r| r.sub_impacts).max().unwrap_or(0);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         format!("contacts of the {name} law, N = 0"),
         [
             &format!("Fig. {figure}"),
@@ -142,7 +142,7 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
     ));
     if let (true, [fast, .., slow]) = (name == "hysteretic", rows.as_slice()) {
         for row in &rows {
-            study.claim(Statement::loose(
+            study.state(Statement::loose(
                 format!("restitution of the hysteretic law at {} m/s, N = 0", row.speed_m_s),
                 "Fig. 3.8",
                 "close to 0.95",
@@ -151,7 +151,7 @@ fn wall(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law) -> R
                 row.e(),
             ));
         }
-        study.claim(Statement::trend(
+        study.state(Statement::trend(
             "fall of the hysteretic law's restitution from 0.6 to 1.2 m/s",
             "Fig. 3.8",
             "decreasing very slightly",
@@ -169,7 +169,7 @@ fn many_modes(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law
     let setup = Setup { law, ..case.setup(case.parameters.locations_m[0], 27) };
     let (solution, history) = setup.record()?;
     let course = Course::new(&history, (0.0, solution.end_s), 6000);
-    study.course(&format!("fig-{}.csv", slug(figure)), &course)?;
+    study.csv(&format!("fig-{}.csv", slug(figure)), &course.rows())?;
     let whole = course.force().height(240.0).title("(a) force against time");
     let loops = course.loops().height(240.0).title("(b) force against compression");
     let title = format!("Fig. {figure}  Impact with 27 modes at b = 0.4 m, {name} law");
@@ -181,7 +181,7 @@ fn many_modes(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law
     study.figure(&format!("fig-{}", slug(figure)), &Figure::new(title).row([whole, loops]), &caption)?;
 
     let several = solution.sub_impacts.len() as f64;
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         format!("sub-impacts with the {name} law, N = 27, b = 0.4"),
         &format!("Fig. {figure}"),
         "multiple",
@@ -193,7 +193,7 @@ fn many_modes(study: &mut Study, case: &Case, figure: &str, name: &str, law: Law
         let rates = course.structure_m_s.iter().zip(&course.striker_m_s).zip(&course.force_n);
         let in_contact = rates.filter(|(_, force)| **force > 0.0).map(|((beam, ball), _)| (beam - ball).abs());
         let largest = viscous.damping_s_m * in_contact.fold(0.0, f64::max);
-        study.claim(Statement::identity(
+        study.state(Statement::identity(
             "largest |c dξ/dt| in contact, N = 27",
             ["3.2.1", "below 1 at all times", "as stated; it would take twelve times the speed of approach"],
             (0.0, 1.0),

@@ -4,9 +4,9 @@ use super::Case;
 use super::scatter::{fingerprint, gives_the_three_numbers};
 use crate::chapters::impact::{Row, Setup};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use contact_models::{Hertz, Law};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::report::significant;
 
 #[derive(Serialize)]

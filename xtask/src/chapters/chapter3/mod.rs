@@ -10,8 +10,8 @@ mod residual;
 pub(super) mod scatter;
 
 use super::study::Study;
-use crate::failure::Failure;
 pub(super) use case::Case;
+use tasks::Failure;
 
 const INTRODUCTION: &str = "A steel ball strikes a pinned-pinned steel beam; contact is Hertzian, or Hertzian with \
 a little dissipation; the beam is undamped, or every mode has 2 % of critical damping. Every sub-impact is resolved. \

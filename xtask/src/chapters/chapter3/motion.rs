@@ -5,7 +5,7 @@ use crate::chapters::figures::Course;
 use crate::chapters::impact::Setup;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
@@ -23,7 +23,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let (solution, history) = setup.record()?;
     let end = 1.04 * solution.end_s;
     let course = Course::new(&history, (0.0, end), 6000);
-    study.course("fig-3-03.csv", &course)?;
+    study.csv("fig-3-03.csv", &course.rows())?;
     let early = solution.sub_impacts.get(1).map_or(end, |second| 1.4 * second.end_s).min(end);
     let closer = Course::new(&history, (0.0, early), 2500).force().title("(d) the first contacts, magnified");
     let figure = Figure::new("Fig. 3.3  Hertzian contact, N = 25, b = 0.4 m")
@@ -53,11 +53,11 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
             peak,
         )
     };
-    study.claim(few_hundred("median", median));
-    study.claim(
+    study.state(few_hundred("median", median));
+    study.state(
         few_hundred("largest", largest).note("The first contact is the hardest; the thesis's phrase fits the others."),
     );
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "sub-impacts, N = 25, b = 0.4",
         "3.3.2",
         "several",
@@ -79,7 +79,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "a line's width, a fiftieth of a figure's height; a tenth is more than very slight",
         bend_mm / height_mm,
     );
-    study.claim(statement.open((0.0, 0.1)).note(format!(
+    study.state(statement.open((0.0, 0.1)).note(format!(
         "The longest flight lasts {:.1} ms. Over the whole interaction gravity would change the ball's velocity, \
          {:.2} m/s at the end, by {:.2} m/s, if the ball falls on the beam; level flight against an upright beam, of which the \
          text speaks next, is free of that.",
@@ -89,7 +89,7 @@ fn one_impact(study: &mut Study, case: &Case) -> Result<(), Failure> {
     )));
     // the beam is vertical and the ball moves horizontally: displacement due to gravity
     let travel_mm = 1e3 * 0.5 * GRAVITY * solution.end_s.powi(2);
-    study.claim(Statement::loose(
+    study.state(Statement::loose(
         "fall of the ball by its weight in the net time (mm)",
         "3.3.2",
         "about 3",
@@ -109,7 +109,7 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let end = 1.04 * found.iter().map(|(solution, _)| solution.end_s).fold(0.0, f64::max);
     let courses: Vec<Course> = found.iter().map(|(_, history)| Course::new(history, (0.0, end), 5000)).collect();
     for (course, name) in courses.iter().zip(["undamped", "damped"]) {
-        study.course(&format!("fig-3-12-{name}.csv"), course)?;
+        study.csv(&format!("fig-3-12-{name}.csv"), &course.rows())?;
     }
     let labels = ["ζ = 0", "ζ = 0.02"];
     let colours = [Colour::Blue, Colour::Vermilion];
@@ -148,7 +148,7 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
         e[0], e[1]
     );
     study.figure("fig-3-12", &figure, &caption)?;
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "difference of the restitutions without and with damping, N = 40, b = 0.618",
         "Fig. 3.12",
         "significantly different",
@@ -179,7 +179,7 @@ fn damped_and_undamped(study: &mut Study, case: &Case) -> Result<(), Failure> {
         &Figure::new("Fig. A.2  Energy of single modes, N = 40, b = 0.618 m").row(panels),
         "Each contact shows as a jump. Damping empties the high modes between contacts.",
     )?;
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "energy of mode 40 at the end, damped over undamped",
         [
             "A.3",

@@ -3,20 +3,20 @@
 use super::Case;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use std::f64::consts::PI;
+use tasks::Failure;
 
 pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let frequency = |n: usize| case.beam.omega_rad_s()[n - 1] / (2.0 * PI);
     let beam = &case.parameters.beam;
     let beam_mass = case.parameters.material.density_kg_m3 * beam.side_m * beam.side_m * beam.length_m;
-    study.claim(Statement::printed("mass of the 3 cm ball (kg)", "3.3.1", "0.11027", case.ball.mass_kg));
-    study.claim(Statement::printed("Hertz stiffness (N/m^1.5)", "Eq. 3.20", "1.7945e10", case.ball.stiffness_n_m1_5));
+    study.state(Statement::printed("mass of the 3 cm ball (kg)", "3.3.1", "0.11027", case.ball.mass_kg));
+    study.state(Statement::printed("Hertz stiffness (N/m^1.5)", "Eq. 3.20", "1.7945e10", case.ball.stiffness_n_m1_5));
     let (about, reason) = ((1.0, 0.05), "a twentieth");
-    study.claim(Statement::loose("mass of the beam (kg)", "3.5", "about 1", about, reason, beam_mass));
-    study.claim(Statement::printed("first natural frequency (Hz)", "3.3.1", "26", frequency(1)));
-    study.claim(Statement::printed("period of the first mode (s)", "3.3.1", "0.0385", 1.0 / frequency(1)));
-    study.claim(Statement::loose(
+    study.state(Statement::loose("mass of the beam (kg)", "3.5", "about 1", about, reason, beam_mass));
+    study.state(Statement::printed("first natural frequency (Hz)", "3.3.1", "26", frequency(1)));
+    study.state(Statement::printed("period of the first mode (s)", "3.3.1", "0.0385", 1.0 / frequency(1)));
+    study.state(Statement::loose(
         "60th natural frequency (Hz)",
         "3.3.1",
         "60² × 26 ≈ 93600",
@@ -24,10 +24,10 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "half a unit of the third digit, of which the factor 26 has two",
         frequency(60),
     ));
-    study.claim(Statement::printed("period of the 60th mode (s)", "3.3.1", "1.0684e-5", 1.0 / frequency(60)));
+    study.state(Statement::printed("period of the 60th mode (s)", "3.3.1", "1.0684e-5", 1.0 / frequency(60)));
     let weight = 9.81 * case.ball.mass_kg;
     let (order, reason) = ((1.0, 0.7), "an order of magnitude: down to 1/√10");
-    study.claim(Statement::loose("weight of the ball (N)", "3.3.2", "on the order of 1", order, reason, weight));
+    study.state(Statement::loose("weight of the ball (N)", "3.3.2", "on the order of 1", order, reason, weight));
 
     let wall = case.setup(case.golden_m(), 0);
     let contact_s = wall.record()?.0.sub_impacts.iter().map(|s| s.end_s - s.start_s).sum::<f64>();
@@ -52,6 +52,6 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "half a unit of the only digit",
         slower as f64,
     );
-    study.claim(rule.note(note));
+    study.state(rule.note(note));
     Ok(())
 }

@@ -60,7 +60,7 @@ fn ratio(with: &[Row], without: &[Row]) -> (f64, f64) {
 pub(super) fn reduction(study: &mut Study, quantity: String, source: &str, words: &str, curves: &[Curve]) -> f64 {
     let [without, with] = curves else { return f64::NAN };
     let (ratio, error) = ratio(&with.rows, &without.rows);
-    study.claim(reduced(quantity, source, words, (ratio, error)));
+    study.state(reduced(quantity, source, words, (ratio, error)));
     ratio
 }
 
@@ -82,7 +82,7 @@ pub(super) fn remains(study: &mut Study, name: &str, source: &str, hertz: &AtBot
             "0.7 and more is no reduction, half or less a significant one; error of a ratio of scatters",
             ratio,
         );
-        study.claim(statement.open((REDUCED, f64::INFINITY)).uncertain(error));
+        study.state(statement.open((REDUCED, f64::INFINITY)).uncertain(error));
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn lower(study: &mut Study, hertz: &AtBoth, viscous: &AtBoth) {
         "any amount beyond the mean's standard error",
         mean(changes.iter().copied()),
     );
-    study.claim(statement.uncertain(deviation(&changes) / (changes.len() as f64).sqrt()));
+    study.state(statement.uncertain(deviation(&changes) / (changes.len() as f64).sqrt()));
 }
 
 /// States that modal damping reduces the scatter and the number of modes that are needed.
@@ -106,9 +106,9 @@ pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
     for (k, place) in PLACES.into_iter().enumerate() {
         let quantity = format!("scatter of e for N ≥ 25, damped over undamped, {place}");
         let words = "a significant reduction in variability";
-        study.claim(reduced(quantity, "3.3.5, Fig. 3.11", words, ratio(&modal[k], &hertz[k])));
+        study.state(reduced(quantity, "3.3.5, Fig. 3.11", words, ratio(&modal[k], &hertz[k])));
         let centre = mean(from(&modal[k], MANY));
-        study.claim(Statement::loose(
+        study.state(Statement::loose(
             format!("scatter of e for N ≥ 25 over its mean, damped, {place}"),
             "3.5",
             "a variability within several percent (as opposed to a factor of 6)",
@@ -120,7 +120,7 @@ pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
     let needed = |curves: &AtBoth| curves.iter().map(|rows| settles(rows)).max().unwrap_or(0) as f64;
     let most = hertz[0].last().map_or(0, |row| row.modes);
     let (near, reason) = ("within 0.05 of its mean over N ≥ 50 from there on", "as stated; 0.05 is our reading");
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         format!("modes from which on the undamped e stays {near}, of {most}"),
         "9",
         "the number of modes required decreases from more than 60",
@@ -128,7 +128,7 @@ pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
         reason,
         needed(hertz),
     ));
-    study.claim(Statement::loose(
+    study.state(Statement::loose(
         format!("modes from which on the damped e stays {near}"),
         "9",
         "to around 25",
@@ -136,7 +136,7 @@ pub(super) fn damped(study: &mut Study, hertz: &AtBoth, modal: &AtBoth) {
         "a fifth; 0.05 is our reading of \"reasonably accurate\"",
         needed(modal),
     ));
-    study.claim(Statement::loose(
+    study.state(Statement::loose(
         "modes that suffice with damping, by the same reading",
         "3.5",
         "the first 30 to 40 modes may be sufficient in the presence of small damping",
@@ -161,7 +161,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
     let pairs = (1..=13).filter_map(|k| find(5 * k - 1).zip(find(5 * k)));
     let unequal = pairs.map(|(a, b)| (a - b).abs()).fold(f64::NAN, f64::max);
     if unequal.is_finite() {
-        study.claim(Statement::identity(
+        study.state(Statement::identity(
             "largest |e(N) − e(N+1)| for N = 4, 9, 14, …, b = 0.4",
             ["3.3.2", "identical", "rounding; the mode is not excited"],
             (0.0, 1e-9),
@@ -172,7 +172,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
         let pairs = hertz[0].iter().zip(&hertz[1]).filter(|(a, _)| (least..below).contains(&a.modes));
         pairs.map(|(a, b)| (a.e() - b.e()).abs()).fold(0.0, f64::max)
     };
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "largest difference of e between the locations for N < 8",
         "3.3.2",
         "the response is similar",
@@ -180,7 +180,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
         "a tenth of the range from 0 to 1",
         apart(1, 8),
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "largest difference of e between the locations for N ≥ 20",
         "3.3.2",
         "differ significantly",
@@ -190,7 +190,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
     ));
 
     let (wide, error) = ratio(&hertz[1], &hertz[0]);
-    study.claim(
+    study.state(
         Statement::trend(
             "scatter of e for N ≥ 25, undamped, b = 0.618 over b = 0.4",
             "3.1, 3.3.2",
@@ -205,7 +205,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
     let longest = rows().max_by(|a, b| a.last_separation_s.total_cmp(&b.last_separation_s));
     let net = longest.map_or(f64::NAN, |row| row.last_separation_s);
     let statement = Statement::printed("longest net time of the impacts of Fig. 3.4 (s)", "3.3.2", "0.025", net);
-    study.claim(statement.note(format!(
+    study.state(statement.note(format!(
         "The text does not say which impact its 0.025 s are of; the longest is the one with {} modes at b = {} m, and Fig. 3.3 \
          shows N = 25 at 0.4 m.",
         longest.map_or(0, |row| row.modes),
@@ -219,7 +219,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
         ("largest e over smallest e, N from 30 to 40, b = 0.618", "a factor of 6", FACTOR, high / low),
     ];
     for (quantity, words, number, ours) in numbers {
-        study.claim(Statement::loose(quantity, "3.5", words, number, "half a unit of the only digit", ours));
+        study.state(Statement::loose(quantity, "3.5", words, number, "half a unit of the only digit", ours));
     }
     for (rows, place) in hertz.iter().zip(PLACES) {
         let third = rows.len() / 3;
@@ -236,7 +236,7 @@ pub(super) fn without_dissipation(study: &mut Study, hertz: &AtBoth) {
             "any amount beyond the standard error of the two means",
             first.0 - last.0,
         );
-        study.claim(statement.uncertain((first.1 + last.1).sqrt()));
+        study.state(statement.uncertain((first.1 + last.1).sqrt()));
     }
 }
 

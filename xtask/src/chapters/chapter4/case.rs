@@ -3,8 +3,8 @@
 use crate::chapters::beam::{Beam, End, segment};
 use crate::chapters::impact::{Ball, Setup};
 use crate::chapters::material::Material;
-use crate::failure::Failure;
 use serde::Deserialize;
+use tasks::Failure;
 
 /// The parameter file, which explains its entries.
 #[derive(Deserialize)]

@@ -1,11 +1,11 @@
 //! Motion and force of single impacts: Figs. 4.5, 4.10 and 4.11.
 
 use super::{Case, Histories};
-use crate::chapters::figures::Course;
+use crate::chapters::figures::{Course, slug};
 use crate::chapters::impact::Setup;
-use crate::chapters::study::{Study, slug};
-use crate::failure::Failure;
+use crate::chapters::study::Study;
 use contact_models::Law;
+use tasks::Failure;
 use vibroimpact::plot::{Figure, Panel};
 use vibroimpact_sim::modal::{History, Solution};
 
@@ -53,7 +53,7 @@ fn detailed(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "Each case from above: displacements, velocities, contact force.",
     )?;
     for (course, letter) in courses.iter().zip(letters) {
-        study.course(&format!("fig-4-05-{letter}.csv"), course)?;
+        study.csv(&format!("fig-4-05-{letter}.csv"), &course.rows())?;
     }
     Ok(())
 }
@@ -68,7 +68,7 @@ fn several_places(study: &mut Study, case: &Case, p: &Histories) -> Result<(), F
     let mut panels = Vec::new();
     for (recorded, setup) in found.iter().zip(&setups) {
         let course = course(recorded);
-        study.course(&format!("fig-{}-b-{:.3}.csv", slug(&p.figure), setup.location_m), &course)?;
+        study.csv(&format!("fig-{}-b-{:.3}.csv", slug(&p.figure), setup.location_m), &course.rows())?;
         panels.push(course.displacements().title(heading(setup.location_m, &recorded.0)).height(140.0));
     }
     for pair in panels.chunks(2) {

@@ -3,9 +3,9 @@
 use super::Case;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use beam_modes::fem::Model;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 use vibroimpact_sim::modal::{Solver, Structure};
@@ -74,7 +74,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
     );
     study.figure("fig-a-03", &Figure::new(title).row([panel]).width(620.0), &caption)?;
     let source = "A.4, Fig. A.3";
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "median difference of e, modal and finite elements",
         source,
         "a very good match",
@@ -82,7 +82,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         "a line's width, a fiftieth of a figure's height",
         median,
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "largest difference of e, modal and finite elements",
         source,
         "a good match",
@@ -110,7 +110,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         ratio,
     )
     .uncertain(ratio * weak.1.hypot(elsewhere.1));
-    study.claim(statement.note(format!(
+    study.state(statement.note(format!(
         "{} of {} impacts are so weak; the balls are the three whose masses chapter 4 names.",
         all.iter().filter(|(modal, _)| modal.e() <= WEAK).count(),
         all.len()

@@ -10,9 +10,9 @@ pub(super) mod trends;
 
 use super::statement::Statement;
 use super::study::Study;
-use crate::failure::Failure;
 use case::Histories;
 pub(super) use case::{Case, EnsembleChoice};
+use tasks::Failure;
 
 const INTRODUCTION: &str = "Steel balls strike four steel beams, all of 1 m length and lightly damped (2 % of critical \
 damping in every mode), with 40 modes and Hertzian contact. The tables `restitution-*.csv` hold the net restitution of \
@@ -37,11 +37,11 @@ pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
 /// The numbers of section 4.2.
 fn numbers(study: &mut Study, case: &Case) -> Result<(), Failure> {
     let (small, middle, large) = (case.ball(0.025)?, case.ball(0.033)?, case.ball(0.053)?);
-    study.claim(Statement::printed("mass of the 25 mm ball (kg)", "4.2", "0.0638", small.mass_kg));
+    study.state(Statement::printed("mass of the 25 mm ball (kg)", "4.2", "0.0638", small.mass_kg));
     let stiffness = small.stiffness_n_m1_5;
-    study.claim(Statement::printed("Hertz stiffness, 25 mm ball (N/m^1.5)", "4.2", "1.638e10", stiffness));
+    study.state(Statement::printed("Hertz stiffness, 25 mm ball (N/m^1.5)", "4.2", "1.638e10", stiffness));
     for (diameter, source, printed, ball) in [("33", "Fig. 4.3", 0.147, middle), ("53", "Fig. 4.10", 0.608, large)] {
-        study.claim(Statement::self_check(
+        study.state(Statement::self_check(
             format!("mass of the {diameter} mm ball (kg)"),
             [source, &printed.to_string(), "half a unit of the last digit; the diameter is ours, found from the mass"],
             (printed - 5e-4, printed + 5e-4),
@@ -50,13 +50,13 @@ fn numbers(study: &mut Study, case: &Case) -> Result<(), Failure> {
     }
     let pinned = case.beam("pinned-pinned")?;
     let omega = pinned.omega_rad_s();
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "40th over first natural frequency, pinned-pinned",
         ["4.2", "1600", "40², exactly"],
         (1600.0 - 1e-6, 1600.0 + 1e-6),
         omega[39] / omega[0],
     ));
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "smallest location other than 0 (m)",
         ["4.2", "0.04166…", "1/24, as printed"],
         (0.04166, 0.04167),

@@ -4,8 +4,8 @@ use super::Case;
 use super::tables::{Table, compute};
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure};
 use vibroimpact::report::significant;
 

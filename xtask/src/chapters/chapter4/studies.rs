@@ -4,7 +4,7 @@ use super::Case;
 use crate::chapters::figures::{Column, Curve, restitution_and_sub_impacts};
 use crate::chapters::impact::{Row, Setup};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Marker};
 use vibroimpact::report::significant;
 

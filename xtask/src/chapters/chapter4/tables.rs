@@ -4,7 +4,7 @@ use super::Case;
 use crate::chapters::beam::Beam;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Marker, Panel, Series};
 use vibroimpact_sim::modal::Solver;
 
@@ -66,8 +66,8 @@ pub(in crate::chapters) fn compute<'a>(
 }
 
 /// The same for other beams, with a given way of solving each impact. The structure at each location is built once for all balls.
-pub(in crate::chapters) fn of_beams<'a>(
-    study: &mut Study,
+pub(in crate::chapters) fn of_beams<'a, S>(
+    study: &mut tasks::Study<S>,
     case: &Case,
     beams: &'a [Beam],
     (modes, residual): (usize, bool),

@@ -2,9 +2,9 @@
 
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Coefficients, Contact, Friction, Problem, Solver};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
 
@@ -79,13 +79,13 @@ fn two_bodies(study: &mut Study) -> Result<(), Failure> {
          impulse changes the relative velocity of the contact points by W P, with W the inverse of the inertia M_C of \
          Eq. 5.1; W has tangential entries, so that a normal impulse alone makes the ends slide.",
     );
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest |Δv_C − M_C⁻¹ P| of six impacts of two bodies (m/s)",
         ["5.2, Eq. 5.1", "P = M_C Δv_C", "rounding"],
         (0.0, 1e-12),
         worst,
     ));
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest gain of energy in them (J)",
         ["5.2.2", "the post-impact kinetic energy should not exceed the pre-impact kinetic energy", "rounding"],
         (f64::NEG_INFINITY, 1e-12),
@@ -155,13 +155,13 @@ fn rod_on_a_table(study: &mut Study) -> Result<(), Failure> {
     )?;
     let largest = |values: Vec<f64>| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest impulse of the table that v_f = −e v_i demands, ball from 0.01 to 100 of the rod's mass (N s)",
         ["5.2.1, Fig. 5.1", "since v_i,n = 0, no finite e can model the impact", "a table does not pull"],
         (f64::NEG_INFINITY, 0.0),
         largest(column(|row| row.impulse_by_equality_n_s)),
     ));
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "least speed at which the right end rises under the inequality, LCP and least energy (m/s)",
         ["5.2.1, Fig. 5.1", "new separation at a pre-existing stationary contact", "it parts"],
         (0.0, f64::INFINITY),
@@ -189,8 +189,8 @@ fn dropped_ball(study: &mut Study) -> Result<(), Failure> {
     study.text("Least energy under Eq. 5.2 gives v_f = −e v_i; without it the ball stays on the surface.");
     let texts =
         ["5.3, Fig. 5.2", "minimising the energy under Eq. 5.2 we obtain v_f = −e v_i", "the quadratic program"];
-    study.claim(Statement::identity("largest |v_f + e v_i|, e from 0 to 1", texts, (0.0, 1e-9), worst));
+    study.state(Statement::identity("largest |v_f + e v_i|, e from 0 to 1", texts, (0.0, 1e-9), worst));
     let texts = ["5.3, Fig. 5.2", "if it was not enforced, v_f = 0", "the quadratic program"];
-    study.claim(Statement::identity("largest |v_f| without Eq. 5.2", texts, (0.0, 1e-9), without));
+    study.state(Statement::identity("largest |v_f| without Eq. 5.2", texts, (0.0, 1e-9), without));
     Ok(())
 }

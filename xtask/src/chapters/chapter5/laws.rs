@@ -4,9 +4,9 @@ use crate::chapters::chapter7::{Dataset, LAW_MODES};
 use crate::chapters::impact::Row;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Coefficients, Contact, Friction, Impact, Mode, Problem, Solver};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::net::{Observations, law};
 use vibroimpact::report::significant;
 
@@ -199,7 +199,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
         low += data.rows.iter().zip(predicted).filter(|(row, law)| **law < row.e() - 0.1).count();
         count += predicted.len();
     }
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "share of impacts that Todorov's law gives a restitution lower by more than 0.1",
         "5.3",
         "often predicts impact outcomes with unrealistically low restitution or rebound",
@@ -209,7 +209,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
     ));
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let (low_rebound, multiple) = (todorov.by_beam.concat(), impulse.by_beam.concat());
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "mean restitution of least energy under the fundamental constraints alone",
         [
             "9",
@@ -219,7 +219,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
         (f64::NEG_INFINITY, 0.0),
         mean(&low_rebound),
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "share of impacts after whose first impulse the ball still moves towards the beam",
         "4, 5.1",
         "the impact simulation may not end with one computed impulse",
@@ -240,7 +240,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
                 "even linear regression would have three fitted coefficients; the overall performance is good",
             ),
         ] {
-            study.claim(
+            study.state(
                 Statement::trend(
                     format!("rms error of EMOC over that of {other}, {beam}"),
                     source,
@@ -261,7 +261,7 @@ fn claims(study: &mut Study, data: &[Dataset], found: &[Found], rows: &[LawRow])
         worst = worst.max((least - emoc::newton_restitution(0.0, z)?).abs());
         worst = worst.max((complementarity(z)? - emoc::newton_restitution(ELASTIC, z)?).abs());
     }
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest difference of quadratic program and LCP from their closed forms in Z",
         ["5.2.1, 5.3", "least energy; complementarity", "rounding of the quadratic program"],
         (0.0, 1e-9),

@@ -8,7 +8,7 @@ use super::chapter4::Case;
 use super::chapter4::tables::compute;
 use super::chapter7::Dataset;
 use super::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 
 const INTRODUCTION: &str = "The thesis's central argument is that known algebraic impact laws, which know no \
 sub-impacts, cannot give the net restitution of a ball on a vibrating beam, and that least energy under outward \

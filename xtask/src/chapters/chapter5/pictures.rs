@@ -4,8 +4,8 @@ use super::laws::{Found, LAWS};
 use crate::chapters::chapter7::Dataset;
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
 /// One law for one impact.

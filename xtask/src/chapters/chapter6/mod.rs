@@ -7,9 +7,9 @@ mod resolved;
 
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Coefficients, Rebound, SingleImpact};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
@@ -258,7 +258,7 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
             let largest = found.iter().copied().fold(0.0, f64::max);
             let tolerance = if name_of_group == GROUPS[0] { 1e-10 } else { 1e-7 };
             lines.push(vec![name.into(), name_of_group.into(), found.len().to_string(), significant(largest, 2)]);
-            study.claim(Statement::identity(
+            study.state(Statement::identity(
                 format!("largest difference of e between closed form and {name}; {name_of_group}"),
                 ["6.4", "P₀ and P₁ are equivalent", "the floor of the interior-point method"],
                 (0.0, tolerance),
@@ -283,21 +283,21 @@ fn agreement(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
 fn uniqueness_and_energy(study: &mut Study, rows: &[AgreementRow]) -> Result<(), Failure> {
     study.section("The solution is unique, and the energy never grows");
     let least = rows.iter().map(|row| row.least_growth).fold(f64::INFINITY, f64::min);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "least of (E − E*)/|x − x*|² over random feasible points",
         ["6.4", "it therefore has a unique solution (≥ 1)", "rounding"],
         (1.0 - 1e-9, f64::INFINITY),
         least,
     ));
     let excess = rows.iter().map(|row| row.energy_ratio - row.ebar.powi(2)).fold(f64::NEG_INFINITY, f64::max);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest of E/E₀ − ē²",
         ["6.2, item 4", "KE increases will never be predicted", "rounding"],
         (-1.0, 1e-15),
         excess,
     ));
     let lowest = rows.iter().map(|row| row.restitution).fold(f64::INFINITY, f64::min);
-    study.claim(Statement::identity("least restitution", ["6.2, item 3", "v_f ≥ 0", "as stated"], (0.0, 1.0), lowest));
+    study.state(Statement::identity("least restitution", ["6.2, item 3", "v_f ≥ 0", "as stated"], (0.0, 1.0), lowest));
     study.text(&format!(
         "If the energy of every other feasible point exceeds that of a solution by at least its squared distance, in the \
          norm of the energy, the solution is the only minimum, and for a minimum over a convex set it must. {TRIALS} random feasible \

@@ -6,9 +6,9 @@ use crate::chapters::chapter7::LAW_MODES;
 use crate::chapters::impact::Ball;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Impact, Site};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::net::{Observations, law};
 use vibroimpact::report::significant;
 
@@ -70,7 +70,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     let found = study.sweep(&cases, 1, |&(beam, ball, b)| resolve(&case, beam, ball, b))?;
     let rows: Vec<Row> = found.into_iter().flatten().collect();
     study.csv("resolved.csv", &rows)?;
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         format!("largest |a_k'| / (φ_k P) at the end of {} resolved impacts", rows.len()),
         ["6.1, Eqs. 6.3 and 6.5", "|a_i'(t)| ≤ φ_i(b) P", "rounding; damping lowers it"],
         (0.0, 1.0 + 1e-9),
@@ -78,7 +78,7 @@ pub(super) fn run(study: &mut Study) -> Result<(), Failure> {
     ));
     let mut medians: Vec<f64> = rows.iter().map(|row| row.median_share_of_bound).collect();
     medians.sort_by(f64::total_cmp);
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "median |a_k'| / (φ_k P) over modes and impacts",
         "7.2",
         "loose inequalities: the sum would have a significantly smaller magnitude than the bound",

@@ -3,8 +3,8 @@
 use crate::chapters::beam::Beam;
 use crate::chapters::chapter4::tables::Table;
 use crate::chapters::impact::Row;
-use crate::failure::Failure;
 use emoc::{Impact, Site};
+use tasks::Failure;
 use vibroimpact::net::Observations;
 
 /// Modes in the law (thesis 7.2).

@@ -3,8 +3,8 @@
 use super::Dataset;
 use super::fits::BeamFit;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::Branch;
+use tasks::Failure;
 use vibroimpact::net;
 use vibroimpact::plot::{Axis, Figure};
 use vibroimpact::report::significant;

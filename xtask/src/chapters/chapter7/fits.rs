@@ -3,11 +3,11 @@
 use super::{Dataset, LAW_MODES};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Impact, Site};
 use fitting::Fit;
 use serde::Serialize;
 use std::time::Instant;
+use tasks::Failure;
 use vibroimpact::net::{self, Observations};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
@@ -127,7 +127,7 @@ pub(super) fn run(
     study.csv("fits.csv", &rows)?;
     fits.truncate(truncated.len());
     let a_start = rows.iter().take(truncated.len()).map(|row| row.evaluations as f64 / row.starts as f64);
-    study.claim(
+    study.state(
         Statement::loose(
             "evaluations of the sum of squares a search, mean over the beams",
             "7.2",
@@ -151,7 +151,7 @@ fn quicker(study: &mut Study, rows: &[FitRow], fits_s: f64, resolved_s: f64) {
     const TOLD: f64 = 3.0;
     let evaluated: usize = rows.iter().map(|row| row.evaluations * row.count).sum();
     let powers = (resolved_s / (fits_s / evaluated as f64)).log10().floor();
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "powers of ten by which the law is quicker than resolving an impact in time, told up to 3",
         "1, 7.2",
         "algebraic, comparatively much quicker: ten minutes for a fit, ten hours for a table",
@@ -188,7 +188,7 @@ fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<()
         let quantity = format!("mean e over the {quantity} minus the least of all tenths, four beams");
         let reason = "a tenth of the range from 0 to 1";
         let statement = Statement::trend(quantity, "7.1, item 4", words, (0.1, 1.0), reason, end - least);
-        study.claim(statement.open((0.0, 1.0)).note(format!("Means by tenths of Z: {told}.")));
+        study.state(statement.open((0.0, 1.0)).note(format!("Means by tenths of Z: {told}.")));
     }
     let guessed = net::law(&[1.0; 3]);
     let site = Site::new(&[1.0])?;
@@ -204,7 +204,7 @@ fn against_z(study: &mut Study, data: &[Dataset], fits: &[BeamFit]) -> Result<()
         ("minimum of ē over e", "a minimum of 2/3", (2.0 / 3.0 - 1e-9, 2.0 / 3.0 + 1e-9), value),
         ("μ₀ Z at it", "at Z = 1/μ₀", (0.995, 1.005), place),
     ] {
-        study.claim(Statement::identity(
+        study.state(Statement::identity(
             quantity,
             ["7.1, Eq. 7.4", words, "a grid of 500 points a decade"],
             limits,
@@ -222,7 +222,7 @@ fn held_ends(study: &mut Study, data: &Dataset, found: &BeamFit) {
     let at_held = |place: f64| (held_left && place == 0.0) || (held_right && place == length);
     let predicted = data.rows.iter().zip(&found.fit.residuals).map(|(row, residual)| (row, residual + row.e()));
     let least = predicted.filter(|(row, _)| at_held(row.location_m)).map(|(_, e)| e);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         format!("least e of the law at the held ends, {name}"),
         ["7.2", "at fixed or pinned ends, rebound is perfect, and captured", "rounding; no mode moves there"],
         (0.999_999, 1.0),
@@ -251,7 +251,7 @@ pub(super) fn against_modes(study: &mut Study, data: &[Dataset]) -> Result<(), F
             (high - low, high)
         };
         let ((late, _), (whole, highest)) = (range(40), range(1));
-        study.claim(
+        study.state(
             Statement::trend(
                 format!("range of the rms error from N = 40 on over its range from N = 1 on, {}", data.beam.name),
                 "Fig. 7.7",

@@ -3,10 +3,10 @@
 use super::pictures::{Curve, by_ball};
 use super::{Dataset, LAW_MODES, SETTLED_MODES};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::Impact;
 use fitting::{Fit, Method, Parameter, Problem, Residuals, Settings, cross_validate, fit};
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::model::largest_share;
 use vibroimpact::net;
 use vibroimpact::plot::Colour;

@@ -9,10 +9,10 @@ mod pictures;
 use super::chapter4::Case;
 use super::chapter4::tables::compute;
 use super::study::Study;
-use crate::failure::Failure;
 use dataset::SETTLED_MODES;
 pub(super) use dataset::{Dataset, LAW_MODES};
 use std::time::Instant;
+use tasks::Failure;
 
 const INTRODUCTION: &str = "The law of energy minimisation under outward constraints (chapter 6, closed form) with the \
 three parameters μ₀, α₀, α₁ is fitted to the restitution tables of chapter 4, one set of parameters a beam. The law has \

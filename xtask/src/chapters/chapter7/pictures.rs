@@ -3,8 +3,8 @@
 use super::Dataset;
 use super::fits::BeamFit;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::net;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;

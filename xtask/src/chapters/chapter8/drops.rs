@@ -3,8 +3,8 @@
 use super::Parameters;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure, Marker, Panel, Series};
 use vibroimpact_sim::modal::{Settings, Solver};
 
@@ -71,7 +71,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<Vec<Drop
     }
     let steep = |row: &&DropRow| row.angle_deg == 90.0;
     let least = rows.iter().filter(steep).map(|row| row.restitution.unwrap_or(f64::NAN)).fold(f64::INFINITY, f64::min);
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "least restitution of the upright rods with their own Hertz contact",
         "8.2.1, 8.2.2",
         "remarkable behavior: e = 1 for one rod and a rigid surface; in reality still high",
@@ -80,7 +80,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<Vec<Drop
         least,
     ));
     let most = rows.iter().filter(|row| row.angle_deg >= NEARLY_VERTICAL).map(|row| row.micro_collisions);
-    study.claim(
+    study.state(
         Statement::trend(
             "most micro-collisions of a rod from 80° on",
             "8.2.1, A.5",

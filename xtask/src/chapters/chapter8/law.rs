@@ -4,11 +4,11 @@ use super::Parameters;
 use super::drops::DropRow;
 use crate::chapters::statement::{FALLS, Statement};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use emoc::{Impact, Site};
 use fitting::Fit;
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
+use tasks::Failure;
 use vibroimpact::net::Observations;
 use vibroimpact::net::law;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
@@ -127,7 +127,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         significant(found.report.max_abs, 3),
         found.report.count
     ));
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "rms error with one axial mode over that without, 600 mm, above 70°",
         "8.2.2, Fig. 8.3",
         "the fit worsens when an axial mode is included and the rod is near vertical",
@@ -144,7 +144,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         law.residuals(&found.parameters, &mut residuals);
         worse.push(rms(&residuals, |i| of_longest(i) && steep(i)));
     }
-    study.claim(
+    study.state(
         Statement::trend(
             "least rms error with two to four axial modes over that with one, 600 mm, above 70°",
             "8.2.2",
@@ -159,7 +159,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         )),
     );
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "mean change of e by one axial mode, 600 mm, above 70°",
         "Fig. 8.3",
         "lowers the predicted restitution value",
@@ -168,7 +168,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         mean(&falls),
     ));
     let under: Vec<f64> = (0..points.len()).filter(|&i| steep(i)).map(|i| residuals_axial[i]).collect();
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "mean difference of the law with one axial mode and the drops, five rods, above 70°",
         "8.2.1",
         "if we retain axial modes then the EMOC model underpredicts the restitution",
@@ -176,7 +176,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         "any amount",
         mean(&under),
     ));
-    study.claim(
+    study.state(
         Statement::trend(
             "rms difference of law and drops, five rods, one set of parameters",
             "8.2.2, 9",
@@ -233,10 +233,10 @@ fn bending_modes(study: &mut Study, parameters: &Parameters) -> Result<(), Failu
         if own.0 == all.0 || own.1 == all.1 {
             let reason = "the diameter is ours, found from this number and one other";
             let (words, exactly) = (stated.to_string(), (stated as f64, stated as f64));
-            study.claim(Statement::self_check(quantity, ["8.2.2", &words, reason], exactly, found));
+            study.state(Statement::self_check(quantity, ["8.2.2", &words, reason], exactly, found));
         } else {
             let note = format!("So for every diameter from {low} to {high} mm, which the other two numbers leave.");
-            study.claim(Statement::printed(quantity, "8.2.2", &stated.to_string(), found).note(note));
+            study.state(Statement::printed(quantity, "8.2.2", &stated.to_string(), found).note(note));
         }
     }
     Ok(())

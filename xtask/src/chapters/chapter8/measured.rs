@@ -3,9 +3,9 @@
 use super::Parameters;
 use super::law::{Point, by_rod, observations};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use tasks::Failure;
 use vibroimpact::report::significant;
 
 /// Fewest points that determine three parameters.

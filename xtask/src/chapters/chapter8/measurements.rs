@@ -5,7 +5,7 @@ use super::Parameters;
 use super::drops::{DropRow, solve};
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::report::significant;
 
 const SOURCE: &str = "[19], abstract";
@@ -33,7 +33,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
         .map(|&length| (length, range(&drops.iter().filter(|row| row.length_m == length).collect::<Vec<_>>())))
         .collect();
     let least = ranges.iter().map(|(_, range)| *range).fold(f64::INFINITY, f64::min);
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "least range of e over the inclinations, five rods",
         SOURCE,
         "the restitution varies unusually with the inclination",
@@ -45,7 +45,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     let changed = |row: &&&DropRow| {
         row.restitution.is_some_and(|restitution| (restitution - row.restitution_of_the_first).abs() > CLEAR)
     };
-    study.claim(Statement::trend(
+    study.state(Statement::trend(
         "share of drops with several micro-collisions whose first one alone would give another e, by more than 0.1",
         SOURCE,
         "vibration and multiple impacts are the main causes of the variation",
@@ -60,7 +60,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters, drops: &[DropRow])
     let stubby = range(&stubby.iter().collect::<Vec<_>>());
     let told: Vec<String> =
         ranges.iter().map(|(length, range)| format!("{:.0} mm {}", 1e3 * length, significant(*range, 2))).collect();
-    study.claim(
+    study.state(
         Statement::trend(
             format!("range of e over the inclinations of a bar of {:.0} mm", 1e3 * stubby_m),
             SOURCE,

@@ -9,9 +9,9 @@ mod two_rods;
 mod upright;
 
 use super::study::Study;
-use crate::failure::{BadInput, Failure};
 use parameters::Parameters;
 use std::path::Path;
+use tasks::{BadInput, Failure};
 
 const INTRODUCTION: &str = "Steel rods with hemispherical ends fall on an immovable surface and meet it with one end, at \
 inclinations from lying (0°) to upright (90°). **The points of the experiment (Stoianovici and Hurmuzlu 1996) are not \

@@ -1,7 +1,7 @@
 //! The chapter's parameters.
 
-use crate::failure::Failure;
 use serde::Deserialize;
+use tasks::Failure;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 
 /// The parameter file, which explains its entries.

@@ -3,10 +3,10 @@
 use super::Parameters;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use beam_modes::{MOST_REMAINDER_MODES, PointMode, remainder_modes};
 use contact_models::LinearSpring;
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact::report::significant;
 use vibroimpact_sim::modal::{Settings, Solver, Start, Striker, Structure};
 
@@ -56,7 +56,7 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
         .map(|(pair, e)| [pair[0], pair[1], *e, pair[0] / pair[1]].map(|number| significant(number, 4)).to_vec());
     study.table(&["moving rod (m)", "other rod (m)", "restitution", "L₁/L₂"], &lines.collect::<Vec<_>>());
     let worst = PAIRS.iter().zip(&found).map(|(pair, e)| (e - pair[0] / pair[1]).abs()).fold(0.0, f64::max);
-    study.claim(Statement::identity(
+    study.state(Statement::identity(
         "largest |e − L₁/L₂| of four pairs of rods, contact 1000 times stiffer than the shorter one",
         [
             "8.2.1",

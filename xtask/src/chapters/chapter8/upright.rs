@@ -3,9 +3,9 @@
 use super::Parameters;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use contact_models::LinearSpring;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::report::significant;
 use vibroimpact_sim::dropped_rod::DroppedRod;
 use vibroimpact_sim::modal::{Settings, Solver};
@@ -70,13 +70,13 @@ pub(super) fn run(study: &mut Study, parameters: &Parameters) -> Result<(), Fail
                 1e3 * row.length_m
             );
             let reason = "a contact of finite stiffness";
-            study.claim(Statement::identity(
+            study.state(Statement::identity(
                 quantity,
                 ["8.2.1", "perfect, e = 1", reason],
                 (0.99, 1.0),
                 row.restitution.unwrap_or(f64::NAN),
             ));
-            study.claim(Statement::self_check(
+            study.state(Statement::self_check(
                 "duration of that contact over 2L/c",
                 ["the exact wave solution", "1", reason],
                 (0.98, 1.02),

@@ -5,12 +5,11 @@ mod report;
 mod row;
 mod scenes;
 
-use super::study::Study;
-use crate::failure::Failure;
 use row::Row;
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
+use tasks::{Failure, Study};
 
 /// Number of scenes of a full and of a quick run.
 const SCENES: [u64; 2] = [1000, 16];

@@ -1,12 +1,11 @@
 //! The net law with two parameters: fitted to impacts on random beams, and tested on beams left out of the fit.
 
 use super::scenes::{Random, ball, beam, hertz};
-use crate::chapters::study::Study;
-use crate::failure::Failure;
 use contact_models::Law;
 use fitting::{Method, Parameter, Problem, Settings, cross_validate, fit};
 use serde::Serialize;
 use serde_json::json;
+use tasks::{Failure, Study};
 use vibroimpact::Scene;
 use vibroimpact::model::{VALIDATED, largest_share};
 use vibroimpact::report::{Comparison, significant};

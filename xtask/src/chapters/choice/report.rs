@@ -1,8 +1,7 @@
 //! Report of the study of the automatic choice: text, tables and a figure.
 
 use super::row::{Row, TOLERANCES};
-use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::{Failure, Study};
 use vibroimpact::model::Model;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Comparison, significant};

@@ -1,8 +1,8 @@
 //! One scene at one tolerance: the answer, its cost, and the true result.
 
 use super::scenes;
-use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
+use tasks::Failure;
 use vibroimpact::model::{Kept, Model, Modes};
 use vibroimpact::vibroimpact_sim::modal::{Settings, Solution};
 use vibroimpact::{Impact, Scene};

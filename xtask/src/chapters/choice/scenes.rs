@@ -1,9 +1,9 @@
 //! Random scenes: every structure with modes, every law, locations near supports and tips, and masses and speeds over several
 //! orders of magnitude.
 
-use crate::failure::Failure;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact::Scene;
 use vibroimpact::model::Modes;
 

@@ -3,8 +3,8 @@
 use crate::chapters::chapter4::tables::Table;
 use crate::chapters::chapter4::trends::{Limits, RISES, Trend};
 use crate::chapters::chapter7::{Dataset, LAW_MODES};
-use crate::failure::Failure;
 use beam_modes::End;
+use tasks::Failure;
 
 /// Number of modes of the tables, which is also tried in the law.
 const TABLE_MODES: usize = 40;

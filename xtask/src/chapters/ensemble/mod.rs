@@ -10,8 +10,8 @@ use super::chapter4::trends::{self, Trend};
 use super::chapter4::{Case, EnsembleChoice, tables::Table};
 use super::impact::{Ball, Row};
 use super::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use variant::{MOST_MODES, Variant, claim};
 use vibroimpact::plot::{Axis, Figure, HeatMap, Panel};
 use vibroimpact::report::significant;
@@ -262,6 +262,7 @@ fn free_end(study: &mut Study, judged: &[Judged]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::chapters::study::finish;
 
     #[test]
     fn a_trend_is_judged_by_how_many_choices_bear_it_out() {
@@ -272,9 +273,9 @@ mod tests {
                 vec![Trend { otherwise, ..Trend::new("rise", "it rises", trends::RISES, ours) }]
             };
             let choices: Vec<Vec<Trend>> = (0..of).map(trend).collect();
-            let mut study = Study::new(4, folder.path(), true).unwrap();
+            let mut study = Study::new(folder.path(), true).unwrap();
             claim(&mut study, &choices.iter().map(Vec::as_slice).collect::<Vec<_>>(), "beam", "4.6");
-            let rows = study.finish("title", "").unwrap().rows();
+            let rows = finish(study, 4, "title", "").unwrap().rows();
             assert_eq!(rows.len(), 1);
             rows[0].verdict
         };

@@ -5,8 +5,8 @@ use crate::chapters::chapter4::Case;
 use crate::chapters::chapter4::trends::{Limits, Trend};
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 
 pub(super) fn run(study: &mut Study, case: &Case, variants: &[Variant]) -> Result<(), Failure> {
     speeds(study, case, variants)?;

@@ -24,7 +24,7 @@ pub fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) 
         let source = format!("{}, Fig. {figure}", trend.source);
         if of.len() == 1 {
             let quantity = format!("{}, {beam}", trend.quantity);
-            study.claim(Statement::trend(quantity, &source, trend.words, trend.limits, trend.reason, trend.ours));
+            study.state(Statement::trend(quantity, &source, trend.words, trend.limits, trend.reason, trend.ours));
             continue;
         }
         let holds = of.iter().filter(|trend| trend.holds()).count();
@@ -38,6 +38,6 @@ pub fn claim(study: &mut Study, choices: &[&[Trend]], beam: &str, figure: &str) 
             trend.reason
         ));
         let refuted = statement.verdict() == Verdict::Differs;
-        study.claim(if refuted { statement.missing(trend.otherwise) } else { statement });
+        study.state(if refuted { statement.missing(trend.otherwise) } else { statement });
     }
 }

@@ -9,11 +9,10 @@ use super::chapter4::Case;
 use super::chapter4::tables::{Table, of_beams};
 use super::chapter7::laws::Datum;
 use super::chapter7::{Dataset, LAW_MODES};
-use super::study::Study;
 use super::theories::kaneko;
-use crate::failure::Failure;
 use models::{MODELS, Model, Predicted};
 use scores::{Evidence, LEVELS};
+use tasks::{Failure, Study};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::{Comparison, significant};
 
@@ -199,7 +198,7 @@ mod tests {
     #[test]
     fn beams_left_out_are_predicted_as_the_page_says() {
         let folder = tempfile::tempdir().unwrap();
-        let mut study = Study::new(0, folder.path(), false).unwrap();
+        let mut study = Study::new(folder.path(), false).unwrap();
         let case = Case::load().unwrap();
         let beams = data(&computed(&mut study, &case, &case.beams, (MODES, true)).unwrap()).unwrap();
         let found: Vec<Evidence> =

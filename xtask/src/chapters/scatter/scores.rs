@@ -11,7 +11,7 @@
 
 use super::models::Model;
 use crate::chapters::chapter7::laws::Datum;
-use crate::failure::Failure;
+use tasks::Failure;
 
 /// Levels of the intervals whose coverage is reported.
 pub(super) const LEVELS: [f64; 3] = [0.5, 0.8, 0.95];

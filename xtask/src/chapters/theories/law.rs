@@ -3,7 +3,7 @@
 use super::tables::Tables;
 use crate::chapters::chapter7::{Dataset, LAW_MODES, failure::irregularity, fits::BeamFit};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::net;
 use vibroimpact::report::significant;
 

@@ -33,9 +33,9 @@ mod tables;
 
 use super::study::Study;
 use super::{chapter3, chapter4};
-use crate::failure::Failure;
 pub(super) use coefficients::kaneko;
 use coefficients::{APART, Coefficient, coefficients};
+use tasks::Failure;
 
 const INTRODUCTION: &str = "The impacts of chapters 3, 4 and 7 by Timoshenko's theory beside Euler-Bernoulli's, which \
 is the thesis's. Where nothing else is said, remainder modes answer for all modes left out, so that what is compared is \

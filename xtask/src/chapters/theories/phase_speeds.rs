@@ -5,9 +5,9 @@ use crate::chapters::chapter3::Case;
 use crate::chapters::material::Material;
 use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
 use std::f64::consts::PI;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Panel, Series};
 use vibroimpact::report::significant;
 
@@ -114,13 +114,13 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
             ours,
         )
     };
-    study.claim(claim(
+    study.state(claim(
         "Kaneko's coefficient, largest error of 200 modes",
         "0.4 %",
         (0.0035, 0.0045),
         largest(|s| s.kaneko),
     ));
-    study.claim(claim(
+    study.state(claim(
         "Cowper's coefficient, largest error of 200 modes",
         "1.2 %",
         (0.0115, 0.0125),
@@ -130,7 +130,7 @@ pub(super) fn run(study: &mut Study, case: &Case) -> Result<(), Failure> {
         [(6, "1 %", (0.005, 0.015)), (15, "5 %", (0.045, 0.055)), (40, "27 %", (0.265, 0.275))]
     {
         let quantity = format!("Euler-Bernoulli, error of mode {mode}");
-        study.claim(claim(&quantity, stated, limits, all[mode - 1].euler_bernoulli));
+        study.state(claim(&quantity, stated, limits, all[mode - 1].euler_bernoulli));
     }
     Ok(())
 }

@@ -5,8 +5,8 @@ use crate::chapters::beam::Beam;
 use crate::chapters::chapter3::Case;
 use crate::chapters::impact::{Ball, Row, Setup};
 use crate::chapters::study::Study;
-use crate::failure::Failure;
 use serde::Serialize;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Figure, HeatMap, Panel};
 use vibroimpact::report::significant;
 

@@ -6,7 +6,7 @@ use crate::chapters::chapter4::Case;
 use crate::chapters::chapter4::tables::{Table, of_beams};
 use crate::chapters::impact::Row;
 use crate::chapters::study::Study;
-use crate::failure::Failure;
+use tasks::Failure;
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 

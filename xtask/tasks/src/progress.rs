@@ -13,6 +13,7 @@ const FIRST_LINE: Duration = Duration::from_secs(5);
 const BETWEEN_LINES: Duration = Duration::from_secs(15);
 
 /// Progress of a task with consecutive parts. The total of a part is known when it begins, and does not change.
+#[derive(Debug)]
 pub struct Progress {
     /// What is counted.
     unit: &'static str,
