@@ -1,6 +1,5 @@
 //! Development tasks: checks, the chapters of the thesis, studies, and the record of cost and error.
 
-mod bench;
 mod book;
 mod chapters;
 mod control;
@@ -17,7 +16,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use chapters::{Part, RandomScenes};
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
 use tasks::{BadInput, Failure, ended, say};
 
 /// Development tasks: checks, benchmarks, chapters of the thesis.
@@ -42,16 +41,11 @@ enum Task {
         alone: bool,
     },
     /// Measure cost and error of every solver, and write the record, its history and its page
-    BenchRecord {
-        /// Compute the references anew as well
-        #[arg(long)]
-        references: bool,
-    },
+    #[command(disable_help_flag = true)]
+    BenchRecord(Passed),
     /// Measure, and fail where cost or error is worse than recorded
-    BenchCheck,
-    /// Run every problem of the record once, for callgrind
-    #[command(hide = true, name = bench::RUN_TASK)]
-    BenchRun,
+    #[command(disable_help_flag = true)]
+    BenchCheck(Passed),
     /// Reproduce a chapter of the thesis: CSV tables, SVG figures, and a report that compares its numbers with ours
     ReproduceChapter {
         /// The chapter: 2 to 8; `ensemble` for chapter 4 with varied unstated parameters; `theories` for chapters 3, 4 and 7
@@ -95,23 +89,11 @@ enum Task {
         out: PathBuf,
     },
     /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
-    WorkPrecision {
-        /// Fewer settings through the same code
-        #[arg(long)]
-        quick: bool,
-        /// Only problems whose name contains this
-        #[arg(long, value_name = "PROBLEM")]
-        only: Option<String>,
-        /// The folder to write to; docs for a whole run, out/work-precision otherwise
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-    },
+    #[command(disable_help_flag = true)]
+    WorkPrecision(Passed),
     /// Run the benchmark of impact for the codes in Rust, and write docs/impactbench.md from the results of all codes
-    Impactbench {
-        /// Arguments of benchmarks/impactbench: none, `problems`, `report`, --quick, --only PROBLEM
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        arguments: Vec<OsString>,
-    },
+    #[command(disable_help_flag = true)]
+    Impactbench(Passed),
     /// Test the automatic choice of the model: random scenes against a far more accurate reference
     StudyAuto(RandomScenes),
     /// Fit the scatter of the law of energy minimisation, and test its intervals on beams left out
@@ -129,6 +111,13 @@ enum Task {
     StudyControl(control::Wanted),
 }
 
+/// Arguments for the program of another package, which has its own help.
+#[derive(Args)]
+struct Passed {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    arguments: Vec<OsString>,
+}
+
 fn main() -> ExitCode {
     ended(run(Cli::parse().task))
 }
@@ -140,9 +129,8 @@ fn run(task: Task) -> Result<(), Failure> {
         Task::Book { write: false } => book::run(root).and_then(|()| pages::check(root)),
         Task::Examples { alone: false } => examples::of_crates(root),
         Task::Examples { alone: true } => examples::alone(root),
-        Task::BenchRecord { references } => bench::record(root, references),
-        Task::BenchCheck => bench::check(root),
-        Task::BenchRun => bench::run_all(root),
+        Task::BenchRecord(passed) => package(root, "record", Some("bench-record"), &passed),
+        Task::BenchCheck(passed) => package(root, "record", Some("bench-check"), &passed),
         Task::ReproduceChapter { chapter, quick, out, data } => {
             let out = out.unwrap_or_else(|| match chapter {
                 Chapters::All => PathBuf::from("out/all"),
@@ -159,8 +147,8 @@ fn run(task: Task) -> Result<(), Failure> {
             say(&summary.to_string())?;
             if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
         }
-        Task::WorkPrecision { quick, only, out } => work_precision(quick, only.as_deref(), out.as_deref()),
-        Task::Impactbench { arguments } => impactbench(&arguments),
+        Task::WorkPrecision(passed) => package(root, "work-precision", None, &passed),
+        Task::Impactbench(passed) => package(root, "impactbench", None, &passed),
         Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
         Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
         Task::StudyIdentify(wanted) => say(&identification::run(&wanted)?),
@@ -168,29 +156,27 @@ fn run(task: Task) -> Result<(), Failure> {
     }
 }
 
-/// Runs another package. It is not a dependency of this one, because the programs it is compared with take minutes to compile.
-fn package(name: &str, arguments: impl FnOnce(&mut Command)) -> Result<(), Failure> {
+/// Goes on as the program of another package. It is not a dependency of this one, so that neither waits for the other's
+/// dependencies to compile.
+fn package(root: &Path, name: &str, command: Option<&str>, passed: &Passed) -> Result<(), Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.args(["run", "--release", "--quiet", "--package", name, "--"]);
-    arguments(&mut command);
-    if command.status()?.success() { Ok(()) } else { Err(format!("{name} failed").into()) }
+    let mut program = Command::new(cargo);
+    program.args(["run", "--release", "--package", name, "--manifest-path"]).arg(root.join("Cargo.toml"));
+    program.arg("--").args(command).args(&passed.arguments);
+    become_program(&mut program)
 }
 
-fn work_precision(quick: bool, only: Option<&str>, out: Option<&Path>) -> Result<(), Failure> {
-    package("work-precision", |command| {
-        command.args(quick.then_some("--quick"));
-        command.args(only.into_iter().flat_map(|only| ["--only", only]));
-        if let Some(out) = out {
-            command.arg("--out").arg(out);
-        }
-    })
+/// Replaces this process, so that signals reach the program and its exit code is ours.
+#[cfg(unix)]
+fn become_program(program: &mut Command) -> Result<(), Failure> {
+    use std::os::unix::process::CommandExt;
+    Err(program.exec().into())
 }
 
-fn impactbench(arguments: &[OsString]) -> Result<(), Failure> {
-    package("impactbench", |command| {
-        command.args(arguments);
-    })
+/// Runs the program, and ends with its exit code.
+#[cfg(not(unix))]
+fn become_program(program: &mut Command) -> Result<(), Failure> {
+    std::process::exit(program.status()?.code().unwrap_or(1))
 }
 
 /// Arguments of `reproduce-chapter`.

@@ -1,6 +1,6 @@
 //! Every value that was ever recorded, and a figure of the history.
 
-use super::record::Record;
+use crate::record::Record;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

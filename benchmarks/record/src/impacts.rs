@@ -1,6 +1,6 @@
 //! Impacts on modal structures (thesis chapters 3, 4 and 8) and on infinite ones (chapter 2).
 
-use super::problem::{Found, Problem};
+use crate::problem::{Found, Problem};
 use contact_models::Law;
 use std::path::Path;
 use tasks::Failure;

@@ -1,7 +1,7 @@
 //! The page of the record.
 
-use super::history::{Row, group, groups, recordings};
-use super::record::{COST_COUNTS, COST_MARGIN, ERROR_FACTOR, Entry, INSTRUCTION_MARGIN, Record};
+use crate::history::{Row, group, groups, recordings};
+use crate::record::{COST_COUNTS, COST_MARGIN, ERROR_FACTOR, Entry, INSTRUCTION_MARGIN, Record};
 use std::fmt::Write;
 
 /// Writes the page `docs/benchmarks.md`.

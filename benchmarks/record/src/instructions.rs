@@ -1,6 +1,6 @@
 //! Instruction counts, by running this program under callgrind.
 
-use super::problem::measured_problem;
+use crate::problem::measured_problem;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;

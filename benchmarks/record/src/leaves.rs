@@ -1,7 +1,7 @@
 //! Problems of the crates without dependencies in the workspace: modes, contact laws, net restitution, fits and fractional
 //! equations. Reading a scene is measured here too.
 
-use super::problem::{Found, Problem};
+use crate::problem::{Found, Problem};
 use beam_modes::{Beam, End, Segment};
 use std::f64::consts::PI;
 use std::path::Path;

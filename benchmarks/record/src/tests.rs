@@ -1,4 +1,12 @@
-use super::*;
+use crate::files::{Files, read};
+use crate::history::Stamp;
+use crate::list::problems;
+use crate::measure::{References, measure_one};
+use crate::problem::error;
+use crate::record::{Comparison, Conditions, Entry, Record, compare};
+use crate::{history, page};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A record of two problems, one of which counts nothing.
 fn example() -> Record {
@@ -139,7 +147,7 @@ fn a_history_grows_by_what_changed_and_shows_in_the_figure() {
 /// The committed record holds, and a worsened copy of it does not; without callgrind, for the sake of time.
 #[test]
 fn the_committed_record_holds_and_a_worsened_one_fails() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let files = Files::of(&root.join("docs"));
     let (recorded, truth): (Record, References) = (read(&files.record).unwrap(), read(&files.references).unwrap());
     let problems = problems(root).unwrap();
