@@ -2,20 +2,16 @@
 
 mod book;
 mod chapters;
-mod control;
 mod examples;
 mod fuzz;
-mod identification;
 mod pages;
-mod soak;
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::str::FromStr;
-use std::time::Duration;
 
-use chapters::{Part, RandomScenes};
+use chapters::Part;
 use clap::{Args, Parser, Subcommand};
 use tasks::{BadInput, Failure, ended, say};
 
@@ -68,26 +64,8 @@ enum Task {
         seconds: u32,
     },
     /// Solve random impacts far outside the usual range: no panic, no NaN, no energy gained, no hang
-    Soak {
-        /// Number of impacts
-        #[arg(long, default_value_t = 1_000_000)]
-        impacts: u64,
-        /// Seed of the cases
-        #[arg(long, default_value_t = 2019)]
-        seed: u64,
-        /// Start no further impact after this many minutes
-        #[arg(long)]
-        minutes: Option<u64>,
-        /// Solve only the case with this number, and print it
-        #[arg(long, value_name = "INDEX")]
-        only: Option<u64>,
-        /// Resume where the run that wrote the summary ended
-        #[arg(long)]
-        resume: bool,
-        /// The file for the summary, written after every 4,096 impacts impacts
-        #[arg(long, value_name = "FILE", default_value = "out/soak.json")]
-        out: PathBuf,
-    },
+    #[command(disable_help_flag = true)]
+    Soak(Passed),
     /// Measure error against time of every solver and of its peers: docs/work-precision.md, with figures and a table
     #[command(disable_help_flag = true)]
     WorkPrecision(Passed),
@@ -95,7 +73,8 @@ enum Task {
     #[command(disable_help_flag = true)]
     Impactbench(Passed),
     /// Test the automatic choice of the model: random scenes against a far more accurate reference
-    StudyAuto(RandomScenes),
+    #[command(disable_help_flag = true)]
+    StudyAuto(Passed),
     /// Fit the scatter of the law of energy minimisation, and test its intervals on beams left out
     StudyScatter {
         /// Fewer points through the same code
@@ -106,14 +85,17 @@ enum Task {
         out: PathBuf,
     },
     /// Test identification: random tables of synthetic measurements with noise
-    StudyIdentify(identification::Wanted),
+    #[command(disable_help_flag = true)]
+    StudyIdentify(Passed),
     /// Measure the gain of a control variate from derivatives over plain draws of uncertain fields
-    StudyControl(control::Wanted),
+    #[command(disable_help_flag = true)]
+    StudyControl(Passed),
 }
 
 /// Arguments for the program of another package, which has its own help.
 #[derive(Args)]
 struct Passed {
+    /// Arguments of that program; --help lists them
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     arguments: Vec<OsString>,
 }
@@ -139,20 +121,13 @@ fn run(task: Task) -> Result<(), Failure> {
             reproduce(chapter, &out, quick, data.as_deref())
         }
         Task::Fuzz { seconds } => fuzz::run(root, seconds),
-        Task::Soak { seed, only: Some(index), .. } => say(&soak::one(seed, index)),
-        Task::Soak { impacts, seed, minutes, only: None, resume, out } => {
-            let limit = minutes.map(|minutes| Duration::from_secs(minutes.saturating_mul(60)));
-            let begun = if resume { soak::Summary::resume(&out, seed)? } else { soak::Summary::new(seed) };
-            let summary = begun.run(impacts, limit, |summary| summary.write(&out))?;
-            say(&summary.to_string())?;
-            if summary.failed == 0 { Ok(()) } else { Err(format!("{} impacts failed", summary.failed).into()) }
-        }
+        Task::Soak(passed) => package(root, "studies", Some("soak"), &passed),
         Task::WorkPrecision(passed) => package(root, "work-precision", None, &passed),
         Task::Impactbench(passed) => package(root, "impactbench", None, &passed),
-        Task::StudyAuto(wanted) => say(&chapters::study_auto(&wanted)?),
+        Task::StudyAuto(passed) => package(root, "studies", Some("study-auto"), &passed),
         Task::StudyScatter { quick, out } => say(&chapters::study_scatter(&out, quick)?),
-        Task::StudyIdentify(wanted) => say(&identification::run(&wanted)?),
-        Task::StudyControl(wanted) => say(&control::run(&wanted)?),
+        Task::StudyIdentify(passed) => package(root, "studies", Some("study-identify"), &passed),
+        Task::StudyControl(passed) => package(root, "studies", Some("study-control"), &passed),
     }
 }
 
@@ -199,4 +174,28 @@ fn reproduce(chapter: Chapters, out: &Path, quick: bool, data: Option<&Path>) ->
         Chapters::All => chapters::run_all(out, quick, data)?,
         Chapters::One(part) => chapters::run(part, out, quick, data)?.study.summary,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_and_help_of_other_packages_are_passed_on() {
+        for command in ["soak", "study-auto", "bench-record", "work-precision", "impactbench"] {
+            let parsed = Cli::try_parse_from(["xtask", command, "--impacts", "3", "--help"]);
+            let Ok(Cli {
+                task:
+                    Task::Soak(passed)
+                    | Task::StudyAuto(passed)
+                    | Task::BenchRecord(passed)
+                    | Task::WorkPrecision(passed)
+                    | Task::Impactbench(passed),
+            }) = parsed
+            else {
+                panic!("{command}")
+            };
+            assert_eq!(passed.arguments, ["--impacts", "3", "--help"]);
+        }
+    }
 }

@@ -10,7 +10,6 @@ mod chapter5;
 mod chapter6;
 mod chapter7;
 mod chapter8;
-mod choice;
 mod ensemble;
 mod figures;
 mod impact;
@@ -21,7 +20,6 @@ mod study;
 pub mod tally;
 mod theories;
 
-pub use choice::RandomScenes;
 use std::path::Path;
 use std::str::FromStr;
 use tasks::{BadInput, Failure, targets};
@@ -128,13 +126,6 @@ pub fn run(part: Part, out: &Path, quick: bool, data: Option<&Path>) -> Result<F
         Part::Chapter(other) => return Err(unknown(&other.to_string()).into()),
     };
     finish(study, part.chapter(), &part.title(), introduction)
-}
-
-/// Tests the automatic choice of the model, and writes the folder of that study.
-pub fn study_auto(wanted: &RandomScenes) -> Result<String, Failure> {
-    let mut study = tasks::Study::new(&wanted.out, wanted.quick)?;
-    let introduction = choice::run(&mut study, wanted)?;
-    Ok(study.finish("The automatic choice of the model", introduction, targets)?.summary)
 }
 
 /// Fits the distribution of the restitution about the law to the tables of chapter 4, and writes the folder of that study.

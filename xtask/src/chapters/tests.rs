@@ -224,23 +224,6 @@ fn chapter_8_fits_a_persons_points_and_refuses_bad_ones() {
 }
 
 #[test]
-fn the_choice_of_the_model_keeps_its_word_on_random_scenes() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_path_buf();
-    study_auto(&RandomScenes { quick: true, first: 0, scenes: None, resume: false, out }).unwrap();
-    let report = fs::read_to_string(folder.path().join("report.md")).unwrap();
-    // a plate under a force that jumps when the contact begins: the restitution converges so slowly with the modes that the last
-    // change underestimates the error, which is 1.6 times the tolerance of 1e-6
-    let known = "| 1 | plate | kelvin-voigt ";
-    for heading in ["Said to be settled, and beyond the tolerance: ", "Beyond the stated uncertainty: "] {
-        let (_, after) = report.split_once(heading).unwrap();
-        let rows = after.lines().skip(4).take_while(|line| line.starts_with('|'));
-        let others: Vec<&str> = rows.filter(|row| !row.starts_with(known)).collect();
-        assert!(others.is_empty(), "{heading}{others:?}");
-    }
-}
-
-#[test]
 fn other_chapters_and_unwritable_folders_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     assert!("9".parse::<Part>().unwrap_err().to_string().contains("2, 3, 4, 5, 6, 7, 8, ensemble, theories or all"));

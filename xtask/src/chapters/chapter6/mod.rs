@@ -9,7 +9,7 @@ use crate::chapters::statement::Statement;
 use crate::chapters::study::Study;
 use emoc::{Coefficients, Rebound, SingleImpact};
 use serde::Serialize;
-use tasks::Failure;
+use tasks::{Failure, Random};
 use vibroimpact::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 use vibroimpact::report::significant;
 
@@ -19,30 +19,16 @@ its reduced form in two variables; and, for few modes, with all 2ᴺ choices of 
 of uniqueness, by trying every set of active rows. Random and degenerate cases, all from one seed. Then the \
 inequalities are held against impacts of chapter 4, resolved in time.";
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same cases everywhere.
-struct Random(u64);
+fn one_in(random: &mut Random, n: f64) -> bool {
+    random.range(0.0, n) < 1.0
+}
 
-impl Random {
-    /// Uniform in `low..high`.
-    fn range(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn one_in(&mut self, n: f64) -> bool {
-        self.range(0.0, n) < 1.0
-    }
-
-    /// Uniform on an interval, with each end drawn with probability 0.1.
-    fn with_ends(&mut self, low: f64, high: f64) -> f64 {
-        match self.range(0.0, 10.0) {
-            r if r < 1.0 => low,
-            r if r < 2.0 => high,
-            _ => self.range(low, high),
-        }
+/// Uniform on an interval, with each end drawn with probability 0.1.
+fn with_ends(random: &mut Random, low: f64, high: f64) -> f64 {
+    match random.range(0.0, 10.0) {
+        r if r < 1.0 => low,
+        r if r < 2.0 => high,
+        _ => random.range(low, high),
     }
 }
 
@@ -58,8 +44,9 @@ struct Case {
 impl Case {
     fn random(random: &mut Random, modes: usize) -> Case {
         let phi = (0..modes).map(|_| random.range(0.0, 2.0)).collect();
-        let beta0 = if random.one_in(5.0) { random.range(1.0, 30.0) } else { random.with_ends(0.0, 1.0) };
-        let coefficients = Coefficients { ebar: random.with_ends(0.0, 1.0), beta0, beta1: random.with_ends(0.0, 1.0) };
+        let beta0 = if one_in(random, 5.0) { random.range(1.0, 30.0) } else { with_ends(random, 0.0, 1.0) };
+        let coefficients =
+            Coefficients { ebar: with_ends(random, 0.0, 1.0), beta0, beta1: with_ends(random, 0.0, 1.0) };
         Case { kind: "random", mass_kg: 10f64.powf(random.range(-3.0, 2.0)), phi, coefficients }
     }
 
@@ -182,7 +169,7 @@ const TRIALS: usize = 40;
 /// A point `x*` of a convex set is its only minimum of `|x|^2` if `|x|^2 - |x*|^2 >= |x - x*|^2` on all of it. Gives the
 /// least ratio of the two sides over random feasible points, near and far.
 fn least_growth(case: &Case, closed: &Rebound, seed: u64) -> Result<f64, Failure> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut solution = vec![0.0; case.phi.len()];
     closed.modal_rates(1.0, &case.phi, &mut solution)?;
     let least = case.energy(closed.restitution, &solution);
@@ -194,7 +181,7 @@ fn least_growth(case: &Case, closed: &Rebound, seed: u64) -> Result<f64, Failure
             .zip(&case.phi)
             .map(|(a, phi)| if *phi > 0.0 { a + reach * random.range(-1.0, 1.0) } else { 0.0 })
             .collect();
-        let extra = if random.one_in(2.0) { 0.0 } else { random.range(0.0, 0.3) };
+        let extra = if one_in(&mut random, 2.0) { 0.0 } else { random.range(0.0, 0.3) };
         let v = case.least_velocity(&rates) + extra;
         let steps: Vec<f64> = rates.iter().zip(&solution).map(|(a, b)| a - b).collect();
         let distance = case.energy(v - closed.restitution, &steps);
@@ -209,7 +196,7 @@ fn least_growth(case: &Case, closed: &Rebound, seed: u64) -> Result<f64, Failure
 /// Runs the chapter and returns the text that introduces its report.
 pub(super) fn run(study: &mut Study) -> Result<&'static str, Failure> {
     study.section("The forms agree");
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let (many, few) = if study.quick { (60, 60) } else { (1500, 1000) };
     let mut cases: Vec<Case> =
         (0..many).map(|i| Case::random(&mut random, if i % 10 == 0 { 50 } else { 1 + i % 12 })).collect();

@@ -1,24 +1,15 @@
-//! Test of `identify` with random tables of synthetic measurements: how often its intervals contain the true parameters, how
-//! often a wrong model is noticed, and how many starting points are needed for impacts with many contacts.
+//! A random table of synthetic measurements, and the outcome of its fit.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufRead, BufReader, Write};
-use std::path::PathBuf;
-
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use tasks::{Failure, Random};
 use vibroimpact::Scene;
 use vibroimpact::identify::{Data, Free, Identification, Request, identify};
 
-use tasks::{Failure, Progress};
-
-/// Tables fitted side by side before their rows are written.
-const BATCH: usize = 32;
 /// Largest relative error of parameters that count as near the true ones.
 const NEAR: f64 = 0.02;
 /// Numbers of starting points that are compared for impacts with many contacts.
-const STARTS: [usize; 3] = [1, 4, 16];
+pub const STARTS: [usize; 3] = [1, 4, 16];
 const POINTS: [&str; 3] = ["tip", "middle", "quarter"];
 const SPEEDS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 const NOISE: [f64; 2] = [0.004, 4e-7];
@@ -27,43 +18,27 @@ const PLACES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 1.0];
 const SINGLE: usize = 6;
 /// Relative noise of peak forces.
 const PEAK_NOISE: f64 = 0.01;
-const FREE: [&str; 2] = ["contact.stiffness_n_m1_5", "striker.mass_kg"];
-
-/// Options of the study of identification.
-#[derive(clap::Args)]
-pub struct Wanted {
-    /// Number of tables of each kind
-    #[arg(long, value_name = "COUNT", default_value_t = 2000)]
-    tables: u64,
-    /// Number of tables of impacts with many contacts
-    #[arg(long, value_name = "COUNT", default_value_t = 40)]
-    rough: u64,
-    /// Resume from the results of an earlier run
-    #[arg(long)]
-    resume: bool,
-    /// The folder to write to
-    #[arg(long, value_name = "DIR", default_value = "out/study-identify")]
-    out: PathBuf,
-}
+/// Fields that are identified.
+pub const FREE: [&str; 2] = ["contact.stiffness_n_m1_5", "striker.mass_kg"];
 
 /// One table and the outcome of its fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Row {
-    kind: Kind,
-    number: u64,
+pub struct Row {
+    pub kind: Kind,
+    pub number: u64,
     /// Numbers of parameters that lie in the intervals by covariance and by profile.
-    by_covariance: usize,
-    by_profile: usize,
+    pub by_covariance: usize,
+    pub by_profile: usize,
     /// Whether a test of the misfit rejected the model.
-    noticed: bool,
+    pub noticed: bool,
     /// For each number of starts, of a table with many contacts only: whether the fit is as good as the true parameters, and
     /// whether it is near them.
-    fits: Vec<bool>,
-    near: Vec<bool>,
+    pub fits: Vec<bool>,
+    pub near: Vec<bool>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Kind {
+pub enum Kind {
     /// With stated noise, or with noise that is estimated.
     Stated,
     Estimated,
@@ -78,91 +53,26 @@ enum Kind {
 }
 
 impl Kind {
-    fn is_rough(self) -> bool {
+    /// All kinds, in the order of the summary.
+    pub const ALL: [Kind; 7] =
+        [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak, Kind::Smooth];
+
+    /// Whether its impacts have many contacts.
+    pub fn is_rough(self) -> bool {
         matches!(self, Kind::Rough | Kind::RoughPeak | Kind::Smooth)
     }
 }
 
-/// Runs the study, or the part that is missing, and summarises it.
-pub fn run(wanted: &Wanted) -> Result<String, Failure> {
-    let kinds =
-        [Kind::Stated, Kind::Estimated, Kind::WrongLaw, Kind::WrongDamping, Kind::Rough, Kind::RoughPeak, Kind::Smooth];
-    let count = |kind: Kind| if kind.is_rough() { wanted.rough } else { wanted.tables };
-    let all: Vec<(Kind, u64)> = kinds.iter().flat_map(|&kind| (0..count(kind)).map(move |n| (kind, n))).collect();
-    fs::create_dir_all(&wanted.out)?;
-    let path = wanted.out.join("rows.jsonl");
-    let mut rows: Vec<Row> = Vec::new();
-    if wanted.resume && path.exists() {
-        for line in BufReader::new(File::open(&path)?).lines() {
-            rows.push(serde_json::from_str(&line?)?);
-        }
-    }
-    let mut file =
-        OpenOptions::new().create(true).write(true).append(wanted.resume).truncate(!wanted.resume).open(&path)?;
-    let missing: Vec<(Kind, u64)> =
-        all.iter().copied().filter(|(kind, n)| rows.iter().all(|row| (row.kind, row.number) != (*kind, *n))).collect();
-    let mut progress = Progress::of("tables");
-    progress.begin("", all.len() as u64, (all.len() - missing.len()) as u64);
-    for batch in missing.chunks(BATCH) {
-        let solve = |&(kind, number): &(Kind, u64)| {
-            let found = row(kind, number).map_err(|fault| format!("{kind:?} {number}: {fault}"));
-            progress.add(1);
-            found
-        };
-        let found = batch.par_iter().map(solve).collect::<Result<Vec<Row>, String>>()?;
-        let lines: Result<Vec<String>, _> = found.iter().map(serde_json::to_string).collect();
-        writeln!(file, "{}", lines?.join("\n"))?;
-        rows.extend(found);
-    }
-    progress.finish();
-    rows.retain(|row| all.contains(&(row.kind, row.number)));
-    let told = kinds.iter().map(|&kind| told(kind, &rows)).collect::<String>();
-    fs::write(wanted.out.join("summary.txt"), &told)?;
-    Ok(told)
-}
-
-/// The share of the rows of a kind for which a condition holds, and its standard error (%).
-fn told(kind: Kind, rows: &[Row]) -> String {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.kind == kind).collect();
-    let share = |held: usize, of: usize| {
-        let p = held as f64 / of.max(1) as f64;
-        format!("{:.2} +- {:.2} %", 100.0 * p, 100.0 * (p * (1.0 - p) / of.max(1) as f64).sqrt())
-    };
-    let parameters = FREE.len() * rows.len();
-    let sum = |of: fn(&Row) -> usize| rows.iter().map(|row| of(row)).sum::<usize>();
-    let noticed = share(sum(|row| usize::from(row.noticed)), rows.len());
-    match kind {
-        Kind::Stated | Kind::Estimated => format!(
-            "{kind:?}: {} tables; intervals hold by covariance {}, by profile {}; noticed {noticed}\n",
-            rows.len(),
-            share(sum(|row| row.by_covariance), parameters),
-            share(sum(|row| row.by_profile), parameters),
-        ),
-        Kind::WrongLaw | Kind::WrongDamping => format!("{kind:?}: {} tables; noticed {noticed}\n", rows.len()),
-        Kind::Rough | Kind::RoughPeak | Kind::Smooth => {
-            let of = |all: fn(&Row) -> &[bool], k: usize| {
-                share(rows.iter().filter(|row| all(row).get(k) == Some(&true)).count(), rows.len())
-            };
-            let each = |(k, starts)| {
-                let (fits, near) = (of(|row| &row.fits, k), of(|row| &row.near, k));
-                format!("from {starts} starts {fits} fit as well as the truth and {near} are near it, ")
-            };
-            let each: String = STARTS.iter().enumerate().map(each).collect();
-            let held = share(sum(|row| row.by_profile), parameters);
-            format!("{kind:?}: {} tables; {each}intervals from the most starts hold by profile {held}\n", rows.len())
-        }
-    }
-}
-
-fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
-    let mut random = Random(number.wrapping_mul(0x9e37_79b9).wrapping_add(kind as u64));
+/// Draws a table and fits it.
+pub fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
+    let mut random = Random::new(number.wrapping_mul(0x9e37_79b9).wrapping_add(kind as u64));
     let mut row =
         Row { kind, number, by_covariance: 0, by_profile: 0, noticed: false, fits: Vec::new(), near: Vec::new() };
     if kind.is_rough() {
         return rough(row, &mut random);
     }
-    let truth = [1.2e9 * random.factor(1.5), 0.05 * random.factor(1.5)];
-    let mut guess = scene(truth[0] * random.factor(1.15), truth[1] * random.factor(1.15));
+    let truth = [1.2e9 * factor(&mut random, 1.5), 0.05 * factor(&mut random, 1.5)];
+    let mut guess = scene(truth[0] * factor(&mut random, 1.15), truth[1] * factor(&mut random, 1.15));
     match kind {
         Kind::WrongLaw => guess["contact"] = json!({ "law": "linear-spring", "stiffness_n_m": 1e7 }),
         Kind::WrongDamping => guess["structure"]["damping_ratios"] = json!([0.004, 0.005, 0.3, 0.3, 0.3, 0.3]),
@@ -181,6 +91,11 @@ fn row(kind: Kind, number: u64) -> Result<Row, Failure> {
     Ok(row)
 }
 
+/// Log-uniform from `1/most` to `most`.
+fn factor(random: &mut Random, most: f64) -> f64 {
+    most.powf(2.0 * random.share() - 1.0)
+}
+
 /// Whether an interval contains the true value. An unknown end is open.
 fn holds([low, high]: [Option<f64>; 2], truth: f64) -> bool {
     low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high)
@@ -188,7 +103,7 @@ fn holds([low, high]: [Option<f64>; 2], truth: f64) -> bool {
 
 /// A cantilever with locations up to its tip, where impacts have many contacts, and a poor initial guess.
 fn rough(mut row: Row, random: &mut Random) -> Result<Row, Failure> {
-    let truth = [2e9 * random.factor(2.0), 0.06 * random.factor(1.2)];
+    let truth = [2e9 * factor(random, 2.0), 0.06 * factor(random, 1.2)];
     let beam = |stiffness: f64, mass: f64| {
         json!({
             "structure": { "kind": "beam", "ends": ["clamped", "free"], "damping_ratio": 0.02,
@@ -279,28 +194,4 @@ fn table(truth: &Value, stated: bool, random: &mut Random) -> Result<Data, Failu
         }
     }
     parsed(&text)
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A standard normal number by the method of Box and Muller.
-    fn normal(&mut self) -> f64 {
-        let (a, b) = (1.0 - self.uniform(), self.uniform());
-        (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
-    }
-
-    /// Log-uniform from `1/most` to `most`.
-    fn factor(&mut self, most: f64) -> f64 {
-        most.powf(2.0 * self.uniform() - 1.0)
-    }
 }

@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use tasks::Failure;
+use tasks::{Failure, Random};
 use vibroimpact::Scene;
 use vibroimpact::model::Modes;
 
@@ -23,31 +23,9 @@ const STATED: [f64; 2] = [20.0, 60.0];
 const MOST_MODES: usize = 1500;
 const RITZ: usize = 300;
 
-/// SplitMix64 (Steele, Lea and Flood 2014).
-pub(super) struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Random {
-        Random(seed.wrapping_mul(0x2545_F491_4F6C_DD1D))
-    }
-
-    /// From 0 to 1.
-    pub fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Log-uniform between two numbers.
-    pub fn log(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(self.share())
-    }
-
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[((self.share() * list.len() as f64) as usize).min(list.len() - 1)]
-    }
+/// The random numbers of a scene or a beam.
+pub(super) fn random(number: u64) -> Random {
+    Random::new(number.wrapping_mul(0x2545_F491_4F6C_DD1D))
 }
 
 /// A structure: its JSON, its length and its mass.
@@ -161,7 +139,7 @@ pub(super) struct Drawn {
 
 /// Scene number `seed`.
 pub(super) fn scene(seed: u64) -> Result<Drawn, Failure> {
-    let random = &mut Random::new(seed.wrapping_add(1));
+    let random = &mut random(seed.wrapping_add(1));
     let kind = random.of(&[
         "beam",
         "beam",

@@ -1,7 +1,4 @@
-//! A long run of random impacts: no panic, no NaN, no energy gained, no hang.
-
-mod cases;
-mod checks;
+//! The result of a soak: counts, extremes and failures.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -11,9 +8,10 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use cases::case;
-use checks::{Verdict, judge};
-use tasks::{Failure, Progress};
+use super::cases::case;
+use super::checks::{Verdict, judge};
+use tasks::{BadInput, Failure, Progress};
+use vibroimpact::report::write_whole;
 
 /// Number of impacts that are solved in parallel before they are counted. They are counted in order, for any number of threads.
 const BATCH: u64 = 4096;
@@ -113,9 +111,11 @@ impl Summary {
         if !path.exists() {
             return Ok(Summary::new(seed));
         }
-        let summary: Summary = serde_json::from_str(&std::fs::read_to_string(path)?)?;
+        let told = |fault| BadInput(format!("{}: {fault}", path.display()));
+        let summary: Summary = serde_json::from_str(&std::fs::read_to_string(path)?).map_err(told)?;
         if summary.seed != seed {
-            return Err(format!("{} is of seed {}, not {seed}", path.display(), summary.seed).into());
+            let fault = format!("--seed {seed} is not allowed: {} is of seed {}", path.display(), summary.seed);
+            return Err(BadInput(fault).into());
         }
         Ok(summary)
     }
@@ -166,15 +166,7 @@ impl Summary {
         });
         reached.map_or(0, |(steps, _)| *steps)
     }
-}
 
-/// Solves one case again and returns all details.
-pub fn one(seed: u64, index: u64) -> String {
-    let case = case(seed, index);
-    format!("{case:#?}\n{:#?}", judge(&case))
-}
-
-impl Summary {
     fn note(&mut self, index: u64, verdict: Verdict) {
         self.impacts += 1;
         self.contacts += verdict.contacts as u64;
@@ -203,10 +195,7 @@ impl Summary {
 
     /// Writes the summary as JSON.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        Ok(std::fs::write(path, serde_json::to_string_pretty(self)? + "\n")?)
+        Ok(write_whole(path, (serde_json::to_string_pretty(self)? + "\n").as_bytes())?)
     }
 }
 

@@ -16,7 +16,7 @@ use serde_json::json;
 use vibroimpact::assembly::AnyScene;
 use vibroimpact::sweep::Sweep;
 
-use tasks::{Failure, Progress};
+use tasks::{BadInput, Failure, Progress};
 
 /// Radius (m) of the ball and uncertainty of its speed. The smallest ball has one contact, the others have several.
 const BALLS: [(f64, f64); 3] = [(0.004, 0.01), (0.0124, 0.05), (0.015, 0.01)];
@@ -42,7 +42,8 @@ pub struct Wanted {
 /// Runs the study and returns its table.
 pub fn run(wanted: &Wanted) -> Result<String, Failure> {
     if !wanted.draws.is_power_of_two() || wanted.draws < 2048 {
-        return Err(format!("--draws {} is not allowed: a power of two of at least 2048", wanted.draws).into());
+        let fault = format!("--draws {} is not allowed: a power of two of at least 2048", wanted.draws);
+        return Err(BadInput(fault).into());
     }
     let mut table = "| ball, radius | contacts | draws | standard error of the mean | gain, linear | gain, quadratic | gain for 5, 50, 95 % \
                      quantiles, linear |\n|---|---|---|---|---|---|---|\n"

@@ -1,6 +1,6 @@
 //! The net law with two parameters: fitted to impacts on random beams, and tested on beams left out of the fit.
 
-use super::scenes::{Random, ball, beam, hertz};
+use super::scenes::{self, ball, beam, hertz};
 use contact_models::Law;
 use fitting::{Method, Parameter, Problem, Settings, cross_validate, fit};
 use serde::Serialize;
@@ -50,7 +50,7 @@ fn on_beam(number: u64, impacts: usize) -> Result<Vec<Datum>, Failure> {
         ["clamped", "guided"],
         ["pinned", "guided"],
     ];
-    let random = &mut Random::new(1_000_000 + number);
+    let random = &mut scenes::random(1_000_000 + number);
     let damping_ratio = random.log(VALIDATED.damping_ratios[0], VALIDATED.damping_ratios[1]);
     let (structure, length, beam_mass) = beam(random, HELD[number as usize % HELD.len()], damping_ratio);
     let mut data = Vec::new();

@@ -1,0 +1,54 @@
+//! Studies of the program on random input: does it hold what it states?
+//!
+//! | command | question | result |
+//! |---|---|---|
+//! | `cargo xtask soak` | does any impact panic, hang, gain energy, or end in a number that is not finite? | `docs/development/fuzzing-and-soak.md` |
+//! | `cargo xtask study-auto` | do answers with an automatic choice of the model keep the requested tolerance? | `docs/choosing-the-model.md` |
+//! | `cargo xtask study-identify` | how often do the intervals of identified parameters contain the true ones? | `docs/how-to/identify.md` |
+//! | `cargo xtask study-control` | how many draws of uncertain fields would a control variate save? | `docs/development/draws-history.md` |
+//!
+//! All cases come from seeds, so that a run gives the same numbers on any number of threads; `soak`, `study-auto` and
+//! `study-identify` can be interrupted and resumed. The scatter of the law (`cargo xtask study-scatter`) is fitted to the tables
+//! of the thesis, and is therefore among its chapters in `xtask`.
+
+mod choice;
+mod control;
+mod identification;
+mod soak;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+use tasks::{Failure, ended, say};
+
+/// Studies of the program on random input.
+#[derive(Parser)]
+#[command(bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Solve random impacts far outside the usual range: no panic, no NaN, no energy gained, no hang
+    Soak(soak::Wanted),
+    /// Test the automatic choice of the model: random scenes against a far more accurate reference
+    StudyAuto(choice::Wanted),
+    /// Test identification: random tables of synthetic measurements with noise
+    StudyIdentify(identification::Wanted),
+    /// Measure the gain of a control variate from derivatives over plain draws of uncertain fields
+    StudyControl(control::Wanted),
+}
+
+fn main() -> ExitCode {
+    ended(run(&Cli::parse().task))
+}
+
+fn run(task: &Task) -> Result<(), Failure> {
+    match task {
+        Task::Soak(wanted) => soak::run(wanted),
+        Task::StudyAuto(wanted) => say(&choice::run(wanted)?),
+        Task::StudyIdentify(wanted) => say(&identification::run(wanted)?),
+        Task::StudyControl(wanted) => say(&control::run(wanted)?),
+    }
+}
