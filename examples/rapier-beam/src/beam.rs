@@ -75,7 +75,7 @@ impl Bar {
         let displacement =
             |amplitude: &[f64]| structure.modes.iter().zip(amplitude).map(|(mode, a)| mode.shape * a).sum::<f64>();
         let (mass_kg, hertz) = (ball.mass_kg(), ball.on_flat()?);
-        let mut solver = Solver::new(&structure)?;
+        let solver = Solver::new(&structure)?;
         let settings = Settings { estimate_uncertainty: false, ..Settings::default() };
         let mut start = Start::at_rest(structure.modes.len());
         // As if it had left from there, upwards.
