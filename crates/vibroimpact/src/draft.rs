@@ -43,8 +43,8 @@ impl Draft {
         Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
     }
 
-    /// Reads a stream to its end: JSON if its first character is `{`, TOML otherwise. Messages refer to the stream as `name`.
-    /// Tables that the scene names are read from the current folder.
+    /// Reads a stream to its end: JSON if its first character is `{` or all of it is JSON, TOML otherwise. Messages refer to the
+    /// stream as `name`. Tables that the scene names are read from the current folder.
     ///
     /// # Errors
     /// As [`Draft::read`].
@@ -58,9 +58,13 @@ impl Draft {
     /// # Errors
     /// Text that is neither JSON nor TOML.
     pub fn from_text(text: &str) -> Result<Draft, SceneError> {
-        let is_json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
-        // an empty text is not a scene in either format; JSON's message states this
-        let tree = if is_json || text.trim().is_empty() { json::parse(text, A_SCENE)? } else { toml::parse(text)? };
+        let begins_an_object = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+        let tree = match json::parse(text, A_SCENE) {
+            Ok(tree) => tree,
+            // an empty text is not a scene in either format; JSON's message states this
+            Err(fault) if begins_an_object || text.trim().is_empty() => return Err(fault),
+            Err(_) => toml::parse(text)?,
+        };
         Ok(Draft { tree, folder: PathBuf::new() })
     }
 

@@ -109,6 +109,12 @@ fn a_scene_may_come_from_the_standard_input() {
         ("{", "ends too early"),
         ("structure", "line 1"),
         ("\u{feff}{}", "structure is missing"),
+        // JSON, though not a scene
+        ("[]", "the scene = [] is not allowed: "),
+        (" [1]\n", "the scene = [1] is not allowed: "),
+        ("3", "the scene = 3 is not allowed: "),
+        // tables of TOML begin in the same way
+        ("[structure]\nkind = \"beam\"\n", "striker is missing"),
     ] {
         let message = refused(&fed(folder.path(), &["simulate", "-"], text));
         assert!(message.contains(part), "{text:?}: {message}");
