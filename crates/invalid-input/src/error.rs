@@ -18,17 +18,24 @@ pub struct InvalidInput {
     pub value: Option<Value>,
     /// What would be allowed. For a field that does not apply this begins with `left out`.
     pub allowed: Text,
+    /// Whether the object has no field of this name; `allowed` then tells those that it has.
+    pub is_unknown: bool,
 }
 
 impl InvalidInput {
     /// A value that is not allowed.
     pub fn new(field: impl Into<Path>, value: impl Into<Value>, allowed: impl Into<Text>) -> InvalidInput {
-        InvalidInput { field: field.into(), value: Some(value.into()), allowed: allowed.into() }
+        InvalidInput { field: field.into(), value: Some(value.into()), allowed: allowed.into(), is_unknown: false }
     }
 
     /// A field that is missing.
     pub fn missing(field: impl Into<Path>, allowed: impl Into<Text>) -> InvalidInput {
-        InvalidInput { field: field.into(), value: None, allowed: allowed.into() }
+        InvalidInput { field: field.into(), value: None, allowed: allowed.into(), is_unknown: false }
+    }
+
+    /// A field that its object does not have.
+    pub fn unknown(field: impl Into<Path>, value: impl Into<Value>, allowed: impl Into<Text>) -> InvalidInput {
+        InvalidInput { is_unknown: true, ..InvalidInput::new(field, value, allowed) }
     }
 
     /// Succeeds if `ok` holds, and otherwise reports the field.

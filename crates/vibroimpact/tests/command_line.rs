@@ -299,6 +299,7 @@ fn texts_that_are_not_json_are_refused_with_line_and_column() {
         (SCENE.replace("0.02", "1e999"), "structure.damping_ratio = 1e999"),
         (SCENE.replace("0.02", ".02"), "in structure.damping_ratio"),
         (SCENE.replace("0.02 }", "0.02, \"damping_ratio\": 0.02 }"), "\"damping_ratio\" occurs twice"),
+        ("{ \"as at line 3\": 1, \"as at line 3\": 2 }".to_owned(), "the key \"as at line 3\" occurs twice"),
         (SCENE[..300].to_owned(), "ends too early"),
         (String::new(), "ends too early"),
         (" \n".to_owned(), "ends too early"),

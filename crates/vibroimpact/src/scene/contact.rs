@@ -158,7 +158,7 @@ impl Contact {
             None => Ok(contact),
             Some((field, value)) => {
                 let known = written.as_object().into_iter().flatten().map(|(field, _)| field.as_str());
-                Err(unknown_field(field.as_str().into(), Some(value), known.chain(beside.iter().copied())))
+                Err(unknown_field(field.as_str().into(), value, known.chain(beside.iter().copied())))
             }
         }
     }

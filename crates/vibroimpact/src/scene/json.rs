@@ -100,14 +100,16 @@ fn syntax_error(text: &str, what: &str, field: Path, fault: &serde_json::Error) 
         let allowed = fields::allowed_at(&field).unwrap_or("a finite number");
         return InvalidInput::new(field, shorten(word), allowed).into();
     }
+    let (line, column) = (fault.line(), fault.column());
     let told = fault.to_string();
-    let fault_text = told.split(" at line ").next().unwrap_or(&told);
+    // the place is told beside the reason
+    let told = told.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&told);
     let reason = if fault.is_eof() {
-        format!("the text ends too early ({fault_text}); {what} is one complete JSON object")
+        format!("the text ends too early ({told}); {what} is one complete JSON object")
     } else {
-        fault_text.to_owned()
+        told.to_owned()
     };
-    SceneError::Syntax { line: fault.line(), column: fault.column(), field, reason }
+    SceneError::Syntax { line, column, field, reason }
 }
 
 /// The word of letters, digits and signs around a place in the text.
@@ -170,6 +172,32 @@ pub(crate) fn read<T: DeserializeOwned>(value: &Value) -> Result<T, InvalidInput
 /// As [`read`], of an object whose fields are read in two parts: a field that is unknown is told of those of the other part,
 /// too.
 pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -> Result<T, InvalidInput> {
+    read_told(value, beside, fields::allowed_at)
+}
+
+/// As [`read`]; a fault of the whole is told of `what`.
+pub(crate) fn read_whole<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, InvalidInput> {
+    of_whole(read(value), what)
+}
+
+/// As [`read_whole`], of a file whose fields are not those of a scene: `allowed_at` tells what a field may hold.
+pub(crate) fn read_other<T: DeserializeOwned>(
+    value: &Value,
+    what: &str,
+    allowed_at: impl Fn(&Path) -> Option<&'static str>,
+) -> Result<T, InvalidInput> {
+    of_whole(read_told(value, &[], allowed_at), what)
+}
+
+fn of_whole<T>(read: Result<T, InvalidInput>, what: &str) -> Result<T, InvalidInput> {
+    read.map_err(|fault| if fault.field.is_empty() { fault.in_place(what) } else { fault })
+}
+
+fn read_told<T: DeserializeOwned>(
+    value: &Value,
+    beside: &[&str],
+    allowed_at: impl Fn(&Path) -> Option<&'static str>,
+) -> Result<T, InvalidInput> {
     // to follow the path costs as much again as to read, and only a fault needs it
     if let Ok(Object(inner)) = Object::deserialize(value) {
         return Ok(inner);
@@ -179,7 +207,7 @@ pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -
         match fault.into_inner() {
             Fault::Missing(name) => {
                 let field = Path::from(name).within(render(&path));
-                let allowed = fields::allowed_at(&field).unwrap_or("a value is required");
+                let allowed = allowed_at(&field).unwrap_or("a value is required");
                 InvalidInput::missing(field, allowed)
             }
             Fault::Unknown { name, known } => {
@@ -189,12 +217,12 @@ pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -
                     if holder.last() == Some(&name) { holder } else { Path::from(name.as_str()).within(holder) };
                 let found = at(value, &path).map(|inner| inner.get(&name).unwrap_or(inner));
                 let beside = if field.steps().len() == 1 { beside } else { &[] };
-                unknown_field(field, found, known.iter().chain(beside).copied())
+                unknown_field(field, found.unwrap_or(&Value::Null), known.iter().chain(beside).copied())
             }
             Fault::NotAllowed { allowed } => {
                 let field = render(&path);
                 let found = at(value, &path);
-                let mut allowed = fields::allowed_at(&field).map_or(allowed, str::to_owned);
+                let mut allowed = allowed_at(&field).map_or(allowed, str::to_owned);
                 if let Some(Value::String(word)) = found {
                     allowed += &did_you_mean_one_of(word, &allowed);
                 }
@@ -204,22 +232,13 @@ pub(crate) fn read_beside<T: DeserializeOwned>(value: &Value, beside: &[&str]) -
     })
 }
 
-/// As [`read`]; a fault of the whole is told of `what`.
-pub(crate) fn read_whole<T: DeserializeOwned>(value: &Value, what: &str) -> Result<T, InvalidInput> {
-    read(value).map_err(|fault| if fault.field.is_empty() { fault.in_place(what) } else { fault })
-}
-
 /// A name that its object does not have, and those that it has.
-pub(crate) fn unknown_field<'a>(
-    field: Path,
-    value: Option<&Value>,
-    known: impl Iterator<Item = &'a str>,
-) -> InvalidInput {
+pub(crate) fn unknown_field<'a>(field: Path, value: &Value, known: impl Iterator<Item = &'a str>) -> InvalidInput {
     let mut names: Vec<&str> = known.collect();
     names.extend(names_beside(&names));
     let meant = did_you_mean(field.last().unwrap_or_default(), names.iter().copied());
-    let allowed = format!("{UNKNOWN_FIELD}{}{meant}", names.join(", "));
-    found(field, value, allowed)
+    let allowed = format!("unknown field; the fields here are {}{meant}", names.join(", "));
+    InvalidInput::unknown(field, quote(value), allowed)
 }
 
 /// A fault of a field that may be missing.
@@ -229,9 +248,6 @@ pub(crate) fn found(field: impl Into<Path>, value: Option<&Value>, allowed: impl
         None => InvalidInput::missing(field, allowed),
     }
 }
-
-/// How the fault of a name that its object does not have begins.
-pub(crate) const UNKNOWN_FIELD: &str = "unknown field; the fields here are ";
 
 /// Takes the entry `tag`, which names the kind of an object, out of the object; the rest is what the kind holds.
 pub(crate) fn split_tag<'k>(

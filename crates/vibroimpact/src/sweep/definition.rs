@@ -323,7 +323,7 @@ impl Sweep {
     fn blame(&self, fault: InvalidInput) -> InvalidInput {
         match self.varies(&fault) {
             None => fault.within("scene"),
-            Some(i) if fault.allowed.starts_with(crate::scene::json::UNKNOWN_FIELD) => {
+            Some(i) if fault.is_unknown => {
                 InvalidInput::new(self.entry_field(i), format!("\"{}\"", fault.field), fault.allowed)
             }
             Some(i) if self.uncertain.is_some() && i >= self.axes.len() => fault.under(self.entry(i)),

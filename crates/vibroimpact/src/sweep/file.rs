@@ -271,11 +271,7 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
 
 /// Reads an object; messages describe the allowed values of sweep files.
 fn typed<T: serde::de::DeserializeOwned>(value: &Value) -> Result<T, InvalidInput> {
-    json::read_whole(value, "the sweep").map_err(|found| {
-        let unknown = found.allowed.starts_with(json::UNKNOWN_FIELD);
-        let told = if unknown { None } else { look_up(FIELDS, &name_at(&found.field)) };
-        InvalidInput { allowed: told.map_or(found.allowed, str::to_owned), ..found }
-    })
+    json::read_other(value, "the sweep", |field| look_up(FIELDS, &name_at(field)))
 }
 
 fn axis(place: invalid_input::Path, entry: AxisEntry) -> Result<Axis, InvalidInput> {
