@@ -6,6 +6,8 @@ use beam_modes::{Beam, End, Segment};
 use std::f64::consts::PI;
 use std::path::Path;
 use tasks::Failure;
+use vibroimpact::Scene;
+use vibroimpact_sim::modal::Settings;
 
 fn uncounted(values: Vec<f64>) -> Found {
     Found { values, costs: Vec::new() }
@@ -187,7 +189,7 @@ pub fn fractional() -> Vec<Problem> {
     problems
 }
 
-/// Reads the text of a scene and computes the modes at the point of impact.
+/// Reads the text of a scene and computes the modes at the point of impact; and all that `simulate --json` does.
 pub fn scenes(root: &Path) -> Result<Vec<Problem>, Failure> {
     let text = std::fs::read_to_string(root.join("datasets/scenes/pinned-beam-converged.json"))?;
     let (side, b): (f64, f64) = (0.011323, 0.618_033_988_749_894_9);
@@ -195,10 +197,30 @@ pub fn scenes(root: &Path) -> Result<Vec<Problem>, Failure> {
     let q = 100.0 * PI;
     let exact = vec![100.0, q * q * (rigidity / mass).sqrt(), (2.0 / mass).sqrt() * (q * b).sin()];
     let problem = Problem::exact("scenes/read, N=100", exact, move || {
-        let impact = vibroimpact::Scene::from_json(&text)?.impact()?;
+        let impact = Scene::from_json(&text)?.impact()?;
         let modes = &impact.structure.modes[..impact.kept_modes()];
         let last = modes.last().ok_or("no modes")?;
         Ok(uncounted(vec![modes.len() as f64, last.omega_rad_s, last.shape]))
     });
-    Ok(vec![problem.rounding(1e-12)])
+    let mut problems = vec![problem.rounding(1e-12)];
+    for name in ["pinned-beam", "pinned-beam-converged", "stepped-cantilever"] {
+        let text = std::fs::read_to_string(root.join(format!("datasets/scenes/{name}.json")))?;
+        let tighter = text.clone();
+        problems.push(Problem::against_tighter(
+            format!("scenes/simulate, {name}"),
+            move || {
+                let scene = Scene::from_json(&tighter)?;
+                let tolerance = scene.tolerance.unwrap_or(Settings::default().tolerance);
+                simulated(&Scene { tolerance: Some(0.01 * tolerance), ..scene })
+            },
+            move || simulated(&Scene::from_json(&text)?).map(uncounted),
+        ));
+    }
+    Ok(problems)
+}
+
+/// The restitution in the printed result.
+fn simulated(scene: &Scene) -> Result<Vec<f64>, Failure> {
+    let printed: serde_json::Value = serde_json::from_str(&scene.simulate()?.json(scene)?)?;
+    Ok(vec![printed["restitution"].as_f64().ok_or("no restitution")?])
 }
