@@ -13,7 +13,7 @@ fn scenes(criterion: &mut Criterion) {
     let impact = scene.impact().expect("a scene of the gallery");
     criterion.bench_function("scene/solve", |bencher| bencher.iter(|| black_box(&impact).solve()));
     criterion.bench_function("scene/solve and record", |bencher| bencher.iter(|| black_box(&impact).record()));
-    let simulate = |text: &str| -> Result<String, Box<dyn std::error::Error>> {
+    let simulate = |text: &str| -> Result<String, vibroimpact::export::Failure> {
         let scene = Scene::from_json(text)?;
         scene.simulate()?.json(&scene)
     };
