@@ -23,7 +23,7 @@ def test_kinds_of_scenes(scene):
     for wrong in (3, None, [scene], b"scene.json"):
         with pytest.raises(TypeError, match="a mapping or the path of a file"):
             vibroimpact.modes(wrong, 5)
-    with pytest.raises(TypeError, match="cannot hold a set"):
+    with pytest.raises(TypeError, match="cannot contain a set"):
         vibroimpact.modes(scene | {"location_m": {1}}, 5)
 
 
