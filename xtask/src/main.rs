@@ -131,7 +131,7 @@ fn run(task: Task) -> Result<(), Failure> {
     }
 }
 
-/// Goes on as the program of another package. It is not a dependency of this one, so that neither waits for the other's
+/// Continues as the program of another package. It is not a dependency of this one, so that neither waits for the other's
 /// dependencies to compile.
 fn package(root: &Path, name: &str, command: Option<&str>, passed: &Passed) -> Result<(), Failure> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

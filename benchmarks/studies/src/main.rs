@@ -1,11 +1,11 @@
 //! Studies of the program on random input: does it hold what it states?
 //!
-//! | command | question | result |
+//! | command | question | page of the book |
 //! |---|---|---|
-//! | `cargo xtask soak` | does any impact panic, hang, gain energy, or end in a number that is not finite? | `docs/development/fuzzing-and-soak.md` |
-//! | `cargo xtask study-auto` | do answers with an automatic choice of the model keep the requested tolerance? | `docs/choosing-the-model.md` |
-//! | `cargo xtask study-identify` | how often do the intervals of identified parameters contain the true ones? | `docs/how-to/identify.md` |
-//! | `cargo xtask study-control` | how many draws of uncertain fields would a control variate save? | `docs/development/draws-history.md` |
+//! | `cargo xtask soak` | does any impact panic, hang, gain energy, or give no number? | `development/fuzzing-and-soak` |
+//! | `cargo xtask study-auto` | do answers with the chosen model keep the requested tolerance? | `choosing-the-model` |
+//! | `cargo xtask study-identify` | how often do intervals contain the true parameters? | `how-to/identify` |
+//! | `cargo xtask study-control` | how many draws would a control variate save? | `development/draws-history` |
 //!
 //! All cases come from seeds, so that a run gives the same numbers on any number of threads; `soak`, `study-auto` and
 //! `study-identify` can be interrupted and resumed. The scatter of the law (`cargo xtask study-scatter`) is fitted to the tables

@@ -1,8 +1,7 @@
 //! Dense linear algebra in one thread.
 //!
-//! The short forms of faer take as many threads as there are where any package of a build turns on its feature `rayon`, and
-//! other numbers of threads round otherwise. These forms ask for one thread by name, so that modes have the same bits in
-//! every build.
+//! The operators and solvers of faer use all threads if any package of a build turns on its feature `rayon`, and the rounding
+//! depends on the number of threads. The functions here always use one thread, so that modes have the same bits in every build.
 
 use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};

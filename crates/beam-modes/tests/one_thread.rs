@@ -1,4 +1,4 @@
-//! Modes are computed in one thread, whatever features of faer a build turns on: other numbers of threads round otherwise.
+//! Modes are computed in one thread, whatever features of faer a build turns on: the rounding depends on the number of threads.
 
 use beam_modes::{Beam, Edge, End, Plate, PlateTheory, RectangularSegment, fem};
 

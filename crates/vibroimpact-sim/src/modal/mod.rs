@@ -23,9 +23,9 @@
 //! more. The tables that depend on the structure alone are cached for further strikers, speeds and laws, and threads share them.
 //!
 //! The uncertainty of the restitution is estimated from two coarser solutions, with 16 and with 8 times the tolerance. Each is
-//! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). What is
-//! compared is the restitution, and what it would be if the impact ended in each flight between two contacts: two solutions may
-//! agree in one number by accident, but hardly in all. The uncertainty is two and a half times the largest difference. If that difference
+//! computed in a unit of time of its own, so that no two of the three solutions share a step (see `time_unit.rs`). The restitutions
+//! are compared, and also those that would result if the impact ended in each flight between two contacts: two solutions may agree
+//! in one number by accident, but hardly in all. The uncertainty is two and a half times the largest difference. If that difference
 //! exceeds the tolerance, the impact amplifies errors (undamped ones with many modes by 1e5 and more); if the numbers of contacts
 //! differ, it is close to a graze, where errors do not grow in proportion. A further solution, with 8 times the tolerance in the
 //! first unit, is then computed, and its difference counts twice.

@@ -21,8 +21,8 @@ use std::sync::OnceLock;
 /// Loosest tolerance of a solution. At looser tolerances the steps, and thus the costs, hardly differ any more, and their errors
 /// would not be noticed.
 pub(crate) const LOOSEST: f64 = 1e-4;
-/// Units of time of the coarser solutions that give the uncertainty, so many to a second, and factors of their tolerances. No
-/// two of the three solutions share a step. The second unit is that of a factor `2^(1/4)`.
+/// Units of time of the coarser solutions that give the uncertainty, by their numbers in a second (`2^(1/2)` and `2^(1/4)`), and
+/// factors of their tolerances. No two of the three solutions share a step.
 const COARSER: [(Unit, f64); 2] = [(Unit(SQRT_2), 16.0), (Unit(1.189_207_115_002_721), 8.0)];
 /// The solver's own unit of time.
 const SECOND: Unit = Unit(1.0);
@@ -252,11 +252,9 @@ impl Solver {
         let mut lowered = self.lower(&impact);
         let mut run = self.run_lowered(&impact, &mut lowered, settings.tolerance.min(LOOSEST), keep);
         let mut counts = run.counts;
-        let restitutions = self.restitutions(&run, &impact, SECOND);
-        let restitution = restitutions.as_ref().map(|known| known.last);
-        let restitution_uncertainty = restitutions
-            .filter(|_| settings.estimate_uncertainty)
-            .map(|known| self.uncertainty(&known, &impact, &mut lowered, &mut counts));
+        let restitution = self.restitution(&run, striker, start);
+        let known = if settings.estimate_uncertainty { self.restitutions(&run, &impact, SECOND) } else { None };
+        let restitution_uncertainty = known.map(|known| self.uncertainty(&known, &impact, &mut lowered, &mut counts));
         let solution = Solution {
             outcome: run.outcome,
             restitution,
@@ -365,7 +363,7 @@ impl Solver {
         }
     }
 
-    pub(crate) fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
+    fn restitution(&self, run: &Run, striker: &Striker, start: &Start) -> Option<f64> {
         let before = self.approach(striker, start);
         let ended = matches!(run.outcome, Outcome::Rebound | Outcome::Sustained);
         let free = striker.mass_kg.is_finite() || self.modes.iter().any(|mode| mode.is_rigid() && mode.is_excited());

@@ -6,7 +6,7 @@
 use super::problem::{Mode, Start, Striker};
 use contact_models::{After, Boundary, Branch, ContactLaw, Force, Memory};
 
-/// A unit of time, of which so many make a second.
+/// A unit of time, given by its number in a second.
 #[derive(Clone, Copy)]
 pub(crate) struct Unit(pub f64);
 

@@ -171,8 +171,12 @@ impl Pulse {
             Force::Computed(pulse) => pulse.transform_n_s(omega_rad_s),
             Force::Samples(samples) => {
                 let from = samples.first().map_or(0.0, |[time, _]| *time);
-                let angle = |t: f64| omega_rad_s * (t - from);
-                [integral(samples, |[t, f]| f * angle(t).cos()), integral(samples, |[t, f]| f * angle(t).sin())]
+                let turned = |&[t, f]: &[f64; 2]| {
+                    let (sin, cos) = (omega_rad_s * (t - from)).sin_cos();
+                    [t, f * cos, f * sin]
+                };
+                let turned: Vec<[f64; 3]> = samples.iter().map(turned).collect();
+                [integral(&turned, |[_, re, _]| re), integral(&turned, |[_, _, im]| im)]
             }
             Force::Unknown => [0.0; 2],
         };
@@ -189,6 +193,6 @@ impl Pulse {
 }
 
 /// By the trapezoidal rule, which is accurate for a force that begins and ends at zero.
-fn integral(samples: &[[f64; 2]], of: impl Fn([f64; 2]) -> f64) -> f64 {
+fn integral<const N: usize>(samples: &[[f64; N]], of: impl Fn([f64; N]) -> f64) -> f64 {
     samples.windows(2).map(|pair| 0.5 * (pair[1][0] - pair[0][0]) * (of(pair[0]) + of(pair[1]))).sum()
 }
