@@ -1,6 +1,6 @@
 //! The figure of a run.
 
-use rustfft::FftPlanner;
+use rustfft::FftPlannerScalar;
 use rustfft::num_complex::Complex;
 
 use super::{Course, Simulation};
@@ -87,7 +87,7 @@ fn spectrum(course: &Course, names: &[String]) -> Panel {
     if count < 4 {
         return panel;
     }
-    let transform = FftPlanner::new().plan_fft_forward(count);
+    let transform = FftPlannerScalar::new().plan_fft_forward(count);
     for c in 0..names.len() {
         let moves = |side: usize| rows.iter().any(|row| row.contacts[c].displacement_m[side] != 0.0);
         let side = if moves(0) { 0 } else { 1 };
