@@ -43,7 +43,7 @@ impl Draft {
         Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
     }
 
-    /// Reads a stream to its end: JSON if its first character is `{` or all of it is JSON, TOML otherwise. Messages refer to the
+    /// Reads a stream to its end: JSON if it begins with `{` or with a list, or if all of it is JSON; TOML otherwise. Messages refer to the
     /// stream as `name`. Tables that the scene names are read from the current folder.
     ///
     /// # Errors
@@ -58,11 +58,14 @@ impl Draft {
     /// # Errors
     /// Text that is neither JSON nor TOML.
     pub fn from_text(text: &str) -> Result<Draft, SceneError> {
-        let begins_an_object = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+        let begins = text.trim_start_matches('\u{feff}').trim_start();
+        // the first line of TOML that begins with a bracket is the name of a table, and ends with one
+        let names_a_table = begins.lines().next().is_some_and(|line| line.trim_end().ends_with(']'));
+        let is_json = begins.is_empty() || begins.starts_with('{') || begins.starts_with('[') && !names_a_table;
         let tree = match json::parse(text, A_SCENE) {
             Ok(tree) => tree,
             // an empty text is not a scene in either format; JSON's message states this
-            Err(fault) if begins_an_object || text.trim().is_empty() => return Err(fault),
+            Err(fault) if is_json => return Err(fault),
             Err(_) => toml::parse(text)?,
         };
         Ok(Draft { tree, folder: PathBuf::new() })

@@ -111,6 +111,7 @@ fn a_scene_may_come_from_the_standard_input() {
         ("\u{feff}{}", "structure is missing"),
         // JSON, though not a scene
         ("[]", "the scene = [] is not allowed: "),
+        ("[1, 2", "the text ends too early"),
         (" [1]\n", "the scene = [1] is not allowed: "),
         ("3", "the scene = 3 is not allowed: "),
         // tables of TOML begin in the same way
