@@ -42,6 +42,11 @@ fn the_steady_motion_is_found_with_its_multipliers() {
     assert_eq!((moving["contact"].as_str(), moving["side"].as_u64()), (Some("stop"), Some(1)));
     let found = moving["displacement_first_harmonic_m"].as_f64().unwrap();
     assert!((found / amplitude - 1.0).abs() < 1e-9, "{found} {amplitude}");
+    // the extremes are those of the motion and not of its samples
+    for (name, expected) in [("displacement_max_m", amplitude), ("displacement_min_m", -amplitude)] {
+        let found = moving[name].as_f64().unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-9, "{name}: {found} {expected}");
+    }
     let text = stdout(&run(folder.path(), &["orbit", &scene]));
     assert!(text.contains("stable") && text.contains("Floquet multipliers"), "{text}");
 }
@@ -59,9 +64,21 @@ fn a_branch_is_followed_drawn_and_written() {
     assert!(kinds.contains(&"grazing"), "{kinds:?}");
     let orbits = branch["orbits"].as_array().unwrap();
     assert_eq!(orbits[0]["value"].as_f64(), Some(1.3));
+    assert_eq!(orbits[orbits.len() - 1]["value"].as_f64(), Some(1.9));
     let table = fs::read_to_string(folder.path().join("b.csv")).unwrap();
     assert_eq!(table.lines().count(), orbits.len() + 1);
     assert!(fs::read_to_string(folder.path().join("b.svg")).unwrap().contains("grazing"));
+}
+
+#[test]
+fn a_branch_keeps_its_orbits_where_the_field_cannot_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = rig(folder.path(), 1.0);
+    let over = ["--over", "bodies.rig.damping_ratios[0]", "--from", "0.02", "--to", "0"];
+    let arguments: Vec<&str> = ["orbit", &scene, "--json"].into_iter().chain(over).collect();
+    let branch: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
+    let last = branch["orbits"].as_array().unwrap().last().unwrap()["value"].as_f64().unwrap();
+    assert!((0.0..1e-6).contains(&last), "{last}");
 }
 
 #[test]

@@ -149,19 +149,23 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
             }
             continue;
         };
+        let next = follower.within_range(&current, next)?;
         let new_tangent = follower.between(&current, &next, &tangent);
-        for kind in
-            differences(&current.orbit, &next.orbit, tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1])
-        {
+        let turn = tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1];
+        let mut special = Vec::new();
+        for kind in differences(&current.orbit, &next.orbit, turn) {
             let before_orbit = branch.points.len();
             let (parameter, uncertainty) = follower.locate(&current, &tangent, step, kind)?;
-            branch.special.push(SpecialPoint { kind, parameter, uncertainty, before_orbit });
+            special.push(SpecialPoint { kind, parameter, uncertainty, before_orbit });
         }
+        let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
+        special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        branch.special.append(&mut special);
         (current, tangent) = (next, new_tangent);
         let goes_on = progress(&current);
         branch.points.push(current.clone());
         let (low, high) = (settings.from.min(settings.to), settings.from.max(settings.to));
-        if !(low..=high).contains(&current.parameter) {
+        if !(low < current.parameter && current.parameter < high) {
             branch.complete = true;
             break;
         }
@@ -235,7 +239,13 @@ where
         Ok(self.map(point.parameter)?.scales(&state, &state))
     }
 
-    /// `DP - 1` and `dP/dp`, scaled; `None` where a run stops.
+    /// The state a period later at another parameter; `None` where the parameter is not allowed or a run stops.
+    fn image(&self, parameter: f64, state: &DVector<f64>) -> Option<DVector<f64>> {
+        self.map(parameter).ok()?.apply(state).ok()?.ok()
+    }
+
+    /// `DP - 1` and `dP/dp`, scaled; `None` where a run stops. At the edge of what the parameter may be, the difference is taken
+    /// from one side.
     fn linearised(
         &self,
         state: &DVector<f64>,
@@ -246,10 +256,17 @@ where
         let map = self.map(parameter)?;
         let Ok(jacobian) = map.derivative(state, scales)? else { return Ok(None) };
         let step = DIFFERENCE * self.range();
-        let above = self.map(parameter + step)?.apply(state)?;
-        let below = self.map(parameter - step)?.apply(state)?;
-        let (Ok(above), Ok(below)) = (above, below) else { return Ok(None) };
-        let slope = (above - below) / (2.0 * DIFFERENCE);
+        let slope = match (self.image(parameter + step, state), self.image(parameter - step, state)) {
+            (Some(above), Some(below)) => (above - below) / (2.0 * DIFFERENCE),
+            (above, below) => {
+                let Ok(here) = map.apply(state)? else { return Ok(None) };
+                match (above, below) {
+                    (Some(above), _) => (above - here) / DIFFERENCE,
+                    (_, Some(below)) => (here - below) / DIFFERENCE,
+                    _ => return Ok(None),
+                }
+            }
+        };
         Ok(Some(DMatrix::from_fn(n, n + 1, |i, j| {
             if j == n {
                 slope[i] / scales[i]
@@ -290,7 +307,7 @@ where
             let parameter = at[n] * self.range();
             let Ok(map) = self.map(parameter) else { return Ok(None) };
             let Ok(image) = map.apply(&state)? else { return Ok(None) };
-            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(None) };
+            let Ok(Some(matrix)) = self.linearised(&state, parameter, &scales) else { return Ok(None) };
             let defect = (&image - &state).component_div(&scales);
             let made = (&at - &base).dot(tangent) - step;
             let whole = DMatrix::from_fn(n + 1, n + 1, |i, j| if i < n { matrix[(i, j)] } else { tangent[j] });
@@ -311,6 +328,22 @@ where
             }
         }
         Ok(None)
+    }
+
+    /// The orbit at the end of the range, if the next one lies beyond it and this one is found; otherwise the next one.
+    fn within_range(&self, from: &BranchPoint, next: BranchPoint) -> Result<BranchPoint, E> {
+        let (low, high) = (self.settings.from.min(self.settings.to), self.settings.from.max(self.settings.to));
+        let parameter = next.parameter.clamp(low, high);
+        if parameter == next.parameter {
+            return Ok(next);
+        }
+        let part = (parameter - from.parameter) / (next.parameter - from.parameter);
+        let (one, other) = (Self::state(&from.orbit), Self::state(&next.orbit));
+        let state = &one + part * (other - &one);
+        Ok(match refine(&self.map(parameter)?, state, &self.settings.orbit)? {
+            OrbitOutcome::Found(orbit) => BranchPoint { parameter, orbit: *orbit },
+            _ => next,
+        })
     }
 
     /// The parameter of a special point within a step, and its uncertainty.

@@ -486,35 +486,52 @@ struct Survey {
     period_s: f64,
     next: usize,
     samples: Vec<Vec<[f64; 2]>>,
+    /// Smallest and largest displacement (m), contact by contact and side by side.
+    extremes: Vec<[(f64, f64); 2]>,
     intervals: Vec<u64>,
 }
 
 impl Survey {
     fn new(contacts: usize, period_s: f64) -> Survey {
-        Survey { period_s, next: 0, samples: vec![Vec::with_capacity(SAMPLES); contacts], intervals: vec![0; contacts] }
+        Survey {
+            period_s,
+            next: 0,
+            samples: vec![Vec::with_capacity(SAMPLES); contacts],
+            extremes: vec![[(f64::INFINITY, f64::NEG_INFINITY); 2]; contacts],
+            intervals: vec![0; contacts],
+        }
     }
 
     fn result(&self, forcing_periods: u32) -> (Vec<u64>, Vec<[SideMotion; 2]>) {
-        let side = |samples: &Vec<[f64; 2]>, side: usize| {
+        let side = |c: usize, side: usize| {
+            let samples = &self.samples[c];
             let (mut cosine, mut sine) = (0.0, 0.0);
-            let mut motion = SideMotion {
-                displacement_max_m: f64::NEG_INFINITY,
-                displacement_min_m: f64::INFINITY,
-                ..SideMotion::default()
-            };
             for (i, values) in samples.iter().enumerate() {
                 let (s, c) = (TAU * f64::from(forcing_periods) * i as f64 / SAMPLES as f64).sin_cos();
                 cosine += values[side] * c;
                 sine += values[side] * s;
-                motion.displacement_max_m = motion.displacement_max_m.max(values[side]);
-                motion.displacement_min_m = motion.displacement_min_m.min(values[side]);
             }
-            motion.displacement_first_harmonic_m = 2.0 * cosine.hypot(sine) / samples.len().max(1) as f64;
-            motion
+            let (displacement_min_m, displacement_max_m) = self.extremes[c][side];
+            let displacement_first_harmonic_m = 2.0 * cosine.hypot(sine) / samples.len().max(1) as f64;
+            SideMotion { displacement_first_harmonic_m, displacement_max_m, displacement_min_m }
         };
-        let sides = self.samples.iter().map(|samples| [side(samples, 0), side(samples, 1)]).collect();
+        let sides = (0..self.samples.len()).map(|c| [side(c, 0), side(c, 1)]).collect();
         (self.intervals.clone(), sides)
     }
+}
+
+/// Number of bisections that locate a turning point. The displacement there is known as the square of the time.
+const TURNING_HALVINGS: u32 = 24;
+
+/// Displacement (m) of one side of a contact where its velocity changes sign between two times.
+fn turning_point_m(panel: &dyn Motion, (contact, side): (usize, usize), (mut start, mut end): (f64, f64)) -> f64 {
+    let rises = panel.contact(contact, start).velocity_m_s[side] > 0.0;
+    for _ in 0..TURNING_HALVINGS {
+        let middle = 0.5 * (start + end);
+        let still = (panel.contact(contact, middle).velocity_m_s[side] > 0.0) == rises;
+        *(if still { &mut start } else { &mut end }) = middle;
+    }
+    panel.contact(contact, 0.5 * (start + end)).displacement_m[side]
 }
 
 impl Observer for Survey {
@@ -526,16 +543,31 @@ impl Observer for Survey {
     }
 
     fn panel(&mut self, panel: &dyn Motion) {
+        let mut times = vec![panel.start_s()];
         while self.next < SAMPLES {
             let time = self.period_s * self.next as f64 / SAMPLES as f64;
             if time > panel.end_s() {
                 break;
             }
-            for (c, samples) in self.samples.iter_mut().enumerate() {
-                let ContactSample { displacement_m, .. } = panel.contact(c, time);
-                samples.push(displacement_m);
-            }
+            times.push(time);
             self.next += 1;
+        }
+        times.push(panel.end_s());
+        for c in 0..self.samples.len() {
+            let states: Vec<ContactSample> = times.iter().map(|time| panel.contact(c, *time)).collect();
+            self.samples[c].extend(states[1..states.len() - 1].iter().map(|state| state.displacement_m));
+            for side in 0..2 {
+                let (least, most) = &mut self.extremes[c][side];
+                let mut note = |displacement_m: f64| {
+                    (*least, *most) = (least.min(displacement_m), most.max(displacement_m));
+                };
+                states.iter().for_each(|state| note(state.displacement_m[side]));
+                for (times, states) in times.windows(2).zip(states.windows(2)) {
+                    if states[0].velocity_m_s[side] * states[1].velocity_m_s[side] < 0.0 {
+                        note(turning_point_m(panel, (c, side), (times[0], times[1])));
+                    }
+                }
+            }
         }
     }
 

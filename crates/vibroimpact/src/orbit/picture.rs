@@ -5,7 +5,13 @@ use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
 /// Amplitude and range of motion of the moving sides over the field, and the size of the largest multiplier.
 pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
-    let axis = || Axis::new(branch.field.as_str());
+    let values = || branch.orbits.iter().map(|orbit| orbit.value);
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    // the panels share their abscissa
+    let axis = || {
+        let axis = Axis::new(branch.field.as_str());
+        if low < high { axis.limits(low, high) } else { axis }
+    };
     let mut amplitude = Panel::new(axis().unlabelled(), Axis::new("first harmonic").unit("m")).height(170.0);
     let mut range = Panel::new(axis().unlabelled(), Axis::new("largest and least").unit("m")).height(170.0);
     let mut size = Panel::new(axis(), Axis::new("largest multiplier")).height(110.0);
