@@ -3,11 +3,12 @@
 mod gallery;
 
 use std::f64::consts::{PI, TAU};
+use std::sync::atomic::AtomicBool;
 
 use beam_modes::fem;
 use gallery::{assemblies, assembly};
 use serde_json::json;
-use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion};
+use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion, Wanted};
 use vibroimpact::scene::{Attachment, BeamTheory, Structure};
 use vibroimpact::vibroimpact_sim::assembly::{Outcome, Point};
 
@@ -411,5 +412,61 @@ fn every_scene_of_bodies_runs() {
         assert!(scene.description.as_ref().is_some_and(|text| !text.is_empty()), "{name}");
         let found = AssemblyScene { end_s: scene.end_s.min(0.02), ..scene }.simulate().unwrap();
         assert!(matches!(found.run.outcome, Outcome::End | Outcome::Rest), "{name}: {:?}", found.run.outcome);
+    }
+}
+
+/// An oscillator that a force drives against a stop. Runs at 1e-12 and at 1e-13 agree on these events.
+#[test]
+fn events_are_certain_only_as_far_as_a_finer_run_confirms_them() {
+    let scene = |tolerance: f64| -> AssemblyScene {
+        AssemblyScene::from_value(&json!({
+            "bodies": { "o": { "kind": "modal", "omega_rad_s": [38.2547495067631], "damping_ratios": [0.01],
+                "points": { "p": { "shape": [1.0] } } } },
+            "contacts": [{ "name": "w", "between": [{ "body": "o", "location": "p" }, "ground"], "gap_m": 0.001793864421228313,
+                "law": "kelvin-voigt", "stiffness_n_m": 87430.6665877779, "damping_n_s_m": 4.131432060284585 }],
+            "loads": [{ "body": "o", "location": "p", "force_n": 19.71814319867453, "frequency_hz": 1.7145218773718836 }],
+            "end_s": 20, "tolerance": tolerance
+        }))
+        .unwrap()
+    };
+    let (found, exact) = (scene(1e-6).simulate().unwrap(), scene(1e-12).simulate().unwrap());
+    let certain = found.reliable_until_s.unwrap();
+    assert!(certain > 5.0 && certain < 20.0, "{certain}");
+    for (one, other) in found.intervals[0].iter().zip(&exact.intervals[0]) {
+        let pairs = [(Some(one.start_s), Some(other.start_s)), (one.end_s, other.end_s)];
+        for (one, other) in pairs.iter().filter_map(|(one, other)| one.zip(*other)).filter(|(one, _)| *one < certain) {
+            assert!((one - other).abs() <= 1e-6 * one, "{one} s against {other} s, certain until {certain} s");
+        }
+    }
+}
+
+/// A ball that bounces thousands of times: the samples in contact are spread over the whole run.
+#[test]
+fn a_long_history_has_samples_in_contact_from_beginning_to_end() {
+    let scene = AssemblyScene::from_value(&json!({
+        "bodies": { "ball": { "kind": "mass", "mass_kg": 0.1, "position_m": 0.001 } },
+        "contacts": [{ "name": "floor", "between": [{ "body": "ball" }, "ground"], "law": "linear-spring",
+            "stiffness_n_m": 1e7 }],
+        "gravity_m_s2": 9.81, "end_s": 100
+    }))
+    .unwrap();
+    let wanted = Wanted {
+        intervals: 10_000,
+        reliability: false,
+        course: true,
+        take: None,
+        stop: &AtomicBool::new(false),
+        tell: &mut |_| (),
+    };
+    let found = scene.simulate_with(wanted).unwrap();
+    let rows = found.course.unwrap().rows;
+    assert!(rows.len() < 50_000, "{}", rows.len());
+    assert!(rows.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));
+    let peak = found.intervals[0][0].peak_force_n;
+    for tenth in 0..10 {
+        let (from, to) = (10.0 * f64::from(tenth), 10.0 * f64::from(tenth + 1));
+        let part = rows.iter().filter(|row| (from..to).contains(&row.time_s));
+        let largest = part.map(|row| row.contacts[0].force_n).fold(0.0, f64::max);
+        assert!(largest > 0.9 * peak, "{from} s to {to} s: {largest} N of {peak} N");
     }
 }

@@ -89,7 +89,6 @@ pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentia
 pub use no_derivative::NoDerivative;
 pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, find_orbit_until};
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
-pub use reliability::COARSER;
 pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,
 };

@@ -8,6 +8,8 @@ use invalid_input::InvalidInput;
 const SCALE_MAX: f64 = 1e30;
 /// Largest frequency (rad/s). No structure has higher ones; the limit keeps every power of them finite.
 const OMEGA_MAX_RAD_S: f64 = 1e15;
+/// Smallest tolerance.
+pub(crate) const FINEST_TOLERANCE: f64 = 1e-13;
 /// A harmonic load whose frequency is closer than this (relative) to that of an undamped mode which it excites is resonant.
 const RESONANCE: f64 = 1e-9;
 
@@ -159,7 +161,12 @@ impl Settings {
         InvalidInput::unless(within || endless, "end_s", self.end_s, "a positive number up to 1e12 s")?;
         let from = (0.0..=SCALE_MAX).contains(&self.rest_from_s);
         InvalidInput::unless(from, "rest_from_s", self.rest_from_s, "0 or a positive number of seconds, at most 1e30")?;
-        InvalidInput::unless((1e-13..=0.1).contains(&self.tolerance), "tolerance", self.tolerance, "1e-13 to 0.1")?;
+        InvalidInput::unless(
+            (FINEST_TOLERANCE..=0.1).contains(&self.tolerance),
+            "tolerance",
+            self.tolerance,
+            "1e-13 to 0.1",
+        )?;
         InvalidInput::unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1")?;
         InvalidInput::unless(self.max_intervals > 0, "max_intervals", self.max_intervals, "at least 1")
     }

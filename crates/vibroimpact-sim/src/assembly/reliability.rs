@@ -1,9 +1,22 @@
 //! The time up to which the events of a run are certain, from a second run.
+//!
+//! Two runs share the steps whose length they choose alike, and with them their errors. The steps of a run with a tolerance a
+//! thousand times smaller are at most half as long, so that the difference to it is the error of the first run.
 
+use super::problem::FINEST_TOLERANCE;
 use super::solution::{Interval, Observer};
 
 /// Factor of the tolerance of the second run.
-pub const COARSER: f64 = 32.0;
+const FINER: f64 = 1e-3;
+/// The same where rounding leaves no room for a finer run.
+const COARSER: f64 = 32.0;
+
+/// The tolerance of the second run, and the largest difference allowed in the time of an event, relative to the time since the
+/// start.
+pub(crate) fn second_run(tolerance: f64) -> (f64, f64) {
+    let finer = FINER * tolerance;
+    if finer >= FINEST_TOLERANCE { (finer, tolerance) } else { (COARSER * tolerance, COARSER * tolerance) }
+}
 
 /// Compares the intervals of a run with those of another as they are found.
 pub(crate) struct Comparison<'a> {

@@ -3,7 +3,7 @@
 use super::dense::{Stretch, in_users_order};
 use super::motion::March;
 use super::problem::{Assembly, Posed, Settings};
-use super::reliability::{COARSER, Comparison};
+use super::reliability::{Comparison, second_run};
 use super::responses::Responses;
 use super::solution::{ContactEnd, Interval, Observer, Outcome, Run};
 use super::system::System;
@@ -77,10 +77,12 @@ impl<'a> Solver<'a> {
         Ok(follow(&self.posed, (&self.system, &self.tables, &mut Responses::default()), settings, observer, false).0)
     }
 
-    /// The time up to which the touches and releases of contacts are certain. Up to this time a second run, with a tolerance
-    /// [`COARSER`] times as large, finds each of them at a time that differs by less than its tolerance times the time since the
-    /// start. Beyond it only statistics are meaningful. `intervals` are those of the run to be checked, contact by contact, in
-    /// order; the run ended at `end_s`. `None` if `stop`, which is called from time to time, ended the second run.
+    /// The time up to which the touches and releases of contacts are certain to the tolerance. Up to this time a second run, with
+    /// a thousandth of the tolerance, finds each of them at a time that differs by less than the tolerance times the time since the
+    /// start. (A tolerance below 1e-10 leaves no room for a finer run. The second run is then 32 times coarser, and so is the
+    /// comparison.) Later events are known less accurately and, along a chaotic motion, only statistically. `intervals` are those
+    /// of the run to be checked, contact by contact, in order; the run ended at `end_s`. `None` if `stop`, which is called from
+    /// time to time, ended the second run.
     ///
     /// # Errors
     /// As [`run`].
@@ -91,9 +93,9 @@ impl<'a> Solver<'a> {
         end_s: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<Option<f64>, InvalidInput> {
-        let tolerance = (COARSER * settings.tolerance).min(0.1);
+        let (tolerance, difference) = second_run(settings.tolerance);
         let second = Settings { tolerance, end_s, ..*settings };
-        let mut comparison = Comparison::new(intervals, tolerance, end_s, stop);
+        let mut comparison = Comparison::new(intervals, difference, end_s, stop);
         self.run(&second, &mut comparison)?;
         Ok(comparison.certain_until())
     }

@@ -47,8 +47,8 @@ pub struct Simulation {
     pub posed: Posed,
     /// The result.
     pub run: Run,
-    /// Time up to which touches and releases are certain (s): up to it a second run with a tolerance 32 times as large finds each
-    /// of them within that tolerance times the time since the start. `None` if it was not requested, if not all intervals were
+    /// Time up to which touches and releases are certain (s): up to it a second run with a thousandth of the tolerance finds each
+    /// of them within the tolerance times the time since the start. `None` if it was not requested, if not all intervals were
     /// kept, or if the run was interrupted.
     pub reliable_until_s: Option<f64>,
     /// Intervals of contact, contact by contact, as many as were requested.

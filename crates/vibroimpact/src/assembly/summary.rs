@@ -31,8 +31,8 @@ pub struct Summary {
     pub reason: Option<&'static str>,
     /// The time at which it ended (s).
     pub end_s: f64,
-    /// Time up to which touches and releases are certain (s), from a second run with a tolerance 32 times as large; after it only
-    /// statistics are meaningful. Null if it was not computed.
+    /// Time up to which touches and releases are certain to the tolerance (s), from a second run with a thousandth of the
+    /// tolerance; along a chaotic motion only statistics are meaningful after it. Null if it was not computed.
     pub reliable_until_s: Option<f64>,
     /// The periodic motion under a harmonic load to which it has converged at the end; null if there is none.
     pub steady_motion: Option<SteadyMotion>,

@@ -7,12 +7,14 @@ use vibroimpact_sim::assembly::{ContactSample, Interval, Motion, Observer};
 use super::steady::Moments;
 use crate::export::Failure;
 
-/// Equal intervals of a history.
-pub(super) const HISTORY_INTERVALS: usize = 4096;
+/// Least number of equal intervals of a history.
+const HISTORY_INTERVALS: usize = 4096;
 /// Largest number of additional samples in contact.
 const MOST_IN_CONTACT: usize = 40_000;
-/// Samples within a stretch of contact.
+/// Samples within a panel of contact.
 const WITHIN: usize = 4;
+/// Most panels of one stretch of contact. A stretch also begins where a contact closes.
+const STRETCH: u64 = 16;
 /// Most points of a section.
 const MOST_SECTIONS: usize = 100_000;
 
@@ -31,10 +33,11 @@ pub struct Row {
 /// The motion of a run, sampled.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Course {
-    /// Samples in order of time: at equal distances, and more while contacts are closed.
+    /// Samples in order of time: at equal distances, and more while contacts are closed. In a run with many contacts only every
+    /// second, fourth, eighth, ... stretch of contact has these further samples, over the whole run.
     pub rows: Vec<Row>,
-    /// For each row whether it is one of those at equal distances.
-    pub even: Vec<bool>,
+    /// For each row its stretch of contact; `None` if it is one of those at equal distances.
+    stretches: Vec<Option<u64>>,
     /// Interval between these (s).
     pub step_s: f64,
     /// Once in each period of the loads, where they have one.
@@ -42,26 +45,47 @@ pub struct Course {
     /// This period (s).
     pub period_s: Option<f64>,
     in_contact: usize,
+    /// The stretch of contact, and the number of its panels so far; zero panels while no contact is closed.
+    stretch: u64,
+    panels: u64,
+    /// The stretches whose number is a multiple of `2^skipped` have samples.
+    skipped: u32,
 }
 
 impl Course {
     pub(super) fn new(end_s: f64, period_s: Option<f64>) -> Course {
-        Course { step_s: end_s / HISTORY_INTERVALS as f64, period_s, ..Course::default() }
+        let longest_s = end_s / HISTORY_INTERVALS as f64;
+        // a whole number of samples in each period of the loads, so that harmonics too fast for the samples appear in the spectrum
+        // as other harmonics, and not as frequencies that the motion does not have
+        let dividing = |period_s: f64| period_s / (period_s / longest_s).ceil();
+        let step_s = period_s.filter(|period_s| *period_s >= longest_s).map_or(longest_s, dividing);
+        Course { step_s, period_s, ..Course::default() }
     }
 
     fn add(&mut self, panel: &dyn Motion, contacts: usize) {
         let (start, end) = (panel.start_s(), panel.end_s());
         let row = |time_s: f64| Row { time_s, contacts: (0..contacts).map(|c| panel.contact(c, time_s)).collect() };
         let closed = (0..contacts).any(|c| panel.contact(c, 0.5 * (start + end)).closed);
-        let mut times: Vec<(f64, bool)> = multiples(start, end, self.step_s).map(|time_s| (time_s, true)).collect();
-        if closed && self.in_contact < MOST_IN_CONTACT {
-            self.in_contact += WITHIN;
-            times.extend((0..WITHIN).map(|i| (start + (end - start) * i as f64 / WITHIN as f64, false)));
-            times.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut times: Vec<(f64, Option<u64>)> =
+            multiples(start, end, self.step_s).map(|time_s| (time_s, None)).collect();
+        self.panels = if closed { self.panels + 1 } else { 0 };
+        if closed {
+            if self.panels % STRETCH == 1 {
+                self.stretch += 1;
+            }
+            if self.in_contact >= MOST_IN_CONTACT {
+                self.skip_every_second_stretch();
+            }
+            if self.has_samples(self.stretch) {
+                self.in_contact += WITHIN;
+                let within = (0..WITHIN).map(|i| start + (end - start) * i as f64 / WITHIN as f64);
+                times.extend(within.map(|time_s| (time_s, Some(self.stretch))));
+                times.sort_by(|a, b| a.0.total_cmp(&b.0));
+            }
         }
-        for (time_s, even) in times {
+        for (time_s, stretch) in times {
             self.rows.push(row(time_s));
-            self.even.push(even);
+            self.stretches.push(stretch);
         }
         if let Some(period_s) = self.period_s
             && self.section.len() < MOST_SECTIONS
@@ -70,9 +94,25 @@ impl Course {
         }
     }
 
+    fn has_samples(&self, stretch: u64) -> bool {
+        stretch.trailing_zeros() >= self.skipped
+    }
+
+    /// Drops the samples of every second stretch that has some, so that memory is limited and the whole run is treated alike.
+    fn skip_every_second_stretch(&mut self) {
+        self.skipped += 1;
+        let kept: Vec<bool> =
+            self.stretches.iter().map(|stretch| stretch.is_none_or(|n| self.has_samples(n))).collect();
+        let mut keep = kept.iter();
+        self.rows.retain(|_| *keep.next().unwrap_or(&true));
+        keep = kept.iter();
+        self.stretches.retain(|_| *keep.next().unwrap_or(&true));
+        self.in_contact = self.stretches.iter().flatten().count();
+    }
+
     /// The samples at equal distances.
     pub fn even_rows(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().zip(&self.even).filter(|(_, even)| **even).map(|(row, _)| row)
+        self.rows.iter().zip(&self.stretches).filter(|(_, stretch)| stretch.is_none()).map(|(row, _)| row)
     }
 }
 
