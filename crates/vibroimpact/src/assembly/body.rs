@@ -176,12 +176,20 @@ impl Elastic {
             entries.clone().into_iter().partition(|(field, _)| BESIDE.contains(&field.as_str()));
         let own = Value::Object(own);
         let Beside { modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 } =
-            read(&Value::Object(beside))?;
+            read(&Value::Object(beside)).map_err(stated_modes)?;
         let structure = match kind {
             "rod" => Elastics::Rod(Rod::from_value_beside(&own, &BESIDE)?),
             _ => Elastics::Structure(Structure::from_value_beside(&own, &BESIDE)?),
         };
         let start = start.as_ref().map(read).transpose().map_err(|fault| fault.within("start"))?;
         Ok(Elastic { structure, modes, residual_compliance, velocity_m_s, start, gravity_participation_kg0_5 })
+    }
+}
+
+/// The same fault; the modes of a body have to be stated, since the program chooses those of a single impact only.
+pub(super) fn stated_modes(fault: InvalidInput) -> InvalidInput {
+    match fault.field.first() {
+        Some("modes") => InvalidInput { allowed: "a whole number from 0 to 10000".into(), ..fault },
+        _ => fault,
     }
 }

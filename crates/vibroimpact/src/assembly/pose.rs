@@ -215,6 +215,10 @@ impl<'a> Bodies<'a> {
                 "a point of a body where the other side is the ground",
             ));
         }
+        if let (Side::Body(point), true) = (&contact.between[1], sides[0] == sides[1]) {
+            let allowed = "a point that can move towards the first one";
+            return Err(InvalidInput::new(("between", 1, "body"), format!("{:?}", point.body), allowed));
+        }
         let (gap_m, law) = (contact.gap_m, contact.to_law()?);
         let [a, b] = sides.clone();
         // the second of a two-sided contact is the first seen from the other side

@@ -4,7 +4,7 @@ use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
 use vibroimpact_sim::modal::{self, Mode};
 
-use super::body::{Body, Elastic, Elastics, Mass};
+use super::body::{Body, Elastic, Elastics, Mass, stated_modes};
 use super::load::{LARGEST, require_finite};
 use super::rod::Rod;
 use crate::scene::json::number;
@@ -64,7 +64,7 @@ impl<'a> Seen<'a> {
 
     /// An error of the body with its path.
     pub fn of_body(&self, fault: InvalidInput) -> InvalidInput {
-        fault.without("structure").within(["bodies", self.name])
+        stated_modes(fault.without("structure")).within(["bodies", self.name])
     }
 
     /// Shapes of the modes at a location (kg^-1/2). An error of the location has the field `location_m` or `location`, any other
@@ -158,7 +158,8 @@ impl<'a> Seen<'a> {
                 let allowed = format!("needed for {needed_for}: a list of finite numbers, one a mode");
                 Err(self.of_body(InvalidInput::missing(field, allowed)))
             }
-            None if given.len() < self.modes.len() => {
+            // more than one a mode only where the scene takes the first modes of its list
+            None if given.len() < self.modes.len() || body.modes.is_none() && given.len() > self.modes.len() => {
                 let allowed = format!("one value a mode, which is {}", self.modes.len());
                 Err(self.of_body(InvalidInput::new(field, values(), allowed)))
             }
