@@ -105,7 +105,7 @@ impl Scene {
     ) -> Result<(Structure, usize), InvalidInput> {
         let place = self.place();
         let modes = if self.residual_compliance.unwrap_or(chooses_modes(self)) {
-            let enough = count.map(|count| self.structure.enough_for_remainder(count));
+            let enough = count.map(|count| self.structure.enough_for_remainder(place, count));
             let mut known = self.structure.modes_with(place, enough, &mut kept.modes)?;
             let count = count.unwrap_or(known.len()).min(known.len());
             let whole_m_n = self.structure.static_compliance_m_n(place)?;

@@ -91,7 +91,7 @@ pub(super) fn resolving(pose: &mut Pose, times: f64, cost: &mut Cost) -> Result<
     let whole = pose.source.whole_m_n().unwrap_or(f64::INFINITY);
     let mut computed = (expected(pose, target)? + 2).min(most);
     let found = loop {
-        let enough = pose.scene.structure.enough_for_remainder(computed);
+        let enough = pose.scene.structure.enough_for_remainder(pose.scene.place(), computed);
         let known = pose.first(enough, cost)?;
         let modes = known[..computed.min(known.len())].to_vec();
         let rigid = modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();

@@ -160,7 +160,7 @@ impl<'a> Pose<'a> {
         let scene = self.scene;
         let structure = &scene.structure;
         let whole_m_n = self.source.whole_m_n().filter(|_| self.scene.residual_compliance != Some(false));
-        let known = self.first(structure.enough_for_remainder(count), cost)?;
+        let known = self.first(structure.enough_for_remainder(scene.place(), count), cost)?;
         let count = count.min(known.len());
         let remainder = match whole_m_n {
             Some(whole_m_n) => structure.remainder(known, count, whole_m_n)?,
