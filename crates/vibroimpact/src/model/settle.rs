@@ -157,10 +157,14 @@ impl Rungs {
         std::iter::once(&self.last).chain(self.earlier.iter().rev())
     }
 
-    /// The latest ones, latest first, with similar numbers of modes.
+    /// The latest ones, latest first, with similar numbers of modes. Of the impacts with one number only the latest counts, which
+    /// has the tightest tolerance: the same modes again contain no further information about the truncated ones. If there are
+    /// none, every impact counts.
     fn near(&self) -> impl Iterator<Item = &Rung> {
+        let again = |i: usize, count| self.all().take(i).any(|later| later.count == count);
+        let distinct = self.all().enumerate().filter(move |(i, rung)| self.is_complete() || !again(*i, rung.count));
         let mut last = self.last.count;
-        self.all().take_while(move |rung| {
+        distinct.map(|(_, rung)| rung).take_while(move |rung| {
             let before = std::mem::replace(&mut last, rung.count);
             (1 + rung.count.min(before)) as f64 >= NEAR * (1 + rung.count.max(before)) as f64
         })
@@ -200,7 +204,7 @@ impl Rungs {
         }
     }
 
-    /// The same where a list ends before the restitution has converged.
+    /// The same where the numbers of modes end before the restitution has converged.
     fn left_out_at_the_end(&self) -> f64 {
         let Tail { shape, compliance } = self.last.tail.unwrap_or_default();
         at_the_end(&self.sizes(), self.last.energy, self.last.resolution).max(shape) + compliance
@@ -293,7 +297,8 @@ fn finish(pose: &mut Pose, mut rungs: Rungs, settled: bool, cost: &mut Cost) -> 
     let left_out = match spread {
         _ if rungs.is_complete() => 0.0,
         Some(spread) if exhausted => rungs.left_out_at_the_end().max(spread),
-        spread => rungs.left_out().max(spread.unwrap_or(0.0)),
+        Some(spread) => rungs.left_out().max(rungs.left_out_at_the_end()).max(spread),
+        None => rungs.left_out(),
     };
     let solver = rungs.solver();
     let stated = if settled { left_out.max((LUCK * left_out).min(pose.tolerance - solver)) } else { left_out };
