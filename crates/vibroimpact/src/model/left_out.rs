@@ -24,6 +24,8 @@
 //!
 //! and `e_r` counts only if `d_1` is the largest, or `R < 0.1`: changes that grow, or that occur between numbers of modes which are
 //! all far too small, contain no information about their limit.
+//!
+//! If the restitution of another structure does not converge, the larger of both estimates counts.
 
 use vibroimpact_sim::modal::{Mode, Solution, Striker, Structure};
 
