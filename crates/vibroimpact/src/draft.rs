@@ -43,7 +43,7 @@ impl Draft {
         Ok(Draft { tree: read_tree(path, A_SCENE)?, folder })
     }
 
-    /// Reads a stream to its end: JSON if it begins with `{` or with a list, or if all of it is JSON; TOML otherwise. Messages refer to the
+    /// Reads a stream to its end: JSON if it begins with `{` or if all of it is JSON, TOML otherwise. Messages refer to the
     /// stream as `name`. Tables that the scene names are read from the current folder.
     ///
     /// # Errors
@@ -59,14 +59,15 @@ impl Draft {
     /// Text that is neither JSON nor TOML.
     pub fn from_text(text: &str) -> Result<Draft, SceneError> {
         let begins = text.trim_start_matches('\u{feff}').trim_start();
-        // the first line of TOML that begins with a bracket is the name of a table, and ends with one
-        let names_a_table = begins.lines().next().is_some_and(|line| line.trim_end().ends_with(']'));
-        let is_json = begins.is_empty() || begins.starts_with('{') || begins.starts_with('[') && !names_a_table;
         let tree = match json::parse(text, A_SCENE) {
             Ok(tree) => tree,
             // an empty text is not a scene in either format; JSON's message states this
-            Err(fault) if is_json => return Err(fault),
-            Err(_) => toml::parse(text)?,
+            Err(fault) if begins.is_empty() || begins.starts_with('{') => return Err(fault),
+            Err(fault) => match toml::parse(text) {
+                // a broken list of JSON
+                Err(_) if begins.starts_with('[') && !names_a_table(begins) => return Err(fault),
+                read => read?,
+            },
         };
         Ok(Draft { tree, folder: PathBuf::new() })
     }
@@ -127,6 +128,12 @@ impl Draft {
         scene.read_tables(&self.folder)?;
         Ok(scene)
     }
+}
+
+/// Whether the first line is the name of a table of TOML, with or without a comment.
+fn names_a_table(text: &str) -> bool {
+    let line = text.lines().next().unwrap_or_default();
+    line.split('#').next().is_some_and(|name| name.trim_end().ends_with(']'))
 }
 
 const ASSIGNMENT: &str = "FIELD=VALUE with the path of a field, as in striker.speed_m_s=2";

@@ -116,6 +116,7 @@ fn a_scene_may_come_from_the_standard_input() {
         ("3", "the scene = 3 is not allowed: "),
         // tables of TOML begin in the same way
         ("[structure]\nkind = \"beam\"\n", "striker is missing"),
+        ("[structure] # the beam\nkind = \"beam\"\n", "striker is missing"),
     ] {
         let message = refused(&fed(folder.path(), &["simulate", "-"], text));
         assert!(message.contains(part), "{text:?}: {message}");
