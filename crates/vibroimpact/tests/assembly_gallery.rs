@@ -4,10 +4,9 @@ mod gallery;
 
 use std::fmt::Write;
 use std::fs;
-use std::sync::atomic::AtomicBool;
 
-use gallery::{assemblies, assert_checked_in, datasets};
-use vibroimpact::assembly::{MOST_INTERVALS, Summary, Wanted, headline, picture};
+use gallery::{assemblies, assert_checked_in, datasets, with_history};
+use vibroimpact::assembly::{Summary, headline, picture};
 use vibroimpact::plot::Format;
 use vibroimpact::text::quantity;
 
@@ -25,15 +24,7 @@ const ABOUT: &str = "# Gallery of scenes of bodies\n\n\
 fn the_table_of_the_gallery_is_current() {
     let mut table = ABOUT.to_owned();
     for (name, scene) in assemblies() {
-        let wanted = Wanted {
-            intervals: MOST_INTERVALS,
-            reliability: true,
-            course: true,
-            take: None,
-            stop: &AtomicBool::new(false),
-            tell: &mut |_| (),
-        };
-        let found = scene.simulate_with(wanted).unwrap();
+        let found = with_history(&scene);
         let summary = Summary::new(&found);
         let certain = summary.reliable_until_s == Some(summary.end_s);
         let touches: u64 = summary.contacts.values().map(|contact| contact.count).sum();

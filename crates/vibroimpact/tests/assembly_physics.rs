@@ -3,12 +3,11 @@
 mod gallery;
 
 use std::f64::consts::{PI, TAU};
-use std::sync::atomic::AtomicBool;
 
 use beam_modes::fem;
-use gallery::{assemblies, assembly};
+use gallery::{assemblies, assembly, with_history};
 use serde_json::json;
-use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion, Wanted};
+use vibroimpact::assembly::{AssemblyScene, Body, Elastics, Simulation, SteadyMotion};
 use vibroimpact::scene::{Attachment, BeamTheory, Structure};
 use vibroimpact::vibroimpact_sim::assembly::{Outcome, Point};
 
@@ -450,15 +449,7 @@ fn a_long_history_has_samples_in_contact_from_beginning_to_end() {
         "gravity_m_s2": 9.81, "end_s": 100
     }))
     .unwrap();
-    let wanted = Wanted {
-        intervals: 10_000,
-        reliability: false,
-        course: true,
-        take: None,
-        stop: &AtomicBool::new(false),
-        tell: &mut |_| (),
-    };
-    let found = scene.simulate_with(wanted).unwrap();
+    let found = with_history(&scene);
     let rows = found.course.unwrap().rows;
     assert!(rows.len() < 50_000, "{}", rows.len());
     assert!(rows.windows(2).all(|pair| pair[0].time_s <= pair[1].time_s));

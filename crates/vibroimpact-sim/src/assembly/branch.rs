@@ -52,6 +52,11 @@ impl BranchSettings {
         BranchSettings { orbit, from, to, step: 0.02, longest_step: 0.05, max_orbits: 500 }
     }
 
+    /// The range in ascending order.
+    fn limits(&self) -> (f64, f64) {
+        (self.from.min(self.to), self.from.max(self.to))
+    }
+
     fn check(&self) -> Result<(), InvalidInput> {
         self.orbit.check()?;
         let range = self.from.is_finite() && self.to.is_finite() && self.from != self.to;
@@ -164,7 +169,7 @@ pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
         (current, tangent) = (next, new_tangent);
         let goes_on = progress(&current);
         branch.points.push(current.clone());
-        let (low, high) = (settings.from.min(settings.to), settings.from.max(settings.to));
+        let (low, high) = settings.limits();
         if !(low < current.parameter && current.parameter < high) {
             branch.complete = true;
             break;
@@ -307,7 +312,7 @@ where
             let parameter = at[n] * self.range();
             let Ok(map) = self.map(parameter) else { return Ok(None) };
             let Ok(image) = map.apply(&state)? else { return Ok(None) };
-            let Ok(Some(matrix)) = self.linearised(&state, parameter, &scales) else { return Ok(None) };
+            let Some(matrix) = self.linearised(&state, parameter, &scales)? else { return Ok(None) };
             let defect = (&image - &state).component_div(&scales);
             let made = (&at - &base).dot(tangent) - step;
             let whole = DMatrix::from_fn(n + 1, n + 1, |i, j| if i < n { matrix[(i, j)] } else { tangent[j] });
@@ -332,7 +337,7 @@ where
 
     /// The orbit at the end of the range, if the next one lies beyond it and this one is found; otherwise the next one.
     fn within_range(&self, from: &BranchPoint, next: BranchPoint) -> Result<BranchPoint, E> {
-        let (low, high) = (self.settings.from.min(self.settings.to), self.settings.from.max(self.settings.to));
+        let (low, high) = self.settings.limits();
         let parameter = next.parameter.clamp(low, high);
         if parameter == next.parameter {
             return Ok(next);

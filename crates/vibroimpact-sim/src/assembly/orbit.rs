@@ -22,6 +22,8 @@ use std::fmt;
 const DIFFERENCE: f64 = 1e-5;
 /// Moments of a period at which it is sampled.
 const SAMPLES: usize = 1024;
+/// Bisections that locate a turning point. The error of its displacement is the square of that of its time.
+const TURNING_HALVINGS: u32 = 24;
 /// A motion counts as unstable if a multiplier exceeds 1 by more than this, which is the accuracy at grazing contacts.
 const MARGINAL: f64 = 1e-6;
 /// Relative accuracy to which frequencies of loads must be multiples of one frequency.
@@ -519,9 +521,6 @@ impl Survey {
         (self.intervals.clone(), sides)
     }
 }
-
-/// Number of bisections that locate a turning point. The displacement there is known as the square of the time.
-const TURNING_HALVINGS: u32 = 24;
 
 /// Displacement (m) of one side of a contact where its velocity changes sign between two times.
 fn turning_point_m(panel: &dyn Motion, (contact, side): (usize, usize), (mut start, mut end): (f64, f64)) -> f64 {

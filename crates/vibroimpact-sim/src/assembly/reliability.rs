@@ -1,7 +1,7 @@
 //! The time up to which the events of a run are certain, from a second run.
 //!
-//! Two runs share the steps whose length they choose alike, and with them their errors. The steps of a run with a tolerance a
-//! thousand times smaller are at most half as long, so that the difference to it is the error of the first run.
+//! Step lengths are powers of two, so that two runs of similar tolerances share many steps, and with them their errors. A run
+//! with a thousandth of the tolerance takes shorter steps, and the difference between the two is the error of the first run.
 
 use super::problem::FINEST_TOLERANCE;
 use super::solution::{Interval, Observer};

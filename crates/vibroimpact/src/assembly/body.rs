@@ -186,10 +186,13 @@ impl Elastic {
     }
 }
 
-/// The same fault; the modes of a body have to be stated, since the program chooses those of a single impact only.
+/// The modes of a body, which have to be stated: the program chooses those of a single impact only.
+pub(super) const STATED_MODES: &str = "a whole number from 0 to 10000";
+
+/// The same fault, where it is one of the modes with what a body allows.
 pub(super) fn stated_modes(fault: InvalidInput) -> InvalidInput {
     match fault.field.first() {
-        Some("modes") => InvalidInput { allowed: "a whole number from 0 to 10000".into(), ..fault },
+        Some("modes") => InvalidInput { allowed: STATED_MODES.into(), ..fault },
         _ => fault,
     }
 }

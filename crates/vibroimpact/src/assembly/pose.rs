@@ -208,16 +208,17 @@ impl<'a> Bodies<'a> {
                 .map_err(|fault| beside(fault, ("between", i))),
         };
         let sides = [side(0)?, side(1)?];
-        if sides == [assembly::Point::Ground, assembly::Point::Ground] {
-            return Err(InvalidInput::new(
-                ("between", 1),
-                "\"ground\"",
-                "a point of a body where the other side is the ground",
-            ));
-        }
-        if let (Side::Body(point), true) = (&contact.between[1], sides[0] == sides[1]) {
-            let allowed = "a point that can move towards the first one";
-            return Err(InvalidInput::new(("between", 1, "body"), format!("{:?}", point.body), allowed));
+        if sides[0] == sides[1] {
+            return Err(match &contact.between[1] {
+                Side::Ground(_) => {
+                    let allowed = "a point of a body where the other side is the ground";
+                    InvalidInput::new(("between", 1), "\"ground\"", allowed)
+                }
+                Side::Body(point) => {
+                    let allowed = "a body or a location other than those of the first point";
+                    InvalidInput::new(("between", 1, "body"), format!("{:?}", point.body), allowed)
+                }
+            });
         }
         let (gap_m, law) = (contact.gap_m, contact.to_law()?);
         let [a, b] = sides.clone();

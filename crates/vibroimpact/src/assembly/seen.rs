@@ -4,7 +4,7 @@ use beam_modes::{Modes, PointsMode};
 use vibroimpact_sim::assembly::BodyMode;
 use vibroimpact_sim::modal::{self, Mode};
 
-use super::body::{Body, Elastic, Elastics, Mass, stated_modes};
+use super::body::{Body, Elastic, Elastics, Mass, STATED_MODES, stated_modes};
 use super::load::{LARGEST, require_finite};
 use super::rod::Rod;
 use crate::scene::json::number;
@@ -122,7 +122,7 @@ impl<'a> Seen<'a> {
                     matches!(structure, Structure::Beam(_) | Structure::TautString(_) | Structure::Plate(_))
                         && body.modes.is_none();
                 if needs_count {
-                    return Err(self.of_body(InvalidInput::missing("modes", "a whole number from 0 to 10000")));
+                    return Err(self.of_body(InvalidInput::missing("modes", STATED_MODES)));
                 }
                 structure.modes_with(place, body.modes, &mut self.known).map_err(|fault| match fault.field.first() {
                     Some("location_m" | "location") => fault,
@@ -186,7 +186,7 @@ fn anywhere(body: &Elastic) -> (Option<Location>, Option<String>) {
 }
 
 fn modes_of(rod: &Rod, count: Option<usize>) -> Result<Modes, InvalidInput> {
-    let count = count.ok_or_else(|| InvalidInput::missing("modes", "a whole number from 0 to 10000"))?;
+    let count = count.ok_or_else(|| InvalidInput::missing("modes", STATED_MODES))?;
     crate::scene::require_count(count)?;
     if !(rod.damping_ratio >= 0.0 && rod.damping_ratio.is_finite()) {
         let value = number(rod.damping_ratio);

@@ -48,7 +48,7 @@ pub(super) fn reliability(summary: &Summary) -> Option<String> {
     let until = summary.reliable_until_s?;
     Some(match until >= summary.end_s {
         true => format!("{}, the whole run", quantity(until, "s")),
-        false => format!("{}, to the tolerance; later ones are less certain", quantity(until, "s")),
+        false => format!("{}, to the tolerance; later events are less certain", quantity(until, "s")),
     })
 }
 

@@ -1,5 +1,6 @@
 //! Records of a run: intervals of contact, samples of the motion, a Poincare section.
 
+use std::mem;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use vibroimpact_sim::assembly::{ContactSample, Interval, Motion, Observer};
@@ -101,12 +102,9 @@ impl Course {
     /// Drops the samples of every second stretch that has some, so that memory is limited and the whole run is treated alike.
     fn skip_every_second_stretch(&mut self) {
         self.skipped += 1;
-        let kept: Vec<bool> =
-            self.stretches.iter().map(|stretch| stretch.is_none_or(|n| self.has_samples(n))).collect();
-        let mut keep = kept.iter();
-        self.rows.retain(|_| *keep.next().unwrap_or(&true));
-        keep = kept.iter();
-        self.stretches.retain(|_| *keep.next().unwrap_or(&true));
+        let samples = mem::take(&mut self.rows).into_iter().zip(mem::take(&mut self.stretches));
+        let kept = samples.filter(|(_, stretch)| stretch.is_none_or(|stretch| self.has_samples(stretch)));
+        (self.rows, self.stretches) = kept.unzip();
         self.in_contact = self.stretches.iter().flatten().count();
     }
 

@@ -4,9 +4,10 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use vibroimpact::Scene;
-use vibroimpact::assembly::AssemblyScene;
+use vibroimpact::assembly::{AssemblyScene, MOST_INTERVALS, Simulation, Wanted};
 
 /// A path in the folder of data sets.
 pub fn datasets(path: &str) -> PathBuf {
@@ -48,6 +49,19 @@ pub fn assemblies() -> Vec<(String, AssemblyScene)> {
 /// One scene of bodies.
 pub fn assembly(name: &str) -> AssemblyScene {
     assemblies().into_iter().find(|(other, _)| other == name).map(|(_, scene)| scene).unwrap()
+}
+
+/// Solves a scene of bodies and keeps samples of its motion.
+pub fn with_history(scene: &AssemblyScene) -> Simulation {
+    let wanted = Wanted {
+        intervals: MOST_INTERVALS,
+        reliability: true,
+        course: true,
+        take: None,
+        stop: &AtomicBool::new(false),
+        tell: &mut |_| (),
+    };
+    scene.simulate_with(wanted).unwrap()
 }
 
 /// One scene of the gallery.
