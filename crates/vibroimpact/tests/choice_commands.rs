@@ -110,6 +110,18 @@ fn every_model_is_drawn_and_reported() {
 }
 
 #[test]
+fn a_model_without_histories_has_no_end_of_them() {
+    for model in ["emoc", "infinite-beam"] {
+        for output in [&["--out", "results"][..], &["--plot", "impact.svg"], &[]] {
+            let message = Folder::with(&light(model)).refusal("simulate", &[output, &["--until", "0.5"]].concat());
+            let expected = format!("--until = 0.5 must be left out: the model {model} gives the net result alone");
+            assert!(message.contains(&expected) && message.contains("\"modal\""), "{message}");
+        }
+    }
+    Folder::with(&light("rigid")).printed("simulate", &["--out", "results", "--until", "0.5"]);
+}
+
+#[test]
 fn the_infinite_beam_is_shown_from_the_group_velocity() {
     let folder = Folder::with(&light("auto"));
     let plan = folder.json("plan");

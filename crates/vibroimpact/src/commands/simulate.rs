@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use vibroimpact::assembly::{AnyScene, MOST_INTERVALS};
 use vibroimpact::export::{Failure, Files};
-use vibroimpact::model::{self, Answer};
+use vibroimpact::model::{self, Answer, Model};
 use vibroimpact::scene::Location;
 use vibroimpact::simulate::{Resolved, Simulation};
 use vibroimpact::trust::Check;
@@ -67,6 +67,21 @@ impl Extent {
         require_free("--animate", self.animate.as_deref(), products.may_replace())
     }
 
+    /// The error for a result without a course in time, which has neither histories nor an animation.
+    fn require_no_course(&self, model: Model) -> Result<(), InvalidInput> {
+        self.require_still()?;
+        match self.until {
+            None => Ok(()),
+            Some(until) => {
+                let allowed = format!(
+                    "left out: the model {} gives the net result alone; \"model\": \"modal\" resolves the motion in time",
+                    model.as_str()
+                );
+                Err(InvalidInput::new("--until", until.to_string(), allowed))
+            }
+        }
+    }
+
     /// The error for a motion that cannot be animated.
     fn require_still(&self) -> Result<(), InvalidInput> {
         match &self.animate {
@@ -124,10 +139,10 @@ pub fn answer(scene: AnyScene, extent: Extent, products: &Products) -> Result<St
             extent.require_still()?;
             infinite_beam::of_scene(&scene, (scale, solution), &trust, until, json, products)
         }
-        Simulation::Net(answer) => extent
-            .require_still()
-            .map_err(Failure::from)
-            .and_then(|()| without_course(&scene, json, &trust, answer, products)),
+        Simulation::Net(answer) => {
+            extent.require_no_course(answer.model)?;
+            without_course(&scene, json, &trust, answer, products)
+        }
     }
 }
 
