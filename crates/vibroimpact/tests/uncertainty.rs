@@ -27,9 +27,12 @@ fn converged(scene: &Scene, modes: usize, tolerance: f64) -> f64 {
     scene.impact().unwrap().solve().unwrap().restitution.unwrap()
 }
 
+fn stored(name: &str) -> Scene {
+    Scene::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)).unwrap()
+}
+
 fn near_the_root() -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/near_the_root_of_a_cantilever.json");
-    Scene::read(&path).unwrap()
+    stored("near_the_root_of_a_cantilever.json")
 }
 
 /// A closed form has no digits beyond those of its arithmetic, on a support as well, where the structure has no effect.
@@ -228,6 +231,23 @@ fn truncated_models_state_their_truncation_error() {
         assert!(error <= left_out && left_out > 100.0 * solver, "{name}: {error:e} {found:?}");
         assert_eq!(found.restitution_uncertainty, Some(solver + left_out));
         assert!(left_out <= 6.0 * error.max(0.05), "{name}: {error:e} {left_out:e}");
+    }
+}
+
+/// Three stated modes of a beam of five segments, and two remainder modes, whose contacts a spring in their place would not have.
+/// Every tolerance finds the same six contacts, and the uncertainty covers the restitution of the beam with all its modes.
+#[test]
+fn three_modes_of_a_stepped_beam_cover_all_of_them() {
+    let scene = stored("three_modes_of_a_stepped_beam.json");
+    let at = |tolerance| answer(&Scene { tolerance: Some(tolerance), ..scene.clone() });
+    let (finest, exact) = (at(1e-10).restitution.unwrap(), converged(&scene, 750, 1e-8));
+    for tolerance in [1e-2, 1e-4, 1e-6, 1e-8] {
+        let found = at(tolerance);
+        assert_eq!((found.outcome, found.sub_impact_count), ("rebound", Some(6)), "{tolerance:e}");
+        let error = (found.restitution.unwrap() - finest).abs();
+        assert!(error <= found.uncertainty.solver.unwrap(), "{tolerance:e}: {error:e} {found:?}");
+        let error = (found.restitution.unwrap() - exact).abs();
+        assert!(error <= found.restitution_uncertainty.unwrap(), "{tolerance:e}: {error:e} {found:?}");
     }
 }
 
