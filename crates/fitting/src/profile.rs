@@ -4,21 +4,33 @@
 //! interval `S_j(u) <= S + z^2` contains the parameter with the probability of `|normal| <= z`, to a higher order than the
 //! interval from the covariance and in any coordinate (Bates and Watts 1988, ch. 6). `zeta = sqrt(S_j - S)` is linear in `u`
 //! for a linear model, so that a secant finds the ends in few steps.
+//!
+//! Each search for `S_j` starts next to the last point that lies within the interval, from the better of two starts: the other
+//! parameters as they are there, or moved along the direction that the profile has had so far, which is at first that of the
+//! linearised problem. A search from further away may stop in another minimum, whose `zeta` is too large. An end is therefore a
+//! point of the contour `zeta = z`. Where `zeta` jumps across the contour, as it does where the residuals jump, the end is the
+//! jump, once a simplex search from the point before it has found no way around.
 
-use crate::gradient_method;
 use crate::objective::{HUGE, Objective};
 use crate::parameter::{Parameter, Range};
 use crate::problem::{Method, Problem, ResidualsFn, Settings};
+use crate::{gradient_method, simplex};
 use invalid_input::InvalidInput;
+use nalgebra::{DMatrix, DVector};
 
-/// Number of doublings of the step after which an end counts as open.
-const MOST_DOUBLINGS: usize = 6;
-/// An end beyond this change of a transformed coordinate, a factor of 3000, also counts as open: models far out cost much and
-/// have little meaning.
+/// Largest number of searches for an end.
+const MOST_SEARCHES: usize = 40;
+/// An end beyond this change of a transformed coordinate, a factor of 3000, counts as open: models far out cost much and have
+/// little meaning. The same holds for this many first steps of a coordinate that is not transformed.
 const FURTHEST: f64 = 8.0;
-/// Steps of the secant towards an end, and the relative distance of `zeta` from its limit at which it ends.
-const MOST_SECANTS: usize = 12;
+const FURTHEST_IN_STEPS: f64 = 64.0;
+/// Relative distance of `zeta` from its limit at which a point lies on the contour.
 const NEAR: f64 = 3e-3;
+/// A bracket that is this narrow, relative to its distance from the minimum or to the square of this times the first step,
+/// contains a jump.
+const CLOSE: f64 = 1e-2;
+/// After a way around a jump has been found, the next step is this many times the width of the bracket.
+const ONWARD: f64 = 8.0;
 
 /// The profile of one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,14 +43,13 @@ pub struct Profile {
     pub low: Option<f64>,
     /// Upper end, likewise.
     pub high: Option<f64>,
-    /// Parameters with a smaller sum of squares than those of the fit, if the search found any: the fit is then not a minimum,
-    /// and the profile ends where they were found.
+    /// The parameters with the smallest sum of squares that was met, if it is below that of the fit: the fit is then not a minimum.
     pub better: Option<Vec<f64>>,
 }
 
 /// Follows the profile of parameter number `j` from a minimum at `parameters` with the sum of squares `least` until it has
 /// risen by `rise`. `step` is the first step in the transformed coordinate, about the half-width that the covariance suggests.
-/// The settings give tolerance and limit of the searches, which start where the last one ended.
+/// The settings give tolerance and limit of the searches.
 ///
 /// # Errors
 /// A problem that cannot be fitted, a parameter number out of range, a rise or step that is not positive.
@@ -74,12 +85,16 @@ pub fn profile(
     if !(rise > 0.0 && rise < HUGE && step > 0.0 && step < HUGE && least >= 0.0) {
         return Err(InvalidInput::new("rise, step", format!("{rise}, {step}"), "positive numbers"));
     }
-    let mut walk = Walk { problem, settings, j, least, better: None, points: vec![(parameters[j], least)] };
-    let low = walk.end(parameters, rise.sqrt(), -step);
-    let high = walk.end(parameters, rise.sqrt(), step);
+    let objective = Objective::new(problem, None);
+    let centre: Vec<f64> = problem.parameters.iter().zip(parameters).map(|(p, value)| p.inward(*value)).collect();
+    let tangent = tangent(&objective, &centre, j);
+    let points = vec![(parameters[j], least)];
+    let mut walk = Walk { problem, settings, j, least, centre, tangent, points, better: None };
+    let low = walk.end(rise.sqrt(), -step);
+    let high = walk.end(rise.sqrt(), step);
     let Walk { mut points, better, .. } = walk;
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(Profile { points, low, high, better })
+    Ok(Profile { points, low, high, better: better.map(|(parameters, _)| parameters) })
 }
 
 struct Walk<'a> {
@@ -87,76 +102,93 @@ struct Walk<'a> {
     settings: &'a Settings,
     j: usize,
     least: f64,
+    /// The coordinates of the minimum, and the direction of the profile there.
+    centre: Vec<f64>,
+    tangent: Vec<f64>,
     points: Vec<(f64, f64)>,
-    better: Option<Vec<f64>>,
+    better: Option<(Vec<f64>, f64)>,
+}
+
+/// A point of the profile.
+struct Point {
+    /// Distance of the fixed coordinate from the minimum.
+    reach: f64,
+    zeta: f64,
+    u: Vec<f64>,
 }
 
 impl Walk<'_> {
     /// The end of the interval in the direction of `step`.
-    fn end(&mut self, parameters: &[f64], limit: f64, step: f64) -> Option<f64> {
+    fn end(&mut self, limit: f64, step: f64) -> Option<f64> {
         let parameter = &self.problem.parameters[self.j];
-        let origin = parameter.inward(parameters[self.j]);
-        let mut at = parameters.to_vec();
-        // (distance, zeta) on both sides of the limit.
-        let (mut inside, mut reach) = ((0.0, 0.0), step);
-        let mut outside = None;
-        for _ in 0..=MOST_DOUBLINGS {
-            if parameter.range != Range::Free && reach.abs() > FURTHEST {
-                return None;
+        let furthest = if parameter.range == Range::Free { FURTHEST_IN_STEPS * step.abs() } else { FURTHEST };
+        let origin = self.centre[self.j];
+        let end = |point: &Point| Some(parameter.outward(origin + point.reach));
+        let mut inside = Point { reach: 0.0, zeta: 0.0, u: self.centre.clone() };
+        let (mut along, mut stride) = (self.tangent.clone(), step);
+        let mut outside: Option<Point> = None;
+        for _ in 0..MOST_SEARCHES {
+            let (reach, jumps) = match &outside {
+                None if inside.reach.abs() >= furthest => return None,
+                None => ((inside.reach + stride).clamp(-furthest, furthest), false),
+                Some(beyond) => {
+                    let width = beyond.reach - inside.reach;
+                    // The secant if zeta is a number on both sides, halfway otherwise; not too near to either.
+                    let share = (limit - inside.zeta) / (beyond.zeta - inside.zeta);
+                    let share = if beyond.zeta.is_finite() { share.clamp(0.2, 0.95) } else { 0.5 };
+                    let jumps = width.abs() <= CLOSE * beyond.reach.abs().max(CLOSE * step.abs());
+                    (if jumps { beyond.reach } else { inside.reach + share * width }, jumps)
+                }
+            };
+            let point = self.least_at(reach, &inside, &along, jumps);
+            let ends = (point.zeta - limit).abs() <= NEAR * limit || (jumps && point.zeta > limit);
+            if ends || point.zeta < limit {
+                self.points.push((parameter.outward(origin + reach), self.least + point.zeta * point.zeta));
             }
-            let zeta = self.zeta(&mut at, origin + reach)?;
-            if zeta.is_infinite() {
-                // The sum of squares has not risen enough as far as the model exists.
-                return None;
+            if ends {
+                // The model may not exist beyond the jump.
+                return end(&point).filter(|_| point.zeta.is_finite());
             }
-            if zeta >= limit {
-                outside = Some((reach, zeta));
-                break;
+            if point.zeta > limit {
+                outside = Some(point);
+                continue;
             }
-            inside = (reach, zeta);
-            reach *= 2.0;
-        }
-        let mut outside = outside?;
-        for _ in 0..MOST_SECANTS {
-            if (outside.1 - limit).abs() <= NEAR * limit {
-                break;
+            let width = reach - inside.reach;
+            if width.abs() >= CLOSE * step.abs() {
+                along = point.u.iter().zip(&inside.u).map(|(new, old)| (new - old) / width).collect();
             }
-            // The secant if zeta is a number on both sides, halfway otherwise.
-            let share = (limit - inside.1) / (outside.1 - inside.1);
-            let share = if outside.1.is_finite() { share.clamp(0.05, 0.95) } else { 0.5 };
-            let reach = inside.0 + share * (outside.0 - inside.0);
-            let zeta = self.zeta(&mut at, origin + reach)?;
-            if (zeta - limit).abs() <= NEAR * limit {
-                outside = (reach, zeta);
-            } else if zeta < limit {
-                inside = (reach, zeta);
+            if jumps {
+                (outside, stride) = (None, ONWARD * width);
             } else {
-                outside = (reach, zeta);
+                stride = 2.0 * width;
+                // The point beyond is not to be trusted if zeta is far smaller here than the secant has promised.
+                outside = outside.filter(|_| point.zeta > 0.5 * limit);
             }
+            inside = point;
         }
-        Some(parameter.outward(origin + outside.0))
+        outside.filter(|beyond| beyond.zeta.is_finite()).as_ref().and_then(end)
     }
 
-    /// `zeta` with the coordinate fixed at `u`. The others start at `at`, and `at` returns their end. Infinite if the model
-    /// does not exist; `None` after a sum of squares below `least` has been found.
-    fn zeta(&mut self, at: &mut [f64], u: f64) -> Option<f64> {
+    /// The point of the profile at this distance, searched from a point near it or, if that is better, from there along a
+    /// direction; by the simplex method too if the search is to be `thorough`. `zeta` is infinite if the model does not exist.
+    fn least_at(&mut self, reach: f64, from: &Point, along: &[f64], thorough: bool) -> Point {
         let (j, problem) = (self.j, self.problem);
-        at[j] = problem.parameters[j].outward(u);
-        let held = at[j];
-        let whole = |others: &[f64]| {
+        let held = self.centre[j] + reach;
+        let value = problem.parameters[j].outward(held);
+        let whole = |others: &[f64], at_j: f64| {
             let mut all = others.to_vec();
-            all.insert(j, held);
+            all.insert(j, at_j);
             all
         };
         let without = |all: &[f64]| -> Vec<f64> {
-            all.iter().enumerate().filter(|(k, _)| *k != j).map(|(_, value)| *value).collect()
+            all.iter().enumerate().filter(|(k, _)| *k != j).map(|(_, entry)| *entry).collect()
         };
         let n = problem.parameters.len();
-        let residuals = |others: &[f64], r: &mut [f64]| (problem.residuals)(&whole(others), r);
+        let residuals = |others: &[f64], r: &mut [f64]| (problem.residuals)(&whole(others, value), r);
         let jacobian = |others: &[f64], rows: &mut [f64]| {
             let Some(full) = problem.jacobian else { return };
             let mut all = vec![f64::NAN; problem.count * n];
-            full(&whole(others), &mut all);
+            full(&whole(others, value), &mut all);
             for (row, reduced) in all.chunks_exact(n).zip(rows.chunks_exact_mut(n - 1)) {
                 reduced.copy_from_slice(&without(row));
             }
@@ -171,26 +203,52 @@ impl Walk<'_> {
         };
         let objective = Objective::new(&reduced, None);
         let mut buffer = vec![0.0; problem.count];
-        let start: Vec<f64> = reduced.parameters.iter().zip(without(at)).map(|(p, value)| p.inward(value)).collect();
-        let settings = Settings { method: Method::LevenbergMarquardt, ..*self.settings };
-        let there = objective.sum_of_squares(&start, &mut buffer);
-        let (end, value) = if start.is_empty() || !there.is_finite() {
-            (start, there)
-        } else {
-            let (end, _) = gradient_method::minimise(&objective, &start, &settings);
-            let value = objective.sum_of_squares(&end, &mut buffer);
-            if value <= there { (end, value) } else { (start, there) }
-        };
-        if !value.is_finite() {
-            return Some(f64::INFINITY);
+        let mut sum = |u: &[f64]| objective.sum_of_squares(u, &mut buffer);
+        let mut tried = |u: Vec<f64>| (sum(&u), u);
+        let lower = |a: (f64, Vec<f64>), b: (f64, Vec<f64>)| if b.0 < a.0 { b } else { a };
+        let width = reach - from.reach;
+        let mut best = tried(without(&from.u));
+        // Without other parameters there is nothing to search.
+        if n > 1 {
+            let ahead: Vec<f64> = from.u.iter().zip(along).map(|(u, rate)| u + width * rate).collect();
+            best = lower(best, tried(without(&ahead)));
         }
-        at.copy_from_slice(&whole(&objective.parameters(&end)));
-        self.points.push((held, value));
+        if n > 1 && best.0.is_finite() {
+            let start = best.1.clone();
+            let settings = Settings { method: Method::LevenbergMarquardt, ..*self.settings };
+            best = lower(best, tried(gradient_method::minimise(&objective, &start, &settings).0));
+            if thorough {
+                let steps: Vec<f64> = without(along).iter().map(|rate| width.abs() * rate.abs().max(1.0)).collect();
+                let found = simplex::minimise(&mut sum, &start, &steps, settings.tolerance, settings.max_evaluations);
+                best = lower(best, (found.value, found.u));
+            }
+        }
+        let (least, others) = best;
+        let u = whole(&others, held);
         // A fit may be improved by rounding within its tolerance.
-        if value < self.least - 1e-3 - 1e-6 * self.least {
-            self.better = Some(at.to_vec());
-            return None;
+        let known = self.better.as_ref().map_or(self.least - 1e-3 - 1e-6 * self.least, |(_, known)| *known);
+        if least < known {
+            self.better = Some((whole(&objective.parameters(&others), value), least));
         }
-        Some((value - self.least).max(0.0).sqrt())
+        Point { reach, zeta: (least - self.least).max(0.0).sqrt(), u }
     }
+}
+
+/// The direction in which the minimum moves with coordinate `j`, by the linearised problem: the change of each coordinate for a
+/// change of `u_j` by 1.
+fn tangent(objective: &Objective, u: &[f64], j: usize) -> Vec<f64> {
+    let (m, n) = (objective.problem.count, u.len());
+    if n == 1 {
+        return vec![1.0];
+    }
+    let mut rows = vec![0.0; m * n];
+    objective.jacobian(u, &mut rows);
+    let jacobian = DMatrix::from_row_slice(m, n, &rows);
+    let by_j = DVector::from_column_slice(jacobian.column(j).as_slice());
+    let svd = jacobian.remove_column(j).svd(true, true);
+    // Combinations that the data do not determine stay as they are.
+    let others = svd.solve(&-by_j, 1e-8 * svd.singular_values.max());
+    let mut change = others.map_or_else(|_| vec![0.0; n - 1], |found| found.as_slice().to_vec());
+    change.insert(j, 1.0);
+    change
 }

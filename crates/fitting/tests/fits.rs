@@ -179,6 +179,93 @@ fn undetermined_parameters_have_no_intervals() {
     assert!((found.parameters[0] + found.parameters[1] - 2.0).abs() < 1e-6);
 }
 
+/// A residual of the logarithm `x` of a combination of parameters, with many minima beside `x = 0`.
+fn rugged(x: f64) -> f64 {
+    100.0 * (x + 0.2 * (20.0 * x).sin())
+}
+
+fn profile_of(residuals: &ResidualsFn, count: usize, j: usize, step: f64) -> Profile {
+    let parameter = |name: &str| Parameter::positive(name, 1.0, (0.1, 10.0));
+    let problem = Problem { parameters: vec![parameter("a"), parameter("b")], count, residuals, jacobian: None };
+    profile(&problem, &Settings::default(), &[1.0, 1.0], 0.0, j, 1.96 * 1.96, step).unwrap()
+}
+
+#[test]
+fn profiles_stay_in_their_valley() {
+    // Only the product is determined: neither parameter has an end, however rugged the sum of squares is beside the valley.
+    let product = |p: &[f64], r: &mut [f64]| r.copy_from_slice(&[rugged((p[0] * p[1]).ln()), 0.0]);
+    for step in [0.1, 1.0] {
+        for j in [0, 1] {
+            let found = profile_of(&product, 2, j, step);
+            assert_eq!((found.low, found.high, found.better), (None, None, None), "{j}, {step}");
+        }
+    }
+    // One of them is determined besides, with a standard deviation of 0.5 of its logarithm. The valley is curved.
+    let curved = |p: &[f64], r: &mut [f64]| {
+        let [a, b] = [p[0].ln(), p[1].ln()];
+        r.copy_from_slice(&[rugged(b - a - 0.4 * (2.0 * a).sin()), a / 0.5]);
+    };
+    for step in [0.1, 1.0, 3.0] {
+        let found = profile_of(&curved, 2, 0, step);
+        for (end, truth) in [(found.low, -0.98), (found.high, 0.98)] {
+            assert!((end.unwrap().ln() - truth).abs() < 5e-3, "{step}: {end:?}");
+        }
+        // Every point is one of the profile.
+        for (a, sum) in found.points {
+            assert!((sum - (a.ln() / 0.5).powi(2)).abs() < 1e-3, "{step}: {a}, {sum}");
+        }
+    }
+}
+
+#[test]
+fn an_end_is_a_point_of_the_contour_or_a_jump() {
+    // A jump at a = 1.1, at which the contour ends. The other parameter cannot avoid it.
+    let steep = |p: &[f64], r: &mut [f64]| {
+        let [a, b] = [p[0].ln(), p[1].ln()];
+        r.copy_from_slice(&[(a + b) / 0.01, a, if p[0] > 1.1 { 5.0 } else { 0.0 }]);
+    };
+    let found = profile_of(&steep, 3, 0, 1.0);
+    assert!(
+        (found.high.unwrap() / 1.1 - 1.0).abs() < 0.01 && (found.low.unwrap().ln() + 1.96).abs() < 0.01,
+        "{found:?}"
+    );
+    // A jump at a minimum that lies on its edge. The search for the other parameter does not see the edge, but it can go around.
+    let edge = |p: &[f64], r: &mut [f64]| {
+        let [a, b] = [p[0].ln(), p[1].ln()];
+        r.copy_from_slice(&[(a - b) / 0.3, (a + b) / 0.3, if b < 0.5 * a - 1e-6 { 5.0 } else { 0.0 }]);
+    };
+    let found = profile_of(&edge, 3, 0, 0.4);
+    // On the edge b = a/2: S = (1 + 9) a^2 / (4 * 0.09); on the other side b = 0 is the best: S = 2 a^2 / 0.09.
+    let high = 1.96 / (10.0f64 / 0.36).sqrt();
+    assert!((found.high.unwrap().ln() / high - 1.0).abs() < 0.1, "{} {high}", found.high.unwrap().ln());
+    // No model beyond a = 2, where the sum of squares is still small.
+    let ends = |p: &[f64], r: &mut [f64]| {
+        r.copy_from_slice(&[(p[0] * p[1]).ln(), p[0].ln(), 0.0]);
+        if p[0] > 2.0 {
+            r.fill(f64::NAN)
+        }
+    };
+    let found = profile_of(&ends, 3, 0, 1.0);
+    assert!(found.high.is_none() && (found.low.unwrap().ln() + 1.96).abs() < 0.01, "{found:?}");
+}
+
+#[test]
+fn a_profile_of_one_parameter_or_from_a_point_that_is_no_minimum_is_found() {
+    let one = Problem {
+        parameters: vec![Parameter::free("a", 0.0, (-1.0, 1.0))],
+        count: 1,
+        residuals: &|p, r| r[0] = p[0],
+        jacobian: None,
+    };
+    let found = profile(&one, &Settings::default(), &[0.0], 0.0, 0, 4.0, 0.1).unwrap();
+    assert!((found.low.unwrap() + 2.0).abs() < 0.01 && (found.high.unwrap() - 2.0).abs() < 0.01, "{found:?}");
+    // The sum of squares is 9 at a = 0 and 0 at a = 3.
+    let away = Problem { residuals: &|p, r| r[0] = p[0] - 3.0, ..one };
+    let found = profile(&away, &Settings::default(), &[0.0], 9.0, 0, 4.0, 1.0).unwrap();
+    assert!(found.better.unwrap()[0] > 1.0 && (found.low.unwrap() + 0.6056).abs() < 0.01);
+    assert!((found.high.unwrap() - 6.6056).abs() < 0.03, "{:?}", found.high);
+}
+
 #[test]
 fn intervals_cover_as_often_as_stated() {
     // For a straight line, 20 points and uniform errors, 95 % intervals should contain the slope in about 95 of 100 cases.
