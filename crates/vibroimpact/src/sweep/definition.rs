@@ -17,7 +17,7 @@ use crate::scene::json::{self, quote};
 use crate::scene::{InvalidInput, toml};
 
 /// Must be changed whenever the same sweep gives other rows or other columns.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 /// Number of points, spread over the sweep, that are checked to find out whether the scene can be solved at all.
 const PROBES: u64 = 5;
 /// Chunks into which a sweep is divided, unless it is so large that they would hold too many points.
@@ -80,7 +80,7 @@ impl Sweep {
     }
 
     fn new(contents: Contents) -> Result<Sweep, InvalidInput> {
-        let Contents { description, scene, axes, random, uncertain, told, canonical } = contents;
+        let Contents { description, scene, axes, random, uncertain, told, reliability, canonical } = contents;
         let drawn = uncertain.as_ref().map(|uncertain| uncertain.draws().count());
         let sizes = axes.iter().map(Axis::count).chain(random.iter().map(|random| random.draws)).chain(drawn);
         let points = sizes.clone().try_fold(1u64, u64::checked_mul).filter(|points| *points <= MAX_POINTS);
@@ -91,7 +91,7 @@ impl Sweep {
         let results = Results::Impact;
         let mut sweep = Sweep { description, axes, random, uncertain, scene, canonical, points, results };
         sweep.check_overlap()?;
-        sweep.results = sweep.results_of(&sweep.check_values()?);
+        sweep.results = sweep.results_of(&sweep.check_values()?, reliability)?;
         if let Some(uncertain) = &mut sweep.uncertain {
             uncertain.tell(told, &sweep.results).map_err(|found| found.within("sampling"))?;
         }
@@ -132,10 +132,14 @@ impl Sweep {
     }
 
     /// The results of the points of a sweep with this scene.
-    fn results_of(&self, scene: &AnyScene) -> Results {
+    fn results_of(&self, scene: &AnyScene, reliability: bool) -> Result<Results, InvalidInput> {
         match (scene, &self.uncertain) {
-            (AnyScene::Impact(_), Some(_)) => Results::Draw,
-            _ => Results::of(scene),
+            (AnyScene::Impact(_), _) if reliability => {
+                let allowed = "false, or left out: only scenes of bodies have reliable_until_s";
+                Err(InvalidInput::new("reliability", "true", allowed))
+            }
+            (AnyScene::Impact(_), Some(_)) => Ok(Results::Draw),
+            _ => Ok(Results::of(scene, reliability)),
         }
     }
 

@@ -7,7 +7,7 @@ use invalid_input::InvalidInput;
 use vibroimpact_sim::assembly::{Outcome, Reason};
 
 use super::results::{Results, of_draw, of_impact};
-use crate::assembly::{AnyScene, Wanted};
+use crate::assembly::{AnyScene, MOST_INTERVALS, Wanted};
 use crate::model::Kept;
 
 /// Checks whether a scene can be solved, without solving it. Errors of the program itself are reported in the rows.
@@ -33,13 +33,14 @@ pub(super) fn evaluate(
         (AnyScene::Impact(scene), Results::Draw) => {
             Ok(Some(of_draw(&scene.draw_with(kept).map_err(|fault| fault.to_string())?)))
         }
-        (AnyScene::Bodies(scene), Results::Run(_)) => {
+        (AnyScene::Bodies(scene), Results::Run { reliability, .. }) => {
             let ended = AtomicBool::new(false);
             let mut look = |_| ended.store(stop(), Ordering::Relaxed);
-            let wanted =
-                Wanted { intervals: 0, reliability: false, course: false, take: None, stop: &ended, tell: &mut look };
+            // the reliability needs the intervals
+            let (reliability, intervals) = (*reliability, if *reliability { MOST_INTERVALS } else { 0 });
+            let wanted = Wanted { intervals, reliability, course: false, take: None, stop: &ended, tell: &mut look };
             let found = scene.simulate_with(wanted).map_err(|fault| fault.to_string())?;
-            let whole = found.run.outcome != Outcome::Stopped(Reason::Interrupted);
+            let whole = found.run.outcome != Outcome::Stopped(Reason::Interrupted) && !(reliability && stop());
             Ok(whole.then(|| results.of_run(&found)))
         }
         (AnyScene::Impact(_), _) => Err("bodies is missing; the first point of the sweep has it".to_owned()),

@@ -54,6 +54,7 @@ const FIELDS: &[(&str, &str)] = &[
     ("outputs[]", "the name of a result of the sweep"),
     ("sampling_error", "a number greater than 0, or an object with outputs and such numbers"),
     ("indices", "true or false"),
+    ("reliability", "true or false"),
 ];
 
 fn fault(field: impl Into<invalid_input::Path>, value: impl Into<String>) -> InvalidInput {
@@ -101,6 +102,10 @@ pub(super) struct SweepFile {
     /// How uncertain fields are drawn.
     #[schemars(with = "Option<SamplingEntry>")]
     sampling: Option<Value>,
+    /// Whether the column `reliable_until_s` is computed for scenes of bodies, which takes a second run with a thousandth of the
+    /// tolerance; `false` when left out.
+    #[serde(default)]
+    reliability: bool,
 }
 
 /// A field that runs through values: `values`, or `from`, `to` and `count`.
@@ -171,6 +176,8 @@ pub(super) struct Contents {
     pub random: Option<Random>,
     pub uncertain: Option<Uncertain>,
     pub told: Told,
+    /// Whether `reliable_until_s` is computed.
+    pub reliability: bool,
     /// The file as a tree, with the scene in it.
     pub canonical: Value,
 }
@@ -266,7 +273,8 @@ pub(super) fn from_tree(mut canonical: Value) -> Result<Contents, InvalidInput> 
         let allowed = "left out in the presence of vary: every point of a grid has the same draws";
         return Err(InvalidInput::new(["sampling", "sampling_error"], quote(error), allowed));
     }
-    Ok(Contents { description: file.description, scene, axes, random, uncertain, told, canonical })
+    let (description, reliability) = (file.description, file.reliability);
+    Ok(Contents { description, scene, axes, random, uncertain, told, reliability, canonical })
 }
 
 /// Reads an object; messages describe the allowed values of sweep files.

@@ -95,7 +95,7 @@ pub(super) fn of_results(results: &Results) -> (&'static str, Vec<Quantity>) {
             let sub_impacts = Quantity::new("sub_impact_count", Axis::new("sub-impacts").integers());
             ("Restitution and sub-impacts", vec![Quantity { uncertainty, ..restitution }, sub_impacts])
         }
-        Results::Run(_) => (
+        Results::Run { .. } => (
             "Contact",
             vec![
                 Quantity::new("largest_force_n", Axis::new("largest force").unit("N")),

@@ -46,9 +46,10 @@ const OF_DRAW: [(&str, Kind); 9] = [
 ];
 
 /// The columns of a run before those of its contacts,
-const OF_RUN: [(&str, Kind); 8] = [
+const OF_RUN: [(&str, Kind); 9] = [
     ("outcome", Kind::Text),
     ("end_s", Kind::Number),
+    ("reliable_until_s", Kind::Number),
     ("motion_periods", Kind::Whole),
     ("motion_intervals", Kind::Whole),
     ("intervals", Kind::Whole),
@@ -88,8 +89,9 @@ const LAST: [(&str, Kind); 11] = [
 
 /// Default outputs of a run that are reported as distributions.
 const TOLD_OF_RUN: [&str; 3] = ["intervals", "largest_force_n", "contact_work_rate_w"];
-/// Numbers of a run that cannot be outputs: the work of the solver, and the motion, which has no mean.
-const NOT_OUTPUTS: [&str; 9] = [
+/// Numbers of a run that cannot be outputs: the accuracy and the work of the solver, and the motion, which has no mean.
+const NOT_OUTPUTS: [&str; 10] = [
+    "reliable_until_s",
     "motion_periods",
     "motion_intervals",
     "residual_j",
@@ -108,18 +110,23 @@ pub(super) enum Results {
     Impact,
     /// Results of one impact among many with uncertain fields.
     Draw,
-    /// Results of a run with these contacts, which are the contacts of the first point. If another point lacks one of them, its
-    /// cells are empty.
-    Run(Vec<String>),
+    /// Results of a run.
+    Run {
+        /// The contacts of the first point. If another point lacks one of them, its cells are empty.
+        contacts: Vec<String>,
+        /// Whether `reliable_until_s` is computed.
+        reliability: bool,
+    },
 }
 
 impl Results {
-    /// The results of scenes of this kind.
-    pub(super) fn of(scene: &AnyScene) -> Results {
+    /// The results of scenes of this kind; `reliability` concerns runs.
+    pub(super) fn of(scene: &AnyScene, reliability: bool) -> Results {
         match scene {
             AnyScene::Impact(_) => Results::Impact,
             AnyScene::Bodies(scene) => {
-                Results::Run(scene.contacts.iter().flat_map(|contact| contact.names()).collect())
+                let contacts = scene.contacts.iter().flat_map(|contact| contact.names()).collect();
+                Results::Run { contacts, reliability }
             }
         }
     }
@@ -139,7 +146,7 @@ impl Results {
         match self {
             Results::Impact => OF_IMPACT.iter().map(owned).collect(),
             Results::Draw => OF_DRAW.iter().map(owned).collect(),
-            Results::Run(contacts) => {
+            Results::Run { contacts, .. } => {
                 let of_contact = |contact: &String| OF_CONTACT.map(|(name, kind)| (format!("{contact}.{name}"), kind));
                 let contacts = contacts.iter().flat_map(of_contact);
                 OF_RUN.iter().map(owned).chain(contacts).chain(LAST.iter().map(owned)).collect()
@@ -151,7 +158,7 @@ impl Results {
     pub(super) fn outputs(&self) -> Vec<String> {
         match self {
             Results::Impact | Results::Draw => ["restitution", "sub_impact_count"].map(str::to_owned).to_vec(),
-            Results::Run(_) => {
+            Results::Run { .. } => {
                 let is_output =
                     |(name, kind): &(String, Kind)| *kind != Kind::Text && !NOT_OUTPUTS.contains(&name.as_str());
                 self.columns().into_iter().filter(is_output).map(|(name, _)| name).collect()
@@ -163,7 +170,7 @@ impl Results {
     pub(super) fn told(&self) -> &'static [&'static str] {
         match self {
             Results::Impact | Results::Draw => &["restitution"],
-            Results::Run(_) => &TOLD_OF_RUN,
+            Results::Run { .. } => &TOLD_OF_RUN,
         }
     }
 
@@ -173,7 +180,7 @@ impl Results {
         match self {
             Results::Impact => among(&OF_IMPACT),
             Results::Draw => among(&OF_DRAW),
-            Results::Run(contacts) => {
+            Results::Run { contacts, .. } => {
                 let last = || among(&LAST).map(|place| OF_RUN.len() + contacts.len() * OF_CONTACT.len() + place);
                 let of_contact = || {
                     let (contact, column) = name.rsplit_once('.')?;
@@ -204,6 +211,7 @@ impl Results {
         let run = [
             summary.outcome.to_owned(),
             number(summary.end_s),
+            known(summary.reliable_until_s),
             whole(found.period_s.map(|_| motion.map_or(0, |motion| motion.periods))),
             whole(motion.map(|motion| motion.intervals)),
             contacts().map(|contact| contact.count).sum::<u64>().to_string(),
@@ -213,7 +221,7 @@ impl Results {
         ];
         let names = match self {
             Results::Impact | Results::Draw => &[][..],
-            Results::Run(names) => names,
+            Results::Run { contacts, .. } => contacts,
         };
         let of_contact = |name: &String| {
             let empty: [String; OF_CONTACT.len()] = Default::default();

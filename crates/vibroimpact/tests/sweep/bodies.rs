@@ -32,6 +32,28 @@ fn sweep_of(scene: Value) -> Value {
     })
 }
 
+#[test]
+fn the_time_up_to_which_a_run_is_certain_is_computed_on_request() {
+    let mut file = json!({
+        "scene": shaken(),
+        "vary": [{ "field": "bodies.ball.velocity_m_s", "values": [-0.1, 0.2] }],
+        "reliability": true
+    });
+    let bench = Bench::new(&file);
+    bench.succeeds(&["sweep", "sweep.json", "--out", "out"]);
+    let mut table = csv::Reader::from_path(bench.path("out/results.csv")).unwrap();
+    let place = table.headers().unwrap().iter().position(|name| name == "reliable_until_s").unwrap();
+    let sweep = Sweep::from_value(&file).unwrap();
+    for (point, row) in table.records().map(Result::unwrap).enumerate() {
+        let AnyScene::Bodies(scene) = sweep.scene(point as u64).unwrap() else { panic!("point {point}") };
+        let expected = scene.simulate().unwrap().reliable_until_s.unwrap();
+        assert_eq!(row[place].parse::<f64>().ok(), Some(expected));
+    }
+    file["reliability"] = json!("yes");
+    let told = Bench::new(&file).refuses(&["sweep", "sweep.json", "--out", "out"]);
+    assert!(told.contains("reliability") && told.contains("true or false"), "{told}");
+}
+
 /// Four values, one of which has the wrong type, are rejected; with a value that is out of range there are rows with errors.
 #[test]
 fn each_row_agrees_with_simulate_and_bytes_depend_on_nothing_else() {
@@ -68,6 +90,7 @@ fn each_row_agrees_with_simulate_and_bytes_depend_on_nothing_else() {
         let number = |name: &str| row[place(name)].parse::<f64>().ok();
         assert_eq!(&row[place("outcome")], summary.outcome);
         assert_eq!(number("end_s"), Some(summary.end_s));
+        assert_eq!(number("reliable_until_s"), None);
         for (name, contact) in &summary.contacts {
             assert_eq!(row[place(&format!("{name}.count"))], contact.count.to_string());
             assert_eq!(number(&format!("{name}.impulse_n_s")), Some(contact.impulse_n_s));
@@ -138,7 +161,7 @@ fn basins_of_the_ball_on_a_shaken_table_contain_the_motions_of_the_closed_form()
     let sweep = Sweep::from_value(&file).unwrap();
     let rows = bench.rows("out");
     for periods in [1, 2] {
-        let row = rows.iter().find(|row| (&row[5], &row[6]) == (periods.to_string().as_str(), "1")).unwrap();
+        let row = rows.iter().find(|row| (&row[6], &row[7]) == (periods.to_string().as_str(), "1")).unwrap();
         let AnyScene::Bodies(scene) = sweep.scene(row[0].parse().unwrap()).unwrap() else { panic!() };
         let found = scene.simulate().unwrap();
         let last = &found.intervals[0][found.intervals[0].len() - 2];
