@@ -1,8 +1,10 @@
 //! Scenes of bodies: runs, periodic motions.
 
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use vibroimpact::assembly::{self, AssemblyScene, MOST_INTERVALS, Summary, Wanted};
@@ -10,7 +12,7 @@ use vibroimpact::orbit::Over;
 use vibroimpact::vibroimpact_sim::assembly::OrbitSettings;
 use vibroimpact::{InvalidInput, export};
 
-use crate::errors::Fault;
+use crate::errors::{Fault, interrupted};
 use crate::input::Source;
 use crate::output;
 
@@ -37,11 +39,12 @@ impl Signals {
         self.found.is_some()
     }
 
-    /// The result so far, unless a signal was received.
-    fn unless<T>(self, found: Result<T, Fault>) -> PyResult<T> {
+    /// The result, or the exception of a signal; that of Ctrl-C has the result so far.
+    fn deliver<'py>(self, py: Python<'py>, result: Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
         match self.found {
+            None => Ok(result),
+            Some(signal) if signal.is_instance_of::<PyKeyboardInterrupt>(py) => Err(interrupted(py, signal, result)),
             Some(signal) => Err(signal),
-            None => Ok(found?),
         }
     }
 }
@@ -61,16 +64,16 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
         };
         let found = scene.simulate_with(wanted)?;
         let json = Summary::new(&found).json(scene)?;
-        Ok((json, found.posed.contacts, found.course))
+        Ok::<_, Fault>((json, found.posed.contacts, found.course))
     });
-    let (json, names, course) = signals.unless(found)?;
+    let (json, names, course) = found?;
     let result = output::result(py, &json)?;
     if let Some(course) = course {
         result.set_item("history", output::columns(py, assembly::history(&names, &course.rows))?)?;
         let section = course.period_s.map(|_| output::columns(py, assembly::history(&names, &course.section)));
         result.set_item("section", section.transpose()?)?;
     }
-    Ok(result)
+    signals.deliver(py, result)
 }
 
 /// Find the periodic motion of a scene of bodies under a harmonic load, or follow a branch of them over a field.
@@ -80,12 +83,14 @@ pub fn simulate<'py>(py: Python<'py>, scene: &AssemblyScene, history: bool) -> P
 /// `floquet_multipliers` as a complex one.
 ///
 /// With `over`, the path of a number in the scene as in a sweep, the branch is followed from `from_` (default: the value in the
-/// scene) to `to`; `step` is the first step as a share of that range. The entry `columns` is then a dictionary of arrays with a
-/// value for each of the `orbits`: those of the table that `--csv` writes.
+/// scene) to `to`; `step` is the first step as a share of that range. With `doublings` the branches of twice the period that
+/// begin at period doublings are followed too, 1 for those of the branch itself, 2 also for theirs. The entry `columns` is then a
+/// dictionary of arrays with a value for each orbit of all branches: those of the table that `--csv` writes.
 ///
-/// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends a branch.
+/// Raises `InvalidInput` for a scene, or a field, that cannot be used. Ctrl-C ends the search with the exception `Interrupted`,
+/// a `KeyboardInterrupt` whose `result` is the result so far.
 #[pyfunction]
-#[pyo3(signature = (scene, *, periods = 1, transient = 100, over = None, from_ = None, to = None, step = 0.02))]
+#[pyo3(signature = (scene, *, periods = 1, transient = 100, over = None, from_ = None, to = None, step = 0.02, doublings = 0))]
 #[expect(clippy::too_many_arguments, reason = "they are keywords in Python")]
 pub fn orbit(
     py: Python<'_>,
@@ -96,23 +101,38 @@ pub fn orbit(
     from_: Option<f64>,
     to: Option<f64>,
     step: f64,
+    doublings: u32,
 ) -> PyResult<Bound<'_, PyDict>> {
     let settings = OrbitSettings { forcing_periods: periods, transient_periods: transient, ..OrbitSettings::default() };
     let Some(field) = over else {
-        let json = py.detach(|| Ok::<_, Fault>(export::json(&scene.bodies()?.orbit(&settings)?)?))?;
-        return output::result(py, &json);
+        let (found, signals) = py.detach(|| {
+            until_signal(|stop| {
+                let scene = scene.bodies()?;
+                Ok(scene.orbit_until(&settings, stop)?.json(&scene)?)
+            })
+        });
+        return signals.deliver(py, output::result(py, &found?)?);
     };
-    let mut signals = Signals::new();
-    let found = py.detach(|| {
-        let needed = || InvalidInput::missing("to", "needed beside over: a finite number");
-        let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step };
-        let branch = scene.bodies()?.orbit_branch(&over, &settings, |_| !signals.look())?;
-        let table = branch.csv().map_err(export::Failure::from)?;
-        Ok((export::json(&branch)?, table))
+    let (found, signals) = py.detach(|| {
+        until_signal(|stop| {
+            let needed = || InvalidInput::missing("to", "needed beside over: a finite number");
+            let over = Over { field: &field, from: from_, to: to.ok_or_else(needed)?, step, doublings };
+            let scene = scene.bodies()?;
+            let branch = scene.orbit_branch(&over, &settings, stop)?;
+            let table = branch.csv().map_err(export::Failure::from)?;
+            Ok((branch.json(&scene)?, table))
+        })
     });
-    let (json, table) = signals.unless(found)?;
+    let (json, table) = found?;
     let result = output::result(py, &json)?;
     let columns = py.import("vibroimpact._convert")?.call_method1("columns", (String::from_utf8_lossy(&table),))?;
     result.set_item("columns", columns)?;
-    Ok(result)
+    signals.deliver(py, result)
+}
+
+/// Runs a search that a signal stops, and returns the signal too.
+fn until_signal<T>(search: impl FnOnce(&dyn Fn() -> bool) -> Result<T, Fault>) -> (Result<T, Fault>, Signals) {
+    let signals = RefCell::new(Signals::new());
+    let found = search(&|| signals.borrow_mut().look());
+    (found, signals.into_inner())
 }

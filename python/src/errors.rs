@@ -2,14 +2,23 @@
 
 use std::io;
 
-use pyo3::PyErr;
 use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use vibroimpact::export::Failure;
 use vibroimpact::sweep::SweepError;
 use vibroimpact::{InvalidInput, SceneError};
 
 mod python {
     pyo3::import_exception!(vibroimpact._errors, InvalidInput);
+    pyo3::import_exception!(vibroimpact._errors, Interrupted);
+}
+
+/// The exception after Ctrl-C, with the result so far.
+pub fn interrupted(py: Python<'_>, signal: PyErr, result: Bound<'_, PyDict>) -> PyErr {
+    let exception = python::Interrupted::new_err((result.unbind(),));
+    exception.set_cause(py, Some(signal));
+    exception
 }
 
 /// An exception to be raised.

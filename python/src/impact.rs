@@ -25,7 +25,8 @@ use crate::output;
 /// period of a harmonic load, or `None` without one.
 ///
 /// Raises `InvalidInput` for a scene that cannot be used, `OSError` for a file that cannot be read. Sustained contact, and a
-/// computation that stopped, are results: see `outcome`. Ctrl-C ends a run of bodies.
+/// computation that stopped, are results: see `outcome`. Ctrl-C ends a run of bodies with the exception `Interrupted`, a
+/// `KeyboardInterrupt` whose `result` is the result so far.
 #[pyfunction]
 #[pyo3(signature = (scene, *, history = false))]
 pub fn simulate(py: Python<'_>, scene: Source, history: bool) -> PyResult<Bound<'_, PyDict>> {

@@ -205,6 +205,43 @@ def test_other_threads_run_meanwhile(name, scene):
     assert max(np.diff([began, *within, ended])) < 0.5 * (ended - began)
 
 
+BOUNCING = {
+    "bodies": {"ball": {"kind": "mass", "mass_kg": 0.1, "position_m": 1e-4}},
+    "contacts": [
+        {"name": "floor", "between": [{"body": "ball"}, "ground"], "law": "linear-spring", "stiffness_n_m": 1e7}
+    ],
+    "gravity_m_s2": 9.81,
+    "loads": [{"body": "ball", "force_n": 0.1, "frequency_hz": 3}],
+    "end_s": 1e5,
+}
+LONG = {
+    "simulate": lambda: vibroimpact.simulate(BOUNCING),
+    "orbit": lambda: vibroimpact.orbit(BOUNCING, transient=1_000_000),
+    "branch": lambda: vibroimpact.orbit(BOUNCING, transient=1_000_000, over="loads[0].force_n", to=0.2),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_control_c_keeps_the_result_so_far(name):
+    timer = threading.Timer(0.3, _thread.interrupt_main)
+    timer.start()
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        LONG[name]()
+    assert time.perf_counter() - began < 20
+    assert isinstance(stopped.value, vibroimpact.Interrupted)
+    result = stopped.value.result
+    assert result["scene"]["end_s"] == 1e5
+    if name == "simulate":
+        assert result["reason"] == "interrupted" and 0 < result["end_s"] < 1e5
+        assert len(result.contacts["floor"]["intervals"]) > 1
+    elif name == "orbit":
+        assert result["outcome"] == "interrupted"
+    else:
+        assert result["interrupted"] and result["orbits"] == []
+    assert pickle.loads(pickle.dumps(stopped.value)).result.keys() == result.keys()
+
+
 def test_control_c_ends_a_sweep(scene):
     timer = threading.Timer(0.3, _thread.interrupt_main)
     timer.start()

@@ -6,7 +6,7 @@ with ``--json``; histories and tables are numpy arrays, which ``pandas.DataFrame
 release the interpreter's lock while they compute.
 """
 
-from ._errors import InvalidInput
+from ._errors import Interrupted, InvalidInput
 from ._result import Identification, Impact, Motion, Result
 from ._vibroimpact import (
     __version__,
@@ -72,6 +72,7 @@ __all__ = [
     "Impact",
     "InfiniteBeam",
     "InfinitePlate",
+    "Interrupted",
     "InvalidInput",
     "KelvinVoigt",
     "LankaraniNikravesh",

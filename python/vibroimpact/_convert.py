@@ -33,6 +33,7 @@ _TABLES: dict[str, list[list[str]]] = {
             "displacement_first_harmonic_m",
             "displacement_max_m",
             "displacement_min_m",
+            "displacement_section_m",
         ],
     ],
 }
@@ -140,8 +141,10 @@ def _with_arrays(entry: dict[str, Any]) -> dict[str, Any]:
 def _table(rows: list[dict[str, Any]], fields: list[str]) -> Any:
     longest = max((len(row["contact"]) for row in rows if "contact" in row), default=1)
 
-    def kind(field: str) -> Any:
-        return f"U{longest}" if field == "contact" else np.int64 if field in _WHOLE else np.float64
+    def kind(field: str) -> tuple[Any, ...]:
+        if rows and isinstance(rows[0][field], list):
+            return field, np.float64, (len(rows[0][field]),)
+        return field, f"U{longest}" if field == "contact" else np.int64 if field in _WHOLE else np.float64
 
     cells = [tuple(np.nan if row[field] is None else row[field] for field in fields) for row in rows]
-    return np.array(cells, dtype=[(field, kind(field)) for field in fields])
+    return np.array(cells, dtype=[kind(field) for field in fields])

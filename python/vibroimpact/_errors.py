@@ -1,6 +1,8 @@
-"""The exception for input that cannot be used."""
+"""Exceptions: input that cannot be used, and a computation that was interrupted."""
 
 from __future__ import annotations
+
+from typing import Any
 
 
 class InvalidInput(ValueError):
@@ -22,3 +24,16 @@ class InvalidInput(ValueError):
 
     def __reduce__(self) -> tuple[type[InvalidInput], tuple[str, str, str | None, str]]:
         return type(self), (str(self), self.field, self.value, self.allowed)
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended a computation; ``result`` is the result so far, in the form of a complete one."""
+
+    result: dict[str, Any]
+
+    def __init__(self, result: dict[str, Any]) -> None:
+        super().__init__("interrupted; the result so far is the attribute result of this exception")
+        self.result = result
+
+    def __reduce__(self) -> tuple[type[Interrupted], tuple[dict[str, Any]]]:
+        return type(self), (self.result,)

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use vibroimpact_sim::InvalidInput;
 use vibroimpact_sim::assembly::{
     Assembly, Body, BodyMode, BranchSettings, Contact, Force, Interval, Load, Observer, OrbitOutcome, OrbitSettings,
-    Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch, run,
+    Outcome, Point, Reason, Settings, Special, find_orbit, find_orbit_until, follow_branch, follow_doubled, run,
 };
 
 fn point(shape: f64) -> Point {
@@ -187,13 +187,51 @@ fn the_branch_of_the_shaken_ball_doubles_at_the_closed_forms_threshold() {
     let e = 0.8;
     let mut settings = BranchSettings::over(0.6, 1.3);
     settings.orbit.transient_periods = 0;
-    let branch = follow_branch(|gamma| Ok::<_, InvalidInput>(shaken(gamma, e)), &settings, |_| true).unwrap();
+    let branch = follow_branch(|gamma| Ok::<_, InvalidInput>(shaken(gamma, e)), &settings, &|| false).unwrap();
     assert!(branch.complete, "{:?}", branch.points.last());
     let doubling: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::PeriodDoubling).collect();
     assert_eq!(doubling.len(), 1, "{:?}", branch.special);
     // The contact is not instantaneous: it takes 20 us of a period of 20 ms.
     assert!((doubling[0].parameter / 1.0708365 - 1.0).abs() < 5e-3, "{doubling:?}");
     assert!(branch.points.iter().all(|p| p.orbit.stable == (p.parameter < doubling[0].parameter)));
+
+    // The branch of two periods begins there, on the side where the motion of one period is unstable.
+    let build = |gamma| Ok::<_, InvalidInput>(shaken(gamma, e));
+    let doubled = follow_doubled(build, &settings, doubling[0], &|| false).unwrap();
+    assert!(doubled.points.len() > 5, "{doubled:?}");
+    let [first, last] = [&doubled.points[1], &doubled.points[doubled.points.len() - 1]];
+    assert!(first.orbit.stable && first.parameter > doubling[0].parameter - 1e-6, "{first:?}");
+    assert_eq!((first.orbit.forcing_periods, &first.orbit.intervals_per_period), (2, &vec![2]));
+    assert!(last.parameter > 1.1, "{last:?}");
+    for point in &doubled.points[1..] {
+        let [one, other] = [0, 1].map(|period: usize| point.orbit.section_m[period][0][0]);
+        let size = point.orbit.sides[0][0].displacement_max_m;
+        assert!((one - other).abs() > 1e-5 * size, "{point:?}");
+    }
+    // Transients lead to its stable orbits.
+    let stable = doubled.points.iter().rfind(|point| point.orbit.stable).unwrap();
+    let twice = OrbitSettings { forcing_periods: 2, transient_periods: 300, ..OrbitSettings::default() };
+    let OrbitOutcome::Found(reached) = find_orbit(&shaken(stable.parameter, e), &twice).unwrap() else { panic!() };
+    let highest = |orbit: &vibroimpact_sim::assembly::Orbit| orbit.sides[0][0].displacement_max_m;
+    assert!((highest(&reached) / highest(&stable.orbit) - 1.0).abs() < 1e-6, "{reached:?} {stable:?}");
+}
+
+/// Loads of 1 and 1.5 Hz repeat themselves every 2 s. Without contact the orbit is the sum of two steady motions.
+#[test]
+fn loads_with_a_common_period_have_an_orbit() {
+    let mut assembly = driven(0.02, 10.0, 1.0, 2.0 * PI);
+    let force = Force::Harmonic { force_n: 2.0, omega_rad_s: 3.0 * PI, phase_rad: 0.1 };
+    assembly.loads.push(Load { body: 0, shape: vec![1.0], force });
+    let OrbitOutcome::Found(orbit) = find_orbit(&assembly, &OrbitSettings::default()).unwrap() else { panic!() };
+    assert!((orbit.period_s / 2.0 - 1.0).abs() < 1e-14 && orbit.stable, "{orbit:?}");
+    let gain = |omega: f64| ((100.0f64 - omega * omega).powi(2) + (0.4 * omega).powi(2)).sqrt().recip();
+    let side = orbit.sides[0][1];
+    assert!((side.displacement_first_harmonic_m / gain(2.0 * PI) - 1.0).abs() < 1e-9, "{side:?}");
+    let most = gain(2.0 * PI) + 2.0 * gain(3.0 * PI);
+    assert!(side.displacement_max_m > 0.8 * most && side.displacement_max_m < most, "{side:?} {most}");
+    // Its section is the state that Newton's method has found.
+    assert_eq!(orbit.section_m.len(), 1);
+    assert!((orbit.section_m[0][0][1] - orbit.state[0]).abs() < 1e-12, "{orbit:?}");
 }
 
 #[test]
@@ -208,7 +246,7 @@ fn a_branch_passes_its_folds_and_locates_its_first_contact() {
     settings.step = 0.01;
     settings.longest_step = 0.02;
     settings.max_orbits = 400;
-    let branch = follow_branch(build, &settings, |_| true).unwrap();
+    let branch = follow_branch(build, &settings, &|| false).unwrap();
     // The steady motion without the stop reaches it where its amplitude equals the gap.
     let amplitude = |w: f64| 0.6 / ((100.0 - w * w).powi(2) + (0.4 * w).powi(2)).sqrt();
     let (mut low, mut high) = (8.0, 10.0);
@@ -238,7 +276,7 @@ fn a_pair_of_multipliers_leaves_the_unit_circle_at_a_neimark_sacker_point() {
             loads: vec![Load { body: 0, shape: vec![0.985, 0.783], force }],
         })
     };
-    let branch = follow_branch(driven, &BranchSettings::over(16.9, 17.9), |_| true).unwrap();
+    let branch = follow_branch(driven, &BranchSettings::over(16.9, 17.9), &|| false).unwrap();
     let found: Vec<_> = branch.special.iter().filter(|point| point.kind == Special::NeimarkSacker).collect();
     assert_eq!(found.len(), 1, "{:?}", branch.special);
     // By the multipliers of the neighbours on the branch, between which it lies.

@@ -7,8 +7,9 @@ use std::fs;
 
 use gallery::datasets;
 use program::{run, stdout};
-use serde_json::Value;
-use vibroimpact::assembly::AssemblyScene;
+use serde_json::{Value, json};
+use std::sync::atomic::AtomicBool;
+use vibroimpact::assembly::{AssemblyScene, Wanted};
 
 fn scene(name: &str) -> String {
     datasets(&format!("assemblies/{name}.json")).display().to_string()
@@ -104,6 +105,112 @@ fn out_writes_intervals_histories_picture_and_report() {
     assert!(history.iter().any(|row| number(&row[3]) > 100.0));
     assert_eq!(rows("section.csv").len(), 25);
     assert_eq!(fs::read_dir(folder.path().join("a")).unwrap().count(), 7);
+}
+
+/// A row of balls above floors of their own, all at the same height.
+fn many_balls(count: usize) -> Value {
+    let bodies = (0..count)
+        .map(|i| (format!("b{i}"), json!({ "kind": "mass", "mass_kg": 0.1 + 0.01 * i as f64, "position_m": 1e-4 })));
+    let contacts: Vec<Value> = (0..count)
+        .map(|i| {
+            json!({ "name": format!("floor-{i}"), "between": [{ "body": format!("b{i}") }, "ground"],
+                    "law": "linear-spring", "stiffness_n_m": 1e7 })
+        })
+        .collect();
+    let bodies: serde_json::Map<String, Value> = bodies.collect();
+    json!({ "bodies": bodies, "contacts": contacts, "gravity_m_s2": 9.81, "end_s": 0.02 })
+}
+
+#[test]
+fn the_picture_shows_every_contact_or_says_which() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = |scene: &str| {
+        stdout(&run(folder.path(), &["simulate", scene, "--plot", "run.svg", "--force"]));
+        fs::read_to_string(folder.path().join("run.svg")).unwrap()
+    };
+    let eight = picture(&scene("sdnl301"));
+    for support in 1..=4 {
+        for side in ["+", "-"] {
+            assert!(eight.contains(&format!("support-{support}{side}")), "{support}{side}");
+        }
+    }
+    fs::write(folder.path().join("many.json"), many_balls(30).to_string()).unwrap();
+    let many = picture("many.json");
+    assert!(many.contains("the 24 of 30 contacts with the largest RMS force"));
+    // the heaviest balls press hardest
+    assert!(many.contains("floor-29") && !many.contains("floor-0<") && many.matches("floor-").count() == 24);
+}
+
+/// A mode of 40 Hz and one of 100 kHz, which 4,096 samples in 2 s cannot represent, rattle freely between stops.
+#[test]
+fn the_spectrum_has_no_motion_that_is_too_fast_for_its_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let both = json!({
+        "bodies": { "rig": { "kind": "modal", "omega_rad_s": [251.3, 628_000.0], "damping_ratios": [0.001, 0.0],
+            "points": { "tip": { "shape": [1, 1] } }, "start": { "amplitude_m_kg0_5": [1e-3, 1e-4] } } },
+        "contacts": [{ "name": "stop", "between": ["ground", { "body": "rig", "location": "tip" }], "gap_m": 0.01,
+            "law": "linear-spring", "stiffness_n_m": 1e4 }],
+        "end_s": 2
+    });
+    let scene = AssemblyScene::from_value(&both).unwrap();
+    let found = scene
+        .simulate_with(Wanted {
+            intervals: 10,
+            reliability: false,
+            course: true,
+            take: None,
+            stop: &AtomicBool::new(false),
+            tell: &mut |_| (),
+        })
+        .unwrap();
+    let samples = &found.course.as_ref().unwrap().spectrum;
+    assert_eq!(samples.fast_modes, 1);
+    let values = samples.of_contact(0);
+    assert_eq!(values.len(), 4096);
+    for (i, value) in values.iter().enumerate() {
+        let time_s = i as f64 * samples.step_s;
+        let slow = 1e-3 * (-0.2513 * time_s).exp() * (251.3 * time_s).cos();
+        assert!((value - slow).abs() < 2e-6, "{time_s}: {value:e} {slow:e}");
+    }
+    fs::write(folder.path().join("both.json"), both.to_string()).unwrap();
+    stdout(&run(folder.path(), &["simulate", "both.json", "--plot", "run.svg"]));
+    let picture = fs::read_to_string(folder.path().join("run.svg")).unwrap();
+    assert!(picture.contains("Spectrum of the displacements without 1 mode above 1.024 kHz"), "{picture}");
+}
+
+#[test]
+fn intervals_are_printed_with_enough_digits_to_tell_their_ends_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = stdout(&run(folder.path(), &["simulate", &scene("shaken-table")]));
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
+    let rows: Vec<_> = rows.iter().filter(|row| row.first() == Some(&"table") && row[2].ends_with('s')).collect();
+    assert_eq!(rows.len(), 20, "{text}");
+    let start_s = |row: &[&str]| row[1].parse::<f64>().unwrap() * if row[2] == "ms" { 1e-3 } else { 1.0 };
+    assert!(rows.iter().any(|row| start_s(row) >= 1.0), "{text}");
+    assert!(rows.iter().all(|row| row[1] != row[3]), "{text}");
+}
+
+#[test]
+fn a_ball_that_starts_inside_a_beam_leaves_the_range_of_contact_laws() {
+    let mut inside: Value = serde_json::from_str(&fs::read_to_string(scene("dropped-ball")).unwrap()).unwrap();
+    inside["bodies"]["ball"]["position_m"] = json!(-1);
+    inside["end_s"] = json!(1e-7);
+    let check = |scene: &Value| -> Value {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
+        let printed = stdout(&run(folder.path(), &["simulate", "scene.json", "--json"]));
+        let result: Value = serde_json::from_str(&printed).unwrap();
+        let text = stdout(&run(folder.path(), &["simulate", "scene.json"]));
+        let verdict = result["trust"][0]["verdict"].as_str().unwrap().to_owned();
+        assert!(text.contains(&format!("{verdict}: the surfaces of contact overlap by up to")), "{text}");
+        result["trust"][0].clone()
+    };
+    let outside = check(&inside);
+    assert_eq!((outside["check"].as_str(), outside["verdict"].as_str()), (Some("compression"), Some("outside")));
+    assert!(outside["value"].as_f64().unwrap() > 80.0, "{outside}");
+    inside["bodies"]["ball"]["position_m"] = json!(1e-5);
+    inside["end_s"] = json!(0.1);
+    assert_eq!(check(&inside)["verdict"], "within");
 }
 
 #[test]

@@ -116,12 +116,13 @@ fn every_key_of_an_identification_is_documented() {
 fn every_key_and_column_of_an_orbit_is_documented() {
     let folder = tempfile::tempdir().unwrap();
     let table = dataset("assemblies/shaken-table.json");
-    let text = documented(folder.path(), "`orbit`", &["orbit", &table], &[]);
+    let text = documented(folder.path(), "`orbit`", &["orbit", &table], &["scene"]);
     assert_eq!(text["outcome"], "found");
-    let over = ["--over", "ground_motion.frequency_hz", "--to", "20.05", "--csv", "branch.csv"];
-    documented(folder.path(), "`orbit`", &[&["orbit", &table][..], &over].concat(), &[]);
+    let over = ["--over", "ground_motion.displacement_m", "--to", "0.00096", "--doublings", "1", "--csv", "branch.csv"];
+    let branch = documented(folder.path(), "`orbit`", &[&["orbit", &table][..], &over].concat(), &["scene"]);
+    assert_eq!(branch["doubled"].as_array().unwrap().len(), 1);
     let text = section(&page("outputs"), "`orbit`");
-    let ours = [("table.", "NAME."), ("NAME.1.", "NAME.0."), ("ground_motion.frequency_hz", "field")];
+    let ours = [("table.", "NAME."), ("NAME.1.", "NAME.0."), ("ground_motion.displacement_m", "field")];
     columns(&folder.path().join("branch.csv"), &text, &ours);
 }
 

@@ -1,5 +1,6 @@
 //! Periodic motions of scenes: text, JSON, branches, errors.
 
+mod gallery;
 mod program;
 
 use std::fs;
@@ -29,6 +30,9 @@ fn the_steady_motion_is_found_with_its_multipliers() {
     let printed = stdout(&run(folder.path(), &["orbit", &scene, "--json"]));
     let orbit: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(orbit["outcome"], "found");
+    // The result contains the scene that it belongs to.
+    assert_eq!(orbit["vibroimpact"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(orbit["scene"]["loads"][0]["frequency_hz"], 1.3);
     assert!((orbit["period_s"].as_f64().unwrap() * 1.3 - 1.0).abs() < 1e-14);
     assert_eq!((orbit["stable"].as_bool(), orbit["intervals_per_period"].as_u64()), (Some(true), Some(0)));
     let size = (-0.02f64 * 10.0 / 1.3).exp();
@@ -59,6 +63,7 @@ fn a_branch_is_followed_drawn_and_written() {
     let arguments: Vec<&str> = ["orbit", &scene, "--json"].into_iter().chain(over).collect();
     let branch: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
     assert_eq!((branch["field"].as_str(), branch["complete"].as_bool()), (Some("loads[0].frequency_hz"), Some(true)));
+    assert_eq!((branch["scene"]["version"].as_u64(), branch["interrupted"].as_bool()), (Some(1), Some(false)));
     let kinds: Vec<&str> =
         branch["special_points"].as_array().unwrap().iter().map(|point| point["kind"].as_str().unwrap()).collect();
     assert!(kinds.contains(&"grazing"), "{kinds:?}");
@@ -79,6 +84,84 @@ fn a_branch_keeps_its_orbits_where_the_field_cannot_go_on() {
     let branch: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
     let last = branch["orbits"].as_array().unwrap().last().unwrap()["value"].as_f64().unwrap();
     assert!((0.0..1e-6).contains(&last), "{last}");
+}
+
+#[test]
+fn loads_of_one_and_one_and_a_half_hertz_repeat_themselves_after_two_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = rig(folder.path(), 1.0);
+    let one = r#"{ "body": "rig", "location": "tip", "force_n": 0.6, "frequency_hz": 1.3 }"#;
+    let two = |second_hz: f64| {
+        let load = |frequency_hz: f64| one.replace("1.3", &frequency_hz.to_string());
+        fs::read_to_string(&scene).unwrap().replace(one, &format!("{}, {}", load(1.0), load(second_hz)))
+    };
+    fs::write(folder.path().join("two.json"), two(1.5)).unwrap();
+    let found: Value = serde_json::from_str(&stdout(&run(folder.path(), &["orbit", "two.json", "--json"]))).unwrap();
+    assert_eq!((found["outcome"].as_str(), found["forcing_periods"].as_u64()), (Some("found"), Some(1)));
+    assert!((found["period_s"].as_f64().unwrap() - 2.0).abs() < 1e-14, "{found}");
+    // A run settles into the same motion.
+    let longer = two(1.5).replace(r#""end_s": 10"#, r#""end_s": 120"#);
+    fs::write(folder.path().join("longer.json"), longer).unwrap();
+    let run_to = |file: &str| -> Value {
+        serde_json::from_str(&stdout(&run(folder.path(), &["simulate", file, "--json"]))).unwrap()
+    };
+    assert_eq!(run_to("longer.json")["steady_motion"]["periods"], 1);
+    // The error names the load and its frequency as the scene states them.
+    fs::write(folder.path().join("none.json"), two(std::f64::consts::SQRT_2)).unwrap();
+    let output = run(folder.path(), &["orbit", "none.json"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("loads[1].frequency_hz = 1.414") && !message.contains("rad/s"), "{message}");
+    assert!(run_to("none.json")["steady_motion"].is_null());
+}
+
+#[test]
+fn a_field_on_which_the_motion_does_not_depend_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = rig(folder.path(), 1.0);
+    for field in ["end_s", "tolerance"] {
+        let arguments = ["orbit", &scene, "--over", field, "--from", "1e-9", "--to", "1e-8"];
+        let output = run(folder.path(), &arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(field) && message.contains("on which the periodic motion depends"), "{message}");
+    }
+}
+
+/// The branch of the shaken table: the motions of two and of four periods that begin at its period doublings.
+#[test]
+fn doubled_branches_are_followed_drawn_and_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = gallery::datasets("assemblies/shaken-table.json").display().to_string();
+    let words = ["orbit", &scene, "--over", "ground_motion.displacement_m", "--to", "0.0011", "--json"];
+    let more = ["--doublings", "2", "--csv", "b.csv", "--plot", "b.svg"];
+    let arguments: Vec<&str> = words.into_iter().chain(more).collect();
+    let branch: Value = serde_json::from_str(&stdout(&run(folder.path(), &arguments))).unwrap();
+    let doubled = branch["doubled"].as_array().unwrap();
+    let begins: Vec<f64> = doubled.iter().map(|branch| branch["begins_at"].as_f64().unwrap()).collect();
+    assert_eq!(begins.len(), 2, "{begins:?}");
+    let point = &branch["special_points"][0];
+    assert_eq!((point["kind"].as_str(), point["value"].as_f64()), (Some("period doubling"), Some(begins[0])));
+    assert!(begins[0] > 9.4e-4 && begins[0] < 9.6e-4 && begins[1] > begins[0], "{begins:?}");
+    for (branch, periods) in doubled.iter().zip([2, 4]) {
+        let orbits = branch["orbits"].as_array().unwrap();
+        assert!(orbits.len() > 3, "{branch}");
+        for orbit in orbits {
+            assert_eq!(orbit["forcing_periods"], periods);
+            let section = orbit["points"][0]["displacement_section_m"].as_array().unwrap();
+            assert_eq!(section.len(), periods);
+        }
+    }
+    let rows = [&branch, &doubled[0], &doubled[1]].map(|branch| branch["orbits"].as_array().unwrap().len());
+    let table = fs::read_to_string(folder.path().join("b.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + rows.iter().sum::<usize>());
+    // Markers with a legend, which cannot cover each other as texts beside the points would.
+    let picture = fs::read_to_string(folder.path().join("b.svg")).unwrap();
+    assert_eq!(picture.matches("period doubling").count(), 1);
+    assert!(picture.contains("once in each period"));
+    // Otherwise the text says how to follow them.
+    let text = stdout(&run(folder.path(), &words[..6]));
+    assert!(text.contains("--doublings 1"), "{text}");
 }
 
 #[test]

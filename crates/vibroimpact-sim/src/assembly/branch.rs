@@ -12,8 +12,11 @@
 //! | grazing | an interval of contact appears or disappears: the surfaces touch with zero speed |
 //!
 //! Each special point is located by bisection between the orbits on either side.
+//!
+//! At a period doubling a branch of twice the period begins, in the direction of the multiplier's eigenvector
+//! ([`follow_doubled`]). It may end there or at another period doubling of the same branch.
 
-use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, find_orbit, refine};
+use super::orbit::{Orbit, OrbitOutcome, OrbitSettings, PeriodMap, find_orbit_until, refine};
 use super::problem::Assembly;
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
@@ -27,6 +30,13 @@ const ITERATIONS_MAX: u32 = 8;
 const QUICK: u32 = 4;
 /// Number of bisections that locate a special point.
 const HALVINGS: u32 = 20;
+/// First step on a branch of twice the period, as a part of the first step of the others.
+const FIRST_OF_DOUBLED: f64 = 0.125;
+/// Largest number of iterations of a singular value decomposition.
+const SVD_ITERATIONS: usize = 10_000;
+/// Least distance of the first orbit of twice the period from a repetition after half of it, as a part of the step. It is twice the
+/// step where the branch begins along the eigenvector.
+const LEAST_ASYMMETRY: f64 = 0.2;
 
 /// Settings for following a branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +110,7 @@ pub struct BranchPoint {
 }
 
 /// A special point of a branch.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SpecialPoint {
     /// Its kind.
     pub kind: Special,
@@ -110,6 +120,8 @@ pub struct SpecialPoint {
     pub uncertainty: f64,
     /// Number of the orbit of the branch after it.
     pub before_orbit: usize,
+    /// An orbit within the uncertainty.
+    pub orbit: Orbit,
 }
 
 /// A branch of periodic motions.
@@ -119,69 +131,56 @@ pub struct Branch {
     pub points: Vec<BranchPoint>,
     /// Where stability or the pattern of contacts changes.
     pub special: Vec<SpecialPoint>,
-    /// Whether the branch was followed to an end of the range. If not, no orbit was found beyond the last one.
+    /// Whether the branch was followed to an end of the range, or back to that of half the period. If not, no orbit was found
+    /// beyond the last one.
     pub complete: bool,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
 }
 
-/// Follows the branch of periodic motions of `build(parameter)`.
+/// Follows the branch of periodic motions of `build(parameter)`. `stop` is called from time to time, and ends the branch
+/// with the orbits so far.
 ///
 /// # Errors
 /// If settings are out of range or the input is invalid, and the errors of `build`.
 pub fn follow_branch<L: ContactLaw + Clone, E: From<InvalidInput>>(
     build: impl Fn(f64) -> Result<Assembly<L>, E>,
     settings: &BranchSettings,
-    mut progress: impl FnMut(&BranchPoint) -> bool,
+    stop: &dyn Fn() -> bool,
 ) -> Result<Branch, E> {
     settings.check()?;
-    let OrbitOutcome::Found(first) = find_orbit(&build(settings.from)?, &settings.orbit)? else {
-        return Ok(Branch::default());
+    let OrbitOutcome::Found(first) = find_orbit_until(&build(settings.from)?, &settings.orbit, stop)? else {
+        return Ok(Branch { interrupted: stop(), ..Branch::default() });
     };
-    let mut follower = Follower { build, settings, phase_part: first.phase_s / first.period_s };
-    let mut branch = Branch::default();
-    let mut current = BranchPoint { parameter: settings.from, orbit: *first };
-    let Some(mut tangent) = follower.first_tangent(&current)? else { return Ok(branch) };
-    let mut step = settings.step;
-    if !progress(&current) {
-        branch.points.push(current);
-        return Ok(branch);
-    }
-    branch.points.push(current.clone());
-    while branch.points.len() < settings.max_orbits {
-        let Some((next, iterations)) = follower.step(&current, &tangent, step)? else {
-            step *= 0.5;
-            if step < 1e-5 * settings.step {
-                return Ok(branch);
-            }
-            continue;
-        };
-        let next = follower.within_range(&current, next)?;
-        let new_tangent = follower.between(&current, &next, &tangent);
-        let turn = tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1];
-        let mut special = Vec::new();
-        for kind in differences(&current.orbit, &next.orbit, turn) {
-            let before_orbit = branch.points.len();
-            let (parameter, uncertainty) = follower.locate(&current, &tangent, step, kind)?;
-            special.push(SpecialPoint { kind, parameter, uncertainty, before_orbit });
-        }
-        let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
-        special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        branch.special.append(&mut special);
-        (current, tangent) = (next, new_tangent);
-        let goes_on = progress(&current);
-        branch.points.push(current.clone());
-        let (low, high) = settings.limits();
-        if !(low < current.parameter && current.parameter < high) {
-            branch.complete = true;
-            break;
-        }
-        if !goes_on {
-            break;
-        }
-        if iterations < QUICK {
-            step = (1.5 * step).min(settings.longest_step);
-        }
-    }
-    Ok(branch)
+    let follower = Follower::new(build, settings, &first, stop);
+    let start = BranchPoint { parameter: settings.from, orbit: *first };
+    let tangent = follower.first_tangent(&start)?;
+    follower.follow(start, tangent)
+}
+
+/// Follows the branch of twice the period that begins at a period doubling of another one, otherwise as [`follow_branch`].
+///
+/// # Errors
+/// As [`follow_branch`].
+pub fn follow_doubled<L: ContactLaw + Clone, E: From<InvalidInput>>(
+    build: impl Fn(f64) -> Result<Assembly<L>, E>,
+    settings: &BranchSettings,
+    doubling: &SpecialPoint,
+    stop: &dyn Fn() -> bool,
+) -> Result<Branch, E> {
+    let forcing_periods = doubling.orbit.forcing_periods.saturating_mul(2);
+    let settings = BranchSettings { orbit: OrbitSettings { forcing_periods, ..settings.orbit }, ..*settings };
+    settings.check()?;
+    let mut follower = Follower::new(build, &settings, &doubling.orbit, stop);
+    follower.half = Some(doubling.orbit.forcing_periods);
+    let state = DVector::from_column_slice(&doubling.orbit.state);
+    let Some(tangent) = follower.doubling_direction(&state, doubling.parameter)? else {
+        return Ok(Branch { interrupted: stop(), ..Branch::default() });
+    };
+    let OrbitOutcome::Found(orbit) = refine(&follower.map(doubling.parameter)?, state, &settings.orbit)? else {
+        return Ok(Branch { interrupted: stop(), ..Branch::default() });
+    };
+    follower.follow(BranchPoint { parameter: doubling.parameter, orbit: *orbit }, Some(tangent))
 }
 
 /// The special points between two neighbours on a branch; `turn` is negative if the parameter turns between them.
@@ -208,24 +207,125 @@ fn differences(one: &Orbit, other: &Orbit, turn: f64) -> Vec<Special> {
 struct Follower<'a, F> {
     build: F,
     settings: &'a BranchSettings,
-    /// The phase at which states are compared, as a part of the period; it is the same along the branch.
+    /// The phase at which states are compared, as a part of the period of the loads; it is the same along the branch.
     phase_part: f64,
+    /// On a branch that began at a period doubling: half the periods of the loads.
+    half: Option<u32>,
+    stop: &'a dyn Fn() -> bool,
 }
 
-impl<L, E, F> Follower<'_, F>
+impl<'a, L, E, F> Follower<'a, F>
 where
     L: ContactLaw + Clone,
     E: From<InvalidInput>,
     F: Fn(f64) -> Result<Assembly<L>, E>,
 {
+    fn new(build: F, settings: &'a BranchSettings, first: &Orbit, stop: &'a dyn Fn() -> bool) -> Follower<'a, F> {
+        let phase_part = first.phase_s * f64::from(first.forcing_periods) / first.period_s;
+        Follower { build, settings, phase_part, half: None, stop }
+    }
+
+    /// Follows the branch from an orbit along a tangent.
+    fn follow(&self, start: BranchPoint, tangent: Option<DVector<f64>>) -> Result<Branch, E> {
+        let settings = self.settings;
+        let mut current = start.clone();
+        let mut branch = Branch { points: vec![start], ..Branch::default() };
+        let Some(mut tangent) = tangent else { return Ok(branch) };
+        // the state changes fastest where a branch of twice the period begins
+        let mut step = if self.half.is_some() { FIRST_OF_DOUBLED * settings.step } else { settings.step };
+        let mut asymmetry: Option<DVector<f64>> = None;
+        while branch.points.len() < settings.max_orbits {
+            let found = self.step(&current, &tangent, step)?;
+            let found = match found {
+                Some((next, iterations)) => self.asymmetry(&next)?.map(|moved| (next, iterations, moved)),
+                None => None,
+            };
+            // a branch of twice the period does not begin along the one of half the period
+            let found = found.filter(|(.., moved)| {
+                self.half.is_none() || asymmetry.is_some() || moved.norm() > LEAST_ASYMMETRY * step
+            });
+            if (self.stop)() {
+                branch.interrupted = true;
+                break;
+            }
+            let Some((next, iterations, moved)) = found else {
+                step *= 0.5;
+                if step < 1e-5 * settings.step {
+                    return Ok(branch);
+                }
+                continue;
+            };
+            if asymmetry.is_some_and(|before| before.dot(&moved) < 0.0) {
+                // through the branch of half the period, to the same orbits half a period later
+                branch.complete = true;
+                break;
+            }
+            asymmetry = Some(moved);
+            let next = self.within_range(&current, next)?;
+            let new_tangent = self.between(&current, &next, &tangent);
+            let turn = tangent[tangent.len() - 1] * new_tangent[tangent.len() - 1];
+            let mut special = Vec::new();
+            for kind in differences(&current.orbit, &next.orbit, turn) {
+                special.push(self.locate(&current, &tangent, step, kind, branch.points.len())?);
+            }
+            if (self.stop)() {
+                branch.interrupted = true;
+                break;
+            }
+            let distance = |point: &SpecialPoint| (point.parameter - current.parameter).abs();
+            special.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+            branch.special.append(&mut special);
+            (current, tangent) = (next, new_tangent);
+            branch.points.push(current.clone());
+            let (low, high) = settings.limits();
+            if !(low < current.parameter && current.parameter < high) {
+                branch.complete = true;
+                break;
+            }
+            if iterations < QUICK {
+                step = (1.5 * step).min(settings.longest_step);
+            }
+        }
+        Ok(branch)
+    }
+
     fn range(&self) -> f64 {
         self.settings.to - self.settings.from
     }
 
-    fn map(&self, parameter: f64) -> Result<PeriodMap<'static, L>, E> {
-        let map = PeriodMap::new((self.build)(parameter)?, &self.settings.orbit, &|| false)?;
-        let phase = self.phase_part * map.period_s();
+    fn map(&self, parameter: f64) -> Result<PeriodMap<'a, L>, E> {
+        self.map_over(parameter, self.settings.orbit.forcing_periods)
+    }
+
+    fn map_over(&self, parameter: f64, forcing_periods: u32) -> Result<PeriodMap<'a, L>, E> {
+        let settings = OrbitSettings { forcing_periods, ..self.settings.orbit };
+        let map = PeriodMap::new((self.build)(parameter)?, &settings, self.stop)?;
+        let phase = self.phase_part * map.period_s() / f64::from(forcing_periods);
         Ok(map.at_phase(phase))
+    }
+
+    /// How far an orbit on a branch of twice the period is from a repetition after half of it, scaled; no component on other
+    /// branches. `None` if a run stops.
+    fn asymmetry(&self, point: &BranchPoint) -> Result<Option<DVector<f64>>, E> {
+        let Some(half) = self.half else { return Ok(Some(DVector::zeros(0))) };
+        let state = Self::state(&point.orbit);
+        let Ok(image) = self.map_over(point.parameter, half)?.apply(&state)? else { return Ok(None) };
+        Ok(Some((image - &state).component_div(&self.scales(point)?)))
+    }
+
+    /// The direction in which a branch of twice the period begins: the state changes along the eigenvector of the multiplier -1
+    /// over half of it, and the parameter does not.
+    fn doubling_direction(&self, state: &DVector<f64>, parameter: f64) -> Result<Option<DVector<f64>>, E> {
+        let Some(half) = self.half else { return Ok(None) };
+        let map = self.map_over(parameter, half)?;
+        let scales = map.scales(state, state);
+        let Ok(jacobian) = map.derivative(state, &scales)? else { return Ok(None) };
+        let n = state.len();
+        let opposite =
+            DMatrix::from_fn(n, n, |i, j| jacobian[(i, j)] * scales[j] / scales[i] + f64::from(u8::from(i == j)));
+        let decomposed = opposite.try_svd(false, true, f64::EPSILON, SVD_ITERATIONS);
+        let rows = decomposed.and_then(|decomposed| Some((decomposed.singular_values.imin(), decomposed.v_t?)));
+        Ok(rows.map(|(least, rows)| rows.row(least).transpose().insert_row(n, 0.0)))
     }
 
     fn state(orbit: &Orbit) -> DVector<f64> {
@@ -351,16 +451,18 @@ where
         })
     }
 
-    /// The parameter of a special point within a step, and its uncertainty.
+    /// A special point within a step, which comes before the orbit of this number.
     fn locate(
-        &mut self,
+        &self,
         from: &BranchPoint,
         tangent: &DVector<f64>,
         step: f64,
         kind: Special,
-    ) -> Result<(f64, f64), E> {
+        before_orbit: usize,
+    ) -> Result<SpecialPoint, E> {
         let (mut low, mut high) = (0.0, step);
         let (mut below, mut above) = (from.parameter, f64::NAN);
+        let mut orbit = from.orbit.clone();
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             let Some((point, _)) = self.step(from, tangent, middle)? else { break };
@@ -376,6 +478,7 @@ where
             } else {
                 (low, below) = (middle, point.parameter);
             }
+            orbit = point.orbit;
             if (above - below).abs() <= 1e-8 * self.range().abs() {
                 break;
             }
@@ -383,6 +486,7 @@ where
         if above.is_nan() {
             above = self.step(from, tangent, high)?.map_or(below, |(point, _)| point.parameter);
         }
-        Ok((0.5 * (below + above), 0.5 * (above - below).abs()))
+        let (parameter, uncertainty) = (0.5 * (below + above), 0.5 * (above - below).abs());
+        Ok(SpecialPoint { kind, parameter, uncertainty, before_orbit, orbit })
     }
 }

@@ -66,6 +66,7 @@ mod march;
 mod motion;
 mod no_derivative;
 mod orbit;
+mod period;
 pub(crate) mod problem;
 mod record;
 mod reliability;
@@ -84,10 +85,11 @@ mod trial;
 mod watch;
 pub(crate) mod wave;
 
-pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch};
+pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch, follow_doubled};
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
 pub use no_derivative::NoDerivative;
 pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, find_orbit_until};
+pub use period::CommonPeriod;
 pub use problem::{Assembly, Body, BodyMode, Contact, Force, Load, Point, Settings};
 pub use solution::{
     ContactEnd, ContactSample, Counts, Interval, Ledger, Motion, Observer, Outcome, Reason, Run, Statistics,

@@ -1,6 +1,6 @@
 //! Periodic motions under harmonic loads.
 //!
-//! After `n` periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by time integration. A periodic
+//! After `n` common periods of the loads the state `x = (a, b)` of all modes becomes `P(x)`, computed by time integration. A periodic
 //! motion is a fixed point, found by Newton's method, `(DP - 1) dx = x - P(x)`. The eigenvalues of `DP` there are its Floquet
 //! multipliers, and it is stable if none exceeds 1 in size. `DP` is the tangent of the motion, composed of its exact pieces
 //! ([`Solver::differentiate`] computes the same for other parameters). At grazing contacts the map has no derivative. Central
@@ -9,30 +9,31 @@
 //! The states are compared at a moment at which every contact is open, if there is one, because the internal variables of a
 //! closed contact are not part of `x`.
 
+use super::period::CommonPeriod;
 use super::problem::{Assembly, Force, Settings};
 use super::solution::{ContactSample, Interval, Motion, Observer, Outcome, Reason};
 use super::solve::{Solver, run};
 use contact_models::ContactLaw;
 use invalid_input::InvalidInput;
 use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
-use std::fmt;
+use std::{fmt, iter};
 
 /// Step of finite differences, relative to the size of the motion.
 const DIFFERENCE: f64 = 1e-5;
-/// Moments of a period at which it is sampled.
+/// Least number of moments of a period at which it is sampled, and of a period of the slowest load.
 const SAMPLES: usize = 1024;
+const SAMPLES_OF_CYCLE: usize = 64;
 /// Bisections that locate a turning point. The error of its displacement is the square of that of its time.
 const TURNING_HALVINGS: u32 = 24;
 /// A motion counts as unstable if a multiplier exceeds 1 by more than this, which is the accuracy at grazing contacts.
 const MARGINAL: f64 = 1e-6;
-/// Relative accuracy to which frequencies of loads must be multiples of one frequency.
-const COMMENSURATE: f64 = 1e-9;
 
 /// Settings of the search for a periodic motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitSettings {
-    /// Periods of the loads after which the motion repeats. Default 1.
+    /// Common periods of the loads ([`CommonPeriod`]) after which the motion repeats. Default 1.
     pub forcing_periods: u32,
     /// Periods that are followed from the start before Newton's method. Default 100.
     pub transient_periods: u32,
@@ -68,7 +69,7 @@ impl OrbitSettings {
 /// Motion of one side of a contact on an orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SideMotion {
-    /// Amplitude of the displacement at the orbit's first harmonic of the loads (m).
+    /// Amplitude of the displacement at the lowest frequency of the loads (m).
     pub displacement_first_harmonic_m: f64,
     /// Largest and least displacement (m).
     pub displacement_max_m: f64,
@@ -81,7 +82,7 @@ pub struct SideMotion {
 pub struct Orbit {
     /// Period of the motion (s), `forcing_periods` times that of the loads.
     pub period_s: f64,
-    /// Periods of the loads in it.
+    /// Common periods of the loads in it.
     pub forcing_periods: u32,
     /// The moment of the loads' period at which the state is given (s).
     pub phase_s: f64,
@@ -97,6 +98,8 @@ pub struct Orbit {
     pub intervals_per_period: Vec<u64>,
     /// Motion of both sides of every contact.
     pub sides: Vec<[SideMotion; 2]>,
+    /// Their displacements (m) at `phase_s` of each period of the loads, period by period and contact by contact.
+    pub section_m: Vec<Vec<[f64; 2]>>,
     /// Newton iterations that led here.
     pub iterations: u32,
 }
@@ -229,6 +232,8 @@ pub(crate) struct PeriodMap<'s, L> {
     assembly: Assembly<L>,
     settings: Settings,
     forcing_period_s: f64,
+    /// Periods of the slowest load in it.
+    cycles: u32,
     forcing_periods: u32,
     phase_s: f64,
 }
@@ -242,35 +247,17 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         stop: &'s dyn Fn() -> bool,
     ) -> Result<PeriodMap<'s, L>, InvalidInput> {
         assembly.check()?;
-        let frequencies = assembly.loads.iter().filter_map(|load| match load.force {
-            Force::Harmonic { omega_rad_s, .. } => Some(omega_rad_s),
-            _ => None,
-        });
-        let base = frequencies.clone().fold(f64::INFINITY, f64::min);
-        InvalidInput::unless(base.is_finite(), "loads", "no harmonic load", "at least one harmonic load")?;
-        for omega in frequencies {
-            let ratio = omega / base;
-            InvalidInput::unless(
-                (ratio - ratio.round()).abs() <= COMMENSURATE * ratio,
-                "loads",
-                format!("{omega} rad/s beside {base} rad/s"),
-                "frequencies that are whole multiples of the lowest",
-            )?;
+        let CommonPeriod { period_s: forcing_period_s, cycles } = CommonPeriod::of(&assembly.loads)?;
+        if let Some(i) = assembly.loads.iter().position(|load| matches!(load.force, Force::Sampled { .. })) {
+            let allowed = "constant and harmonic loads, which repeat themselves";
+            return Err(InvalidInput::new(("loads", i), "a sampled load", allowed));
         }
-        let sampled = assembly.loads.iter().any(|load| matches!(load.force, Force::Sampled { .. }));
-        InvalidInput::unless(
-            !sampled,
-            "loads",
-            "a sampled load",
-            "constant and harmonic loads, which repeat themselves",
-        )?;
-        let forcing_period_s = TAU / base;
         let mut runs = Settings::until(forcing_period_s * f64::from(settings.forcing_periods));
         runs.tolerance = settings.tolerance;
         runs.stop_at_rest = false;
         runs.check()?;
         let forcing_periods = settings.forcing_periods;
-        Ok(PeriodMap { stop, assembly, settings: runs, forcing_period_s, forcing_periods, phase_s: 0.0 })
+        Ok(PeriodMap { stop, assembly, settings: runs, forcing_period_s, cycles, forcing_periods, phase_s: 0.0 })
     }
 
     pub fn period_s(&self) -> f64 {
@@ -411,7 +398,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         jacobian: &DMatrix<f64>,
         iterations: u32,
     ) -> Result<OrbitOutcome, InvalidInput> {
-        let mut survey = Survey::new(self.assembly.contacts.len(), self.settings.end_s);
+        let mut survey = Survey::new(self);
         if let Err(outcome) = self.follow(&state, self.settings.end_s, &mut survey)? {
             return Ok(OrbitOutcome::Stopped(outcome));
         }
@@ -419,7 +406,7 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
         let mut floquet_multipliers: Vec<[f64; 2]> = eigenvalues.iter().map(|value| [value.re, value.im]).collect();
         floquet_multipliers.sort_by(|a, b| b[0].hypot(b[1]).total_cmp(&a[0].hypot(a[1])));
         let stable = floquet_multipliers.iter().all(|value| value[0].hypot(value[1]) <= 1.0 + MARGINAL);
-        let (intervals_per_period, sides) = survey.result(self.forcing_periods);
+        let sides = survey.sides();
         Ok(OrbitOutcome::Found(Box::new(Orbit {
             period_s: self.settings.end_s,
             forcing_periods: self.forcing_periods,
@@ -428,8 +415,9 @@ impl<'s, L: ContactLaw + Clone> PeriodMap<'s, L> {
             closure,
             floquet_multipliers,
             stable,
-            intervals_per_period,
+            intervals_per_period: survey.intervals,
             sides,
+            section_m: survey.section_m,
             iterations,
         })))
     }
@@ -483,42 +471,64 @@ impl Closed {
     }
 }
 
-/// Samples of a period.
+/// What is reported of a period.
 struct Survey {
     period_s: f64,
+    /// Equal intervals between samples, in a period of the loads and in all.
+    samples_of_forcing: usize,
+    samples: usize,
     next: usize,
-    samples: Vec<Vec<[f64; 2]>>,
+    /// Periods of the slowest load.
+    cycles: usize,
+    /// Sums of the displacements times `e^{i Omega t}`, contact by contact and side by side.
+    turned: Vec<[Complex64; 2]>,
+    section_m: Vec<Vec<[f64; 2]>>,
     /// Smallest and largest displacement (m), contact by contact and side by side.
     extremes: Vec<[(f64, f64); 2]>,
     intervals: Vec<u64>,
 }
 
 impl Survey {
-    fn new(contacts: usize, period_s: f64) -> Survey {
+    fn new<L>(map: &PeriodMap<'_, L>) -> Survey {
+        let contacts = map.assembly.contacts.len();
+        let (periods, cycles) = (map.forcing_periods as usize, map.cycles as usize);
+        let samples_of_forcing = SAMPLES.div_ceil(periods).max(SAMPLES_OF_CYCLE * cycles);
         Survey {
-            period_s,
+            period_s: map.settings.end_s,
+            samples_of_forcing,
+            samples: periods * samples_of_forcing,
             next: 0,
-            samples: vec![Vec::with_capacity(SAMPLES); contacts],
+            cycles: periods * cycles,
+            turned: vec![[Complex64::ZERO; 2]; contacts],
+            section_m: Vec::with_capacity(periods),
             extremes: vec![[(f64::INFINITY, f64::NEG_INFINITY); 2]; contacts],
             intervals: vec![0; contacts],
         }
     }
 
-    fn result(&self, forcing_periods: u32) -> (Vec<u64>, Vec<[SideMotion; 2]>) {
+    fn time_s(&self, sample: usize) -> f64 {
+        self.period_s * sample as f64 / self.samples as f64
+    }
+
+    fn sides(&self) -> Vec<[SideMotion; 2]> {
         let side = |c: usize, side: usize| {
-            let samples = &self.samples[c];
-            let (mut cosine, mut sine) = (0.0, 0.0);
-            for (i, values) in samples.iter().enumerate() {
-                let (s, c) = (TAU * f64::from(forcing_periods) * i as f64 / SAMPLES as f64).sin_cos();
-                cosine += values[side] * c;
-                sine += values[side] * s;
-            }
             let (displacement_min_m, displacement_max_m) = self.extremes[c][side];
-            let displacement_first_harmonic_m = 2.0 * cosine.hypot(sine) / samples.len().max(1) as f64;
+            let displacement_first_harmonic_m = 2.0 * self.turned[c][side].norm() / self.samples as f64;
             SideMotion { displacement_first_harmonic_m, displacement_max_m, displacement_min_m }
         };
-        let sides = (0..self.samples.len()).map(|c| [side(c, 0), side(c, 1)]).collect();
-        (self.intervals.clone(), sides)
+        (0..self.turned.len()).map(|c| [side(c, 0), side(c, 1)]).collect()
+    }
+
+    /// Adds a sample, with the displacements of every contact.
+    fn add(&mut self, sample: usize, displacements_m: Vec<[f64; 2]>) {
+        let turns = (self.cycles * sample) as f64 / self.samples as f64;
+        let turn = Complex64::cis(TAU * turns.fract());
+        for (turned, displacement_m) in self.turned.iter_mut().zip(&displacements_m) {
+            turned.iter_mut().zip(displacement_m).for_each(|(turned, displacement)| *turned += displacement * turn);
+        }
+        if sample.is_multiple_of(self.samples_of_forcing) {
+            self.section_m.push(displacements_m);
+        }
     }
 }
 
@@ -542,19 +552,19 @@ impl Observer for Survey {
     }
 
     fn panel(&mut self, panel: &dyn Motion) {
-        let mut times = vec![panel.start_s()];
-        while self.next < SAMPLES {
-            let time = self.period_s * self.next as f64 / SAMPLES as f64;
-            if time > panel.end_s() {
-                break;
-            }
-            times.push(time);
+        let first = self.next;
+        while self.next < self.samples && self.time_s(self.next) <= panel.end_s() {
             self.next += 1;
         }
-        times.push(panel.end_s());
-        for c in 0..self.samples.len() {
-            let states: Vec<ContactSample> = times.iter().map(|time| panel.contact(c, *time)).collect();
-            self.samples[c].extend(states[1..states.len() - 1].iter().map(|state| state.displacement_m));
+        let within = (first..self.next).map(|sample| self.time_s(sample));
+        let times: Vec<f64> = iter::once(panel.start_s()).chain(within).chain([panel.end_s()]).collect();
+        let contacts: Vec<Vec<ContactSample>> =
+            (0..self.turned.len()).map(|c| times.iter().map(|time| panel.contact(c, *time)).collect()).collect();
+        for sample in first..self.next {
+            let at = |states: &Vec<ContactSample>| states[1 + sample - first].displacement_m;
+            self.add(sample, contacts.iter().map(at).collect());
+        }
+        for (c, states) in contacts.iter().enumerate() {
             for side in 0..2 {
                 let (least, most) = &mut self.extremes[c][side];
                 let mut note = |displacement_m: f64| {

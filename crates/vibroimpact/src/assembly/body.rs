@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::fields::KINDS;
 use super::rod::Rod;
 use crate::scene::json::{found, quote, read};
-use crate::scene::{InvalidInput, MovingMode, SceneError, Structure};
+use crate::scene::{InvalidInput, Location, MovingMode, SceneError, Structure};
 
 /// A body; `"kind"` tells which.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -144,6 +144,25 @@ impl Body {
             body.structure = Elastics::Structure(Structure::Modal(modal));
         }
         Ok(())
+    }
+
+    /// Extent along `x` at a location (m): the thickness of a beam or plate, the length of a rod; `None` if it is not stated.
+    pub(super) fn thickness_m(&self, location_m: Option<Location>) -> Option<f64> {
+        let Body::Elastic(body) = self else { return None };
+        match &body.structure {
+            Elastics::Rod(rod) => Some(rod.segments.iter().map(|segment| segment.length_m).sum()),
+            Elastics::Structure(Structure::Beam(beam)) => {
+                let place = location_m?.along().ok()?;
+                let mut end_m = 0.0;
+                let here = beam.segments.iter().find(|segment| {
+                    end_m += segment.length_m;
+                    end_m >= place
+                });
+                here.or(beam.segments.last())?.thickness().map(|(_, thickness_m)| thickness_m)
+            }
+            Elastics::Structure(Structure::Plate(plate)) => Some(plate.thickness_m),
+            Elastics::Structure(_) => None,
+        }
     }
 
     /// The value of `"kind"`.

@@ -17,6 +17,7 @@
 //! Bodies start undeformed and at rest unless the scene states another start.
 
 mod body;
+mod compression;
 mod contact;
 pub(crate) mod fields;
 #[cfg(feature = "files")]
@@ -31,6 +32,7 @@ mod rod;
 mod schema;
 mod seen;
 mod simulate;
+mod spectrum;
 mod steady;
 mod summary;
 mod text;
@@ -55,6 +57,7 @@ pub use pose::Posed;
 pub use report::report;
 pub use rod::{AxialEnd, AxialSegment, Rod, RodKind};
 pub use simulate::{MOST_INTERVALS, Simulation, Wanted};
+pub use spectrum::SpectrumSamples;
 pub use steady::SteadyMotion;
 pub use summary::{BodyEnergy, Cost, Energy, Interval, Point as EndPoint, Statistics, Summary};
 pub use text::{headline, result};

@@ -27,6 +27,8 @@ pub struct Posed {
     pub bodies: Vec<String>,
     /// Names of the contacts in the order of the assembly; a two-sided contact is two of them.
     pub contacts: Vec<String>,
+    /// Thickness of the thinner body at each contact (m), where a thickness is known.
+    pub(super) thickness_m: Vec<Option<f64>>,
     /// For each contact of the assembly the number of that of the scene.
     of_scene: Vec<usize>,
     /// Number of loads in the scene; those of gravity and of the ground follow.
@@ -55,7 +57,7 @@ impl AssemblyScene {
     pub fn pose(&self) -> Result<Posed, InvalidInput> {
         let settings = self.settings()?;
         let mut bodies = Bodies::new(self)?;
-        let (mut contacts, mut names, mut of_scene) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut contacts, mut names, mut of_scene, mut thickness_m) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (i, contact) in self.contacts.iter().enumerate() {
             let posed = bodies.contact(contact).map_err(|fault| beside(fault, ("contacts", i)))?;
             for (name, posed) in posed {
@@ -65,6 +67,7 @@ impl AssemblyScene {
                 }
                 names.push(name);
                 of_scene.push(i);
+                thickness_m.push(self.thickness_m(contact));
                 contacts.push(posed);
             }
         }
@@ -87,11 +90,21 @@ impl AssemblyScene {
             settings,
             bodies: self.bodies.keys().cloned().collect(),
             contacts: names,
+            thickness_m,
             of_scene,
             loads: of_scene_loads,
         };
         posed.assembly.check().map_err(|fault| posed.in_scene(fault))?;
         Ok(posed)
+    }
+
+    /// Thickness of the thinner body at a contact.
+    fn thickness_m(&self, contact: &Contact) -> Option<f64> {
+        let sides = contact.between.iter().filter_map(|side| match side {
+            Side::Ground(_) => None,
+            Side::Body(point) => self.bodies.get(&point.body)?.thickness_m(point.location_m),
+        });
+        sides.filter(|thickness_m| *thickness_m > 0.0).reduce(f64::min)
     }
 
     fn settings(&self) -> Result<Settings, InvalidInput> {

@@ -8,7 +8,7 @@ use super::text::{
     CONTACT, INTERVAL, contact_rows, energy_rows, first_intervals, interval_cells, outcome, reliability,
 };
 use crate::plot::Figure;
-use crate::report::{Report, literal};
+use crate::report::{Report, literal, trusted};
 
 /// Intervals that are listed.
 const LISTED: usize = 100;
@@ -40,6 +40,7 @@ pub fn report(headline: &str, scene: &AssemblyScene, summary: &Summary, figure: 
     if all > rows.len() as u64 {
         report.text(&format!("... and {} more.", all - rows.len() as u64));
     }
+    trusted(&mut report, &summary.trust);
     report.heading("The scene");
     report.code(&scene.to_json());
     report.heading("How to repeat this");

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use vibroimpact_sim::assembly::{Force, Interval, Outcome, Reason, Run, Solver};
+use vibroimpact_sim::assembly::{CommonPeriod, Force, Interval, Load, Outcome, Reason, Run, Solver};
 
 use super::steady::SteadyMotion;
 use super::watch::{Course, Sink, Watch};
@@ -55,9 +55,9 @@ pub struct Simulation {
     pub intervals: Vec<Vec<Interval>>,
     /// Number of intervals beyond these.
     pub left_out: Vec<u64>,
-    /// The period of the first harmonic load (s), if there is one.
+    /// The common period of the harmonic loads (s), if they have one.
     pub period_s: Option<f64>,
-    /// The motion to which the run has converged at the end, in periods of this load.
+    /// The motion to which the run has converged at the end, in these periods.
     pub steady: Option<SteadyMotion>,
     /// Samples of the motion, if they were requested.
     pub course: Option<Course>,
@@ -98,8 +98,9 @@ impl AssemblyScene {
     /// As [`AssemblyScene::pose`], and errors of the receiver of the intervals.
     pub fn simulate_with(&self, wanted: Wanted) -> Result<Simulation, Failure> {
         let posed = self.pose()?;
-        let period_s = period_s(&posed);
-        let course = wanted.course.then(|| Course::new(posed.settings.end_s, period_s));
+        let period_s = CommonPeriod::of(&posed.assembly.loads).ok().map(|common| common.period_s);
+        let section_s = period_s.or_else(|| slowest_period_s(&posed));
+        let course = wanted.course.then(|| Course::new(&posed.assembly, posed.settings.end_s, section_s));
         let contacts = posed.contacts.len();
         let mut watch = Watch::new(contacts, wanted.intervals, wanted.take, course, period_s, wanted.stop, wanted.tell);
         let in_scene = |fault| posed.in_scene(fault);
@@ -123,10 +124,11 @@ impl AssemblyScene {
     }
 }
 
-/// The period of the first harmonic load (s).
-fn period_s(posed: &Posed) -> Option<f64> {
-    posed.assembly.loads.iter().find_map(|load| match load.force {
+/// The period of the slowest harmonic load (s).
+fn slowest_period_s(posed: &Posed) -> Option<f64> {
+    let period_s = |load: &Load| match load.force {
         Force::Harmonic { omega_rad_s, .. } => Some(std::f64::consts::TAU / omega_rad_s),
         _ => None,
-    })
+    };
+    posed.assembly.loads.iter().filter_map(period_s).reduce(f64::max)
 }

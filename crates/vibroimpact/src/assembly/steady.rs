@@ -1,7 +1,7 @@
-//! The motion to which a run has converged at its end: the number of periods of the load after which it repeats itself, and the
-//! number of intervals of contact in them.
+//! The motion to which a run has converged at its end: the number of common periods of the loads after which it repeats itself, and
+//! the number of intervals of contact in them.
 //!
-//! With `T` the period of the load, the displacements `u(t)` of both sides of every contact are compared at moments `T/8`
+//! With `T` the common period of the loads, the displacements `u(t)` of both sides of every contact are compared at moments `T/8`
 //! apart. The motion has converged to `n` periods if over the last `n T` they differ from those of the `n T` before by at most
 //! a thousandth of their range.
 
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use serde::Serialize;
 use vibroimpact_sim::assembly::Motion;
 
-/// Largest number of periods of the load after which a repetition is detected.
+/// Largest number of periods of the loads after which a repetition is detected.
 const MOST_PERIODS: usize = 16;
 /// Moments within a period.
 const MOMENTS: usize = 8;
@@ -20,10 +20,10 @@ const KEPT: usize = 2 * MOST_PERIODS * MOMENTS + 1;
 const SAME: f64 = 1e-3;
 const ROUNDING: f64 = 1e-12;
 
-/// A motion that repeats itself after `periods` of the load.
+/// A motion that repeats itself after `periods` of the loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct SteadyMotion {
-    /// Periods of the load, at most 16.
+    /// Periods of the load, at most 16; of several loads, their common periods.
     pub periods: u64,
     /// Intervals of contact that end within them, of all contacts together.
     pub intervals: u64,

@@ -6,20 +6,30 @@ use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{self, Outcome};
 
+use super::compression::compression;
 use super::steady::SteadyMotion;
 use super::{AssemblyScene, Simulation};
 use crate::export::{self, Failure};
 use crate::scene::versioned_tree;
+use crate::trust::Check;
 
-/// The object that `simulate --json` prints for a scene of bodies; every name contains its unit.
+/// The object that a command prints with `--json` for a scene of bodies; every name contains its unit.
 #[derive(Serialize)]
-struct ResultFile<'a> {
+struct ResultFile<'a, R> {
     /// Version of the program.
     vibroimpact: &'static str,
     /// The scene that was solved: tables are written out, and `version` is that of the format.
     scene: Value,
     #[serde(flatten)]
-    summary: &'a Summary,
+    result: &'a R,
+}
+
+impl AssemblyScene {
+    /// A result with its scene and the version of the program, as JSON text.
+    pub(crate) fn with_result(&self, result: &impl Serialize) -> Result<String, Failure> {
+        let vibroimpact = env!("CARGO_PKG_VERSION");
+        export::json(&ResultFile { vibroimpact, scene: versioned_tree(self), result })
+    }
 }
 
 /// The result of a run.
@@ -42,6 +52,8 @@ pub struct Summary {
     pub points: Vec<Point>,
     /// The energy balance; null if it was not computed.
     pub energy: Option<Energy>,
+    /// Whether the surfaces overlap so far that the contact laws do not describe them, if a thickness is known.
+    pub trust: Vec<Check>,
     /// The cost of the computation.
     pub counts: Cost,
 }
@@ -166,8 +178,7 @@ impl Summary {
     /// # Errors
     /// Errors of the writer, which a run cannot cause.
     pub fn json(&self, scene: &AssemblyScene) -> Result<String, Failure> {
-        let vibroimpact = env!("CARGO_PKG_VERSION");
-        export::json(&ResultFile { vibroimpact, scene: versioned_tree(scene), summary: self })
+        scene.with_result(self)
     }
 
     /// The same with at most this many intervals of all contacts together, the first ones.
@@ -238,6 +249,7 @@ impl Summary {
                 residual_j: ledger.unaccounted_j,
                 rounding_j: ledger.rounding_j,
             }),
+            trust: compression(found).into_iter().collect(),
             counts: Cost {
                 contact_steps: counts.contact_steps,
                 rejected_steps: counts.rejected_steps,

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use super::steady::SteadyMotion;
 use super::summary::{BodyEnergy, Interval, Statistics, Summary};
 use super::{AssemblyScene, Posed};
-use crate::text::{counted, quantity};
+use crate::text::{counted, quantity, quantity_apart};
+use crate::trust::trust_text;
 
 /// Largest number of intervals of contact that are listed; the others are counted.
 const LISTED: usize = 20;
@@ -57,10 +58,13 @@ pub(super) const INTERVAL: [&str; 7] = ["contact", "from", "to", "impulse", "lar
 
 pub(super) fn interval_cells(name: &str, interval: &Interval) -> [String; 7] {
     let or_under_way = |value: Option<f64>, unit: &str| value.map_or_else(|| "-".to_owned(), |v| quantity(v, unit));
+    // with so many digits that the duration can be seen
+    let duration_s = interval.end_s.map_or(interval.start_s, |end_s| end_s - interval.start_s);
+    let time = |time_s: f64| quantity_apart(time_s, "s", duration_s);
     [
         name.to_owned(),
-        quantity(interval.start_s, "s"),
-        interval.end_s.map_or_else(|| "under way".to_owned(), |end| quantity(end, "s")),
+        time(interval.start_s),
+        interval.end_s.map_or_else(|| "under way".to_owned(), time),
         quantity(interval.impulse_n_s, "N s"),
         quantity(interval.peak_force_n, "N"),
         quantity(interval.approach_speed_m_s, "m/s"),
@@ -121,7 +125,7 @@ pub(super) fn energy_rows(summary: &Summary) -> Vec<[String; 2]> {
     let largest =
         energy.bodies.values().flat_map(|body| [body.start_j, body.end_j]).fold(energy.load_work_j.abs(), f64::max);
     let rounding = (energy.rounding_j > VISIBLE_ROUNDING * largest).then(|| {
-        let why = "a load nearly meets an undamped frequency, or changes fast beside a slow mode";
+        let why = "they are differences of larger energies, as where a load nearly meets an undamped frequency";
         ["rounding".to_owned(), format!("up to {:.0e} J in each of these: {why}", energy.rounding_j)]
     });
     energy.bodies.iter().map(body).chain(parts.map(part)).chain([residual]).chain(rounding).collect()
@@ -139,8 +143,9 @@ pub fn result(summary: &Summary) -> String {
         line("events certain until", reliable);
     }
     if let Some(SteadyMotion { periods, intervals }) = summary.steady_motion {
+        let intervals = counted(intervals, "interval", "intervals");
         let periods = if periods == 1 { "each period".to_owned() } else { format!("{periods} periods") };
-        line("steady motion", format!("{intervals} intervals of contact in {periods} of the load"));
+        line("steady motion", format!("{intervals} of contact in {periods} of the load"));
     }
     let counts = &summary.counts;
     line("cost", format!("{} steps in contact, {} in flight", counts.contact_steps, counts.flight_steps));
@@ -159,7 +164,7 @@ pub fn result(summary: &Summary) -> String {
     if all > listed.len() as u64 {
         let _ = writeln!(text, "  ... and {} more (with --json or --out)", all - listed.len() as u64);
     }
-    text
+    text + &trust_text(&summary.trust)
 }
 
 /// A table whose first column is left-aligned and whose other columns are right-aligned.

@@ -3,8 +3,10 @@
 use std::mem;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use vibroimpact_sim::assembly::{ContactSample, Interval, Motion, Observer};
+use contact_models::Law;
+use vibroimpact_sim::assembly::{Assembly, ContactSample, Interval, Motion, Observer};
 
+use super::spectrum::SpectrumSamples;
 use super::steady::Moments;
 use crate::export::Failure;
 
@@ -41,10 +43,12 @@ pub struct Course {
     stretches: Vec<Option<u64>>,
     /// Interval between these (s).
     pub step_s: f64,
-    /// Once in each period of the loads, where they have one.
+    /// Once in each common period of the harmonic loads, or of the slowest one if they have none.
     pub section: Vec<Row>,
     /// This period (s).
     pub period_s: Option<f64>,
+    /// The displacements at equal distances, for their spectrum.
+    pub spectrum: SpectrumSamples,
     in_contact: usize,
     /// The stretch of contact, and the number of its panels so far; zero panels while no contact is closed.
     stretch: u64,
@@ -54,13 +58,15 @@ pub struct Course {
 }
 
 impl Course {
-    pub(super) fn new(end_s: f64, period_s: Option<f64>) -> Course {
+    pub(super) fn new(assembly: &Assembly<Law>, end_s: f64, period_s: Option<f64>) -> Course {
         let longest_s = end_s / HISTORY_INTERVALS as f64;
-        // a whole number of samples in each period of the loads, so that harmonics too fast for the samples appear in the spectrum
-        // as other harmonics, and not as frequencies that the motion does not have
-        let dividing = |period_s: f64| period_s / (period_s / longest_s).ceil();
-        let step_s = period_s.filter(|period_s| *period_s >= longest_s).map_or(longest_s, dividing);
-        Course { step_s, period_s, ..Course::default() }
+        // a whole number of samples in each period of the loads, or of periods between samples, so that harmonics too fast for the
+        // samples appear in the spectrum as other harmonics, and not as frequencies that the motion does not have
+        let step_s = period_s.map_or(longest_s, |period_s| match period_s >= longest_s {
+            true => period_s / (period_s / longest_s).ceil(),
+            false => period_s * (longest_s / period_s).floor(),
+        });
+        Course { step_s, period_s, spectrum: SpectrumSamples::new(assembly, step_s), ..Course::default() }
     }
 
     fn add(&mut self, panel: &dyn Motion, contacts: usize) {
@@ -85,6 +91,9 @@ impl Course {
             }
         }
         for (time_s, stretch) in times {
+            if stretch.is_none() {
+                self.spectrum.add(panel, time_s);
+            }
             self.rows.push(row(time_s));
             self.stretches.push(stretch);
         }
@@ -106,11 +115,6 @@ impl Course {
         let kept = samples.filter(|(_, stretch)| stretch.is_none_or(|stretch| self.has_samples(stretch)));
         (self.rows, self.stretches) = kept.unzip();
         self.in_contact = self.stretches.iter().flatten().count();
-    }
-
-    /// The samples at equal distances.
-    pub fn even_rows(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().zip(&self.stretches).filter(|(_, stretch)| stretch.is_none()).map(|(row, _)| row)
     }
 }
 

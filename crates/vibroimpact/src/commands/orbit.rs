@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 use vibroimpact::assembly;
-use vibroimpact::export::{self, Failure};
+use vibroimpact::export::Failure;
 use vibroimpact::orbit::{self, Over};
 use vibroimpact::vibroimpact_sim::assembly::OrbitSettings;
 
@@ -20,11 +20,15 @@ pub const EXAMPLES: &str = "Examples:
   vibroimpact orbit rig.json --over 'loads[0].frequency_hz' --from 20 --to 80 --plot response.svg
                                                  the frequency response, with its unstable parts
   vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --json --csv branch.csv
+  vibroimpact orbit rig.json --over 'loads[0].force_n' --to 50 --doublings 2 --plot bifurcations.svg
+                                                 also the motions of two and of four periods that begin on the way
 
-The scene is one of bodies with a harmonic load. After a transient from its start, Newton's method finds the periodic
-motion; its Floquet multipliers show whether it is stable. Over a field (a path as in a sweep) the branch is followed
-round its folds, and folds, period doublings, Neimark-Sacker points and grazings are located. A sweep over fields of the
-start shows to which motion a start leads. Ctrl-C ends the search and prints the results so far.
+The scene is one of bodies with a harmonic load, or with several that have a common period. After a transient from its
+start, Newton's method finds the periodic motion; its Floquet multipliers show whether it is stable. Over a field (a
+path as in a sweep) the branch is followed round its folds, and folds, period doublings, Neimark-Sacker points and
+grazings are located. With --doublings the motions of twice the period that begin at period doublings are followed
+too. A sweep over fields of the start shows to which motion a start leads. Ctrl-C ends the search and prints the
+results so far.
 
 The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writing fails.";
 
@@ -33,7 +37,7 @@ The exit code is 0 for every result, 2 for an invalid scene or field, 1 if writi
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneSource,
-    /// Periods of the load after which the motion repeats itself
+    /// Periods of the load after which the motion repeats itself; of several loads, their common periods
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     periods: u32,
     /// Periods of the load that are followed from the start before the search
@@ -51,6 +55,10 @@ pub struct Arguments {
     /// First step, as a share of the range
     #[arg(long, value_name = "PART", requires = "over", default_value_t = 0.02)]
     step: f64,
+    /// How often to follow the branches of twice the period that begin at period doublings: 1 for those of the branch itself,
+    /// 2 also for theirs, and so on
+    #[arg(long, value_name = "N", requires = "over", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=8))]
+    doublings: u32,
     /// Print one JSON object in place of the summary
     #[arg(long)]
     json: bool,
@@ -76,14 +84,14 @@ pub fn run(arguments: Arguments) -> Result<String, Failure> {
     let (Some(field), Some(to)) = (&arguments.over, arguments.to) else {
         let found = scene.orbit_until(&settings, &|| stop.load(Ordering::Relaxed))?;
         return match arguments.json {
-            true => export::json(&found),
+            true => found.json(&scene),
             false => Ok(format!("{headline}\n\n{}{}", orbit::text(&found), signature())),
         };
     };
-    let over = Over { field, from: arguments.from, to, step: arguments.step };
-    let branch = scene.orbit_branch(&over, &settings, |_| !stop.load(Ordering::Relaxed))?;
+    let over = Over { field, from: arguments.from, to, step: arguments.step, doublings: arguments.doublings };
+    let branch = scene.orbit_branch(&over, &settings, &|| stop.load(Ordering::Relaxed))?;
     let mut printed = match arguments.json {
-        true => export::json(&branch)?,
+        true => branch.json(&scene)?,
         false => format!("{headline}\n\n{}{}", branch.text(), signature()),
     };
     if let Some(path) = &arguments.csv {

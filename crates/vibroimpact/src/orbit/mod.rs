@@ -5,10 +5,12 @@ mod picture;
 mod summary;
 mod text;
 
+use contact_models::Law;
 use invalid_input::InvalidInput;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
-    self, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, Reason, SideMotion, find_orbit_until, follow_branch,
+    Assembly, Branch, BranchSettings, Orbit, OrbitOutcome, OrbitSettings, Outcome, Reason, SideMotion, Special,
+    find_orbit_until, follow_branch, follow_doubled,
 };
 
 use crate::assembly::{AssemblyScene, Posed};
@@ -17,14 +19,16 @@ use crate::scene::FieldPath;
 #[cfg(feature = "files")]
 pub use picture::picture;
 use summary::INTERRUPTED;
-pub use summary::{BranchOrbit, BranchSummary, Found, OrbitSummary, Over, PointMotion, SpecialPoint};
+pub use summary::{
+    BranchOrbit, BranchPart, BranchSummary, DoubledBranch, Found, OrbitSummary, Over, PointMotion, SpecialPoint,
+};
 pub use text::text;
 
 impl AssemblyScene {
     /// Finds the periodic motion to which the scene's start leads, or one near it.
     ///
     /// # Errors
-    /// As [`AssemblyScene::pose`]; a scene without a harmonic load.
+    /// As [`AssemblyScene::pose`]; a scene without a harmonic load, or with loads that have no common period.
     pub fn orbit(&self, settings: &OrbitSettings) -> Result<Found, InvalidInput> {
         self.orbit_until(settings, &|| false)
     }
@@ -37,32 +41,34 @@ impl AssemblyScene {
         let posed = self.pose()?;
         let settings = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
         let found = find_orbit_until(&posed.assembly, &settings, stop).map_err(|fault| posed.in_scene(fault))?;
+        let none = Found { outcome: INTERRUPTED, reason: None, orbit: None, nearest_closure: None };
         Ok(match found {
             OrbitOutcome::Found(orbit) => {
-                Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), nearest_closure: None }
+                Found { outcome: "found", orbit: Some(OrbitSummary::new(&posed, &orbit)), ..none }
             }
             OrbitOutcome::NotFound { closure } => {
-                Found { outcome: "not found", orbit: None, nearest_closure: Some(closure) }
+                Found { outcome: "not found", nearest_closure: Some(closure), ..none }
             }
-            OrbitOutcome::Interrupted { closure, .. } => {
-                Found { outcome: INTERRUPTED, orbit: None, nearest_closure: Some(closure) }
+            OrbitOutcome::Interrupted { closure, .. } => Found { nearest_closure: Some(closure), ..none },
+            OrbitOutcome::Stopped(Outcome::Stopped(Reason::Interrupted)) => none,
+            OrbitOutcome::Stopped(Outcome::Stopped(reason)) => {
+                Found { outcome: "stopped", reason: Some(reason.as_str()), ..none }
             }
-            OrbitOutcome::Stopped(assembly::Outcome::Stopped(Reason::Interrupted)) => {
-                Found { outcome: INTERRUPTED, orbit: None, nearest_closure: None }
-            }
-            _ => Found { outcome: "stopped", orbit: None, nearest_closure: None },
+            _ => Found { outcome: "stopped", ..none },
         })
     }
 
-    /// Follows the branch of periodic motions over a field. `tell` is called with each value and returns whether to continue.
+    /// Follows the branch of periodic motions over a field, and the branches that begin at its period doublings as often as
+    /// requested. `stop` is called from time to time, and ends the search with the orbits so far.
     ///
     /// # Errors
-    /// As [`AssemblyScene::orbit`]; a field that the scene does not have, or that is not a number.
+    /// As [`AssemblyScene::orbit`]; a field that the scene does not have, that is not a number, or on which the periodic motion does
+    /// not depend.
     pub fn orbit_branch(
         &self,
         over: &Over,
         settings: &OrbitSettings,
-        mut tell: impl FnMut(f64) -> bool,
+        stop: &dyn Fn() -> bool,
     ) -> Result<BranchSummary, InvalidInput> {
         let posed = self.pose()?;
         let tree: Value = serde_json::from_str(&self.to_json()).unwrap_or_default();
@@ -71,11 +77,18 @@ impl AssemblyScene {
         let path = FieldPath::parse(over.field).ok_or_else(|| fault(allowed.to_owned()))?;
         let present = path.get(&tree).and_then(Value::as_f64);
         let from = over.from.or(present).ok_or_else(|| fault(format!("{allowed}; --from states a first value")))?;
-        let build = |value: f64| -> Result<assembly::Assembly<contact_models::Law>, InvalidInput> {
+        let pose = |value: f64| -> Result<Assembly<Law>, InvalidInput> {
             let mut tree = tree.clone();
             path.set(&mut tree, value.into()).map_err(&fault)?;
             Ok(AssemblyScene::from_value(&tree)?.pose()?.assembly)
         };
+        let first = pose(from)?;
+        if from != over.to && pose(over.to).is_ok_and(|last| without_start(first.clone()) == without_start(last)) {
+            return Err(fault(format!(
+                "{allowed}, on which the periodic motion depends; this one changes at most the start, the end or the accuracy of \
+                 a run"
+            )));
+        }
         let orbit = OrbitSettings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..*settings };
         let branch = BranchSettings {
             orbit,
@@ -83,14 +96,71 @@ impl AssemblyScene {
             longest_step: over.step.max(0.05),
             ..BranchSettings::over(from, over.to)
         };
-        let found = follow_branch(build, &branch, |point| tell(point.parameter))?;
-        let orbits = found.points.iter();
-        let special = found.special.iter();
+        let build = |value: f64| pose(value).map_err(Fault::Scene);
+        let in_scene = |fault| match fault {
+            Fault::Scene(fault) => fault,
+            Fault::Assembly(fault) => posed.in_scene(fault),
+        };
+        let main = follow_branch(build, &branch, stop).map_err(in_scene)?;
+        let mut doubled = Vec::new();
+        // those that begin on the branches of the turn before
+        let mut begin = 0;
+        for turn in 0..over.doublings {
+            let parents: Vec<&Branch> =
+                if turn == 0 { vec![&main] } else { doubled[begin..].iter().map(|(_, branch)| branch).collect() };
+            let doublings: Vec<_> = parents
+                .into_iter()
+                .flat_map(|branch| &branch.special)
+                .filter(|point| point.kind == Special::PeriodDoubling)
+                .cloned()
+                .collect();
+            begin = doubled.len();
+            for doubling in doublings {
+                let found = follow_doubled(build, &branch, &doubling, stop).map_err(in_scene)?;
+                doubled.push((doubling.parameter, found));
+            }
+        }
+        let part = |branch: &Branch| BranchPart::new(&posed, branch);
         Ok(BranchSummary {
             field: over.field.to_owned(),
-            complete: found.complete,
+            main: part(&main),
+            doubled: doubled
+                .iter()
+                .map(|(begins_at, branch)| DoubledBranch { begins_at: *begins_at, branch: part(branch) })
+                .collect(),
+        })
+    }
+}
+
+/// An error under the names of the scene, or under those of the assembly.
+enum Fault {
+    Scene(InvalidInput),
+    Assembly(InvalidInput),
+}
+
+impl From<InvalidInput> for Fault {
+    fn from(fault: InvalidInput) -> Fault {
+        Fault::Assembly(fault)
+    }
+}
+
+/// The part of an assembly that determines the map over a period.
+fn without_start(mut assembly: Assembly<Law>) -> Assembly<Law> {
+    for body in &mut assembly.bodies {
+        (body.amplitude, body.rate) = (Vec::new(), Vec::new());
+    }
+    assembly
+}
+
+impl BranchPart {
+    fn new(posed: &Posed, branch: &Branch) -> BranchPart {
+        let orbits = branch.points.iter();
+        let special = branch.special.iter();
+        BranchPart {
+            complete: branch.complete,
+            interrupted: branch.interrupted,
             orbits: orbits
-                .map(|point| BranchOrbit { value: point.parameter, orbit: OrbitSummary::new(&posed, &point.orbit) })
+                .map(|point| BranchOrbit { value: point.parameter, orbit: OrbitSummary::new(posed, &point.orbit) })
                 .collect(),
             special_points: special
                 .map(|point| SpecialPoint {
@@ -98,9 +168,10 @@ impl AssemblyScene {
                     value: point.parameter,
                     uncertainty: point.uncertainty,
                     before_orbit: point.before_orbit,
+                    orbit: OrbitSummary::new(posed, &point.orbit),
                 })
                 .collect(),
-        })
+        }
     }
 }
 
@@ -113,6 +184,7 @@ impl OrbitSummary {
             displacement_first_harmonic_m: motion.displacement_first_harmonic_m,
             displacement_max_m: motion.displacement_max_m,
             displacement_min_m: motion.displacement_min_m,
+            displacement_section_m: orbit.section_m.iter().map(|moment| moment[c][side]).collect(),
         };
         let sides = orbit.sides.iter().enumerate();
         OrbitSummary {
@@ -129,36 +201,53 @@ impl OrbitSummary {
 }
 
 impl BranchSummary {
-    /// The orbits as a table, one per row, with the largest multiplier and the motion of every side.
+    /// The branch, number 0, and those that begin at its period doublings.
+    pub fn branches(&self) -> impl Iterator<Item = &BranchPart> {
+        std::iter::once(&self.main).chain(self.doubled.iter().map(|doubled| &doubled.branch))
+    }
+
+    /// The orbits of all branches as a table, one per row, with the largest multiplier and the motion of every side.
     ///
     /// # Errors
     /// Errors of the writer, which numbers cannot cause.
     pub fn csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut table = csv::Writer::from_writer(Vec::new());
-        let points = self.orbits.first().map_or(&[][..], |first| &first.orbit.points);
-        let mut header: Vec<String> = [&self.field, "period_s", "stable", "intervals_per_period", "largest_multiplier"]
-            .map(str::to_owned)
-            .to_vec();
+        let points = self.main.orbits.first().map_or(&[][..], |first| &first.orbit.points);
+        let mut header: Vec<String> = [
+            &self.field,
+            "branch",
+            "forcing_periods",
+            "period_s",
+            "stable",
+            "intervals_per_period",
+            "largest_multiplier",
+        ]
+        .map(str::to_owned)
+        .to_vec();
         for point in points {
             for quantity in ["displacement_first_harmonic_m", "displacement_max_m", "displacement_min_m"] {
                 header.push(format!("{}.{}.{quantity}", point.contact, point.side));
             }
         }
         table.write_record(&header)?;
-        for BranchOrbit { value, orbit } in &self.orbits {
-            let largest = orbit.floquet_multipliers.first().map_or(0.0, |m| m[0].hypot(m[1]));
-            let mut row = vec![
-                value.to_string(),
-                orbit.period_s.to_string(),
-                orbit.stable.to_string(),
-                orbit.intervals_per_period.to_string(),
-                largest.to_string(),
-            ];
-            for point in &orbit.points {
-                let motion = [point.displacement_first_harmonic_m, point.displacement_max_m, point.displacement_min_m];
-                row.extend(motion.map(|value| value.to_string()));
+        for (number, branch) in self.branches().enumerate() {
+            for BranchOrbit { value, orbit } in &branch.orbits {
+                let mut row = vec![
+                    value.to_string(),
+                    number.to_string(),
+                    orbit.forcing_periods.to_string(),
+                    orbit.period_s.to_string(),
+                    orbit.stable.to_string(),
+                    orbit.intervals_per_period.to_string(),
+                    orbit.largest_multiplier().to_string(),
+                ];
+                for point in &orbit.points {
+                    let motion =
+                        [point.displacement_first_harmonic_m, point.displacement_max_m, point.displacement_min_m];
+                    row.extend(motion.map(|value| value.to_string()));
+                }
+                table.write_record(&row)?;
             }
-            table.write_record(&row)?;
         }
         table.into_inner().map_err(|fault| fault.into_error().into())
     }

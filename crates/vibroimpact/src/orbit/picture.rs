@@ -1,66 +1,147 @@
-//! The figure of a branch: frequency response or bifurcation diagram, with stable and unstable parts.
+//! The figure of a branch: frequency response and bifurcation diagram, with stable and unstable parts.
 
-use super::summary::{BranchOrbit, BranchSummary};
+use vibroimpact_sim::assembly::Special;
+
+use super::PointMotion;
+use super::summary::{BranchOrbit, BranchPart, BranchSummary, OrbitSummary};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
-/// Amplitude and range of motion of the moving sides over the field, and the size of the largest multiplier.
+/// Largest number of sides that are drawn, one for each colour.
+const DRAWN: usize = 6;
+
+/// Over the field: amplitude of the moving sides, their displacement once in each period of the loads (the bifurcation diagram),
+/// their range of motion, and the size of the largest multiplier.
 pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
-    let values = || branch.orbits.iter().map(|orbit| orbit.value);
+    let values = || orbits(branch).map(|orbit| orbit.value);
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     // the panels share their abscissa
     let axis = || {
         let axis = Axis::new(branch.field.as_str());
         if low < high { axis.limits(low, high) } else { axis }
     };
-    let mut amplitude = Panel::new(axis().unlabelled(), Axis::new("first harmonic").unit("m")).height(170.0);
-    let mut range = Panel::new(axis().unlabelled(), Axis::new("largest and least").unit("m")).height(170.0);
+    let panel = |label: &str| Panel::new(axis().unlabelled(), Axis::new(label).unit("m"));
+    let mut amplitude = panel("first harmonic").height(170.0);
+    let mut section = panel("once in each period").height(170.0);
+    let mut range = panel("largest and least").height(150.0);
     let mut size = Panel::new(axis(), Axis::new("largest multiplier")).height(110.0);
-    let points = branch.orbits.first().map_or(0, |first| first.orbit.points.len());
-    let moving = (0..points).filter(|&i| {
-        branch
-            .orbits
-            .iter()
-            .any(|orbit| orbit.orbit.points[i].displacement_max_m != orbit.orbit.points[i].displacement_min_m)
-    });
-    for (number, i) in moving.enumerate() {
+    let (drawn, moving) = drawn_sides(branch);
+    for (number, &i) in drawn.iter().enumerate() {
         let colour = Colour::of_series(number);
-        let point = &branch.orbits[0].orbit.points[i];
-        let name = format!("{}, side {}", point.contact, point.side);
-        for (first, (part, stable)) in parts(&branch.orbits).into_iter().enumerate() {
-            let x: Vec<f64> = part.iter().map(|orbit| orbit.value).collect();
-            let of = |value: fn(&super::PointMotion) -> f64| -> Vec<f64> {
-                part.iter().map(|orbit| value(&orbit.orbit.points[i])).collect()
-            };
-            let draw = |y: Vec<f64>| {
-                let line = Series::line(&x, &y).colour(colour);
-                if stable { line } else { line.dashed() }
-            };
-            let line = draw(of(|point| point.displacement_first_harmonic_m));
-            amplitude = amplitude.with(if first == 0 { line.label(&name) } else { line });
-            range = range.with(draw(of(|point| point.displacement_max_m)));
-            range = range.with(draw(of(|point| point.displacement_min_m)));
+        let mut name = side_name(branch, i);
+        for part in branch.branches() {
+            for (motions, stable) in stretches(part) {
+                let curve = |of: &dyn Fn(&PointMotion) -> f64| {
+                    let (x, y): (Vec<f64>, Vec<f64>) =
+                        motions.iter().map(|(value, motion)| (*value, of(&motion.points[i]))).unzip();
+                    let line = Series::line(&x, &y).colour(colour);
+                    if stable { line } else { line.dashed() }
+                };
+                // the first stretch has the entry of the legend
+                let response = curve(&|point| point.displacement_first_harmonic_m).label(std::mem::take(&mut name));
+                amplitude = amplitude.with(response);
+                for period in 0..motions[0].1.forcing_periods as usize {
+                    let at =
+                        |point: &PointMotion| point.displacement_section_m.get(period).copied().unwrap_or(f64::NAN);
+                    section = section.with(curve(&at));
+                }
+                range = range.with(curve(&|point| point.displacement_max_m));
+                range = range.with(curve(&|point| point.displacement_min_m));
+            }
         }
     }
-    let x: Vec<f64> = branch.orbits.iter().map(|orbit| orbit.value).collect();
-    let largest = |orbit: &BranchOrbit| orbit.orbit.floquet_multipliers.first().map_or(0.0, |m| m[0].hypot(m[1]));
-    let y: Vec<f64> = branch.orbits.iter().map(largest).collect();
-    size = size.with(Series::line(&x, &y)).with(Series::horizontal_rule(1.0));
-    let at: Vec<f64> = branch.special_points.iter().map(|point| point.value).collect();
-    let one = vec![1.0; at.len()];
-    let names: Vec<String> = branch.special_points.iter().map(|point| point.kind.to_owned()).collect();
-    size = size.with(Series::points(&at, &one, Marker::Dot)).with(Series::labels(&at, &one, names));
-    Figure::new(title).row([amplitude]).row([range]).row([size])
+    for part in branch.branches() {
+        let points = part.orbits.iter().map(|orbit| (orbit.value, orbit.orbit.largest_multiplier()));
+        let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
+        size = size.with(Series::line(&x, &y).colour(Colour::Blue));
+    }
+    size = size.with(Series::horizontal_rule(1.0));
+    for (kind, marker) in [
+        (Special::Fold, Marker::Square),
+        (Special::PeriodDoubling, Marker::Triangle),
+        (Special::NeimarkSacker, Marker::Cross),
+        (Special::Grazing, Marker::Circle),
+    ] {
+        let found = || branch.branches().flat_map(|part| &part.special_points).filter(|at| at.kind == kind.as_str());
+        if found().next().is_none() {
+            continue;
+        }
+        let marks = |of: &dyn Fn(&OrbitSummary) -> Vec<f64>| {
+            let at = found().flat_map(|point| of(&point.orbit).into_iter().map(|y| (point.value, y)));
+            let (x, y): (Vec<f64>, Vec<f64>) = at.unzip();
+            Series::points(&x, &y, marker).colour(Colour::Black)
+        };
+        let of_sides = |of: fn(&PointMotion) -> Vec<f64>| {
+            marks(&|orbit| drawn.iter().flat_map(|&i| of(&orbit.points[i])).collect())
+        };
+        let response = of_sides(|point| vec![point.displacement_first_harmonic_m]);
+        amplitude = amplitude.with(response.label(kind.as_str()));
+        section = section.with(of_sides(|point| point.displacement_section_m.clone()));
+        range = range.with(of_sides(|point| vec![point.displacement_max_m, point.displacement_min_m]));
+        size = size.with(marks(&|orbit| vec![orbit.largest_multiplier()]));
+    }
+    let mut lines = vec![title.to_owned()];
+    if moving > drawn.len() {
+        lines.push(format!("the {DRAWN} of {moving} moving sides with the largest motion"));
+    }
+    if orbits(branch).any(|orbit| !orbit.orbit.stable) {
+        lines.push("dashed: unstable motion".to_owned());
+    }
+    Figure::new(lines.join("\n")).row([amplitude]).row([section]).row([range]).row([size])
 }
 
-/// Sections of a branch that are entirely stable or unstable; neighbours share an orbit, so that no gap is drawn.
-fn parts(orbits: &[BranchOrbit]) -> Vec<(&[BranchOrbit], bool)> {
-    let mut parts = Vec::new();
-    let mut from = 0;
-    for i in 1..=orbits.len() {
-        if i == orbits.len() || orbits[i].orbit.stable != orbits[from].orbit.stable {
-            parts.push((&orbits[from..(i + 1).min(orbits.len())], orbits[from].orbit.stable));
-            from = i;
+fn orbits(branch: &BranchSummary) -> impl Iterator<Item = &BranchOrbit> {
+    branch.branches().flat_map(|part| &part.orbits)
+}
+
+fn side_name(branch: &BranchSummary, i: usize) -> String {
+    let point = branch.main.orbits.first().map(|first| &first.orbit.points[i]);
+    point.map_or_else(String::new, |point| format!("{}, side {}", point.contact, point.side))
+}
+
+/// The numbers of the sides that are drawn, and how many move. Sides that move alike, such as those of the two contacts of a
+/// two-sided stop, are drawn once.
+fn drawn_sides(branch: &BranchSummary) -> (Vec<usize>, usize) {
+    let points = branch.main.orbits.first().map_or(0, |first| first.orbit.points.len());
+    let motion = |i: usize| -> Vec<[f64; 3]> {
+        let of = |point: &PointMotion| {
+            [point.displacement_first_harmonic_m, point.displacement_max_m, point.displacement_min_m]
+        };
+        orbits(branch).map(|orbit| of(&orbit.orbit.points[i])).collect()
+    };
+    let mut moving: Vec<(usize, Vec<[f64; 3]>)> = Vec::new();
+    for i in 0..points {
+        let motion = motion(i);
+        if motion.iter().any(|[_, max, min]| max != min) && moving.iter().all(|(_, other)| *other != motion) {
+            moving.push((i, motion));
         }
     }
-    parts
+    let count = moving.len();
+    let largest = |motion: &[[f64; 3]]| motion.iter().map(|[_, max, min]| max - min).fold(0.0, f64::max);
+    moving.sort_by(|(_, one), (_, other)| largest(other).total_cmp(&largest(one)));
+    moving.truncate(DRAWN);
+    let mut drawn: Vec<usize> = moving.into_iter().map(|(i, _)| i).collect();
+    drawn.sort_unstable();
+    (drawn, count)
+}
+
+/// Stretches of a branch that are entirely stable or unstable: the motions over the field, special points included. Neighbours share
+/// the special point between them, or else an orbit, so that no gap is drawn.
+fn stretches(branch: &BranchPart) -> Vec<(Vec<(f64, &OrbitSummary)>, bool)> {
+    let mut stretches = Vec::new();
+    let mut here: Vec<(f64, &OrbitSummary)> = Vec::new();
+    for (i, orbit) in branch.orbits.iter().enumerate() {
+        let between = branch.special_points.iter().filter(|point| point.before_orbit == i);
+        here.extend(between.map(|point| (point.value, &point.orbit)));
+        let before = branch.orbits[i.saturating_sub(1)].orbit.stable;
+        if orbit.orbit.stable != before {
+            let last = here.last().copied();
+            stretches.push((std::mem::take(&mut here), before));
+            here.extend(last);
+        }
+        here.push((orbit.value, &orbit.orbit));
+    }
+    if let Some(last) = branch.orbits.last() {
+        stretches.push((here, last.orbit.stable));
+    }
+    stretches
 }

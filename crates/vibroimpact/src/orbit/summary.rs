@@ -2,12 +2,15 @@
 
 use serde::Serialize;
 
+use crate::assembly::AssemblyScene;
+use crate::export::Failure;
+
 /// A periodic motion as it is printed and written.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OrbitSummary {
     /// Period of the motion (s).
     pub period_s: f64,
-    /// Periods of the loads in it.
+    /// Periods of the load in it; of several loads the common period.
     pub forcing_periods: u32,
     /// The moment of the loads' period at which `floquet_multipliers` compare states (s).
     pub phase_s: f64,
@@ -38,6 +41,8 @@ pub struct PointMotion {
     pub displacement_max_m: f64,
     /// Least displacement (m).
     pub displacement_min_m: f64,
+    /// Displacement at `phase_s` of each period of the loads (m), one value after the other.
+    pub displacement_section_m: Vec<f64>,
 }
 
 /// The result of the search for a periodic motion.
@@ -45,6 +50,9 @@ pub struct PointMotion {
 pub struct Found {
     /// `found`, `not found`, `interrupted` or `stopped`.
     pub outcome: &'static str,
+    /// The reason why a run over one period stopped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<&'static str>,
     /// The motion, if it was found.
     #[serde(flatten)]
     pub orbit: Option<OrbitSummary>,
@@ -77,19 +85,71 @@ pub struct SpecialPoint {
     pub uncertainty: f64,
     /// Number, from 0, of the orbit that follows it.
     pub before_orbit: usize,
+    /// A motion within the uncertainty.
+    #[serde(flatten)]
+    pub orbit: OrbitSummary,
 }
 
-/// A branch of periodic motions.
+/// One branch of periodic motions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BranchSummary {
-    /// The field that is followed.
-    pub field: String,
-    /// Whether the branch was followed to an end of the range.
+pub struct BranchPart {
+    /// Whether the branch was followed to an end of the range, or back to the branch at whose period doubling it begins.
     pub complete: bool,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
     /// The orbits in order.
     pub orbits: Vec<BranchOrbit>,
     /// Special points between them.
     pub special_points: Vec<SpecialPoint>,
+}
+
+/// A branch of twice the period of the one at whose period doubling it begins.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DoubledBranch {
+    /// The field's value at the period doubling.
+    pub begins_at: f64,
+    /// The branch.
+    #[serde(flatten)]
+    pub branch: BranchPart,
+}
+
+/// A branch of periodic motions over a field, and those that begin at its period doublings.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BranchSummary {
+    /// The field that is followed.
+    pub field: String,
+    /// The branch of the motion at the first value.
+    #[serde(flatten)]
+    pub main: BranchPart,
+    /// Branches that begin at its period doublings, then those that begin at theirs, as often as requested.
+    pub doubled: Vec<DoubledBranch>,
+}
+
+impl OrbitSummary {
+    /// Size of the largest multiplier.
+    pub(super) fn largest_multiplier(&self) -> f64 {
+        self.floquet_multipliers.first().map_or(0.0, |m| m[0].hypot(m[1]))
+    }
+}
+
+impl Found {
+    /// The text of `orbit --json`: the result with its scene.
+    ///
+    /// # Errors
+    /// Errors of the writer, which a motion cannot cause.
+    pub fn json(&self, scene: &AssemblyScene) -> Result<String, Failure> {
+        scene.with_result(self)
+    }
+}
+
+impl BranchSummary {
+    /// As [`Found::json`].
+    ///
+    /// # Errors
+    /// As [`Found::json`].
+    pub fn json(&self, scene: &AssemblyScene) -> Result<String, Failure> {
+        scene.with_result(self)
+    }
 }
 
 /// The field over which a branch is followed.
@@ -103,4 +163,6 @@ pub struct Over<'a> {
     pub to: f64,
     /// First and longest step, as parts of the range.
     pub step: f64,
+    /// How often the branches that begin at period doublings are followed: 1 for those of the branch itself, 2 also for theirs, ...
+    pub doublings: u32,
 }

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
-use super::summary::{BranchSummary, Found, INTERRUPTED, OrbitSummary};
-use crate::text::quantity;
+use vibroimpact_sim::assembly::Special;
+
+use super::summary::{BranchPart, BranchSummary, Found, INTERRUPTED, OrbitSummary};
+use crate::text::{counted, quantity};
 
 /// A periodic motion, or the reason why there is none.
 pub fn text(found: &Found) -> String {
@@ -19,7 +21,10 @@ pub fn text(found: &Found) -> String {
             "  outcome               not found: the motion repeats itself only to {closure:.1e} of its size.\n  \
              A longer transient (--transient) or more periods of the load (--periods) may lead to one.\n"
         ),
-        (None, None) => "  outcome               stopped: a run over one period did not reach its end.\n".to_owned(),
+        (None, None) => {
+            let reason = found.reason.map_or_else(String::new, |reason| format!(" ({reason})"));
+            format!("  outcome               stopped: a run over one period did not reach its end{reason}.\n")
+        }
     }
 }
 
@@ -58,23 +63,50 @@ fn orbit_text(orbit: &OrbitSummary) -> String {
 }
 
 impl BranchSummary {
-    /// The branch in a few lines: its extent, its stability, and its special points.
+    /// The branches in a few lines: their extent, their stability, and their special points.
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        let (Some(first), Some(last)) = (self.orbits.first(), self.orbits.last()) else {
-            return "  no periodic motion was found at the first value; a longer --transient may lead to one\n"
-                .to_owned();
-        };
-        let stable = self.orbits.iter().filter(|point| point.orbit.stable).count();
-        let end = if self.complete { "" } else { "; it could not be followed further" };
-        let _ = writeln!(text, "  {:<21} from {:.6} to {:.6}{end}", self.field, first.value, last.value);
-        let _ = writeln!(text, "  {:<22}{}, {stable} of them stable", "orbits", self.orbits.len());
-        if !self.special_points.is_empty() {
-            text += "\n  found on the way       value            within\n";
+        if self.main.orbits.is_empty() {
+            let why = if self.main.interrupted {
+                "interrupted before a periodic motion was found at the first value"
+            } else {
+                "no periodic motion was found at the first value; a longer --transient may lead to one"
+            };
+            return format!("  {why}\n");
         }
-        for point in &self.special_points {
-            let _ = writeln!(text, "  {:<22}{:<17.9}{:.1e}", point.kind, point.value, point.uncertainty);
+        let mut text = String::new();
+        part(&mut text, &self.field, &self.main);
+        for doubled in &self.doubled {
+            let _ = writeln!(text, "\n  from the period doubling at {:.9}", doubled.begins_at);
+            if doubled.branch.orbits.is_empty() {
+                text += "    no motion of twice the period was found\n";
+            } else {
+                part(&mut text, &self.field, &doubled.branch);
+            }
+        }
+        let doublings = self.main.special_points.iter().filter(|point| point.kind == Special::PeriodDoubling.as_str());
+        if self.doubled.is_empty() && doublings.count() > 0 {
+            text += "\n  --doublings 1 follows the motions of twice the period that begin at period doublings\n";
         }
         text
+    }
+}
+
+/// One branch.
+fn part(text: &mut String, field: &str, branch: &BranchPart) {
+    let (Some(first), Some(last)) = (branch.orbits.first(), branch.orbits.last()) else { return };
+    let stable = branch.orbits.iter().filter(|point| point.orbit.stable).count();
+    let end = match (branch.complete, branch.interrupted) {
+        (_, true) => "; interrupted there",
+        (true, _) => "",
+        (false, _) => "; it could not be followed further",
+    };
+    let _ = writeln!(text, "  {field:<21} from {:.6} to {:.6}{end}", first.value, last.value);
+    let periods = counted(u64::from(first.orbit.forcing_periods), "period of the load", "periods of the load");
+    let _ = writeln!(text, "  {:<22}{}, {stable} of them stable, of {periods}", "orbits", branch.orbits.len());
+    if !branch.special_points.is_empty() {
+        *text += "\n  found on the way       value            within\n";
+    }
+    for point in &branch.special_points {
+        let _ = writeln!(text, "  {:<22}{:<17.9}{:.1e}", point.kind, point.value, point.uncertainty);
     }
 }

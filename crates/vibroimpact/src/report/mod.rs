@@ -22,6 +22,7 @@ mod simulation;
 
 pub use crate::text::significant;
 pub use comparison::{Comparison, Expected, Verdict};
+pub(crate) use simulation::trusted;
 pub use simulation::{modelled, of_impact, of_infinite_impact, of_net_impact};
 
 use crate::plot::Figure;

@@ -70,7 +70,7 @@ pub fn of_impact(
 }
 
 /// Limits of the theories behind a result.
-fn trusted(report: &mut Report, trust: &[Check]) {
+pub(crate) fn trusted(report: &mut Report, trust: &[Check]) {
     if trust.is_empty() {
         return;
     }

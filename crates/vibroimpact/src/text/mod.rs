@@ -11,7 +11,7 @@ use crate::net::{FitSummary, NetRebound};
 use crate::scene::{BeamTheory, Location, Scene, Structure};
 use crate::summary::Summary;
 pub use parts::{counted, printable, quantity, shorten, significant};
-pub(crate) use parts::{filled, restitution, small, stopped, superscript};
+pub(crate) use parts::{filled, quantity_apart, restitution, small, stopped, superscript};
 
 /// Shares of the energy below this value are due to rounding, and shown as zero.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -147,8 +147,8 @@ pub fn result(summary: &Summary) -> String {
             text,
             "  {:>3}{:>14}{:>14}{:>16}{:>14}{:>14}",
             i + 1,
-            quantity(contact.start_s, "s"),
-            quantity(contact.end_s, "s"),
+            quantity_apart(contact.start_s, "s", contact.end_s - contact.start_s),
+            quantity_apart(contact.end_s, "s", contact.end_s - contact.start_s),
             quantity(contact.impulse_n_s, "N s"),
             quantity(contact.peak_force_n, "N"),
             quantity(contact.peak_compression_m, "m")

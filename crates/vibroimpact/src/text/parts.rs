@@ -65,17 +65,35 @@ pub(crate) fn superscript(number: i32) -> String {
 
 /// A number with four significant digits and its unit, with an SI prefix: `1.235 ms`.
 pub fn quantity(value: f64, unit: &str) -> String {
+    with_digits(value, unit, QUANTITY_DIGITS)
+}
+
+/// As [`quantity`], with so many digits that two values this far apart differ in the last two of them.
+pub(crate) fn quantity_apart(value: f64, unit: &str, distance: f64) -> String {
+    let needed = 2.0 + value.abs().log10().floor() - distance.abs().log10().floor();
+    let most = f64::DIGITS as usize + 2;
+    // infinite for a distance of 0
+    let digits =
+        if needed.is_nan() { QUANTITY_DIGITS } else { (needed.max(0.0) as usize).clamp(QUANTITY_DIGITS, most) };
+    with_digits(value, unit, digits)
+}
+
+/// Significant digits of a quantity.
+const QUANTITY_DIGITS: usize = 4;
+
+fn with_digits(value: f64, unit: &str, digits: usize) -> String {
     const PREFIXES: [&str; 11] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P"];
     if value == 0.0 {
         return format!("0 {unit}");
     }
+    let after_first = digits.saturating_sub(1);
     // through the decimal form, so that 999.96 becomes 1.000 k
-    let scientific = format!("{value:.3e}");
+    let scientific = format!("{value:.after_first$e}");
     let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let group = exponent.div_euclid(3);
     match usize::try_from(group + 5).ok().and_then(|i| PREFIXES.get(i)) {
         Some(prefix) if value.is_finite() => {
-            let decimals = usize::try_from(3 - exponent.rem_euclid(3)).unwrap_or(0);
+            let decimals = after_first.saturating_sub(usize::try_from(exponent.rem_euclid(3)).unwrap_or(0));
             format!("{:.decimals$} {prefix}{unit}", value / 1000f64.powi(group))
         }
         _ => format!("{scientific} {unit}"),

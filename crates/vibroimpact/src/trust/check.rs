@@ -35,7 +35,7 @@ pub struct Check {
 
 impl Check {
     /// `limits` are those of the theory's range and of where it ends; which way they lie tells which way is better.
-    pub(super) fn new(check: &'static str, value: f64, limits: [f64; 2], says: String) -> Check {
+    pub(crate) fn new(check: &'static str, value: f64, limits: [f64; 2], says: String) -> Check {
         let [within, outside] = limits;
         let rises = outside > within;
         let beyond = |limit: f64| if rises { value > limit } else { value < limit };
