@@ -12,6 +12,9 @@ use faer::{Mat, MatMut};
 /// Relative change of a frequency by rounding.
 const ROUNDING: f64 = 1e-11;
 
+/// The first coefficient of a shape that is larger than this share of the largest determines the sign.
+const LEADING: f64 = 0.5;
+
 /// An entry of stiffness and mass, made dimensionless by `D` and by the mass.
 struct Entry {
     row: usize,
@@ -128,12 +131,14 @@ impl Block {
         let high = |[i, j]: &[usize; 2]| i + 2 > last[0] || j + 2 > last[1];
         let mode = |k: usize| {
             let mut shape: Vec<f64> = (0..n).map(|p| vectors[(p, k)] * self.scale[p]).collect();
-            let largest = shape.iter().fold(0.0, |best: f64, c| if c.abs() > best.abs() { *c } else { best });
+            // in symmetric plates several coefficients are equally large, and rounding would choose among them
+            let largest = shape.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+            let leading = shape.iter().find(|c| c.abs() > LEADING * largest).copied().unwrap_or(1.0);
             // The error of a Lanczos eigenvalue is relative to the largest one; Rayleigh's quotient of the shape is more
             // accurate.
             let [stiffness, mass] = self.energies(&shape);
             let square = stiffness / mass;
-            let size = largest.signum() / mass.sqrt();
+            let size = leading.signum() / mass.sqrt();
             shape.iter_mut().for_each(|c| *c *= size);
             let cut: Vec<f64> =
                 self.pairs.iter().zip(&shape).map(|(pair, c)| if high(pair) { 0.0 } else { *c }).collect();

@@ -9,7 +9,7 @@ use invalid_input::InvalidInput;
 /// Natural modes of a plate, in ascending order of frequency; rigid-body modes first, with `omega = 0`.
 ///
 /// Shapes are mass-normalised, `int rho h phi_i phi_j dA = delta_ij`, and in kg^(-1/2); with Mindlin's theory the mass includes
-/// rotary inertia. Signs are determined by the largest coefficient in the basis.
+/// rotary inertia. Signs are determined by the first coefficient in the basis that is larger than half of the largest.
 #[derive(Debug, Clone)]
 pub struct PlateModes {
     pub(super) plate: Plate,
