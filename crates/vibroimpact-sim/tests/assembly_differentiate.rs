@@ -4,8 +4,8 @@ mod common;
 
 use contact_models::{Hertz, HuntCrossley, KelvinVoigt, Law, LinearSpring};
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, Derivative, Differentiated, Force, Interval, Load, NoDerivative, Observer,
-    Outcome, Parameter, Point, Run, Settings, Solver, run,
+    Assembly, Body, BodyMode, Contact, Derivative, Derivatives, Differentiated, Force, Interval, Load, NoDerivative,
+    Observer, Outcome, Parameter, Point, Run, Settings, Solver, run,
 };
 
 /// An assembly and the end of its run as functions of some numbers.
@@ -81,7 +81,7 @@ impl Case {
     fn check(&self, part: f64) -> (usize, usize) {
         let found = self.differentiate(1e-10);
         let nominal = outputs(&(found.run.clone(), in_time(&found.intervals)));
-        let derivatives = found.derivatives.as_ref().unwrap();
+        let derivatives = all(&found.derivatives);
         let (mut compared, mut covered) = (0, 0);
         for (which, derivatives) in derivatives.iter().enumerate() {
             let own = own_outputs(&found, derivatives);
@@ -102,6 +102,11 @@ impl Case {
     }
 }
 
+/// The derivatives with respect to all parameters.
+fn all(derivatives: &[Result<Derivatives, NoDerivative>]) -> Vec<Derivatives> {
+    derivatives.iter().cloned().collect::<Result<_, _>>().unwrap()
+}
+
 fn in_time(intervals: &[Vec<Interval>]) -> Vec<(usize, Interval)> {
     intervals.iter().enumerate().flat_map(|(c, own)| own.iter().map(move |interval| (c, *interval))).collect()
 }
@@ -120,10 +125,7 @@ fn outputs((run, intervals): &(Run, Vec<(usize, Interval)>)) -> Vec<f64> {
     found
 }
 
-fn own_outputs(
-    found: &Differentiated,
-    derivatives: &vibroimpact_sim::assembly::Derivatives,
-) -> Vec<(&'static str, Derivative)> {
+fn own_outputs(found: &Differentiated, derivatives: &Derivatives) -> Vec<(&'static str, Derivative)> {
     let mut own = Vec::new();
     assert_eq!(found.intervals.len(), derivatives.contacts.len());
     for contact in &derivatives.contacts {
@@ -165,7 +167,7 @@ fn a_dropped_ball_changes_with_everything() {
     let (compared, covered) = case.check(1e-6);
     assert_eq!((compared, covered), (7 * (3 * 7 + 4), 7 * (3 * 7 + 4)));
     // The first touch, at the end of a parabola.
-    let derivatives = case.differentiate(1e-10).derivatives.unwrap();
+    let derivatives = all(&case.differentiate(1e-10).derivatives);
     let by_height = derivatives[1].contacts[0].intervals[0].start_s.value;
     let speed = (0.1f64 * 0.1 + 2.0 * 9.81 * 0.011).sqrt();
     assert!((by_height - speed.recip()).abs() < 1e-8 / speed, "{by_height}");
@@ -247,14 +249,14 @@ fn by_speed_and_gap(law: Law) -> [Differentiated; 2] {
 fn contacts_that_touch_together_have_their_own_times() {
     let [speed, gap] = by_speed_and_gap(Hertz::new(1e9).unwrap().into());
     let starts = |found: &Differentiated| {
-        let derivatives = &found.derivatives.as_ref().unwrap()[0];
+        let derivatives = found.derivatives[0].as_ref().unwrap();
         derivatives.contacts.iter().map(|contact| contact.intervals[0].start_s.value).collect::<Vec<_>>()
     };
     // It arrives at (0.01 + gap)/speed.
     assert!(starts(&speed).iter().all(|by| (by + 0.01).abs() < 1e-8), "{:?}", starts(&speed));
     assert!(starts(&gap)[0].abs() < 1e-8 && (starts(&gap)[1] - 1.0).abs() < 1e-8, "{:?}", starts(&gap));
     let ends = |found: &Differentiated| {
-        let derivatives = &found.derivatives.as_ref().unwrap()[0];
+        let derivatives = found.derivatives[0].as_ref().unwrap();
         [0, 1].map(|c| derivatives.contacts[c].displacement_m[0])
     };
     // A wall that is further away returns the ball later from a more distant point: its displacement decreases
@@ -269,8 +271,8 @@ fn contacts_that_touch_together_have_their_own_times() {
 #[test]
 fn forces_that_jump_together_have_a_derivative_only_if_they_stay_together() {
     let [speed, gap] = by_speed_and_gap(KelvinVoigt::new(1e6, 30.0).unwrap().into());
-    assert!(speed.derivatives.is_ok());
-    assert!(matches!(gap.derivatives, Err(NoDerivative::Together { contact: 1, .. })), "{:?}", gap.derivatives);
+    assert!(speed.derivatives[0].is_ok());
+    assert!(matches!(gap.derivatives[0], Err(NoDerivative::Together { contact: 1, .. })), "{:?}", gap.derivatives);
 }
 
 #[test]
@@ -319,7 +321,45 @@ fn balls_that_touch_without_speed_have_no_derivative_by_their_gap() {
         near.contacts[1].gap_m += gap_m;
         near
     });
-    let parameter = Parameter { offsets, neighbours: near.each_ref(), end_s: [end_s; 4], changes_laws: false };
-    let found = Solver::new(&assembly).unwrap().differentiate(&Settings::until(end_s), &[parameter]).unwrap();
-    assert!(matches!(found.derivatives, Err(NoDerivative::Graze { contact: 1, .. })), "{:?}", found.derivatives);
+    let faster = offsets.map(|by| cradle(&[0.1, 1.0 + by, 1e9]).0);
+    let parameters = [&near, &faster].map(|near| Parameter {
+        offsets,
+        neighbours: near.each_ref(),
+        end_s: [end_s; 4],
+        changes_laws: false,
+    });
+    let found = Solver::new(&assembly).unwrap().differentiate(&Settings::until(end_s), &parameters).unwrap();
+    assert!(matches!(found.derivatives[0], Err(NoDerivative::Graze { contact: 1, .. })), "{:?}", found.derivatives);
+    // the others have them: with Hertz's law all velocities are proportional to the first
+    let by_speed = found.derivatives[1].as_ref().unwrap().contacts[0].velocity_m_s[0];
+    let velocity = found.run.contacts[0].velocity_m_s[0];
+    assert!((by_speed.value - velocity).abs() < 1e-6 * velocity.abs(), "{by_speed:?} {velocity}");
+}
+
+/// A ball that falls on dissipative ground from a small height bounces; from a smaller one it stays in contact, and nearly leaves it.
+#[test]
+fn a_contact_that_nearly_opens_is_a_near_graze() {
+    let pose = |height: f64| {
+        let weight = Load { body: 0, shape: vec![0.1f64.sqrt()], force: Force::Constant { force_n: -9.81 } };
+        let law = Law::from(HuntCrossley::new(1e8, 1.5, 10.0).unwrap());
+        let contacts = vec![Contact { sides: [of_mass(0, 0.1), Point::Ground], gap_m: 0.0, law }];
+        Assembly { bodies: vec![Body::mass(0.1, height, 0.0)], contacts, loads: vec![weight] }
+    };
+    let at = |height: f64| {
+        let step = 1e-5 * height;
+        let offsets = STEPS.map(|place| place * step);
+        let near = offsets.map(|by| pose(height + by));
+        let parameter = Parameter { offsets, neighbours: near.each_ref(), end_s: [0.02; 4], changes_laws: false };
+        let assembly = pose(height);
+        Solver::new(&assembly).unwrap().differentiate(&Settings::until(0.02), &[parameter]).unwrap()
+    };
+    let (mut stays, mut bounces) = (1e-9, 1e-5);
+    for _ in 0..40 {
+        let middle = 0.5 * (stays + bounces);
+        *(if at(middle).intervals[0].len() == 1 { &mut stays } else { &mut bounces }) = middle;
+    }
+    let [stays, bounces] = [stays, bounces].map(at);
+    assert!(bounces.nearest_graze < 1e-3 && bounces.intervals[0].len() > 1, "{}", bounces.nearest_graze);
+    let miss = stays.nearest_miss.unwrap();
+    assert!(stays.nearest_graze < 1e-3 && miss.was_closed && miss.distance_m < 1e-9, "{miss:?}");
 }

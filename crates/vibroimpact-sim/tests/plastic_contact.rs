@@ -239,7 +239,7 @@ fn derivatives_follow_the_internal_variables() {
         ];
         let solver = Solver::new(&structure).unwrap();
         let found = solver.differentiate(&ball(), &law, None, &settings(1e-11), &parameters).unwrap();
-        let derivatives = found.derivatives.unwrap();
+        let derivatives: Vec<_> = found.derivatives.into_iter().collect::<Result<_, _>>().unwrap();
         let restitution = |striker: &Striker, law: &Hardening| {
             solver.solve(striker, law, None, &settings(1e-12)).unwrap().restitution.unwrap()
         };

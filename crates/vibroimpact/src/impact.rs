@@ -74,13 +74,18 @@ impl Impact {
         Posing { structure, striker, law, start: start.as_ref().unwrap_or(at_rest) }
     }
 
-    /// Gives the modes the signs and the order of those of a neighbouring impact. `false` if they are not the same modes.
-    pub(crate) fn take_modes_of(&mut self, base: &Impact) -> bool {
-        let seen = |impact: &Impact| -> Vec<Seen> {
-            let of = |mode: &Mode| Seen { omega_rad_s: mode.omega_rad_s, shapes: vec![mode.shape] };
-            impact.structure.modes.iter().map(of).collect()
-        };
-        let Some(steps) = matched(&seen(base), seen(self)) else { return false };
+    /// The modes as they are compared.
+    pub(crate) fn seen(&self) -> Vec<Seen> {
+        let of = |mode: &Mode| Seen { omega_rad_s: mode.omega_rad_s, shapes: vec![mode.shape] };
+        self.structure.modes.iter().map(of).collect()
+    }
+
+    /// Gives the modes the signs and the order of those of a neighbouring impact.
+    ///
+    /// # Errors
+    /// The reason why they are not the same modes.
+    pub(crate) fn take_modes_of(&mut self, base: &Impact) -> Result<(), &'static str> {
+        let steps = matched(&base.seen(), self.seen())?;
         for (k, (i, sign)) in steps.into_iter().enumerate() {
             let modes = &mut self.structure.modes;
             modes.swap(k, i);
@@ -92,7 +97,7 @@ impl Impact {
                 }
             }
         }
-        true
+        Ok(())
     }
 }
 
@@ -103,9 +108,21 @@ impl Scene {
         count: Option<usize>,
         kept: &mut Kept,
     ) -> Result<(Structure, usize), InvalidInput> {
+        self.structure_from((count, self.enough(count)), kept)
+    }
+
+    /// Number of computed modes from which remainder modes follow.
+    fn enough(&self, count: Option<usize>) -> Option<usize> {
+        count.map(|count| self.structure.enough_for_remainder(self.place(), count))
+    }
+
+    fn structure_from(
+        &self,
+        (count, enough): (Option<usize>, Option<usize>),
+        kept: &mut Kept,
+    ) -> Result<(Structure, usize), InvalidInput> {
         let place = self.place();
         let modes = if self.residual_compliance.unwrap_or(chooses_modes(self)) {
-            let enough = count.map(|count| self.structure.enough_for_remainder(place, count));
             let mut known = self.structure.modes_with(place, enough, &mut kept.modes)?;
             let count = count.unwrap_or(known.len()).min(known.len());
             let whole_m_n = self.structure.static_compliance_m_n(place)?;
@@ -144,12 +161,26 @@ impl Scene {
 
     /// The impact with the first `count` modes, or all that are listed.
     pub(crate) fn impact_of(&self, count: Option<usize>, kept: &mut Kept) -> Result<Impact, InvalidInput> {
+        self.impact_from((count, self.enough(count)), kept)
+    }
+
+    /// The impact of a scene with stated modes that is near to another one, whose modes are cached. Its numbers change continuously
+    /// from that one to this one, because the remainder modes of both follow from the same number of modes.
+    pub(crate) fn impact_beside(&self, other: &Scene, kept: &mut Kept) -> Result<Impact, InvalidInput> {
+        let counts = (self.modes.count(), other.enough(other.modes.count()));
+        let kept = if self.structure == other.structure { kept } else { &mut Kept::default() };
+        let impact = self.impact_from(counts, kept)?;
+        impact.posing(&Start::at_rest(impact.structure.modes.len())).check().map_err(in_scene)?;
+        Ok(impact)
+    }
+
+    fn impact_from(&self, counts: (Option<usize>, Option<usize>), kept: &mut Kept) -> Result<Impact, InvalidInput> {
         let settings = Settings::default();
         let settings = Settings { tolerance: self.tolerance.unwrap_or(settings.tolerance), ..settings };
         if let scene::Structure::DroppedRod(rod) = &self.structure {
             return self.drop(rod, settings);
         }
-        let (structure, remainder_modes) = self.structure_of(count, kept)?;
+        let (structure, remainder_modes) = self.structure_from(counts, kept)?;
         let start = self.start(&structure.modes, remainder_modes)?;
         let (striker, law) = self.striker_and_law()?;
         Ok(Impact { structure, remainder_modes, striker, law, start, settings })

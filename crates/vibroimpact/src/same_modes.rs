@@ -1,11 +1,14 @@
 //! Matching of the modes of a structure with those of a neighbouring one.
 //!
-//! The sign of a mode is arbitrary, and two modes change their order where their frequencies cross.
+//! The sign of a mode is arbitrary, and two modes change their order where their frequencies cross. Modes that are computed have
+//! the sign of the whole mode, which rarely changes from neighbour to neighbour. The shape at the contact alone does not show it: at
+//! a node it passes through zero.
 
 /// Largest relative change of a mode from a structure to its neighbour; beyond it they count as different modes.
 const SAME: f64 = 1e-2;
 
 /// The compared data of a mode.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Seen {
     /// Its frequency (rad/s).
     pub omega_rad_s: f64,
@@ -14,37 +17,48 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// The sign with which another mode is most similar to this one.
-    fn sign_of(&self, other: &Seen) -> f64 {
-        let product: f64 = self.shapes.iter().zip(&other.shapes).map(|(one, other)| one * other).sum();
-        if product < 0.0 { -1.0 } else { 1.0 }
-    }
-
-    fn distance(&self, other: &Seen, largest: f64) -> f64 {
-        let sign = self.sign_of(other);
-        let by_shape = self.shapes.iter().zip(&other.shapes).map(|(one, other)| (one - sign * other).abs() / largest);
+    /// The difference of another mode from this one, and the sign with which it is the same mode: the opposite sign only if it is
+    /// not the same mode with its own. If the frequency has not changed, the structure has not, but only the point where it is
+    /// seen: at a support, where no mode moves, the shapes tell nothing.
+    fn compared(&self, other: &Seen, largest: f64) -> (f64, f64) {
+        if self.omega_rad_s == other.omega_rad_s && self.omega_rad_s > 0.0 {
+            return (0.0, 1.0);
+        }
         let by_frequency = (self.omega_rad_s - other.omega_rad_s).abs() / self.omega_rad_s.max(f64::MIN_POSITIVE);
-        by_shape.fold(by_frequency, f64::max)
+        let distance = |sign: f64| {
+            let by_shape = self.shapes.iter().zip(&other.shapes).map(|(one, other)| (one - sign * other).abs());
+            by_shape.fold(0.0, f64::max) / largest
+        };
+        let (own, opposite) = (distance(1.0), distance(-1.0));
+        let (by_shape, sign) = if own <= SAME || own <= opposite { (own, 1.0) } else { (opposite, -1.0) };
+        (by_shape.max(by_frequency), sign)
     }
 }
 
-/// For each mode in turn: the position of the matching mode, which is to be swapped into its own, and the sign. `None` if they are
-/// not the same modes.
-pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Option<Vec<(usize, f64)>> {
+/// For each mode in turn: the position of the matching mode, which is to be swapped into its own, and the sign.
+///
+/// # Errors
+/// The reason why they are not the same modes.
+pub(crate) fn matched(own: &[Seen], mut found: Vec<Seen>) -> Result<Vec<(usize, f64)>, &'static str> {
     if own.len() != found.len() {
-        return None;
+        return Err("the number of modes that the contact moves changes");
+    }
+    let rigid = |modes: &[Seen]| modes.iter().filter(|mode| mode.omega_rad_s == 0.0).count();
+    if rigid(own) != rigid(&found) {
+        return Err("a rigid-body motion becomes a vibration");
     }
     let largest = own.iter().flat_map(|mode| &mode.shapes).fold(f64::MIN_POSITIVE, |most, shape| most.max(shape.abs()));
     let mut steps = Vec::with_capacity(own.len());
     for (k, mode) in own.iter().enumerate() {
-        let distance = |i: usize| mode.distance(&found[i], largest);
+        let distance = |i: usize| mode.compared(&found[i], largest).0;
         let later = (k + 1..own.len().min(k + 3)).filter(|i| distance(*i) < distance(k));
         let i = later.min_by(|i, j| distance(*i).total_cmp(&distance(*j))).unwrap_or(k);
         if distance(i) > SAME {
-            return None;
+            let elsewhere = (0..found.len()).any(|i| distance(i) <= SAME);
+            return Err(if elsewhere { "two modes swap their order" } else { "a mode changes abruptly" });
         }
         found.swap(k, i);
-        steps.push((i, mode.sign_of(&found[k])));
+        steps.push((i, mode.compared(&found[k], largest).1));
     }
-    Some(steps)
+    Ok(steps)
 }

@@ -86,7 +86,7 @@ fn every_key_of_every_command_is_documented() {
     let bodies = dataset("assemblies/sdnl104.json");
     let text = section(&page("outputs"), "`sensitivity`");
     for command in [["sensitivity", &beam, "--by", "striker.speed_m_s"], ["sensitivity", &bodies, "--by", "end_s"]] {
-        let found = documented(folder, "`sensitivity`", &command, &["scene", "derivatives"]);
+        let found = documented(folder, "`sensitivity`", &command, &["scene", "derivatives", "outputs"]);
         for output in found["derivatives"].as_object().unwrap().keys() {
             // The page uses the first contact and the first mode.
             let mut general = output.replace(".stop.", ".NAME.").replace(".beam.", ".NAME.");

@@ -57,6 +57,82 @@ fn derivatives_of_gallery_scenes_agree_with_differences() {
     }
 }
 
+/// A tree of the gallery, after some changes.
+fn changed(name: &str, change: impl Fn(&mut Value)) -> Value {
+    let mut tree = serde_json::from_str(&fs::read_to_string(gallery(name)).unwrap()).unwrap();
+    change(&mut tree);
+    tree
+}
+
+/// Fourth-order difference of the restitution.
+fn difference(tree: &Value, pointer: &str, step: f64) -> f64 {
+    let value = tree.pointer(pointer).unwrap().as_f64().unwrap();
+    let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|i| restitution(tree, pointer, value + i * step));
+    (8.0 * (c - b) - (d - a)) / (12.0 * step)
+}
+
+/// In the middle of a beam the shapes of the even modes are zero, but their derivatives are not.
+#[test]
+fn shapes_that_pass_through_zero_keep_their_sign() {
+    let at_node = changed("moving-beam.json", |tree| {
+        tree["location_m"] = json!(0.5);
+        tree["modes"] = json!(20);
+        tree["start"]["moving_modes"] = json!([{ "mode": 2, "location_m": 0.25, "velocity_m_s": 0.1 }]);
+    });
+    let fields = ["location_m", "structure.segments[0].length_m"].map(str::to_owned);
+    let found = Scene::from_value(&at_node).unwrap().sensitivity(&fields).unwrap();
+    for (field, pointer) in fields.iter().zip(["/location_m", "/structure/segments/0/length_m"]) {
+        let derivative = found.of("restitution", field).unwrap();
+        let reference = difference(&found.scene, pointer, 1e-5);
+        let error = (derivative.value - reference).abs();
+        assert!(reference.abs() > 0.1 && error < 1e-5 * reference.abs(), "{field}: {derivative:?} {reference}");
+    }
+    // sqrt(2/m) sin(2 pi x/L)
+    let mass: f64 = 7800.0 * 0.011323 * 0.011323;
+    let slope = -2.0 * std::f64::consts::PI * (2.0 / mass).sqrt();
+    let shape = found.of("shape[1]", "location_m").unwrap();
+    assert!(
+        (shape.value - slope).abs() <= shape.uncertainty.unwrap() && shape.uncertainty.unwrap() < 1e-6,
+        "{shape:?}"
+    );
+}
+
+/// On the diagonal of a square some shapes are zero, and in each of them two coefficients are equally large.
+#[test]
+fn shapes_on_the_diagonal_of_a_square_plate_have_derivatives() {
+    let tree = changed("cantilever-plate.json", |tree| {
+        tree["structure"]["width_m"] = json!(0.3);
+        tree["structure"]["edges"] = json!(["free", "free", "free", "free"]);
+        tree["location_m"] = json!([0.2, 0.2]);
+        tree["modes"] = json!(12);
+    });
+    let field = "structure.length_m";
+    let found = Scene::from_value(&tree).unwrap().sensitivity(&[field.to_owned()]).unwrap();
+    let shape = |length: f64| {
+        let mut tree = tree.clone();
+        tree["structure"]["length_m"] = json!(length);
+        Scene::from_value(&tree).unwrap().mode_shapes(12).unwrap()[4].shape
+    };
+    assert!(shape(0.3).abs() < 1e-9);
+    let reference = (shape(0.3003) - shape(0.2997)) / 6e-4;
+    let derivative = found.of("shape[4]", field).unwrap();
+    assert!(reference.abs() > 1.0 && (derivative.value / reference - 1.0).abs() < 1e-4, "{derivative:?} {reference}");
+}
+
+/// Shapes by Ritz's method have larger errors than others, which the neighbours magnify.
+#[test]
+fn errors_of_the_modes_of_a_plate_are_part_of_the_uncertainty() {
+    let tree = changed("cantilever-plate.json", |tree| tree["modes"] = json!(40));
+    let field = "structure.poissons_ratio".to_owned();
+    let found = Scene::from_value(&tree).unwrap().sensitivity(std::slice::from_ref(&field)).unwrap();
+    let derivative = found.of("restitution", &field).unwrap();
+    // over a distance at which these errors do not matter
+    let reference = difference(&found.scene, "/structure/poissons_ratio", 3e-4);
+    let (error, uncertainty) = ((derivative.value - reference).abs(), derivative.uncertainty.unwrap());
+    assert!(error > 1e-8 && error <= uncertainty, "{derivative:?} {reference}");
+    assert!(uncertainty < 1e-3 * reference.abs(), "{derivative:?} {reference}");
+}
+
 #[test]
 fn frequencies_change_according_to_theory() {
     let scene = Scene::read(&gallery("pinned-beam.json")).unwrap();
@@ -114,6 +190,66 @@ fn the_command_prints_a_table_a_picture_and_json() {
     assert_eq!(found["derivatives"]["end_s"].as_object().unwrap().len(), 2);
 }
 
+/// Where the derivatives do not hold for one per cent, less is shown.
+#[test]
+fn the_picture_stays_within_the_range_of_the_derivatives() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = gallery("pinned-beam.json").display().to_string();
+    let arguments = ["sensitivity", &scene, "--by", "structure.segments[0].length_m", "--plot", "tornado.svg"];
+    let text = stdout(&run(folder.path(), &arguments));
+    assert!(text.contains("by 0.001 % more") && text.contains("For 1 % they predict a change of 46"), "{text}");
+    assert!(fs::read_to_string(folder.path().join("tornado.svg")).unwrap().contains("0.001 % less"));
+}
+
+/// All numbers of a scene, of which some have no derivatives.
+#[test]
+fn fields_without_derivatives_are_listed_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |scene: &str, more: &[&str]| {
+        let scene = gallery(scene).display().to_string();
+        let arguments: Vec<&str> = ["sensitivity", &scene].into_iter().chain(more.iter().copied()).collect();
+        stdout(&run(folder.path(), &arguments))
+    };
+    let text = rows("sdnl32.json", &[]);
+    assert!(text.contains("striker.speed_m_s  must be 0 for an immovable striker"), "{text}");
+    assert!(text.contains("\n  start.gap_m "), "{text}");
+    let text = rows("../assemblies/newtons-cradle.json", &[]);
+    assert!(text.contains(r#"contacts[1].gap_m         contact "2-3" touches without speed at 0 s"#), "{text}");
+    assert!(text.contains("  bodies.ball-1.mass_kg"), "{text}");
+    // numbers in lists
+    let text = rows("simply-supported-plate.json", &[]);
+    assert!(text.contains("  location_m[0]") && text.contains("  location_m[1]"), "{text}");
+    let frequencies: Vec<f64> = (1..=21).map(f64::from).collect();
+    let shapes = vec![1.0; 21];
+    let listed = json!({ "kind": "modal", "omega_rad_s": frequencies, "shape_at_location": shapes });
+    let text = rows("measured-modes.json", &["--set", &format!("structure={listed}")]);
+    let told =
+        "structure.shape_at_location  a list of 21 numbers; --by structure.shape_at_location[0] and so on selects";
+    assert!(text.contains(told), "{text}");
+    // neither does any mode of a free beam vibrate at a spring of zero stiffness, nor do two modes swap
+    let attached = r#"structure.attachments=[{"location_m":0.3,"spring_n_m":0}]"#;
+    let text = rows("pinned-beam.json", &["--set", r#"structure.ends=["free","free"]"#, "--set", attached]);
+    assert!(
+        text.contains("attachments[0].spring_n_m                 a rigid-body motion becomes a vibration"),
+        "{text}"
+    );
+    assert!(text.contains("  structure.attachments[0].rotary_inertia_kg_m2             0"), "{text}");
+}
+
+/// The remainder modes of a location and of its neighbours follow from the same number of modes.
+#[test]
+fn a_location_at_the_end_of_a_beam_has_a_derivative() {
+    let tree = changed("cantilever-tip.json", |tree| {
+        tree["location_m"] = tree["structure"]["segments"][0]["length_m"].clone();
+    });
+    let length = tree["location_m"].as_f64().unwrap();
+    let found = Scene::from_value(&tree).unwrap().sensitivity(&["location_m".to_owned()]).unwrap();
+    let derivative = found.of("restitution", "location_m").unwrap();
+    let [at, near, far] = [0.0, 1e-6, 2e-6].map(|by| restitution(&found.scene, "/location_m", length - by));
+    let reference = (3.0 * at - 4.0 * near + far) / 2e-6;
+    assert!((derivative.value / reference - 1.0).abs() < 1e-3, "{derivative:?} {reference}");
+}
+
 #[test]
 fn fields_without_a_derivative_are_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -135,10 +271,35 @@ fn fields_without_a_derivative_are_named() {
         ("../assemblies/shaken-table.json", &["--of", "restitution"], "an output of this scene"),
         ("../assemblies/shaken-table.json", &["--by=end_s", "--set=end_s=1e5"], "panels"),
         ("infinite-beam.json", &["--of", "restitution"], "a structure with modes"),
+        ("pinned-beam-converged.json", &["--set=location_m=0", "--by=location_m"], "a mode changes abruptly"),
+        ("../assemblies/newtons-cradle.json", &["--by", "contacts[1].gap_m"], "touches without speed"),
     ] {
         let message = refused(scene, more);
         assert!(message.contains(told), "{more:?}: {message}");
     }
+}
+
+/// As in the middle of a beam that is struck once.
+#[test]
+fn shapes_of_bodies_that_pass_through_zero_keep_their_sign() {
+    let mut tree = changed("../assemblies/dropped-ball.json", |tree| {
+        tree["contacts"][0]["between"][1]["location_m"] = json!(0.5);
+        tree["bodies"]["beam"]["start"] =
+            json!({ "moving_modes": [{ "mode": 2, "location_m": 0.25, "velocity_m_s": 0.1 }] });
+        tree["static_start"] = json!(false);
+        tree["end_s"] = json!(0.05);
+    });
+    tree["tolerance"] = json!(1e-11);
+    let field = "contacts[0].between[1].location_m";
+    let found = AssemblyScene::from_value(&tree).unwrap().sensitivity(&[field.to_owned()]).unwrap();
+    let impulse = |location: f64| {
+        contacts(&tree, "/contacts/0/between/1/location_m", location)["contact"]["intervals"][1]["impulse_n_s"]
+            .as_f64()
+            .unwrap()
+    };
+    let reference = (impulse(0.5 + 1e-6) - impulse(0.5 - 1e-6)) / 2e-6;
+    let derivative = found.table.of("contacts.contact.intervals[1].impulse_n_s", field).unwrap();
+    assert!((derivative.value / reference - 1.0).abs() < 1e-5, "{derivative:?} {reference}");
 }
 
 /// The contacts of a scene of bodies with a number changed, solved to 1e-13.

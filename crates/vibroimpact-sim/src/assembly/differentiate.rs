@@ -1,6 +1,7 @@
 //! Derivatives of a run of an assembly with respect to the numbers that define it.
 
 use super::change::Change;
+use super::miss::NearMiss;
 use super::no_derivative::NoDerivative;
 use super::problem::{Assembly, Point, Posed, Settings};
 use super::responses::Responses;
@@ -87,10 +88,13 @@ pub struct Differentiated {
     pub run: Run,
     /// Its intervals, contact by contact.
     pub intervals: Vec<Vec<Interval>>,
-    /// For each parameter, in the given order, or the reason why there are none.
-    pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
-    /// Speed of the slowest touch divided by that of the fastest. As it tends to zero, the derivatives grow without bound.
+    /// For each parameter, in the given order: its derivatives, or the reason why there are none.
+    pub derivatives: Vec<Result<Derivatives, NoDerivative>>,
+    /// Speed of the slowest touch, or of the nearest miss, divided by that of the fastest touch. As it tends to zero, the
+    /// derivatives may change abruptly or grow without bound.
     pub nearest_graze: f64,
+    /// The nearest graze, if it is a miss.
+    pub nearest_miss: Option<NearMiss>,
 }
 
 /// Factor of the tolerance of the coarser motion whose derivatives give the uncertainty.
@@ -148,8 +152,15 @@ struct Changed {
     change: f64,
 }
 
-/// Derivatives for each parameter, and the ratio of the slowest to the fastest touch.
-type AllChanges = Result<(Vec<Changes>, f64), NoDerivative>;
+/// One run with its derivatives.
+struct Differences {
+    run: Run,
+    intervals: Vec<Vec<Interval>>,
+    /// For each parameter.
+    changes: Vec<Result<Changes, NoDerivative>>,
+    nearest_graze: f64,
+    nearest_miss: Option<NearMiss>,
+}
 
 /// Collects the intervals.
 struct Intervals(Vec<Vec<Interval>>);
@@ -180,7 +191,7 @@ impl Solver<'_> {
     ///     Parameter { offsets, neighbours: around.each_ref(), end_s: [0.02; 4], changes_laws: false };
     /// let assembly = posed(1.0);
     /// let found = Solver::new(&assembly)?.differentiate(&Settings::until(0.02), &[speed])?;
-    /// let contact = &found.derivatives.unwrap()[0].contacts[0];
+    /// let contact = &found.derivatives[0].as_ref().unwrap().contacts[0];
     /// // it arrives at 0.01 m/v, and its impulse is 2 m v
     /// assert!((contact.intervals[0].start_s.value + 0.01).abs() < 1e-9);
     /// assert!((contact.intervals[0].impulse_n_s.value - 0.2).abs() < 1e-8);
@@ -207,11 +218,8 @@ impl Solver<'_> {
             .collect();
         let asked: Vec<f64> = parameters.iter().map(|by| Stencil::new(by.offsets).slope(by.end_s)).collect();
         let mut expansions = Expansions::default();
-        let (run, intervals, fine) = self.along(settings, (&around, &changes, &asked), &mut expansions);
-        let (fine, nearest_graze) = match fine {
-            Ok(found) => found,
-            Err(why) => return Ok(Differentiated { run, intervals, derivatives: Err(why), nearest_graze: 1.0 }),
-        };
+        let fine = self.along(settings, (&around, &changes, &asked), &mut expansions);
+        let Differences { run, intervals, changes: fine, nearest_graze, nearest_miss } = fine;
         // the coarser run ends at the same time as this one, which is fixed unless it is the requested end
         let (end_s, ends) = match run.outcome {
             Outcome::End => (settings.end_s, asked),
@@ -220,14 +228,17 @@ impl Solver<'_> {
         };
         let tolerance = (COARSER * settings.tolerance).min(0.1);
         let coarser = Settings { tolerance, end_s, stop_at_rest: false, ..*settings };
-        let (_, _, coarse) = self.along(&coarser, (&around, &changes, &ends), &mut expansions);
-        let derivatives = fine.iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
-            let coarse = coarse.as_ref().ok().map(|(coarse, _)| &coarse[i]);
+        let coarse = match fine.iter().any(Result::is_ok) {
+            true => self.along(&coarser, (&around, &changes, &ends), &mut expansions).changes,
+            false => Vec::new(),
+        };
+        let derivatives = fine.into_iter().zip(ends).enumerate().map(|(i, (changes, end_s))| {
+            let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
             let known = Known::new(settings.tolerance, &parameters[i].offsets);
-            Derivatives { end_s, contacts: changes.beside(&intervals, coarse, known) }
+            Ok(Derivatives { end_s, contacts: changes?.beside(&intervals, coarse, known) })
         });
-        let derivatives = Ok(derivatives.collect());
-        Ok(Differentiated { run, intervals, derivatives, nearest_graze })
+        let derivatives = derivatives.collect();
+        Ok(Differentiated { run, intervals, derivatives, nearest_graze, nearest_miss })
     }
 
     /// Derivatives of all modes at the end, amplitudes before rates, with respect to those at the start, body by body:
@@ -238,7 +249,7 @@ impl Solver<'_> {
     ) -> Result<(Outcome, Result<Monodromy, NoDerivative>), InvalidInput> {
         settings.check()?;
         let Solver { posed, system, tables } = self;
-        let (run, stretches) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), true);
+        let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut (), true);
         if run.outcome != Outcome::End {
             return Ok((run.outcome, Err(NoDerivative::Outcome)));
         }
@@ -247,12 +258,13 @@ impl Solver<'_> {
         let changes: Vec<Change> =
             of(false).chain(of(true)).map(|(place, of_rate)| Change::of_start(system, place, of_rate)).collect();
         let fixed = vec![0.0; changes.len()];
-        let found = tangents(posed, system, &stretches, (&changes, Some(&fixed)), &mut Expansions::default());
-        let column = |tangent: Tangent| {
+        let found = tangents(posed, system, &record.stretches, (&changes, Some(&fixed)), &mut Expansions::default());
+        let column = |tangent: Result<Tangent, NoDerivative>| {
+            let tangent = tangent?;
             let of = |values: &[f64]| places().map(|place| values[place]).collect::<Vec<f64>>();
-            [of(&tangent.amplitude), of(&tangent.rate)].concat()
+            Ok([of(&tangent.amplitude), of(&tangent.rate)].concat())
         };
-        Ok((run.outcome, found.map(|found| found.tangents.into_iter().map(column).collect())))
+        Ok((run.outcome, found.and_then(|found| found.tangents.into_iter().map(column).collect())))
     }
 
     /// The assemblies at the neighbouring values of a parameter, after checks.
@@ -293,16 +305,16 @@ impl Solver<'_> {
         Ok(parameter.neighbours.map(Assembly::posed))
     }
 
-    /// One run with its derivatives, and its distance from grazing; `end_s` has the derivatives of the requested time.
+    /// One run with its derivatives; `end_s` has those of the requested time.
     fn along(
         &self,
         settings: &Settings,
         (around, changes, end_s): (&[[Posed; 4]], &[Change], &[f64]),
         expansions: &mut Expansions,
-    ) -> (Run, Vec<Vec<Interval>>, AllChanges) {
+    ) -> Differences {
         let Solver { posed, system, tables } = self;
         let mut watch = Intervals(vec![Vec::new(); posed.sides.len()]);
-        let (run, stretches) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, true);
+        let (run, record) = follow(posed, (system, tables, &mut Responses::default()), settings, &mut watch, true);
         let zeros = vec![0.0; changes.len()];
         let fixed = match run.outcome {
             Outcome::Parted => None,
@@ -312,21 +324,37 @@ impl Solver<'_> {
         let stopped = matches!(run.outcome, Outcome::Stopped(_));
         let found = match stopped {
             true => Err(NoDerivative::Outcome),
-            false => tangents(posed, system, &stretches, (changes, fixed), expansions),
+            false => tangents(posed, system, &record.stretches, (changes, fixed), expansions),
         };
-        let changes = found.map(|found| {
-            let state = [found.amplitude.as_slice(), &found.rate];
-            let of = |((tangent, posed), change): ((Tangent, &[Posed; 4]), &Change)| {
-                let sides = (0..system.links.len()).map(|c| sides(system, c, state, &tangent, posed, change));
-                let sides = sides.collect();
-                let mut intervals = vec![Vec::new(); system.links.len()];
-                tangent.intervals.into_iter().for_each(|interval| intervals[interval.contact].push(interval));
-                Changes { intervals, sides }
-            };
-            (found.tangents.into_iter().zip(around).zip(changes).map(of).collect(), found.nearest_graze)
-        });
-        (run, watch.0, changes)
+        let (intervals, nearest_miss) = (watch.0, record.nearest_miss);
+        let found = match found {
+            Ok(found) => found,
+            Err(why) => {
+                let changes = changes.iter().map(|_| Err(why)).collect();
+                return Differences { run, intervals, changes, nearest_graze: 1.0, nearest_miss: None };
+            }
+        };
+        let state = [found.amplitude.as_slice(), &found.rate];
+        let of = |((tangent, posed), change): ((Result<Tangent, NoDerivative>, &[Posed; 4]), &Change)| {
+            let tangent = tangent?;
+            let sides = (0..system.links.len()).map(|c| sides(system, c, state, &tangent, posed, change));
+            let sides = sides.collect();
+            let mut intervals = vec![Vec::new(); system.links.len()];
+            tangent.intervals.into_iter().for_each(|interval| intervals[interval.contact].push(interval));
+            Ok(Changes { intervals, sides })
+        };
+        let changes = found.tangents.into_iter().zip(around).zip(changes).map(of).collect();
+        let (nearest_graze, nearest_miss) = nearest_graze(found.touches, nearest_miss);
+        Differences { run, intervals, changes, nearest_graze, nearest_miss }
     }
+}
+
+/// Speed of the slowest touch or of the nearest miss, divided by that of the fastest touch, and the miss if it is nearer; 1
+/// without a touch.
+pub(crate) fn nearest_graze([slowest, fastest]: [f64; 2], miss: Option<NearMiss>) -> (f64, Option<NearMiss>) {
+    let miss = miss.filter(|miss| miss.speed_m_s < slowest);
+    let slowest = miss.map_or(slowest, |miss| miss.speed_m_s);
+    (if fastest > 0.0 && slowest.is_finite() { slowest / fastest } else { 1.0 }, miss)
 }
 
 /// Derivatives of displacement and velocity of both sides of a contact at the end.

@@ -23,6 +23,7 @@ impl<'a> March<'a> {
             go = go.min(self.clear_until(c) - self.time_s);
         }
         if go == f64::INFINITY && self.settings.stop_when_over && self.loads.is_empty() {
+            self.look_for_misses();
             (self.time_s, self.amplitude, self.rate) = std::mem::take(&mut self.departure);
             return true;
         }

@@ -70,6 +70,7 @@ impl<'a> March<'a> {
 
     /// Passes a break of the loads.
     fn pass_break(&mut self) {
+        self.look_for_misses();
         let mut account = self.account.take();
         if let Some(account) = &mut account {
             account.end_piece(&self.here());

@@ -63,6 +63,7 @@ mod ledger;
 pub(crate) mod load;
 mod load_change;
 mod march;
+mod miss;
 mod motion;
 mod no_derivative;
 mod orbit;
@@ -87,6 +88,7 @@ pub(crate) mod wave;
 
 pub use branch::{Branch, BranchPoint, BranchSettings, Special, SpecialPoint, follow_branch, follow_doubled};
 pub use differentiate::{ContactDerivatives, Derivative, Derivatives, Differentiated, IntervalDerivatives, Parameter};
+pub use miss::NearMiss;
 pub use no_derivative::NoDerivative;
 pub use orbit::{Orbit, OrbitOutcome, OrbitSettings, SideMotion, find_orbit, find_orbit_until};
 pub use period::CommonPeriod;

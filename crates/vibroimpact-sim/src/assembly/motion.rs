@@ -5,6 +5,7 @@ use super::dense::{Event, Stretch};
 use super::enclosure::Held;
 use super::ledger::{Account, Moment};
 use super::load::Loads;
+use super::miss::Misses;
 use super::problem::{Posed, Settings};
 use super::responses::Responses;
 use super::solution::{Counts, Observer, Reason};
@@ -54,6 +55,8 @@ pub(crate) struct March<'a> {
     /// All stretches of the motion, if they are requested, and the events since the last one.
     pub(super) record: Option<Vec<Stretch>>,
     pub(super) pending: Vec<(usize, Event)>,
+    /// Near misses, along a recorded motion.
+    pub(super) misses: Misses,
     /// Time, amplitudes and rates when the last contact opened, if the run may end there.
     pub(super) departure: (f64, Vec<f64>, Vec<f64>),
     /// Memory for the enclosures, and for Newton's method.
@@ -124,6 +127,7 @@ impl<'a> March<'a> {
             account: None,
             record: None,
             pending: Vec::new(),
+            misses: Misses::default(),
             departure: (0.0, Vec::new(), Vec::new()),
             held: Held::default(),
             newton: Newton::default(),

@@ -2,6 +2,7 @@
 
 use super::dense::{Panel, Seen, Stretch};
 use super::ledger::Moment;
+use super::miss::Distance;
 use super::motion::March;
 use super::state::State;
 use crate::panel::legendre::Nodal;
@@ -14,6 +15,7 @@ impl<'a> March<'a> {
             let start = Moment { system: self.system, loads: &self.loads, time_s: self.time_s, amplitude, rate };
             account.panel(&start, self.tables, h, contacts, force);
         }
+        self.look_for_misses();
         let free = contacts.is_empty();
         let streams = self.observer.wants_panels();
         if h == 0.0 || !streams && self.record.is_none() {
@@ -34,6 +36,30 @@ impl<'a> March<'a> {
                 None => record.push(stretch),
             }
         }
+    }
+
+    /// Whether a contact has nearly closed or opened on the last panel.
+    pub(super) fn look_for_misses(&mut self) {
+        let Some(record) = &self.record else { return };
+        let mut misses = std::mem::take(&mut self.misses);
+        let distances = (0..self.states.len()).map(|c| self.distance(c));
+        let (system, loads, laws) = (self.system, &self.loads, self.laws);
+        let panel = record.last().map(|stretch| Panel { system, loads, laws, stretch });
+        misses.look(self.time_s, distances, panel.as_ref());
+        self.misses = misses;
+    }
+
+    /// Of an open contact its gap; of a closed one the compression above that at which its branch ends, if that does not depend on
+    /// the rate.
+    fn distance(&self, c: usize) -> Option<Distance> {
+        let state = &self.states[c];
+        if !state.is_closed() {
+            let (overlap, rate) = self.overlap_of_modes(c);
+            return Some(Distance { is_closed: false, distance_m: state.touch_m() - overlap, approach_m_s: rate });
+        }
+        let end = state.ends.iter().find(|end| end.per_rate == 0.0 && end.per_compression > 0.0)?;
+        let distance_m = end.margin(state.overlap, 0.0) / end.per_compression;
+        Some(Distance { is_closed: true, distance_m, approach_m_s: -state.rate })
     }
 
     fn stretch(&self, length_s: f64, contacts: &[usize], force: &[Nodal]) -> Stretch {

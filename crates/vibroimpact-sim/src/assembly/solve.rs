@@ -1,6 +1,7 @@
 //! Solves an assembly.
 
 use super::dense::{Stretch, in_users_order};
+use super::miss::NearMiss;
 use super::motion::March;
 use super::problem::{Assembly, Posed, Settings};
 use super::reliability::{Comparison, second_run};
@@ -101,15 +102,22 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// One run, and all stretches of its motion if they are requested. If the bodies have separated for good, the last stretch is
-/// endless; otherwise the last one has zero length.
+/// The whole motion of a run.
+#[derive(Default)]
+pub(crate) struct Record {
+    /// Its stretches. If the bodies have separated for good, the last one is endless; otherwise the last one has zero length.
+    pub stretches: Vec<Stretch>,
+    pub nearest_miss: Option<NearMiss>,
+}
+
+/// One run, and its whole motion if it is requested.
 pub(crate) fn follow(
     posed: &Posed,
     (system, tables, responses): (&System, &Tables, &mut Responses),
     settings: &Settings,
     observer: &mut dyn Observer,
     record: bool,
-) -> (Run, Vec<Stretch>) {
+) -> (Run, Record) {
     let mut march = March::new(posed, system, (tables, responses), *settings, observer);
     march.record = record.then(Vec::new);
     let outcome = march.follow();
@@ -125,7 +133,8 @@ pub(crate) fn follow(
     let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);
     let by_body = |values: &[f64]| march.system.bodies.iter().map(|body| values[body.clone()].to_vec()).collect();
     let (amplitude, rate) = (by_body(&amplitude), by_body(&rate));
-    (Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts }, stretches)
+    let run = Run { outcome, end_s: march.time_s, amplitude, rate, contacts, energy, counts: march.counts };
+    (run, Record { stretches, nearest_miss: march.misses.nearest })
 }
 
 fn contact_end(march: &March, c: usize) -> ContactEnd {

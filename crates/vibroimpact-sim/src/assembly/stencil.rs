@@ -34,6 +34,11 @@ impl<const N: usize> Stencil<N> {
     pub fn slope(&self, values: [f64; N]) -> f64 {
         (1..N).map(|i| self.weights[i] * (values[i] - values[0])).sum()
     }
+
+    /// Error of the slope per independent error of each value (1/unit of the distances): the root of the sum of squares.
+    pub fn magnification(&self) -> f64 {
+        self.weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+    }
 }
 
 impl Stencil<4> {

@@ -5,7 +5,7 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Outcome, Solution, SubImpact};
 use super::solve::{Impact, Keep, LOOSEST, Run, Solver};
 use crate::assembly::change::Change;
-use crate::assembly::differentiate::{COARSER, Known, check_offsets};
+use crate::assembly::differentiate::{COARSER, Known, check_offsets, nearest_graze};
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use crate::assembly::tangent::{Expansions, IntervalChange, Tangent, tangents};
@@ -14,7 +14,7 @@ use invalid_input::InvalidInput;
 use std::array;
 use std::fmt;
 
-pub use crate::assembly::{Derivative, NoDerivative, Stencil};
+pub use crate::assembly::{Derivative, NearMiss, NoDerivative, Stencil};
 
 /// All input of an impact.
 #[derive(Clone, Copy)]
@@ -27,6 +27,18 @@ pub struct Posing<'a> {
     pub law: &'a dyn ContactLaw,
     /// Motion of the structure at the start.
     pub start: &'a Start,
+}
+
+impl Posing<'_> {
+    /// Checks the input as [`Solver::solve`] does, apart from the law.
+    ///
+    /// # Errors
+    /// Names the field, its value and the allowed values.
+    pub fn check(&self) -> Result<(), InvalidInput> {
+        self.structure.check()?;
+        self.striker.check()?;
+        self.start.check(self.structure.modes.len())
+    }
 }
 
 impl fmt::Debug for Posing<'_> {
@@ -89,11 +101,17 @@ pub struct Derivatives {
 pub struct Differentiated {
     /// The impact.
     pub solution: Solution,
-    /// For each parameter, in the given order, or the reason why there are none.
-    pub derivatives: Result<Vec<Derivatives>, NoDerivative>,
-    /// Speed of the slowest touch divided by that of the fastest. As it tends to zero, the derivatives grow without bound.
+    /// For each parameter, in the given order: its derivatives, or the reason why there are none.
+    pub derivatives: Vec<Result<Derivatives, NoDerivative>>,
+    /// Speed of the slowest touch, or of the nearest miss, divided by that of the fastest touch. As it tends to zero, the
+    /// derivatives may change abruptly or grow without bound.
     pub nearest_graze: f64,
+    /// The nearest graze, if it is a miss.
+    pub nearest_miss: Option<NearMiss>,
 }
+
+/// Derivatives for each parameter, and the speeds of the slowest and of the fastest touch.
+type AllChanges = (Vec<Result<Changes, NoDerivative>>, [f64; 2]);
 
 /// Derivatives along one run with respect to one parameter.
 #[derive(Clone)]
@@ -124,7 +142,7 @@ impl Solver {
     /// let ball = Striker { mass_kg: 0.1, speed_m_s: 1.0 };
     /// let solved = Solver::new(&structure)?.differentiate(&ball, &law, None, &Settings::default(), &[mass])?;
     /// // two rigid bodies of m and M: (1 - m/M)/(1 + m/M)
-    /// let derivative = &solved.derivatives.unwrap()[0].restitution;
+    /// let derivative = solved.derivatives[0].as_ref().unwrap().restitution;
     /// assert!((derivative.value + 2.0 / 0.5 / 1.2f64.powi(2)).abs() < 1e-2);
     /// # Ok::<(), vibroimpact_sim::InvalidInput>(())
     /// ```
@@ -146,9 +164,7 @@ impl Solver {
                 let found = neighbour.structure.modes.len();
                 let field = ("parameters", i, ("neighbours", place, ["structure", "modes"]));
                 InvalidInput::unless(found == count, field, format!("{found} modes"), "as many as the structure has")?;
-                neighbour.structure.check()?;
-                neighbour.striker.check()?;
-                neighbour.start.check(found)?;
+                neighbour.check()?;
             }
         }
         let moved = self.moved_by(parameters);
@@ -163,7 +179,10 @@ impl Solver {
         let Impact { striker, law, start, settings } = *impact;
         let (solution, fine) = self.solve_into(striker, law, Some(start), settings, Keep::Motion)?;
         let coarse = self.run(impact, COARSER * settings.tolerance.min(LOOSEST), Keep::Motion);
-        let none = |solution, why| Differentiated { solution, derivatives: Err(why), nearest_graze: 1.0 };
+        let none = |solution, why| {
+            let derivatives = parameters.iter().map(|_| Err(why)).collect();
+            Differentiated { solution, derivatives, nearest_graze: 1.0, nearest_miss: None }
+        };
         if solution.outcome != Outcome::Rebound || solution.restitution.is_none() {
             return Ok(none(solution, NoDerivative::Outcome));
         }
@@ -184,18 +203,20 @@ impl Solver {
         }
         let along = Along { modes, moved, impact, parameters, posed: &posed, system: &system, changes, sides };
         let mut expansions = Expansions::default();
-        let (changes, nearest_graze) = match along.changes(&fine, &mut expansions) {
+        let (changes, touches) = match along.changes(&fine, &mut expansions) {
             Ok(found) => found,
             Err(why) => return Ok(none(solution, why)),
         };
-        let coarse = along.changes(&coarse, &mut expansions).ok().map(|(changes, _)| changes);
-        let of = |(i, fine): (usize, &Changes)| {
-            let coarse = coarse.as_ref().map(|changes| &changes[i]);
+        let coarse = along.changes(&coarse, &mut expansions).map_or(Vec::new(), |(changes, _)| changes);
+        let of = |(i, fine): (usize, Result<Changes, NoDerivative>)| {
+            let fine = fine?;
+            let coarse = coarse.get(i).and_then(|coarse| coarse.as_ref().ok());
             let coarse = coarse.filter(|coarse| coarse.intervals.len() == fine.intervals.len());
-            fine.beside(coarse, &solution, Known::new(settings.tolerance, &parameters[i].offsets))
+            Ok(fine.beside(coarse, &solution, Known::new(settings.tolerance, &parameters[i].offsets)))
         };
-        let derivatives = changes.iter().enumerate().map(of).collect();
-        Ok(Differentiated { solution, derivatives: Ok(derivatives), nearest_graze })
+        let derivatives = changes.into_iter().enumerate().map(of).collect();
+        let (nearest_graze, nearest_miss) = nearest_graze(touches, fine.record.nearest_miss);
+        Ok(Differentiated { solution, derivatives, nearest_graze, nearest_miss })
     }
 
     /// The modes that move the contact, here or at a neighbour.
@@ -222,13 +243,14 @@ struct Along<'a> {
 }
 
 impl Along<'_> {
-    /// Derivatives along the motion of one run, and its distance from grazing.
-    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Result<(Vec<Changes>, f64), NoDerivative> {
+    /// Derivatives along the motion of one run, and the speeds of its slowest and fastest touch.
+    fn changes(&self, run: &Run, expansions: &mut Expansions) -> Result<AllChanges, NoDerivative> {
         if run.outcome != Outcome::Rebound {
             return Err(NoDerivative::Outcome);
         }
-        let found = tangents(self.posed, self.system, &run.stretches, (&self.changes, None), expansions)?;
-        let end = run.stretches.last().ok_or(NoDerivative::Outcome)?.rate.as_slice();
+        let stretches = &run.record.stretches;
+        let found = tangents(self.posed, self.system, stretches, (&self.changes, None), expansions)?;
+        let end = stretches.last().ok_or(NoDerivative::Outcome)?.rate.as_slice();
         let velocity_of = |side: &Option<Span>, rate: &[f64]| side.as_ref().map_or(0.0, |side| side.sum(rate));
         let striker = &self.system.links[0].sides[0];
         let pick = |values: &[f64]| {
@@ -237,16 +259,18 @@ impl Along<'_> {
             self.moved.iter().zip(places).for_each(|(k, place)| all[*k] = values[*place]);
             all
         };
-        let of = |((tangent, parameter), sides): ((Tangent, &Parameter), &[Option<Span>; 4])| {
+        type Found<'a> = (Result<Tangent, NoDerivative>, &'a Parameter<'a>);
+        let of = |((tangent, parameter), sides): (Found, &[Option<Span>; 4])| {
+            let tangent = tangent?;
             let by_mass = Stencil::new(parameter.offsets).slope(sides.each_ref().map(|side| velocity_of(side, end)));
             let velocity = [velocity_of(striker, end), velocity_of(striker, &tangent.rate) + by_mass];
             let (amplitude, rate) = (pick(&tangent.amplitude), pick(&tangent.rate));
             let restitution = restitution_change(self.modes, self.impact, parameter, velocity, [&pick(end), &rate]);
             let numbers = [restitution, tangent.time_s, velocity[1]];
-            Changes { numbers, intervals: tangent.intervals, amplitude, rate }
+            Ok(Changes { numbers, intervals: tangent.intervals, amplitude, rate })
         };
         let changes = found.tangents.into_iter().zip(self.parameters).zip(&self.sides).map(of).collect();
-        Ok((changes, found.nearest_graze))
+        Ok((changes, found.touches))
     }
 }
 

@@ -40,7 +40,7 @@ mod solve;
 mod time_unit;
 
 pub use differentiate::{
-    Derivative, Derivatives, Differentiated, NoDerivative, Parameter, Posing, Stencil, SubImpactDerivatives,
+    Derivative, Derivatives, Differentiated, NearMiss, NoDerivative, Parameter, Posing, Stencil, SubImpactDerivatives,
 };
 pub use history::{EnergyLedger, History, Sample};
 pub use problem::{Mode, Settings, Start, Striker, Structure};

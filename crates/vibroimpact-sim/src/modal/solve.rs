@@ -6,7 +6,6 @@ use super::problem::{Mode, Settings, Start, Striker, Structure};
 use super::solution::{Counts, Outcome, Solution, SubImpact};
 use super::time_unit::Unit;
 use crate::StopReason;
-use crate::assembly::dense::Stretch;
 use crate::assembly::responses::Responses;
 use crate::assembly::solve::follow;
 use crate::assembly::system::System;
@@ -100,7 +99,7 @@ pub(crate) struct Run {
     counts: Counts,
     contact_work_j: f64,
     energy: Option<Ledger>,
-    pub stretches: Vec<Stretch>,
+    pub record: assembly::solve::Record,
 }
 
 /// The restitution of an impact, and those that it would have if it ended after each of its contacts.
@@ -216,7 +215,7 @@ impl Solver {
             law: law.clone(),
             system: System::new(&posed::assembly(&self.modes, &self.moved, striker, &start).with_laws(Vec::new())),
             start,
-            stretches: run.stretches,
+            stretches: run.record.stretches,
         };
         let history = History::new(recorded, &solution);
         Ok((solution, history))
@@ -332,7 +331,7 @@ impl Solver {
         };
         let mut watch = Watch { intervals: Vec::new(), records: keep == Keep::Record };
         let tables = self.tables[usize::from(posed.bodies.len() == 1)].get_or_init(|| Tables::new(system));
-        let (run, stretches) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep != Keep::Result);
+        let (run, record) = follow(&posed, (system, tables, responses), &wanted, &mut watch, keep != Keep::Result);
         let closed = watch.intervals.last().is_some_and(|last| last.end_s.is_none());
         let outcome = match run.outcome {
             assembly::Outcome::Parted if watch.intervals.is_empty() => Outcome::NoContact,
@@ -359,7 +358,7 @@ impl Solver {
             counts: run.counts,
             contact_work_j: run.contacts[0].statistics.work_j,
             energy: run.energy,
-            stretches,
+            record,
         }
     }
 

@@ -13,8 +13,8 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use vibroimpact_sim::modal::{
-    Derivative, Differentiated, Mode, Outcome, Parameter, Posing, Settings, Solution, Solver, Start, Striker,
-    Structure, SubImpact,
+    Derivative, Derivatives, Differentiated, Mode, NoDerivative, Outcome, Parameter, Posing, Settings, Solution,
+    Solver, Start, Striker, Structure, SubImpact,
 };
 
 /// A law whose force is a multiple of that of another.
@@ -55,6 +55,11 @@ struct Posed {
     striker: Striker,
     law: Times,
     start: Start,
+}
+
+/// The derivatives with respect to all parameters.
+fn all(derivatives: Vec<Result<Derivatives, NoDerivative>>) -> Vec<Derivatives> {
+    derivatives.into_iter().collect::<Result<_, _>>().unwrap()
 }
 
 /// The numbers of it that can be changed, by a fraction of their size.
@@ -218,8 +223,8 @@ fn derivatives_of_random_impacts_agree_with_differences_in_32_digits() {
         if found.solution.outcome != Outcome::Rebound {
             continue;
         }
-        let (derivatives, end_s) = (found.derivatives.unwrap(), found.solution.end_s);
-        let finer = posed.differentiate(1e-13).derivatives.unwrap();
+        let (derivatives, end_s) = (all(found.derivatives), found.solution.end_s);
+        let finer = all(posed.differentiate(1e-13).derivatives);
         impacts += 1;
         let count = found.solution.sub_impacts.len();
         let Striker { mass_kg, speed_m_s: speed } = posed.striker;
@@ -280,7 +285,7 @@ fn derivatives_of_random_impacts_agree_with_those_along_a_finer_motion() {
         let (end_s, count) = (own.solution.end_s, own.solution.sub_impacts.len());
         let Striker { mass_kg, speed_m_s: speed } = posed.striker;
         assert_eq!(fine.solution.sub_impacts.len(), count);
-        for (own, fine) in own.derivatives.unwrap().iter().zip(&fine.derivatives.unwrap()) {
+        for (own, fine) in all(own.derivatives).iter().zip(&all(fine.derivatives)) {
             // Derivatives whose own accuracy is worse than a millionth are not compared.
             let velocity = fine.striker_velocity_m_s;
             let least = 1e-3 * speed;
@@ -304,7 +309,7 @@ fn all_outputs_of_several_contacts_have_derivatives() {
     for structure in [pinned(10, 0.02, 0.3), pinned_with_remainder(20, 0.01, 0.41)] {
         let posed = Posed::new(&structure, ball(), hertz());
         let found = posed.differentiate(1e-10);
-        let derivatives = found.derivatives.unwrap();
+        let derivatives = all(found.derivatives);
         for which in [0, 3, 5] {
             let derivatives = &derivatives[which];
             assert!(derivatives.sub_impacts.len() > 1);
@@ -350,7 +355,7 @@ fn a_rebound_from_a_wall_changes_with_the_law_alone() {
     let parameter = Parameter { offsets, neighbours: near.each_ref().map(|law| posing(law)), changes_law: true };
     let found =
         Solver::new(&wall).unwrap().differentiate(&striker, &dashpot(20.0), None, &settings(1e-11), &[parameter]);
-    let derivative = found.unwrap().derivatives.unwrap()[0].restitution;
+    let derivative = all(found.unwrap().derivatives)[0].restitution;
     // A spring and dashpot without adhesion separate where the force decreases to zero.
     let restitution = |damping: f64| {
         let zeta = damping / (2.0 * (1e6 * striker.mass_kg).sqrt());
@@ -389,7 +394,7 @@ fn modes_about_critical_damping_have_derivatives() {
             posed.start.rate[modes / 2] = 0.2;
             let found = posed.differentiate(1e-12);
             let (end_s, count) = (found.solution.end_s, found.solution.sub_impacts.len());
-            for (which, derivatives) in found.derivatives.unwrap().iter().enumerate() {
+            for (which, derivatives) in all(found.derivatives).iter().enumerate() {
                 let follow = |step: f64| posed.in_digits(which, step).follow(count, 1.01 * end_s).unwrap();
                 let (after, before) = (follow(STEP), follow(-STEP));
                 let slope = |after: Double, before: Double| ((after - before) / Double::from(2.0 * STEP)).near;
@@ -420,7 +425,7 @@ fn a_corner_of_the_law_does_not_disturb_derivatives() {
     let posed = random_impacts(298).nth(297).unwrap();
     let found = posed.differentiate(1e-9);
     let end_s = found.solution.end_s;
-    let derivatives = found.derivatives.unwrap();
+    let derivatives = all(found.derivatives);
     for which in [2, 5] {
         let intervals = &derivatives[which].sub_impacts;
         let follow = |step: f64| posed.in_digits(which, step).follow(intervals.len(), 1.01 * end_s).unwrap();
@@ -431,4 +436,32 @@ fn a_corner_of_the_law_does_not_disturb_derivatives() {
             assert!(error <= 1e-6 * reference.abs(), "{} {:?} {reference}", PARAMETERS[which], own.impulse_n_s);
         }
     }
+}
+
+/// Where the number of contacts changes, one of them grazes. Just before and just after that the nearest graze is near, whether the
+/// contact exists or is missed.
+#[test]
+fn the_nearest_graze_is_small_on_both_sides_of_a_graze() {
+    let at = |mass_kg: f64| {
+        let posed = Posed::new(&pinned(10, 0.02, 0.3), Striker { mass_kg, ..ball() }, hertz());
+        posed.differentiate(1e-11)
+    };
+    let count = |mass_kg: f64| at(mass_kg).solution.sub_impacts.len();
+    let masses: Vec<f64> = (0..12).map(|i| 0.05 + 0.02 * f64::from(i)).collect();
+    let counts: Vec<usize> = masses.iter().map(|mass| count(*mass)).collect();
+    let mut grazes = 0;
+    for i in (1..masses.len()).filter(|i| counts[*i] != counts[*i - 1]) {
+        let (mut before, mut after) = (masses[i - 1], masses[i]);
+        for _ in 0..25 {
+            let middle = 0.5 * (before + after);
+            *(if count(middle) == counts[i - 1] { &mut before } else { &mut after }) = middle;
+        }
+        let sides = [before, after].map(at);
+        for found in &sides {
+            assert!(found.nearest_graze < 1e-2, "{before}: {} {:?}", found.nearest_graze, found.nearest_miss);
+        }
+        assert!(sides.iter().any(|found| found.nearest_miss.is_some()), "{before}");
+        grazes += 1;
+    }
+    assert!(grazes >= 5, "{grazes}");
 }

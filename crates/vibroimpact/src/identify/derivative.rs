@@ -96,7 +96,7 @@ fn tangent(
         let near = |steps| model.impact(row, &shifted(coordinates, parameters, j, steps), kept).ok();
         neighbours.push(STEPS.into_iter().map(near).collect::<Option<_>>()?);
     }
-    if !neighbours.iter_mut().flatten().all(|near| near.take_modes_of(&here)) {
+    if !neighbours.iter_mut().flatten().all(|near| near.take_modes_of(&here).is_ok()) {
         return None;
     }
     let by: Vec<solver::Parameter> = neighbours
@@ -110,7 +110,7 @@ fn tangent(
     let Impact { striker, law, start, settings, structure, .. } = &here;
     let solver = kept.solver(structure).ok()?;
     let found = solver.differentiate(striker, law, start.as_ref(), settings, &by).ok()?;
-    let changes = found.derivatives.ok()?;
+    let changes: Vec<solver::Derivatives> = found.derivatives.into_iter().collect::<Result<_, _>>().ok()?;
     let columns = |(quantity, ..): &(Quantity, f64, Option<f64>)| {
         changes.iter().map(|change| quantity.change(&found.solution, change)).collect::<Option<Vec<f64>>>()
     };

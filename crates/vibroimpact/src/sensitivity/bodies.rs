@@ -4,13 +4,15 @@ use contact_models::Law;
 use serde::Serialize;
 use serde_json::Value;
 use vibroimpact_sim::assembly::{
-    Assembly, Body, BodyMode, Contact, ContactDerivatives, Derivative, Derivatives, Differentiated, Load, NoDerivative,
-    Outcome, Parameter, Point, Settings, Solver,
+    Assembly, Body, BodyMode, Contact, ContactDerivatives, Derivatives, Differentiated, Load, NearMiss, Outcome,
+    Parameter, Point, Settings, Solver,
 };
 
-use super::neighbours::{MODES, Neighbours, around};
-use super::refusal::refusal;
-use super::table::Table;
+use super::collect::collect;
+use super::modes::{MODES, Modes};
+use super::neighbours::{Neighbours, Posing, around};
+use super::refusal::Refusal;
+use super::table::{Miss, Output, Table};
 use crate::assembly::{AssemblyScene, Posed};
 use crate::same_modes::{Seen, matched};
 use crate::scene::{InvalidInput, versioned_tree};
@@ -27,9 +29,11 @@ pub struct BodiesSensitivity {
     pub end_s: f64,
     /// Number of intervals of contact.
     pub interval_count: usize,
-    /// Speed of the slowest touch divided by that of the fastest. If it is nearly zero, a contact is near grazing, and the
-    /// derivatives are very large.
+    /// Speed of the slowest touch, or of the nearest miss, divided by that of the fastest touch. If it is nearly zero, a contact
+    /// is near grazing, and the derivatives hold only for small changes.
     pub nearest_graze: f64,
+    /// The nearest graze, if it is a miss.
+    pub nearest_miss: Option<Miss>,
     /// The fields and the derivatives: outputs are `contacts.NAME.intervals[0].impulse_n_s` and the like,
     /// `points[0].displacement_m` and `points[0].velocity_m_s` of either side of each contact at the end, and
     /// `bodies.NAME.omega_rad_s[0]` and so on for the lowest modes that vibrate.
@@ -68,30 +72,26 @@ impl AssemblyScene {
     pub fn sensitivity(&self, fields: &[String]) -> Result<BodiesSensitivity, InvalidInput> {
         let tree = versioned_tree(self);
         let base = self.pose()?;
-        let (around, left_out) =
-            around((&tree, fields), &|tree| AssemblyScene::from_value(tree)?.pose(), &|near: &mut Posed| {
-                take_modes_of(&mut near.assembly, &base.assembly)
-            })?;
-        let found = differentiate(&base, &around)?;
+        let pose = |tree: &Value| AssemblyScene::from_value(tree)?.pose();
+        let sort = |near: &mut Posed| take_modes_of(&mut near.assembly, &base.assembly);
+        let around = around((&tree, fields), &Posing { pose: &pose, sort: &sort })?;
+        let seen = |posed: &Posed| seen(&posed.assembly);
+        let modes = Modes::new(seen(&base), around.near.iter().map(|near| near.map(seen)).collect());
+        let draws = modes.draws(|errors| with_errors(&base, errors));
+        let parameters: Vec<&Neighbours<Posed>> = around.near.iter().chain(&draws).collect();
+        let found = differentiate(&base, &parameters)?;
         let name = |contact: usize| format!("contact {:?}", base.contacts[contact]);
-        let refused = |why: &NoDerivative| refusal(*why, found.run.outcome.as_str(), name);
-        let derivatives = found.derivatives.as_ref().map_err(refused)?;
-        let outputs = |derivatives| outputs(&base, derivatives);
-        let by_errors = derivatives.last().map(outputs).unwrap_or_default();
-        let mut table = Table::new(&around, left_out);
-        for (near, derivatives) in around.iter().zip(derivatives) {
-            for ((output, derivative), (_, by_errors)) in outputs(derivatives).into_iter().zip(&by_errors) {
-                table.insert(&output, &near.field, near.widened(derivative, *by_errors));
-            }
-            for (output, derivative) in of_modes(near, &base) {
-                table.insert(&output, &near.field, derivative);
-            }
-        }
+        let refusal = |why| Refusal::new(why, found.run.outcome.as_str(), name);
+        let outputs = |derivatives: &Derivatives| outputs(&base, &found, derivatives);
+        let of_modes = |field: usize| of_modes(&base, &modes, field);
+        let table = collect(&around, &modes, &found.derivatives, outputs, of_modes, refusal)?;
+        let miss = |miss: NearMiss| Miss::new(miss, Some(base.contacts[miss.contact].clone()));
         Ok(BodiesSensitivity {
             outcome: found.run.outcome.as_str(),
             end_s: found.run.end_s,
             interval_count: found.intervals.iter().map(Vec::len).sum(),
             nearest_graze: found.nearest_graze,
+            nearest_miss: found.nearest_miss.map(miss),
             table,
             scene: tree,
             version: env!("CARGO_PKG_VERSION"),
@@ -109,10 +109,9 @@ impl BodiesSensitivity {
     }
 }
 
-fn differentiate(base: &Posed, around: &[Neighbours<Posed>]) -> Result<Differentiated, InvalidInput> {
-    let with_errors = Neighbours::with_errors(|error| with_errors(base, error));
-    let mut parameters = Vec::with_capacity(around.len() + 1);
-    for Neighbours { offsets, at, .. } in around.iter().chain([&with_errors]) {
+fn differentiate(base: &Posed, around: &[&Neighbours<Posed>]) -> Result<Differentiated, InvalidInput> {
+    let mut parameters = Vec::with_capacity(around.len());
+    for Neighbours { offsets, at, .. } in around {
         let changed = |near: &Posed| laws(near).ne(laws(base));
         parameters.push(Parameter {
             offsets: *offsets,
@@ -138,41 +137,44 @@ fn laws(posed: &Posed) -> impl Iterator<Item = Law> + '_ {
 }
 
 /// The outputs of a run by their names in a result.
-fn outputs(posed: &Posed, derivatives: &Derivatives) -> Vec<(String, Derivative)> {
+fn outputs(posed: &Posed, found: &Differentiated, derivatives: &Derivatives) -> Vec<Output> {
     let mut outputs = Vec::new();
-    for (name, ContactDerivatives { intervals, .. }) in posed.contacts.iter().zip(&derivatives.contacts) {
-        for (i, interval) in intervals.iter().enumerate() {
-            for (quantity, derivative) in [
-                ("start_s", Some(interval.start_s)),
-                ("end_s", interval.end_s),
-                ("impulse_n_s", Some(interval.impulse_n_s)),
-                ("peak_force_n", Some(interval.peak_force_n)),
-                ("peak_compression_m", Some(interval.peak_compression_m)),
-                ("approach_speed_m_s", Some(interval.approach_speed_m_s)),
-                ("separation_speed_m_s", interval.separation_speed_m_s),
+    for (c, (name, ContactDerivatives { intervals, .. })) in
+        posed.contacts.iter().zip(&derivatives.contacts).enumerate()
+    {
+        for (i, (own, by)) in found.intervals[c].iter().zip(intervals).enumerate() {
+            for (quantity, value, derivative) in [
+                ("start_s", Some(own.start_s), Some(by.start_s)),
+                ("end_s", own.end_s, by.end_s),
+                ("impulse_n_s", Some(own.impulse_n_s), Some(by.impulse_n_s)),
+                ("peak_force_n", Some(own.peak_force_n), Some(by.peak_force_n)),
+                ("peak_compression_m", Some(own.peak_compression_m), Some(by.peak_compression_m)),
+                ("approach_speed_m_s", Some(own.approach_speed_m_s), Some(by.approach_speed_m_s)),
+                ("separation_speed_m_s", own.separation_speed_m_s, by.separation_speed_m_s),
             ] {
-                outputs.extend(derivative.map(|by| (format!("contacts.{name}.intervals[{i}].{quantity}"), by)));
+                let output = |(value, by)| Output::new(format!("contacts.{name}.intervals[{i}].{quantity}"), value, by);
+                outputs.extend(value.zip(derivative).map(output));
             }
         }
     }
-    for (c, contact) in derivatives.contacts.iter().enumerate() {
+    for (c, (end, by)) in found.run.contacts.iter().zip(&derivatives.contacts).enumerate() {
         for side in 0..2 {
-            let point = 2 * c + side;
-            outputs.push((format!("points[{point}].displacement_m"), contact.displacement_m[side]));
-            outputs.push((format!("points[{point}].velocity_m_s"), contact.velocity_m_s[side]));
+            let name = |quantity: &str| format!("points[{}].{quantity}", 2 * c + side);
+            outputs.push(Output::new(name("displacement_m"), end.displacement_m[side], by.displacement_m[side]));
+            outputs.push(Output::new(name("velocity_m_s"), end.velocity_m_s[side], by.velocity_m_s[side]));
         }
     }
     outputs
 }
 
 /// Frequencies of the lowest modes that vibrate.
-fn of_modes(near: &Neighbours<Posed>, base: &Posed) -> Vec<(String, Derivative)> {
+fn of_modes(base: &Posed, modes: &Modes, field: usize) -> Vec<Output> {
     let mut found = Vec::new();
     for (b, (name, body)) in base.bodies.iter().zip(&base.assembly.bodies).enumerate() {
         let vibrating = (0..body.modes.len()).filter(|&k| body.modes[k].omega_rad_s > 0.0);
         for (i, k) in vibrating.take(MODES).enumerate() {
-            let omega = |posed: &Posed| posed.assembly.bodies[b].modes[k].omega_rad_s;
-            found.push((format!("bodies.{name}.omega_rad_s[{i}]"), near.derivative(omega(base), omega)));
+            let name = format!("bodies.{name}.omega_rad_s[{i}]");
+            found.push(Output::new(name, body.modes[k].omega_rad_s, modes.omega_rad_s(field, b, k)));
         }
     }
     found
@@ -191,23 +193,28 @@ fn shapes<'a>(
     of_contacts.chain(loads.iter_mut().filter(move |load| load.body == body).map(|load| &mut load.shape))
 }
 
-/// Gives the modes the signs and the order of those of a neighbouring assembly. `false` if they are not the same modes.
-fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> bool {
-    if near.contacts.len() != base.contacts.len() || near.bodies.len() != base.bodies.len() {
-        return false;
-    }
-    let mut base = base.clone();
-    let seen = |Assembly { bodies, contacts, loads }: &mut Assembly<Law>, body: usize| -> Vec<Seen> {
-        let lists: Vec<&mut Vec<f64>> = shapes(contacts, loads, body).collect();
-        let of = |(k, mode): (usize, &BodyMode)| Seen {
+/// The modes of each body as they are compared: with their shapes at its contacts, and then under its loads.
+fn seen(assembly: &Assembly<Law>) -> Vec<Vec<Seen>> {
+    let of_body = |(body, Body { modes, .. }): (usize, &Body)| {
+        let of_contacts = assembly.contacts.iter().flat_map(|contact| &contact.sides).filter_map(|point| match point {
+            Point::OfBody { body: of, shape } if *of == body => Some(shape),
+            _ => None,
+        });
+        let of_loads = assembly.loads.iter().filter(|load| load.body == body).map(|load| &load.shape);
+        let shapes: Vec<&Vec<f64>> = of_contacts.chain(of_loads).collect();
+        let of_mode = |(k, mode): (usize, &BodyMode)| Seen {
             omega_rad_s: mode.omega_rad_s,
-            shapes: lists.iter().map(|list| list[k]).collect(),
+            shapes: shapes.iter().map(|shape| shape[k]).collect(),
         };
-        bodies[body].modes.iter().enumerate().map(of).collect()
+        modes.iter().enumerate().map(of_mode).collect()
     };
-    for body in 0..base.bodies.len() {
-        let Some(steps) = matched(&seen(&mut base, body), seen(near, body)) else { return false };
-        for (k, (i, sign)) in steps.into_iter().enumerate() {
+    assembly.bodies.iter().enumerate().map(of_body).collect()
+}
+
+/// Gives the modes the signs and the order of those of a neighbouring assembly.
+fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> Result<(), &'static str> {
+    for (body, (own, found)) in seen(base).into_iter().zip(seen(near)).enumerate() {
+        for (k, (i, sign)) in matched(&own, found)?.into_iter().enumerate() {
             let Assembly { bodies, contacts, loads } = &mut *near;
             let Body { modes, amplitude, rate } = &mut bodies[body];
             modes.swap(k, i);
@@ -217,18 +224,19 @@ fn take_modes_of(near: &mut Assembly<Law>, base: &Assembly<Law>) -> bool {
             }
         }
     }
-    true
+    Ok(())
 }
 
 /// The same with errors in the modes that vibrate.
-fn with_errors(base: &Posed, error: &mut dyn FnMut() -> f64) -> Posed {
+fn with_errors(base: &Posed, errors: &[Vec<Seen>]) -> Posed {
     let mut posed = base.clone();
     let Assembly { bodies, contacts, loads } = &mut posed.assembly;
-    for (body, Body { modes, .. }) in bodies.iter_mut().enumerate() {
-        for (k, mode) in modes.iter_mut().enumerate().filter(|(_, mode)| mode.omega_rad_s > 0.0) {
-            mode.omega_rad_s *= error();
-            let by = error();
-            shapes(contacts, loads, body).for_each(|list| list[k] *= by);
+    for (body, (Body { modes, .. }, errors)) in bodies.iter_mut().zip(errors).enumerate() {
+        for (k, (mode, error)) in
+            modes.iter_mut().zip(errors).enumerate().filter(|(_, (mode, _))| mode.omega_rad_s > 0.0)
+        {
+            mode.omega_rad_s += error.omega_rad_s;
+            shapes(contacts, loads, body).zip(&error.shapes).for_each(|(list, error)| list[k] += error);
         }
     }
     posed

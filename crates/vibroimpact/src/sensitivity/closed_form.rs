@@ -1,8 +1,10 @@
 //! Derivatives of answers in closed form, from their values at neighbouring points.
 
-use super::neighbours::{Neighbours, around};
+use serde_json::Value;
+
+use super::neighbours::{Neighbours, Posing, around, roughness};
 use super::single::Sensitivity;
-use super::table::Table;
+use super::table::{Output, Table};
 use crate::emoc::Parameters;
 use crate::impact::Impact;
 use crate::net;
@@ -15,10 +17,11 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
     let none = || InvalidInput::new("scene", "an impact without a restitution", "one that ends with a rebound");
     let restitution = |scene: &Scene| scene.answer()?.restitution.ok_or_else(none);
     let value = answer.restitution.ok_or_else(none)?;
-    let (around, left_out) = around((&tree, fields), &|tree| restitution(&Scene::from_value(tree)?), &|_| true)?;
-    let mut table = Table::new(&around, left_out);
-    for near in &around {
-        table.insert("restitution", &near.field, near.derivative(value, |at| *at));
+    let pose = |tree: &Value| restitution(&Scene::from_value(tree)?);
+    let around = around((&tree, fields), &Posing { pose: &pose, sort: &|_| Ok(()) })?;
+    let mut table = Table::new(around.left_out);
+    for near in &around.near {
+        table.add(&near.field, near.value, [output("restitution", near, value, |at| *at)]);
     }
     Ok(Sensitivity {
         restitution: value,
@@ -27,6 +30,7 @@ pub(super) fn sensitivity(scene: &Scene, fields: &[String]) -> Result<Sensitivit
         modes: answer.modes,
         remainder_modes: 0,
         nearest_graze: 1.0,
+        nearest_miss: None,
         table,
         scene: tree,
         version: env!("CARGO_PKG_VERSION"),
@@ -41,9 +45,21 @@ pub(super) fn add_emoc(table: &mut Table, scene: &Scene, base: &Impact, around: 
     }
     let law = |posed: &Impact| net::restitution(&parameters, posed).unwrap_or(f64::NAN);
     for near in around {
-        let derivative = near.derivative(law(base), law);
-        if derivative.value.is_finite() {
-            table.insert("emoc_restitution", &near.field, derivative);
+        if !table.fields.iter().any(|field| field.path == near.field) {
+            continue;
+        }
+        let output = output("emoc_restitution", near, law(base), law);
+        if output.derivative.value.is_finite() {
+            table.insert(&near.field, output);
         }
     }
 }
+
+/// A function of the problem that is differentiated from its values.
+fn output<T>(name: &str, near: &Neighbours<T>, here: f64, of: impl Fn(&T) -> f64) -> Output {
+    let error = TIMES * here.abs() * roughness(near.in_order(here, &of), here);
+    Output::new(name.to_owned(), here, near.derivative(here, of, error))
+}
+
+/// Factor from the error of the values, known from one fourth difference, to that of the uncertainty.
+const TIMES: f64 = 4.0;

@@ -8,6 +8,8 @@
 
 mod bodies;
 mod closed_form;
+mod collect;
+mod modes;
 mod neighbours;
 #[cfg(feature = "files")]
 mod picture;
@@ -16,22 +18,27 @@ mod single;
 mod table;
 mod text;
 
+use std::cell::RefCell;
+
 use serde_json::Value;
-use vibroimpact_sim::modal::{Derivative, Derivatives, NoDerivative, Parameter, Settings, Solver, Start};
+use vibroimpact_sim::modal::{Derivatives, NoDerivative, Parameter, Settings, Solution, Solver, Start};
 
 use crate::impact::Impact;
 use crate::in_scene::in_scene;
-use crate::model::Model;
+use crate::model::{Kept, Model};
 use crate::scene::json::quote;
 use crate::scene::{InvalidInput, Scene};
-use neighbours::Neighbours;
-use refusal::refusal;
+use collect::collect;
+use modes::{MODES, Modes};
+use neighbours::{Around, Neighbours, Posing};
+use refusal::Refusal;
+use table::Output;
 
 pub use bodies::BodiesSensitivity;
 #[cfg(feature = "files")]
 pub use picture::figure;
 pub use single::Sensitivity;
-pub use table::{Field, OfField, Table};
+pub use table::{Field, LeftOut, Miss, OfField, Table};
 pub use text::{text, text_of_bodies};
 
 impl Scene {
@@ -72,25 +79,34 @@ impl Scene {
         }
         let scene = self.settled()?;
         let tree = scene.tree();
-        let base = scene.impact()?;
-        let (around, left_out) =
-            neighbours::around((&tree, fields), &|tree| Scene::from_value(tree)?.impact(), &|impact: &mut Impact| {
-                impact.take_modes_of(&base)
-            })?;
-        differentiate(&scene, &base, (&around, left_out), tree)
+        let kept = RefCell::new(Kept::default());
+        let base = scene.impact_beside(&scene, &mut kept.borrow_mut())?;
+        let pose = |tree: &Value| Scene::from_value(tree)?.impact_beside(&scene, &mut kept.borrow_mut());
+        let sort = |impact: &mut Impact| impact.take_modes_of(&base);
+        let around = neighbours::around((&tree, fields), &Posing { pose: &pose, sort: &sort })?;
+        differentiate(&scene, &base, &around, tree)
     }
 }
 
 fn differentiate(
     scene: &Scene,
     base: &Impact,
-    (around, left_out): (&[Neighbours<Impact>], Vec<String>),
+    around: &Around<Impact>,
     tree: Value,
 ) -> Result<Sensitivity, InvalidInput> {
+    let seen = |impact: &Impact| vec![impact.seen()];
+    let modes = Modes::new(seen(base), around.near.iter().map(|near| near.map(seen)).collect());
+    let draws = modes.draws(|errors| {
+        let mut impact = base.clone();
+        for (mode, error) in impact.structure.modes.iter_mut().zip(&errors[0]) {
+            mode.omega_rad_s += error.omega_rad_s;
+            mode.shape += error.shapes[0];
+        }
+        impact
+    });
     let at_rest = Start::at_rest(base.structure.modes.len());
-    let mut parameters = Vec::with_capacity(around.len() + 1);
-    let with_errors = Neighbours::with_errors_of(base);
-    for Neighbours { offsets, at, .. } in around.iter().chain([&with_errors]) {
+    let mut parameters = Vec::with_capacity(around.near.len() + draws.len());
+    for Neighbours { offsets, at, .. } in around.near.iter().chain(&draws) {
         let changes_law = at.iter().any(|impact| impact.law != base.law);
         let neighbours = at.each_ref().map(|impact| impact.posing(&at_rest));
         parameters.push(Parameter { offsets: *offsets, neighbours, changes_law });
@@ -100,20 +116,21 @@ fn differentiate(
     let settings = Settings { tolerance: base.settings.tolerance, ..Settings::default() };
     let found = solver.differentiate(striker, law, start.as_ref(), &settings, &parameters).map_err(in_scene)?;
     let solution = &found.solution;
-    let refused = |why| refusal(why, solution.outcome.as_str(), |_| "the contact".to_owned());
-    let derivatives = found.derivatives.as_ref().map_err(|why| refused(*why))?;
-    let restitution = solution.restitution.ok_or_else(|| refused(NoDerivative::Outcome))?;
-    let mut table = Table::new(around, left_out);
-    let by_errors = derivatives.last().map(outputs).unwrap_or_default();
-    for (neighbours, derivatives) in around.iter().zip(derivatives) {
-        for ((output, derivative), (_, by_errors)) in outputs(derivatives).into_iter().zip(&by_errors) {
-            table.insert(&output, &neighbours.field, neighbours.widened(derivative, *by_errors));
-        }
-        for (output, derivative) in neighbours.of_modes(base) {
-            table.insert(&output, &neighbours.field, derivative);
-        }
-    }
-    closed_form::add_emoc(&mut table, scene, base, around);
+    let refusal = |why| Refusal::new(why, solution.outcome.as_str(), |_| "the contact".to_owned());
+    let restitution = solution.restitution.ok_or_else(|| refusal(NoDerivative::Outcome).error(None))?;
+    let of_modes = |field: usize| {
+        let of_mode = |k: usize| {
+            let mode = &base.structure.modes[k];
+            [
+                Output::new(format!("omega_rad_s[{k}]"), mode.omega_rad_s, modes.omega_rad_s(field, 0, k)),
+                Output::new(format!("shape[{k}]"), mode.shape, modes.shape(field, k)),
+            ]
+        };
+        (0..base.kept_modes().min(MODES)).flat_map(of_mode).collect()
+    };
+    let outputs = |derivatives: &Derivatives| outputs(solution, restitution, derivatives);
+    let mut table = collect(around, &modes, &found.derivatives, outputs, of_modes, refusal)?;
+    closed_form::add_emoc(&mut table, scene, base, &around.near);
     Ok(Sensitivity {
         restitution,
         restitution_uncertainty: solution.restitution_uncertainty,
@@ -121,6 +138,7 @@ fn differentiate(
         modes: base.kept_modes(),
         remainder_modes: base.remainder_modes,
         nearest_graze: found.nearest_graze,
+        nearest_miss: found.nearest_miss.map(|miss| Miss::new(miss, None)),
         table,
         scene: tree,
         version: env!("CARGO_PKG_VERSION"),
@@ -128,21 +146,21 @@ fn differentiate(
 }
 
 /// The outputs of an impact by their names in a result.
-fn outputs(derivatives: &Derivatives) -> Vec<(String, Derivative)> {
+fn outputs(solution: &Solution, restitution: f64, derivatives: &Derivatives) -> Vec<Output> {
     let mut outputs = vec![
-        ("restitution".to_owned(), derivatives.restitution),
-        ("end_s".to_owned(), derivatives.end_s),
-        ("striker_velocity_m_s".to_owned(), derivatives.striker_velocity_m_s),
+        Output::new("restitution".to_owned(), restitution, derivatives.restitution),
+        Output::new("end_s".to_owned(), solution.end_s, derivatives.end_s),
+        Output::new("striker_velocity_m_s".to_owned(), solution.striker_velocity_m_s, derivatives.striker_velocity_m_s),
     ];
-    for (i, sub_impact) in derivatives.sub_impacts.iter().enumerate() {
-        for (quantity, derivative) in [
-            ("start_s", sub_impact.start_s),
-            ("end_s", sub_impact.end_s),
-            ("impulse_n_s", sub_impact.impulse_n_s),
-            ("peak_force_n", sub_impact.peak_force_n),
-            ("peak_compression_m", sub_impact.peak_compression_m),
+    for (i, (own, by)) in solution.sub_impacts.iter().zip(&derivatives.sub_impacts).enumerate() {
+        for (quantity, value, derivative) in [
+            ("start_s", own.start_s, by.start_s),
+            ("end_s", own.end_s, by.end_s),
+            ("impulse_n_s", own.impulse_n_s, by.impulse_n_s),
+            ("peak_force_n", own.peak_force_n, by.peak_force_n),
+            ("peak_compression_m", own.peak_compression_m, by.peak_compression_m),
         ] {
-            outputs.push((format!("sub_impacts[{i}].{quantity}"), derivative));
+            outputs.push(Output::new(format!("sub_impacts[{i}].{quantity}"), value, derivative));
         }
     }
     outputs

@@ -1,22 +1,19 @@
 //! A scene at neighbouring values of one of its numbers.
 
 use serde_json::Value;
-use vibroimpact_sim::modal::{Derivative, Mode, Stencil};
+use vibroimpact_sim::modal::{Derivative, Stencil};
 
-use crate::impact::Impact;
+use super::table::LeftOut;
 use crate::scene::json::{number, quote};
 use crate::scene::{FieldPath, InvalidInput};
 
-/// Number of modes, from the lowest, whose frequencies and shapes are differentiated too.
-pub(super) const MODES: usize = 10;
-
 /// Distance of neighbours relative to the value: the first hundreds of modes change smoothly over it, and it costs five of their
-/// digits.
-const STEP: f64 = 1e-5;
-/// Relative accuracy of frequencies and shapes.
-const KNOWN: f64 = 2e-13;
+/// digits. Modes that change more, such as the remainder modes near a free end, need a smaller one.
+const STEPS: [f64; 2] = [1e-5, 1e-7];
 /// The same where the value is zero, in its unit.
-const STEP_AT_ZERO: f64 = 1e-6;
+const STEPS_AT_ZERO: [f64; 3] = [1e-6, 1e-9, 1e-12];
+/// Neighbours on both sides, or on one side of a bound, in steps.
+const PLACES: [[f64; 4]; 3] = [[-2.0, -1.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [-4.0, -3.0, -2.0, -1.0]];
 
 /// The problem of a scene at four neighbouring values of a field.
 pub(super) struct Neighbours<T> {
@@ -26,114 +23,132 @@ pub(super) struct Neighbours<T> {
     pub at: [T; 4],
 }
 
+/// The neighbours for some fields, and the fields without neighbours, which were not named by the user.
+pub(super) struct Around<T> {
+    pub near: Vec<Neighbours<T>>,
+    pub left_out: Vec<LeftOut>,
+    /// Whether the user named the fields.
+    pub named: bool,
+}
+
+/// Computes the problem of a scene, and gives its modes the order and the signs of those of the scene itself.
+pub(super) struct Posing<'a, T> {
+    pub pose: &'a dyn Fn(&Value) -> Result<T, InvalidInput>,
+    pub sort: &'a dyn Fn(&mut T) -> Result<(), &'static str>,
+}
+
 impl<T> Neighbours<T> {
-    /// Computes the neighbours, and checks that they differ only continuously; their modes may be sorted for that.
-    pub fn of(
-        tree: &Value,
-        field: &str,
-        pose: &dyn Fn(&Value) -> Result<T, InvalidInput>,
-        is_near: &dyn Fn(&mut T) -> bool,
-    ) -> Result<Neighbours<T>, InvalidInput> {
+    /// Computes the neighbours, and checks that they differ only continuously.
+    fn of(tree: &Value, field: &str, by: &Posing<T>) -> Result<Neighbours<T>, InvalidInput> {
         let named = |value: &str, allowed: String| InvalidInput::new("--by", format!("{value} of {field}"), allowed);
         let path = FieldPath::parse(field).ok_or_else(|| {
             InvalidInput::new("--by", quote(&field.into()), "the path of a field, such as striker.mass_kg")
         })?;
-        let known = || format!("the path of a number that the scene states: {}", all_numbers(tree).join(", "));
+        let known = || format!("the path of a number that the scene states: {}", all_numbers(tree).0.join(", "));
         let stated = path.get(tree).ok_or_else(|| InvalidInput::new("--by", quote(&field.into()), known()))?;
         let value = stated.as_f64().ok_or_else(|| named(&quote(stated), known()))?;
-        let step = if value == 0.0 { STEP_AT_ZERO } else { STEP * value.abs() };
-        let mut fault = None;
-        // on both sides, or on one side of a bound
-        for places in [[-2.0, -1.0, 1.0, 2.0], [1.0, 2.0, 3.0, 4.0], [-4.0, -3.0, -2.0, -1.0]] {
-            let offsets = places.map(|place| place * step);
-            let mut posed = Vec::with_capacity(4);
-            for offset in offsets {
-                match changed(tree, &path, value + offset).and_then(|tree| pose(&tree)) {
-                    Ok(near) => posed.push(near),
-                    Err(refused) => {
-                        fault.get_or_insert(refused);
-                        break;
+        let found = Neighbours::beside(tree, (field, &path, value), by);
+        found.map_err(|why| named(&number(value), format!("a field that can vary continuously: {why}")))
+    }
+
+    /// The same for a number of the scene, or the reason why it has no neighbours.
+    fn beside(
+        tree: &Value,
+        (field, path, value): (&str, &FieldPath, f64),
+        by: &Posing<T>,
+    ) -> Result<Neighbours<T>, String> {
+        let steps: &[f64] = if value == 0.0 { &STEPS_AT_ZERO } else { &STEPS.map(|step| step * value.abs()) };
+        let mut reason = String::new();
+        for step in steps {
+            let (mut faults, mut differs) = (Vec::new(), false);
+            for places in PLACES {
+                let mut posed = Vec::with_capacity(4);
+                for place in places {
+                    match changed(tree, path, value + place * step).and_then(|tree| (by.pose)(&tree)) {
+                        Ok(near) => posed.push(near),
+                        Err(fault) => {
+                            faults.push(fault);
+                            break;
+                        }
                     }
                 }
-            }
-            if let Ok(mut at) = <[T; 4]>::try_from(posed) {
-                if !at.iter_mut().all(is_near) {
-                    let allowed = "a field with which the modes change smoothly: here two modes swap their order";
-                    return Err(named(&number(value), allowed.to_owned()));
+                let Ok(mut at) = <[T; 4]>::try_from(posed) else { continue };
+                match at.iter_mut().try_for_each(by.sort) {
+                    Ok(()) => {
+                        // the value is an integer or a float as in the file, and so are its neighbours
+                        let offsets = places.map(|place| (value + place * step) - value);
+                        return Ok(Neighbours { field: field.to_owned(), value, offsets, at });
+                    }
+                    Err(why) => (reason, differs) = (why.to_owned(), true),
                 }
-                // the value is an integer or a float as in the file, and so are its neighbours
-                let offsets = places.map(|place| (value + place * step) - value);
-                return Ok(Neighbours { field: field.to_owned(), value, offsets, at });
+                break;
+            }
+            if !differs {
+                return Err(told(&faults, path));
             }
         }
-        let why = fault.map_or_else(String::new, |fault| format!(": {fault}"));
-        Err(named(&number(value), format!("a field that can vary continuously{why}")))
+        Err(reason)
     }
 
-    /// The effect of errors of the modes, all of the same size and of either sign; the size is treated like a field.
-    pub fn with_errors(with: impl Fn(&mut dyn FnMut() -> f64) -> T) -> Neighbours<T> {
-        let offsets = [-2e-6, -1e-6, 1e-6, 2e-6];
-        let at = offsets.map(|size| {
-            // a linear congruential generator is random enough for signs
-            let mut random = 2019u64;
-            with(&mut || {
-                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                1.0 + if random >> 63 == 0 { size } else { -size }
-            })
-        });
-        Neighbours { field: String::new(), value: 0.0, offsets, at }
+    /// The problem at four sizes of something that is zero here.
+    pub fn of_size(offsets: [f64; 4], with: impl Fn(f64) -> T) -> Neighbours<T> {
+        Neighbours { field: String::new(), value: 0.0, offsets, at: offsets.map(with) }
     }
 
-    /// A derivative with the possible effect of errors of the modes, if errors of unit size change the output by this amount.
-    pub fn widened(&self, derivative: Derivative, by_errors: Derivative) -> Derivative {
-        let nearest = self.offsets.iter().fold(f64::INFINITY, |least, offset| least.min(offset.abs()));
-        let of_modes = KNOWN / nearest * by_errors.value.abs();
-        Derivative { uncertainty: derivative.uncertainty.map(|own| own + of_modes), ..derivative }
+    /// Another view of the same problems.
+    pub fn map<U>(&self, of: impl Fn(&T) -> U) -> Neighbours<U> {
+        let Neighbours { field, value, offsets, at } = self;
+        Neighbours { field: field.clone(), value: *value, offsets: *offsets, at: at.each_ref().map(of) }
     }
 
-    /// Derivative of a smooth function of the problem, whose value here is `value`.
-    pub fn derivative(&self, value: f64, of: impl Fn(&T) -> f64) -> Derivative {
-        self.slope(value, self.at.each_ref().map(of))
+    /// Error of a derivative with respect to the field, per error of the values at the neighbours.
+    pub fn magnification(&self) -> f64 {
+        Stencil::new(self.offsets).magnification()
     }
 
-    /// Slope of the polynomial through the value and its neighbours, and its difference from that through the nearest neighbours.
-    fn slope(&self, value: f64, at: [f64; 4]) -> Derivative {
-        let mut around: [(f64, f64); 4] = std::array::from_fn(|i| (self.offsets[i], at[i]));
+    /// A number here and at the neighbours, in the order of the field.
+    pub fn in_order(&self, here: f64, of: impl Fn(&T) -> f64) -> [f64; 5] {
+        let mut all = [(0.0, here); 5];
+        all.iter_mut().zip(self.offsets.iter().zip(&self.at)).for_each(|(one, (offset, at))| *one = (*offset, of(at)));
+        all.sort_by(|one, other| one.0.total_cmp(&other.0));
+        all.map(|(_, value)| value)
+    }
+
+    /// Derivative of a smooth function of the problem, whose value here is `here` and whose values have this error beside that of
+    /// rounding: slope of the polynomial through the value and its neighbours, and its difference from that through the nearest
+    /// neighbours.
+    pub fn derivative(&self, here: f64, of: impl Fn(&T) -> f64, error: f64) -> Derivative {
+        let values = self.at.each_ref().map(of);
+        let mut around: [(f64, f64); 4] = std::array::from_fn(|i| (self.offsets[i], values[i]));
         around.sort_by(|one, other| one.0.abs().total_cmp(&other.0.abs()));
         let [one, two, three, four] = around;
-        let here = (0.0, value);
+        let here = (0.0, here);
         let (all, few) = (slope([here, one, two, three, four]), slope([here, one, two]));
-        let rounding = 4.0 * f64::EPSILON * value.abs() / one.0.abs();
-        Derivative { value: all, uncertainty: Some((all - few).abs() + rounding) }
+        let errors = self.magnification() * (error + 4.0 * f64::EPSILON * here.1.abs());
+        Derivative { value: all, uncertainty: Some((all - few).abs() + errors) }
     }
 }
 
-impl Neighbours<Impact> {
-    /// The impact with errors of its modes.
-    pub fn with_errors_of(base: &Impact) -> Neighbours<Impact> {
-        Neighbours::with_errors(|error| {
-            let mut impact = base.clone();
-            for mode in &mut impact.structure.modes {
-                mode.omega_rad_s *= error();
-                mode.shape *= error();
-            }
-            impact
-        })
+/// The reason why a number cannot change. Beyond a bound the number itself is at fault, which tells nothing about the other side of
+/// the bound.
+fn told(faults: &[InvalidInput], path: &FieldPath) -> String {
+    let own = |fault: &&InvalidInput| fault.field == *path.path();
+    match faults.iter().find(|fault| !own(fault)).or(faults.first()) {
+        Some(fault) if !own(&fault) => fault.to_string(),
+        Some(fault) => format!("must be {}", fault.allowed),
+        None => String::new(),
     }
+}
 
-    /// Frequencies and shapes of the lowest modes.
-    pub fn of_modes(&self, base: &Impact) -> Vec<(String, Derivative)> {
-        let mut found = Vec::new();
-        for k in 0..base.kept_modes().min(MODES) {
-            let of = |quantity: fn(&Mode) -> f64| {
-                let at = |impact: &Impact| quantity(&impact.structure.modes[k]);
-                self.derivative(at(base), at)
-            };
-            found.push((format!("omega_rad_s[{k}]"), of(|mode| mode.omega_rad_s)));
-            found.push((format!("shape[{k}]"), of(|mode| mode.shape)));
-        }
-        found
-    }
+/// Independent errors of five values at equal distances, relative to their size. Through the values of a smooth function there is
+/// hardly any fourth difference, so that it is that of the errors, apart from that of a wave with these first and second
+/// differences.
+pub(super) fn roughness([a, b, c, d, e]: [f64; 5], size: f64) -> f64 {
+    const NORM: f64 = 8.366_600_265_340_756; // of the weights 1, -4, 6, -4, 1
+    let size = size.abs().max(f64::MIN_POSITIVE);
+    let [first, second] = [(e - a) / 4.0, (a - 2.0 * c + e) / 4.0].map(|difference| (difference / size).abs());
+    let fourth = ((a - 4.0 * b + 6.0 * c - 4.0 * d + e) / size).abs();
+    (fourth - 3.0 * second * (first * first + second)).max(0.0) / NORM
 }
 
 /// Slope of the polynomial through these locations and values.
@@ -148,30 +163,28 @@ fn changed(tree: &Value, path: &FieldPath, value: f64) -> Result<Value, InvalidI
     Ok(tree)
 }
 
-/// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states, without those that
-/// cannot vary continuously.
-pub(super) fn around<T>(
-    (tree, fields): (&Value, &[String]),
-    pose: &dyn Fn(&Value) -> Result<T, InvalidInput>,
-    is_near: &dyn Fn(&mut T) -> bool,
-) -> Result<(Vec<Neighbours<T>>, Vec<String>), InvalidInput> {
-    let of = |field: &String| Neighbours::of(tree, field, pose, is_near);
+/// The neighbouring problems for these fields; or, if none is named, for all numbers that the scene states.
+pub(super) fn around<T>((tree, fields): (&Value, &[String]), by: &Posing<T>) -> Result<Around<T>, InvalidInput> {
     if !fields.is_empty() {
-        return Ok((fields.iter().map(of).collect::<Result<_, _>>()?, Vec::new()));
+        let near = fields.iter().map(|field| Neighbours::of(tree, field, by)).collect::<Result<_, _>>()?;
+        return Ok(Around { near, left_out: Vec::new(), named: true });
     }
-    let (mut around, mut left_out) = (Vec::new(), Vec::new());
-    for field in all_numbers(tree) {
-        match of(&field) {
-            Ok(near) => around.push(near),
-            Err(_) => left_out.push(field),
+    let (numbers, mut left_out) = all_numbers(tree);
+    let mut near = Vec::new();
+    for field in numbers {
+        let Some(path) = FieldPath::parse(&field) else { continue };
+        let Some(value) = path.get(tree).and_then(Value::as_f64) else { continue };
+        match Neighbours::beside(tree, (&field, &path, value), by) {
+            Ok(found) => near.push(found),
+            Err(reason) => left_out.push(LeftOut { path: field, reason }),
         }
     }
-    Ok((around, left_out))
+    Ok(Around { near, left_out, named: false })
 }
 
-/// Every number of a scene that can vary continuously, without lists of numbers.
-fn all_numbers(tree: &Value) -> Vec<String> {
-    let mut found = Vec::new();
+/// Every number of a scene that may vary continuously, and the lists that are too long to be included.
+fn all_numbers(tree: &Value) -> (Vec<String>, Vec<LeftOut>) {
+    let (mut found, mut left_out) = (Vec::new(), Vec::new());
     let mut open = vec![(String::new(), tree)];
     while let Some((path, value)) = open.pop() {
         match value {
@@ -181,7 +194,11 @@ fn all_numbers(tree: &Value) -> Vec<String> {
                     open.push((path, value));
                 }
             }
-            Value::Array(list) if list.iter().any(Value::is_object) => {
+            Value::Array(list) if list.len() > LONG && list.iter().any(Value::is_number) => {
+                let reason = format!("a list of {} numbers; --by {path}[0] and so on selects some of them", list.len());
+                left_out.push(LeftOut { path, reason });
+            }
+            Value::Array(list) => {
                 for (i, value) in list.iter().enumerate().rev() {
                     open.push((format!("{path}[{i}]"), value));
                 }
@@ -190,8 +207,11 @@ fn all_numbers(tree: &Value) -> Vec<String> {
             _ => {}
         }
     }
-    found
+    (found, left_out)
 }
+
+/// Lists of more numbers are left out, unless the user names some of them.
+const LONG: usize = 20;
 
 /// Numbers that are settings of the solution and not part of the problem.
 const CHOICES: [&str; 6] = ["version", "modes", "mode", "tolerance", "bending_modes", "axial_modes"];

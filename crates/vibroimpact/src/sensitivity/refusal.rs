@@ -1,34 +1,49 @@
-//! Messages about scenes without derivatives.
+//! Messages about fields and scenes without derivatives.
 
 use crate::scene::InvalidInput;
 use crate::text::significant;
 use vibroimpact_sim::modal::NoDerivative;
 
-/// The error of the scene whose run had this outcome; `name` returns the name of a contact.
-pub(super) fn refusal(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> String) -> InvalidInput {
-    let seconds = |time_s: f64| significant(time_s, 6);
-    let (value, allowed) = match why {
-        NoDerivative::Outcome => (
-            format!("a run whose outcome is {outcome:?}"),
-            "a run that reaches its end, or one impact that ends with a rebound",
-        ),
-        NoDerivative::Graze { contact, time_s } => {
-            (format!("{}, which touches without speed at {} s", name(contact), seconds(time_s)), CONTACTS)
-        }
-        NoDerivative::Together { contact, time_s } => {
-            (format!("{}, which begins with a jump beside another at {} s", name(contact), seconds(time_s)), CONTACTS)
-        }
-        NoDerivative::Fork { contact, time_s } => (
-            format!("{}, whose law may follow either of two branches at {} s", name(contact), seconds(time_s)),
-            CONTACTS,
-        ),
-        NoDerivative::Break { time_s } => (
-            format!("an event just where a load breaks, at {} s", seconds(time_s)),
-            "breaks of loads apart from events of contacts",
-        ),
-        _ => ("a run whose derivatives are not finite".to_owned(), "a run with finite derivatives"),
-    };
-    InvalidInput::new("scene", value, format!("{allowed}; there is no derivative otherwise"))
+/// The reason why there is no derivative, in the terms of a scene.
+pub(super) struct Refusal {
+    /// What happens in the run.
+    pub happens: String,
+    allowed: &'static str,
 }
 
-const CONTACTS: &str = "contacts that begin with a speed, each at a time of its own";
+impl Refusal {
+    /// For a run with this outcome; `name` returns the name of a contact.
+    pub fn new(why: NoDerivative, outcome: &str, name: impl Fn(usize) -> String) -> Refusal {
+        const CONTACTS: &str = "contacts that begin with a speed, each at a time of its own";
+        let seconds = |time_s: f64| significant(time_s, 6);
+        let (happens, allowed) = match why {
+            NoDerivative::Outcome => (
+                format!("its outcome is {outcome:?}"),
+                "a run that reaches its end, or one impact that ends with a rebound",
+            ),
+            NoDerivative::Graze { contact, time_s } => {
+                (format!("{} touches without speed at {} s", name(contact), seconds(time_s)), CONTACTS)
+            }
+            NoDerivative::Together { contact, time_s } => {
+                (format!("{} begins with a jump beside another at {} s", name(contact), seconds(time_s)), CONTACTS)
+            }
+            NoDerivative::Fork { contact, time_s } => {
+                let contact = name(contact);
+                (format!("the law of {contact} may follow either of two branches at {} s", seconds(time_s)), CONTACTS)
+            }
+            NoDerivative::Break { time_s } => (
+                format!("an event coincides with a break of a load at {} s", seconds(time_s)),
+                "breaks of loads apart from events of contacts",
+            ),
+            _ => ("the derivatives are not finite".to_owned(), "a run with finite derivatives"),
+        };
+        Refusal { happens, allowed }
+    }
+
+    /// The error of a field that the user named, or of the scene.
+    pub fn error(&self, field: Option<&str>) -> InvalidInput {
+        let Refusal { happens, allowed } = self;
+        let (place, value) = field.map_or(("scene", "this run"), |field| ("--by", field));
+        InvalidInput::new(place, value, format!("{allowed}, so that there is a derivative; here {happens}"))
+    }
+}

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::table::{OfField, Table};
+use super::table::{Miss, OfField, Table};
 
 /// An impact, with the derivatives of its outputs with respect to fields of its scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -18,9 +18,11 @@ pub struct Sensitivity {
     pub modes: usize,
     /// Number of remainder modes, which represent all others.
     pub remainder_modes: usize,
-    /// Speed of the slowest touch divided by that of the fastest. If it is nearly zero, a contact is near grazing, and the
-    /// derivatives are very large.
+    /// Speed of the slowest touch, or of the nearest miss, divided by that of the fastest touch. If it is nearly zero, a contact
+    /// is near grazing, and the derivatives hold only for small changes.
     pub nearest_graze: f64,
+    /// The nearest graze, if it is a miss.
+    pub nearest_miss: Option<Miss>,
     /// The fields and the derivatives: outputs are `restitution`, `end_s`, `striker_velocity_m_s`,
     /// `sub_impacts[0].impulse_n_s` and the like, `omega_rad_s[0]`, `shape[0]` and so on for the lowest modes, and
     /// `emoc_restitution`, by the three-parameter law, where that holds.

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use invalid_input::InvalidInput;
 use serde::Serialize;
-use vibroimpact_sim::modal::Derivative;
+use vibroimpact_sim::modal::{Derivative, NearMiss};
 
-use super::neighbours::Neighbours;
+use crate::text::small;
 
 /// A derivative of an output with respect to a field, in the unit of the output over that of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -15,6 +15,27 @@ pub struct OfField {
     pub value: f64,
     /// Its uncertainty; null if no digit is certain.
     pub uncertainty: Option<f64>,
+}
+
+/// Surfaces that nearly touched, or nearly parted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Miss {
+    /// The name of their contact, in a scene of bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<String>,
+    /// The event that was missed: `touch` or `separation`.
+    pub event: &'static str,
+    /// When it was nearest (s).
+    pub time_s: f64,
+    /// The gap then, or the compression above that of separation (m).
+    pub distance_m: f64,
+}
+
+impl Miss {
+    pub(super) fn new(miss: NearMiss, contact: Option<String>) -> Miss {
+        let event = if miss.was_closed { "separation" } else { "touch" };
+        Miss { contact, event, time_s: miss.time_s, distance_m: miss.distance_m }
+    }
 }
 
 /// A field with respect to which outputs were differentiated.
@@ -26,26 +47,50 @@ pub struct Field {
     pub value: f64,
 }
 
+/// Numbers of the scene without derivatives.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Path of a number or of a list of numbers.
+    pub path: String,
+    /// The reason why there are no derivatives.
+    pub reason: String,
+}
+
 /// Fields, and derivatives of outputs with respect to them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
     /// The fields, in the requested order.
     pub fields: Vec<Field>,
-    /// Numbers of the scene that cannot vary continuously, if all of its numbers were requested.
-    pub left_out: Vec<String>,
+    /// Numbers of the scene without derivatives, if all of its numbers were requested.
+    pub left_out: Vec<LeftOut>,
+    /// The outputs of the scene itself.
+    pub outputs: BTreeMap<String, f64>,
     /// By output, then by field.
     pub derivatives: BTreeMap<String, BTreeMap<String, OfField>>,
 }
 
 impl Table {
-    pub(super) fn new<T>(around: &[Neighbours<T>], left_out: Vec<String>) -> Table {
-        let field = |at: &Neighbours<T>| Field { path: at.field.clone(), value: at.value };
-        Table { fields: around.iter().map(field).collect(), left_out, derivatives: BTreeMap::new() }
+    /// Without derivatives so far.
+    pub(super) fn new(left_out: Vec<LeftOut>) -> Table {
+        Table { fields: Vec::new(), left_out, outputs: BTreeMap::new(), derivatives: BTreeMap::new() }
     }
 
-    pub(super) fn insert(&mut self, output: &str, field: &str, Derivative { value, uncertainty }: Derivative) {
-        let by_field = self.derivatives.entry(output.to_owned()).or_default();
-        by_field.insert(field.to_owned(), OfField { value, uncertainty });
+    /// Adds a field with the derivatives of these outputs, each with its name and its value.
+    pub(super) fn add(&mut self, path: &str, value: f64, derivatives: impl IntoIterator<Item = Output>) {
+        self.fields.push(Field { path: path.to_owned(), value });
+        derivatives.into_iter().for_each(|output| self.insert(path, output));
+    }
+
+    /// Adds the derivative of an output with respect to a field of the table.
+    pub(super) fn insert(&mut self, path: &str, Output { name, value, derivative }: Output) {
+        self.outputs.insert(name.clone(), value);
+        let Derivative { value, uncertainty } = derivative;
+        self.derivatives.entry(name).or_default().insert(path.to_owned(), OfField { value, uncertainty });
+    }
+
+    /// A field without derivatives.
+    pub(super) fn leave_out(&mut self, path: &str, reason: String) {
+        self.left_out.push(LeftOut { path: path.to_owned(), reason });
     }
 
     /// The derivative of an output with respect to a field, if it exists.
@@ -53,8 +98,8 @@ impl Table {
         self.derivatives.get(output)?.get(field).copied()
     }
 
-    /// The fields, sorted by the effect of a relative change on an output.
-    pub(super) fn rows(&self, output: &str) -> Result<Vec<Row<'_>>, InvalidInput> {
+    /// The derivatives of an output.
+    pub(super) fn rows(&self, output: &str) -> Result<Rows<'_>, InvalidInput> {
         let by_field = self.derivatives.get(output).ok_or_else(|| {
             let known = self.derivatives.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
             InvalidInput::new("--of", output, format!("an output of this scene: {known}"))
@@ -65,8 +110,52 @@ impl Table {
                 rows.push(Row { path: &field.path, value: field.value, derivative });
             }
         }
-        rows.sort_by(|a, b| b.by_part().abs().total_cmp(&a.by_part().abs()));
-        Ok(rows)
+        rows.sort_by(|a, b| b.by_whole().abs().total_cmp(&a.by_whole().abs()));
+        let size = if output.ends_with("restitution") {
+            1.0
+        } else {
+            self.outputs.get(output).map_or(0.0, |value| value.abs())
+        };
+        let largest = rows.first().map_or(0.0, |row| row.by_whole().abs());
+        Ok(Rows { rows, share: share(largest, LINEAR * size) })
+    }
+}
+
+/// A change of the restitution beyond which its derivatives do not hold, and a relative change of other outputs.
+const LINEAR: f64 = 0.1;
+
+/// The largest of 0.01, 0.001 and so on that keeps a change below `most`, if it is `by_whole` for 1. An output that is nearly zero
+/// has no size to compare with.
+fn share(by_whole: f64, most: f64) -> f64 {
+    const LEAST: i32 = -8;
+    let mut shares = (LEAST..=-2).rev().map(|power| 10f64.powi(power));
+    shares.find(|share| share * by_whole <= most).unwrap_or(0.01)
+}
+
+/// An output with its derivative.
+pub(super) struct Output {
+    pub name: String,
+    pub value: f64,
+    pub derivative: Derivative,
+}
+
+impl Output {
+    pub fn new(name: String, value: f64, derivative: Derivative) -> Output {
+        Output { name, value, derivative }
+    }
+}
+
+/// The derivatives of one output, sorted by the effect of a relative change of the field.
+pub(super) struct Rows<'a> {
+    pub rows: Vec<Row<'a>>,
+    /// The relative change of the fields that is shown: 0.01, or less where derivatives would not hold for that.
+    pub share: f64,
+}
+
+impl Rows<'_> {
+    /// The relative change in words.
+    pub fn percentage(&self) -> String {
+        format!("{} %", small(100.0 * self.share))
     }
 }
 
@@ -78,8 +167,8 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Change of the output if the field grows by one per cent.
-    pub fn by_part(&self) -> f64 {
-        0.01 * self.value * self.derivative.value
+    /// Change of the output if the field doubled and the derivative held so far.
+    pub fn by_whole(&self) -> f64 {
+        self.value * self.derivative.value
     }
 }

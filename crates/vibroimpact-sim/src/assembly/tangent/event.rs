@@ -14,7 +14,7 @@ use std::array;
 const TOGETHER: f64 = 1e-6;
 
 /// Shift of the zero of an event function with this rate, for a change of the function.
-pub(super) fn later(changes: f64, slope: f64) -> Option<f64> {
+fn later(changes: f64, slope: f64) -> Option<f64> {
     if changes == 0.0 {
         return Some(0.0);
     }
@@ -30,16 +30,31 @@ impl Walk<'_> {
         [link.sum(&slide.amplitude) + by_loads, link.sum(&slide.rate) + self.loads.bend(c, time_s)]
     }
 
+    /// Shift of an event at the end of a panel of unchanged length, and the rate of its function.
+    pub fn shift(
+        &self,
+        d: usize,
+        (contact, event): (usize, Event),
+        time_s: f64,
+        overlap: [f64; 2],
+        change: [f64; 2],
+        speed: [f64; 2],
+    ) -> Result<(f64, f64), NoDerivative> {
+        let found = self.event_function(d, contact, event, overlap, change, speed);
+        let (changes, slope) = found.ok_or(NoDerivative::Fork { contact, time_s })?;
+        Ok((later(changes, slope).ok_or(NoDerivative::Graze { contact, time_s })?, slope))
+    }
+
     /// Shift of another event at the same time relative to the event that ended the panel. If they shift differently, a contact
     /// whose force jumps at first touch has no tangent here.
     pub fn apart(
-        &self,
+        &mut self,
         c: usize,
         event: Event,
         (time_s, state): (f64, [&[f64]; 2]),
         overlap: [f64; 2],
         slide: &Moved,
-    ) -> Result<Vec<f64>, NoDerivative> {
+    ) -> Vec<f64> {
         let speed = self.speed(c, time_s, slide);
         let jumps = match event {
             Event::Touch { .. } => {
@@ -51,9 +66,7 @@ impl Walk<'_> {
         };
         let of = |(d, tangent): (usize, &Tangent)| {
             let change = self.overlap(d, c, time_s, state, [&tangent.amplitude, &tangent.rate]);
-            let found = self.event_function(d, c, event, overlap, change, speed);
-            let (changes, slope) = found.ok_or(NoDerivative::Fork { contact: c, time_s })?;
-            let later = later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?;
+            let (later, slope) = self.shift(d, (c, event), time_s, overlap, change, speed)?;
             // what cancels where both shift alike
             let parts =
                 sum(&self.changes[d].psi[c], state[0]).abs() + self.system.links[c].sum(&tangent.amplitude).abs();
@@ -64,12 +77,13 @@ impl Walk<'_> {
                 _ => Ok(later),
             }
         };
-        self.tangents.iter().enumerate().map(of).collect()
+        let found: Vec<Result<f64, NoDerivative>> = self.tangents.iter().enumerate().map(of).collect();
+        found.into_iter().enumerate().map(|(d, shift)| self.or_refuse(d, shift)).collect()
     }
 
     /// Derivative of an event function at the end of a panel of unchanged length, and its rate. `None` if the law has no such
     /// boundary at a neighbouring value.
-    pub fn event_function(
+    fn event_function(
         &self,
         d: usize,
         c: usize,
@@ -109,7 +123,7 @@ impl Walk<'_> {
         (at_s, state): (f64, [&[f64]; 2]),
         [overlap, rate]: [f64; 2],
         apart: &[f64],
-    ) -> Result<(), NoDerivative> {
+    ) {
         let law = self.posed.laws[c];
         let followed = self.contacts[c];
         // the law computes its new numbers from its own numbers and two of the motion
@@ -179,18 +193,23 @@ impl Walk<'_> {
                 Event::Cross(_) => join(carried.branch, [by_overlap, by_rate]),
                 Event::Touch { .. } => join(carried.memory, [by_rate, 0.0]),
             };
-            let mut made_change = [0.0; NUMBERS];
-            for i in (0..GIVEN).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
-                let slopes = match known[i] {
-                    Some(slopes) => slopes,
-                    None => *known[i].insert(by_given(i)?),
-                };
-                made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope * changes[i]);
-            }
-            if let Some(laws) = &self.changes[d].laws {
-                let slopes = difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil)?;
-                made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope);
-            }
+            let mut made_change = || {
+                let mut made_change = [0.0; NUMBERS];
+                for i in (0..GIVEN).filter(|i| changes[*i] != 0.0 && sizes[*i] != 0.0) {
+                    let slopes = match known[i] {
+                        Some(slopes) => slopes,
+                        None => *known[i].insert(by_given(i)?),
+                    };
+                    made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope * changes[i]);
+                }
+                if let Some(laws) = &self.changes[d].laws {
+                    let slopes = difference(laws[c].map(|law| made(law, &given)), &self.changes[d].stencil)?;
+                    made_change.iter_mut().zip(&slopes).for_each(|(change, slope)| *change += slope);
+                }
+                Ok(made_change)
+            };
+            let made_change = made_change();
+            let made_change = self.or_refuse(d, made_change);
             let tangent = &mut self.tangents[d];
             let time_s = tangent.time_s + apart[d];
             match (event, &after) {
@@ -224,6 +243,5 @@ impl Walk<'_> {
             After::Continue(branch) => self.contacts[c].branch = Some(branch),
             After::Release(memory) => (self.contacts[c].branch, self.contacts[c].memory) = (None, memory),
         }
-        Ok(())
     }
 }

@@ -52,20 +52,19 @@ use super::problem::Posed;
 use super::system::System;
 use crate::panel::legendre::{BASIS, Nodal, Q, add, derivative, evaluate};
 use contact_models::Force;
-use event::later;
 pub(crate) use expansion::Expansions;
 use panel::{Moved, Passage, Solved};
 use walk::Walk;
 pub(crate) use walk::{IntervalChange, Tangent};
 
-/// All tangents of a record.
+/// All tangents of a record, or the reasons why there are none.
 pub(crate) struct Tangents {
-    pub tangents: Vec<Tangent>,
+    pub tangents: Vec<Result<Tangent, NoDerivative>>,
     /// The motion itself at the end.
     pub amplitude: Vec<f64>,
     pub rate: Vec<f64>,
-    /// Speed of the slowest touch divided by that of the fastest: the derivatives do not exist if it is zero.
-    pub nearest_graze: f64,
+    /// Speed of the slowest touch, infinite without any, and of the fastest.
+    pub touches: [f64; 2],
 }
 
 /// The condition that determines the end of a panel.
@@ -106,7 +105,7 @@ pub(crate) fn tangents(
     for (i, stretch) in stretches.iter().enumerate() {
         // events at the start of the record are treated on a panel of zero length
         if i == 0 && !stretch.events.is_empty() {
-            walk.begin(stretch)?;
+            walk.begin(stretch);
         }
         if let Some(next) = stretches.get(i + 1) {
             let is_last = i + 2 == stretches.len();
@@ -114,20 +113,20 @@ pub(crate) fn tangents(
         }
     }
     let (amplitude, rate) = walk.end(stretches.last().ok_or(NoDerivative::Outcome)?);
-    let finite = |tangent: &Tangent| {
+    let known = |tangent: Tangent| {
         let motion = tangent.amplitude.iter().chain(&tangent.rate);
-        motion.sum::<f64>().is_finite() && tangent.time_s.is_finite()
+        let finite = motion.sum::<f64>().is_finite() && tangent.time_s.is_finite();
+        match tangent.refused {
+            Some(why) => Err(why),
+            None if finite => Ok(tangent),
+            None => Err(NoDerivative::Infinite),
+        }
     };
-    let [slowest, fastest] = walk.touches;
-    let nearest_graze = if fastest > 0.0 { slowest / fastest } else { 1.0 };
-    if !walk.tangents.iter().all(finite) {
-        return Err(NoDerivative::Infinite);
-    }
-    Ok(Tangents { tangents: walk.tangents, amplitude, rate, nearest_graze })
+    Ok(Tangents { tangents: walk.tangents.into_iter().map(known).collect(), amplitude, rate, touches: walk.touches })
 }
 
 impl Walk<'_> {
-    fn begin(&mut self, first: &Stretch) -> Result<(), NoDerivative> {
+    fn begin(&mut self, first: &Stretch) {
         let moved = self.tangents.iter().map(|tangent| Moved {
             amplitude: tangent.amplitude.clone(),
             rate: tangent.rate.clone(),
@@ -139,7 +138,7 @@ impl Walk<'_> {
         let bend = self.acceleration(first.start_s, state, &[], 0.0);
         let slide = Moved { amplitude: first.rate.clone(), rate: bend, force: Vec::new(), overlap: Vec::new() };
         let end = Arrival { length_s: 0.0, ending: ending(first), state, end_s: None, next: first };
-        self.arrive(&end, &[], moved, Some(&slide))
+        self.arrive(&end, &[], moved, Some(&slide));
     }
 
     /// From the start of a stretch to that of the next one; `end_s` has the changes of that time if the record ends there.
@@ -188,7 +187,7 @@ impl Walk<'_> {
             followed.overlap += self.loads.overlap(c, next.start_s).0 - self.loads.overlap(c, stretch.start_s).0;
             followed.sizes[0] = solved.compression.iter().fold(followed.sizes[0], |most, value| most.max(value.abs()));
         }
-        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, moved, slide.as_ref())?;
+        self.arrive(&Arrival { length_s: h, ending, state, end_s, next }, &solved, moved, slide.as_ref());
         if let Some(after) = after {
             self.pass_breaks(after);
         }
@@ -209,13 +208,7 @@ impl Walk<'_> {
     }
 
     /// The end of a panel: its shift, the statistics, and the events there.
-    fn arrive(
-        &mut self,
-        end: &Arrival,
-        solved: &[Solved],
-        moved: Vec<Moved>,
-        slide: Option<&Moved>,
-    ) -> Result<(), NoDerivative> {
+    fn arrive(&mut self, end: &Arrival, solved: &[Solved], moved: Vec<Moved>, slide: Option<&Moved>) {
         let Arrival { length_s: h, ending, state, end_s, next } = *end;
         let time_s = next.start_s;
         let overlaps: Vec<[f64; 2]> = (0..self.contacts.len())
@@ -242,9 +235,8 @@ impl Walk<'_> {
                     Ending::Event(c, event) => {
                         let change = self.overlap(d, c, time_s, state, [&moved.amplitude, &moved.rate]);
                         let speed = self.speed(c, time_s, slide);
-                        let found = self.event_function(d, c, event, overlaps[c], change, speed);
-                        let (changes, slope) = found.ok_or(NoDerivative::Fork { contact: c, time_s })?;
-                        later(changes, slope).ok_or(NoDerivative::Graze { contact: c, time_s })?
+                        let shift = self.shift(d, (c, event), time_s, overlaps[c], change, speed);
+                        self.or_refuse(d, shift).0
                     }
                     Ending::Break => {
                         let later = self.load_changes[d].as_ref().map_or(0.0, LoadChange::next_break_s);
@@ -282,15 +274,14 @@ impl Walk<'_> {
         }
         for (i, (c, event)) in next.events.iter().enumerate() {
             let apart = match slide {
-                Some(slide) if i > 0 => self.apart(*c, *event, (time_s, state), overlaps[*c], slide)?,
+                Some(slide) if i > 0 => self.apart(*c, *event, (time_s, state), overlaps[*c], slide),
                 _ => vec![0.0; self.changes.len()],
             };
-            self.transition((*c, *event), (time_s, state), overlaps[*c], &apart)?;
+            self.transition((*c, *event), (time_s, state), overlaps[*c], &apart);
         }
         for (followed, seen) in self.contacts.iter_mut().zip(&next.contacts) {
             followed.branch = seen.branch;
         }
-        Ok(())
     }
 
     /// Where on this panel force and compression of each contact exceed all before, with their slope there.

@@ -5,6 +5,7 @@ use crate::assembly::change::Change;
 use crate::assembly::collocate::Blocks;
 use crate::assembly::load::Loads;
 use crate::assembly::load_change::LoadChange;
+use crate::assembly::no_derivative::NoDerivative;
 use crate::assembly::problem::Posed;
 use crate::assembly::system::{Span, System};
 use contact_models::{Branch, Internal, Memory};
@@ -35,6 +36,8 @@ pub(crate) struct Tangent {
     pub time_s: f64,
     pub intervals: Vec<IntervalChange>,
     pub(super) contacts: Vec<Carried>,
+    /// The first reason why there is none; the numbers have no meaning from then on.
+    pub(super) refused: Option<NoDerivative>,
 }
 
 /// State of a contact from panel to panel: the derivative of ...
@@ -122,6 +125,7 @@ impl<'a> Walk<'a> {
             time_s: 0.0,
             intervals: Vec::new(),
             contacts: change.gap_m.iter().map(|gap| Carried { reference: -gap, ..Carried::default() }).collect(),
+            refused: None,
         };
         Walk {
             posed,
@@ -138,6 +142,14 @@ impl<'a> Walk<'a> {
             begun: 0,
             touches: [f64::INFINITY, 0.0],
         }
+    }
+
+    /// The value, or zero if there is none, which leaves this parameter without a derivative.
+    pub fn or_refuse<T: Default>(&mut self, d: usize, found: Result<T, NoDerivative>) -> T {
+        found.unwrap_or_else(|why| {
+            self.tangents[d].refused.get_or_insert(why);
+            T::default()
+        })
     }
 
     /// Change of an overlap and its rate at a time, for a state and its change.
