@@ -126,8 +126,7 @@ pub(crate) fn follow(
         stretches.push(march.last());
     }
     let contacts: Vec<ContactEnd> = (0..march.states.len()).map(|c| contact_end(&march, c)).collect();
-    let work_j = contacts.iter().map(|contact| contact.statistics.work_j).sum();
-    let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j(), work_j));
+    let energy = march.account.take().map(|account| account.close(&march.here(), march.stored_j()));
     let (mut amplitude, mut rate) = (march.amplitude, march.rate);
     march.loads.shift_modes(march.system, march.time_s, 1.0, &mut amplitude, &mut rate);
     let (amplitude, rate) = in_users_order(march.system, &amplitude, &rate);

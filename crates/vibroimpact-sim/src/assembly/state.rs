@@ -113,12 +113,8 @@ impl State {
             statistics.squared_force_n2_s += weight * nodal[i] * nodal[i];
             statistics.compression_work_j += weight * power.max(0.0);
         }
-        // integration by parts: the compression at the nodes and at the end is more accurate than its rate
-        let slope = apply(&BASIS.derivatives[1], &coefficients);
-        statistics.work_j += evaluate(&coefficients, 1.0) * (end - self.overlap);
-        for i in 0..Q {
-            statistics.work_j -= weights[i] * slope[i] * (compression[i] - self.overlap);
-        }
+        let moved = compression.map(|at| at - self.overlap);
+        add_work(&mut statistics.work_j, &coefficients, &moved, end - self.overlap);
     }
 
     /// The interval that ends now.
@@ -133,5 +129,15 @@ impl State {
         self.statistics.intervals += 1;
         self.statistics.largest_force_n = self.statistics.largest_force_n.max(touch.interval.peak_force_n);
         Some(touch.interval)
+    }
+}
+
+/// Adds the work of a contact on a panel: its force by coefficients, the increase of its compression up to the nodes, and up to the
+/// end. It is integrated by parts, because the compression is more accurate than its rate.
+pub(crate) fn add_work(work_j: &mut f64, force: &Nodal, moved: &Nodal, moved_at_end: f64) {
+    let slope = apply(&BASIS.derivatives[1], force);
+    *work_j += evaluate(force, 1.0) * moved_at_end;
+    for i in 0..Q {
+        *work_j -= BASIS.weights[i] * slope[i] * moved[i];
     }
 }

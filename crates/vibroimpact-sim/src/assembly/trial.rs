@@ -6,7 +6,7 @@ use super::load::Turns;
 use super::motion::March;
 use super::state::Phase;
 use crate::panel::dyadic::step_s;
-use crate::panel::legendre::{BASIS, Nodal, Q, evaluate_at, slopes};
+use crate::panel::legendre::{BASIS, Nodal, Q, apply, evaluate_at, slopes};
 
 /// Allowed error of the nodal forces, as a share of the allowed error of the impulse on a panel.
 const NEWTON_SHARE: f64 = 1e-2;
@@ -123,6 +123,7 @@ impl<'a> March<'a> {
         let h = step_s(level);
         let (contacts, closed) = (trial.contacts.as_slice(), trial.closed);
         self.show(h, &contacts[..closed], &trial.force);
+        self.account_for(level, trial);
         self.tables.rotate(self.system, level, &mut self.amplitude, &mut self.rate);
         for (i, &c) in contacts[..closed].iter().enumerate() {
             let link = &self.system.links[c];
@@ -130,6 +131,23 @@ impl<'a> March<'a> {
         }
         self.pass(h);
         self.book(h, contacts, closed, &trial.solved, &trial.force, |i| trial.end[i]);
+    }
+
+    /// Adds the work of the closed contacts to the energy balance. The compressions with which Newton's method ended do not include
+    /// the last change of the forces.
+    fn account_for(&mut self, level: i32, trial: &Trial) {
+        let Some(account) = &mut self.account else { return };
+        let closed = &trial.contacts[..trial.closed];
+        for (i, &c) in closed.iter().enumerate() {
+            let mut moved = trial.unknowns[i].free;
+            for (&other, solved) in closed.iter().zip(&trial.solved) {
+                if let Some(response) = self.responses.of(self.system, level, c, other) {
+                    let forced = apply(&response.nodes, &solved.force);
+                    moved.iter_mut().zip(forced).for_each(|(moved, forced)| *moved += forced);
+                }
+            }
+            account.contact(&trial.force[i], &moved, trial.end[i].0 - self.states[c].overlap);
+        }
     }
 
     /// Accepts a panel of `h`.

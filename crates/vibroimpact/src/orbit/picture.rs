@@ -23,7 +23,7 @@ pub fn picture(title: &str, branch: &BranchSummary) -> Figure {
     let mut amplitude = panel("first harmonic").height(170.0);
     let mut section = panel("once in each period").height(170.0);
     let mut range = panel("largest and least").height(150.0);
-    let mut size = Panel::new(axis(), Axis::new("largest multiplier")).height(110.0);
+    let mut size = Panel::new(axis(), Axis::new("largest multiplier").log()).height(110.0);
     let (drawn, moving) = drawn_sides(branch);
     for (number, &i) in drawn.iter().enumerate() {
         let colour = Colour::of_series(number);
