@@ -143,6 +143,10 @@ fn doubled_branches_are_followed_drawn_and_written() {
     let point = &branch["special_points"][0];
     assert_eq!((point["kind"].as_str(), point["value"].as_f64()), (Some("period doubling"), Some(begins[0])));
     assert!(begins[0] > 9.4e-4 && begins[0] < 9.6e-4 && begins[1] > begins[0], "{begins:?}");
+    // The distances between the doublings of a cascade decrease by a ratio that tends to Feigenbaum's 4.669.
+    let third = doubled[1]["special_points"][0]["value"].as_f64().unwrap();
+    let ratio = (begins[1] - begins[0]) / (third - begins[1]);
+    assert!((ratio / 4.669 - 1.0).abs() < 0.02, "{ratio}");
     for (branch, periods) in doubled.iter().zip([2, 4]) {
         let orbits = branch["orbits"].as_array().unwrap();
         assert!(orbits.len() > 3, "{branch}");
