@@ -20,7 +20,7 @@ pub const EXAMPLES: &str = "Examples:
                                                     a scene of bodies: how fast a point is at the end
 
 Derivatives are computed from the motion itself, not from differences of two impacts. They hold for small changes: an impact
-with several contacts may lose or gain one after a larger change. The result states how close the slowest contact is to this.";
+with several contacts may lose or gain one after a larger change. The result states how close the nearest contact is to this.";
 
 /// The derivatives to compute.
 #[derive(Args)]

@@ -24,35 +24,50 @@ const TIMES: f64 = 2.0;
 pub(super) struct Modes {
     here: Vec<Vec<Seen>>,
     near: Vec<Neighbours<Vec<Vec<Seen>>>>,
-    /// By [`Effect`].
+    /// The kind of each field; `None` for a field that does not change the modes.
+    kinds: Vec<Option<Kind>>,
+    /// By kind.
     errors: [Errors; 2],
 }
 
-/// The effect of a field on the modes.
+/// The errors of the modes depend on the field: a plate's shapes do not change with its thickness, but are computed anew if its
+/// length changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Effect {
-    /// They are seen at another point. Their frequencies are the same, and their shapes come from the same computation.
-    Place = 0,
-    /// They are those of another structure.
-    Structure = 1,
+enum Kind {
+    /// They are those of rounding.
+    Smooth = 0,
+    /// They are larger.
+    Rough = 1,
 }
 
-/// Errors of the modes at the neighbours of the fields with one effect.
+/// Largest relative error of the middle mode by rounding. The last modes are often remainder modes, whose errors are larger in any
+/// case.
+const SMOOTH: f64 = 10.0 * LEAST;
+
+/// Errors of the modes at the neighbours of the fields of one kind.
 struct Errors {
     bodies: Vec<Vec<Seen>>,
     /// The largest error, relative to a frequency or to the largest shape at a point.
     largest: f64,
+    /// The same of the middle mode of a body.
+    middle: f64,
     /// Whether there is such a field.
     needed: bool,
 }
 
 impl Modes {
     pub fn new(here: Vec<Vec<Seen>>, near: Vec<Neighbours<Vec<Vec<Seen>>>>) -> Modes {
-        let errors = [Effect::Place, Effect::Structure].map(|which| {
-            let alike: Vec<_> = near.iter().filter(|near| effect(&here, near) == Some(which)).collect();
-            Errors::new(&here, &alike)
+        let kind = |near: &Neighbours<Vec<Vec<Seen>>>| {
+            let own = || Errors::new(&here, &[near]).middle;
+            let changes = near.at.iter().any(|bodies| *bodies != here);
+            changes.then(|| if own() <= SMOOTH { Kind::Smooth } else { Kind::Rough })
+        };
+        let kinds: Vec<Option<Kind>> = near.iter().map(kind).collect();
+        let errors = [Kind::Smooth, Kind::Rough].map(|which| {
+            let alike = near.iter().zip(&kinds).filter(|(_, kind)| **kind == Some(which));
+            Errors::new(&here, &alike.map(|(near, _)| near).collect::<Vec<_>>())
         });
-        Modes { here, near, errors }
+        Modes { here, near, kinds, errors }
     }
 
     /// The problem with errors of random signs, whose size is treated like a field: the true size is 1. `with` adds errors to the
@@ -69,8 +84,8 @@ impl Modes {
     /// A derivative with respect to a field with the possible effect of errors of the modes, from the changes of the output for
     /// each draw; no digit is certain if one of them is not known.
     pub fn widened(&self, field: usize, derivative: Derivative, changes: &[Option<f64>]) -> Derivative {
-        let Some(which) = effect(&self.here, &self.near[field]) else { return derivative };
-        let first = if which == Effect::Structure && self.errors[0].needed { DRAWS } else { 0 };
+        let Some(kind) = self.kinds[field] else { return derivative };
+        let first = if kind == Kind::Rough && self.errors[0].needed { DRAWS } else { 0 };
         let squares = changes.iter().skip(first).take(DRAWS).map(|change| change.map(|change| change * change));
         let mean = squares.sum::<Option<f64>>().map(|sum| sum / DRAWS as f64);
         let own = derivative.uncertainty.zip(mean);
@@ -89,30 +104,14 @@ impl Modes {
     }
 
     fn derivative(&self, field: usize, of: impl Fn(&Vec<Vec<Seen>>) -> f64) -> Derivative {
-        let near = &self.near[field];
-        let error = effect(&self.here, near).map_or(0.0, |which| TIMES * of(&self.errors[which as usize].bodies));
-        near.derivative(of(&self.here), of, error)
-    }
-}
-
-/// `None` for a field without an effect.
-fn effect(here: &[Vec<Seen>], near: &Neighbours<Vec<Vec<Seen>>>) -> Option<Effect> {
-    let same = |bodies: &Vec<Vec<Seen>>| {
-        let modes = |bodies: &[Vec<Seen>]| bodies.iter().flatten().map(|mode| mode.omega_rad_s).collect::<Vec<_>>();
-        modes(bodies) == modes(here)
-    };
-    if near.at.iter().all(|bodies| bodies == here) {
-        None
-    } else if near.at.iter().all(same) {
-        Some(Effect::Place)
-    } else {
-        Some(Effect::Structure)
+        let error = self.kinds[field].map_or(0.0, |kind| TIMES * of(&self.errors[kind as usize].bodies));
+        self.near[field].derivative(of(&self.here), of, error)
     }
 }
 
 impl Errors {
     fn new(here: &[Vec<Seen>], near: &[&Neighbours<Vec<Vec<Seen>>>]) -> Errors {
-        let mut all = Errors { bodies: Vec::new(), largest: LEAST, needed: !near.is_empty() };
+        let mut all = Errors { bodies: Vec::new(), largest: LEAST, middle: LEAST, needed: !near.is_empty() };
         for (body, modes) in here.iter().enumerate() {
             let points = modes.first().map_or(0, |mode| mode.shapes.len());
             let size = |j: usize| modes.iter().map(|mode| mode.shapes[j].abs()).fold(f64::MIN_POSITIVE, f64::max);
@@ -128,6 +127,9 @@ impl Errors {
                         let shape = near.in_order(mode.shapes[j], |bodies| bodies[body][k].shapes[j]);
                         relative[1 + j] = relative[1 + j].max(roughness(shape, *size));
                     }
+                }
+                if 2 * k < modes.len() {
+                    all.middle = relative.iter().copied().fold(all.middle, f64::max);
                 }
                 let shapes = relative[1..].iter().zip(&sizes).map(|(error, size)| error * size).collect();
                 errors.push(Seen { omega_rad_s: relative[0] * mode.omega_rad_s, shapes });

@@ -2,7 +2,7 @@
 
 use invalid_input::InvalidInput;
 
-use super::table::Table;
+use super::table::{Row, Table};
 use crate::plot::{Axis, Colour, Figure, Marker, Panel, Series};
 
 /// Largest number of fields in the diagram.
@@ -22,7 +22,11 @@ pub fn figure(found: &Table, output: &str) -> Result<Figure, InvalidInput> {
     let ends: Vec<f64> = rows.iter().map(|row| share * row.by_whole()).collect();
     let widest = ends.iter().map(|end| end.abs()).fold(f64::MIN_POSITIVE, f64::max);
     let x = Axis::new(format!("change of {output}")).limits(-1.15 * widest, 1.15 * widest);
-    let y = Axis::new("").ticks_at(rows.iter().enumerate().map(|(i, row)| (line(i), row.path.to_owned())));
+    let name = |row: &Row| match row.derivative.uncertainty {
+        Some(_) => row.path.to_owned(),
+        None => format!("{} (no certain digit)", row.path),
+    };
+    let y = Axis::new("").ticks_at(rows.iter().enumerate().map(|(i, row)| (line(i), name(row))));
     let mut panel = Panel::new(x, y.limits(0.4, count as f64 + 0.6)).height(40.0 + 26.0 * count as f64);
     for (sign, colour, more) in [(1.0, Colour::Blue, "more"), (-1.0, Colour::Vermilion, "less")] {
         for (i, end) in ends.iter().enumerate() {
