@@ -26,9 +26,18 @@ pub struct HeatMap {
 }
 
 impl HeatMap {
-    /// A map of `rows[j][i]` over `x[i]` and `y[j]`.
+    /// A map of `rows[j][i]` over `x[i]` and `y[j]`, which may have any order.
     pub fn new(x: &[f64], y: &[f64], rows: Vec<Vec<f64>>, value: Axis) -> HeatMap {
-        HeatMap { x: x.to_vec(), y: y.to_vec(), rows, value }
+        let order = |places: &[f64]| {
+            let mut order: Vec<usize> = (0..places.len()).collect();
+            order.sort_by(|&i, &j| places[i].total_cmp(&places[j]));
+            order
+        };
+        let (columns, lines) = (order(x), order(y));
+        let value_at = |j: usize, i: usize| rows.get(j).and_then(|row| row.get(i)).copied().unwrap_or(f64::NAN);
+        let rows = lines.iter().map(|&j| columns.iter().map(|&i| value_at(j, i)).collect()).collect();
+        let sorted = |places: &[f64], order: &[usize]| order.iter().map(|&k| places[k]).collect();
+        HeatMap { x: sorted(x, &columns), y: sorted(y, &lines), rows, value }
     }
 
     fn scale(&self) -> Scale {

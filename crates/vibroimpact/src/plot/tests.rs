@@ -302,3 +302,13 @@ fn a_map_about_zero_takes_colours_that_part_there() {
     assert!(svg(-1.0, 1.0).contains(blue) && svg(-1.0, 1.0).contains(red));
     assert!(!svg(-1.0, 2.0).contains(blue) && !svg(-1.0, 2.0).contains(red));
 }
+
+#[test]
+fn the_cells_of_a_map_are_drawn_in_any_order() {
+    let svg = |x: [f64; 3], y: [f64; 2], rows: [[f64; 3]; 2]| {
+        let map = HeatMap::new(&x, &y, rows.map(Vec::from).to_vec(), Axis::new("e"));
+        Figure::new("").row([Panel::new(Axis::new("x"), Axis::new("y")).map(map)]).svg().unwrap()
+    };
+    let ascending = svg([1.0, 2.0, 3.0], [5.0, 7.0], [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(svg([3.0, 1.0, 2.0], [7.0, 5.0], [[6.0, 4.0, 5.0], [3.0, 1.0, 2.0]]), ascending);
+}

@@ -45,7 +45,7 @@ pub struct Tally {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub distributions: BTreeMap<String, OutputDistribution>,
     /// For each output the least and greatest width of the interval of nine draws of ten over the points of the grid, if there is
-    /// one.
+    /// one; each index is that of the grid point.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub width_90: BTreeMap<String, Extremes>,
     /// Steps in contact, over all points.
@@ -174,10 +174,10 @@ impl Tally {
                 line("", "... (column error)");
             }
         }
-        let range = |extremes: &Extremes| {
+        let range = |extremes: &Extremes, point: &str| {
             let Extremes { least, least_index, greatest, greatest_index } = extremes;
             let digits = |value: &f64| significant(*value, 4);
-            format!("{} (point {least_index}) to {} (point {greatest_index})", digits(least), digits(greatest))
+            format!("{} ({point} {least_index}) to {} ({point} {greatest_index})", digits(least), digits(greatest))
         };
         for (name, found) in [
             ("restitution", &self.restitution),
@@ -188,11 +188,11 @@ impl Tally {
             ("contact work rate, W", &self.contact_work_rate_w),
         ] {
             if let Some(extremes) = found {
-                line(name, &range(extremes));
+                line(name, &range(extremes, "point"));
             }
         }
         for (output, extremes) in &self.width_90 {
-            line("width of 9 in 10", &format!("{output} {}", range(extremes)));
+            line("width of 9 in 10", &format!("{output} {}", range(extremes, "grid point")));
         }
         let Tally { contact_steps, law_evaluations, mode_steps, .. } = self;
         line("cost", &format!("{contact_steps} steps in contact, {law_evaluations} evaluations of the law"));

@@ -111,6 +111,45 @@ fn it_ends_once_the_sampling_error_is_small_enough_despite_interruptions() {
 }
 
 #[test]
+fn a_sampling_error_that_is_not_reached_is_reported() {
+    let mut sweep = on_a_slow_mode();
+    sweep["sampling"] = json!({ "draws": 1024, "sampling_error": 1e-6 });
+    let (bench, summary) = summary(&sweep);
+    let found = &summary["distributions"]["restitution"];
+    assert_eq!((&found["requested_error"], &found["reached"]), (&json!(1e-6), &json!(false)));
+    let told = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    assert!(told.contains("NOT REACHED: the largest standard error is 0.00"), "{told}");
+}
+
+#[test]
+fn indices_are_those_of_the_draws_that_have_a_result() {
+    let mut sweep = on_a_slow_mode();
+    // One draw in a hundred has a negative mass.
+    sweep["uncertain"]["striker.mass_kg"] = json!({ "normal": [0.1, 0.043] });
+    sweep["sampling"] = json!({ "draws": 4096, "indices": true });
+    let (bench, summary) = summary(&sweep);
+    let found = &summary["distributions"]["restitution"];
+    let failures = number(&summary["failures"]);
+    assert!((10.0..100.0).contains(&failures) && number(&found["with_value"]) == 4096.0 - failures, "{summary:#}");
+    let groups = number(&found["index_groups"]);
+    assert!((1024.0 - failures..1024.0).contains(&groups), "{groups}");
+    // The mass has more than three times the variance of the shape.
+    let mass = &found["indices"]["striker.mass_kg"];
+    assert!(number(&mass["first"]["value"]) > 0.7 && number(&mass["first"]["standard_error"]) < 0.1, "{mass}");
+    let told = bench.succeeds(&["sweep", "sweep.json", "--out", "out", "--quiet"]);
+    assert!(told.contains(&format!("of the {groups} groups of draws in which every draw has a value")), "{told}");
+}
+
+#[test]
+fn counts_have_bars_at_whole_numbers() {
+    let mut sweep = on_a_slow_mode();
+    sweep["sampling"]["outputs"] = json!(["sub_impact_count"]);
+    let (_, summary) = summary(&sweep);
+    let histogram = &summary["distributions"]["sub_impact_count"]["histogram"];
+    assert_eq!(*histogram, json!({ "from": 0.5, "to": 1.5, "counts": [2048] }));
+}
+
+#[test]
 fn a_fixed_number_of_draws_can_be_computed_in_parts() {
     let (bench, _) = summary(&on_a_slow_mode());
     for part in ["1/2", "2/2"] {
@@ -182,7 +221,7 @@ fn errors_name_field_value_and_what_is_allowed() {
     ] {
         refused(&distribution(value.clone()), &format!("{of_mass}{value} {allowed}"));
     }
-    refused(&|sweep| sweep["uncertain"] = json!({}), "uncertain = {} is not allowed: an object with 1 to 16 fields");
+    refused(&|sweep| sweep["uncertain"] = json!({}), "uncertain = {} is not allowed: an object with 1 to 128 fields");
     refused(&|sweep| sweep["uncertain"]["striker.weight"] = json!({ "normal": [1, 2] }), "uncertain.striker.weight = ");
     refused(&|sweep| sweep["uncertain"]["a..b"] = json!({ "normal": [1, 2] }), "uncertain.a..b = ");
     refused(&|sweep| sweep["uncertain"]["structure.kind"] = json!({ "normal": [1, 2] }), "uncertain.structure.kind = ");
@@ -202,6 +241,14 @@ fn errors_name_field_value_and_what_is_allowed() {
     );
     refused(&|sweep| sweep["sampling"]["sampling_error"] = json!(0), "sampling.sampling_error = 0.0 is not allowed");
     refused(&|sweep| sweep["sampling"]["indices"] = json!(3), "sampling.indices = 3 is not allowed: true or false");
+    refused(
+        &|sweep| {
+            let many = (0..65).map(|k| (format!("structure.omega_rad_s[{k}]"), json!({ "normal": [1, 0.1] })));
+            sweep["uncertain"] = many.collect();
+            sweep["sampling"]["indices"] = json!(true);
+        },
+        "sampling.indices = true must be left out with more than 64 uncertain fields; there are 65",
+    );
     refused(&|sweep| sweep["sampling"]["count"] = json!(3), "sampling.count = 3 is not allowed: unknown field");
     refused(&|sweep| drop(sweep.as_object_mut().unwrap().remove("uncertain")), "uncertain is missing");
     refused(

@@ -83,7 +83,7 @@ fn it_ends_by_the_error_of_one_output_and_an_interruption_has_no_effect() {
     let errors = found["largest_force_n"]["quantiles"].as_array().unwrap();
     assert!(errors.iter().all(|quantile| number(&quantile["standard_error"]) <= 1.5));
     let draws = number(&summary["points"]) as u64;
-    assert!([1024, 2048, 4096, 8192].contains(&draws), "{draws}");
+    assert!([1024, 2048, 4096, 8192, 16_384].contains(&draws), "{draws}");
     let options = ["sweep", "sweep.json", "--out", "again", "--quiet"];
     let mut child = bench.command(&[&options[..], &["--threads", "1"]].concat()).spawn().unwrap();
     std::thread::sleep(std::time::Duration::from_millis(60));

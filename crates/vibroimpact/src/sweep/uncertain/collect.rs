@@ -1,6 +1,6 @@
 //! Distributions at each point of the grid from the rows of a sweep, and their table.
 
-use super::design::{Draws, Uncertain};
+use super::design::{Draws, Output, Uncertain};
 use super::estimate::OutputDistribution;
 use super::figure::Estimate;
 use crate::scene::json::number;
@@ -46,12 +46,12 @@ impl<'a> Collector<'a> {
     }
 
     fn close(&mut self) {
-        let of = |draws: &mut Vec<f64>| {
-            let found = OutputDistribution::new(draws, self.layout, self.fields.as_deref());
+        let of = |(draws, output): (&mut Vec<f64>, &Output)| {
+            let found = OutputDistribution::new(draws, self.layout, self.fields.as_deref(), output.sampling_error);
             draws.clear();
             found
         };
-        self.found.push(self.draws.iter_mut().map(of).collect());
+        self.found.push(self.draws.iter_mut().zip(&self.uncertain.outputs).map(of).collect());
     }
 
     /// The distributions at every point of the grid.
@@ -65,12 +65,7 @@ impl<'a> Collector<'a> {
 
     /// Whether all sampling errors are as small as requested.
     pub fn enough(self) -> bool {
-        let wanted: Vec<f64> =
-            self.uncertain.outputs.iter().map(|output| output.sampling_error.unwrap_or(f64::INFINITY)).collect();
-        let small = |(found, wanted): (&Option<OutputDistribution>, &f64)| {
-            found.as_ref().is_none_or(|found| found.largest_error() <= *wanted)
-        };
-        self.finish().iter().all(|found| found.iter().zip(&wanted).all(small))
+        self.finish().iter().flatten().flatten().all(|found| found.reached != Some(false))
     }
 }
 

@@ -81,7 +81,7 @@ impl Draws {
 }
 
 impl Uncertain {
-    /// Needs at most 16 fields, and enough draws for two groups in each replicate.
+    /// Needs at most 128 coordinates, two for each field if indices are computed and one otherwise, and enough draws for two groups in each replicate.
     pub(super) fn new(fields: Vec<(FieldPath, Distribution)>, sampling: Sampling) -> Uncertain {
         let coordinates = if sampling.indices { 2 * fields.len() } else { fields.len() };
         Uncertain { sobol: Sobol::new(coordinates), fields, sampling, outputs: Vec::new() }

@@ -15,8 +15,9 @@ use crate::scene::json::{number, quote};
 use crate::sweep::results::Results;
 use crate::sweep::values::MAX_POINTS;
 
-/// Largest number of uncertain fields: indices need two coordinates for each.
-const MOST_FIELDS: usize = MOST_COORDINATES / 2;
+/// Largest number of uncertain fields, and with indices, which need two coordinates for each.
+const MOST_FIELDS: usize = MOST_COORDINATES;
+const MOST_WITH_INDICES: usize = MOST_COORDINATES / 2;
 const DISTRIBUTION: &str =
     "an object with one of uniform, log-uniform, normal and lognormal, which is a list of two numbers";
 /// Default numbers of draws and of scramblings.
@@ -167,6 +168,11 @@ pub(in crate::sweep) fn read(
     };
     if let Some((field, error)) = fault {
         return Err(within(InvalidInput::new(field, number(error), "a number greater than 0")));
+    }
+    if sampling.indices && fields.len() > MOST_WITH_INDICES {
+        let allowed =
+            format!("left out with more than {MOST_WITH_INDICES} uncertain fields; there are {}", fields.len());
+        return Err(within(InvalidInput::new("indices", "true", allowed)));
     }
     let uncertain = Uncertain::new(fields, sampling);
     let layout = uncertain.draws();

@@ -56,13 +56,22 @@ impl Sums {
     }
 }
 
-/// The indices of these fields; `None` if the draws do not vary. Every draw must have a value.
-pub(super) fn indices(values: &[f64], draws: Draws, fields: &[String]) -> Option<BTreeMap<String, SobolIndices>> {
+/// The indices of these fields, and the number of groups that they are from: those all of whose draws have a value. `None` if
+/// there is none, or if the draws do not vary.
+pub(super) fn indices(
+    values: &[f64],
+    draws: Draws,
+    fields: &[String],
+) -> Option<(BTreeMap<String, SobolIndices>, u64)> {
+    let groups = || {
+        let all = values.chunks_exact(draws.impacts as usize).enumerate();
+        all.filter(|(_, group)| group.iter().all(|value| !value.is_nan()))
+    };
     // the mean is subtracted, which avoids rounding errors and the scatter of f(b) in equation (2)
-    let middle = mean(values);
+    let middle = mean(&groups().flat_map(|(_, group)| group).copied().collect::<Vec<f64>>());
     let of = |(field, name): (usize, &String)| {
         let mut sums = vec![Sums::default(); draws.replicates as usize];
-        for (number, group) in values.chunks_exact(draws.impacts as usize).enumerate() {
+        for (number, group) in groups() {
             let replicate = number % sums.len();
             sums[replicate].add(group[0] - middle, group[1] - middle, group[field + 2] - middle);
         }
@@ -71,7 +80,8 @@ pub(super) fn indices(values: &[f64], draws: Draws, fields: &[String]) -> Option
         let known = all.iter().all(|share| share.is_finite());
         known.then(|| (name.clone(), SobolIndices { first: estimate(0), total: estimate(1) }))
     };
-    fields.iter().enumerate().map(of).collect()
+    let found: Option<BTreeMap<String, SobolIndices>> = fields.iter().enumerate().map(of).collect();
+    Some((found?, groups().count() as u64))
 }
 
 #[cfg(test)]
@@ -87,7 +97,7 @@ mod tests {
         let sampling = Sampling { seed: 3, draws, sequence, replicates: 16, indices: true };
         let uncertain = Uncertain::new(fields.to_vec(), sampling);
         let values: Vec<f64> = (0..uncertain.draws().count()).map(|number| f(&uncertain.draw(number))).collect();
-        indices(&values, uncertain.draws(), &names).unwrap().into_values().collect()
+        indices(&values, uncertain.draws(), &names).unwrap().0.into_values().collect()
     }
 
     /// Within four standard errors of the exact value, and with a small standard error.
@@ -107,6 +117,26 @@ mod tests {
                 holds(&indices.total, share / 21.0, error);
             }
         }
+    }
+
+    #[test]
+    fn groups_with_a_draw_that_has_no_value_are_left_out() {
+        let names = ["x", "y"].map(str::to_owned);
+        let fields = names.clone().map(|name| (FieldPath::parse(&name).unwrap(), Distribution::Uniform([0.0, 1.0])));
+        let sampling = Sampling { seed: 3, draws: 64 * 1024, sequence: Sequence::Sobol, replicates: 16, indices: true };
+        let uncertain = Uncertain::new(fields.to_vec(), sampling);
+        let sum =
+            |number: u64| uncertain.draw(number).iter().zip([1.0, 3.0]).map(|(x, factor)| factor * x).sum::<f64>();
+        let mut values: Vec<f64> = (0..uncertain.draws().count()).map(sum).collect();
+        for number in [0, 5, 4099] {
+            values[number] = f64::NAN;
+        }
+        let (found, groups) = indices(&values, uncertain.draws(), &names).unwrap();
+        assert_eq!(groups, uncertain.draws().count() / 4 - 3);
+        holds(&found["x"].first, 0.1, 1e-3);
+        holds(&found["y"].total, 0.9, 1e-3);
+        values.iter_mut().step_by(4).for_each(|value| *value = f64::NAN);
+        assert_eq!(indices(&values, uncertain.draws(), &names), None);
     }
 
     #[test]

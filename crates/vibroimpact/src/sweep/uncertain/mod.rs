@@ -2,11 +2,19 @@
 //!
 //! Draw `m` of a replicate `r` consists of numbers `u` from (0, 1), one for each field, from scrambled Sobol' points (`sobol.rs`)
 //! or at random. Each field has the value `Q_j(u_j)` with the quantile function of its distribution. Every replicate is an
-//! independent scrambling. With any statistic `theta` of the distribution (mean, standard deviation, quantile, index) from all
-//! draws, and `theta_r` the same from replicate `r` of `R`, its standard error is
+//! independent scrambling. With a statistic `theta` of the distribution (mean, standard deviation, share, index) from all draws,
+//! and `theta_r` the same from replicate `r` of `R`, its standard error is
 //!
 //! ```text
 //! s^2 = sum_r (theta_r - mean theta_r)^2 / (R (R - 1)).                                     (1)
+//! ```
+//!
+//! A quantile is not such a statistic: where the density changes within its scatter, the quantiles of the replicates have another
+//! distribution than that of all draws. The error of `Q(p)` follows from the standard error `s_p` of the share of the draws below it,
+//! so that two standard errors either way span an interval of 95 %:
+//!
+//! ```text
+//! s = ( Q(p + 2 s_p) - Q(p - 2 s_p) ) / 4.                                                  (4)
 //! ```
 //!
 //! The indices of Sobol' show which field causes the variance `V`. Each draw is then a group of `k + 2` impacts: of two
@@ -19,7 +27,7 @@
 //!
 //! `S_j` is the share of the variance that would vanish if field `j` were known, `T_j` the share that would remain if all others
 //! were known. Draws without the output (an impact without restitution, a run that was stopped) are counted by their outcome; the
-//! statistics are those of the other draws.
+//! statistics are those of the other draws, and the indices those of the groups in which every draw has the output.
 
 mod collect;
 mod design;

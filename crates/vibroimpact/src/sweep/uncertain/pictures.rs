@@ -41,6 +41,7 @@ fn of_output(
 fn of_one(output: &str, found: &OutputDistribution) -> (&'static str, Figure, String) {
     let Histogram { from, to, counts } = &found.histogram;
     let width = (to - from) / counts.len() as f64;
+    let whole = found.histogram.is_of_whole_numbers();
     let all = found.with_value as f64;
     // a step keeps its value up to the next edge
     let edges: Vec<f64> = (0..=counts.len()).map(|i| from + width * i as f64).collect();
@@ -50,13 +51,20 @@ fn of_one(output: &str, found: &OutputDistribution) -> (&'static str, Figure, St
         Some(*sum)
     }));
     let below: Vec<f64> = below.collect();
+    let below = if whole {
+        // the share rises at the last whole number of an interval
+        let numbers: Vec<f64> = std::iter::once(*from).chain(edges[1..].iter().map(|edge| edge - 0.5)).collect();
+        Series::step(&numbers, &below)
+    } else {
+        Series::line(&edges, &below)
+    };
     let quantiles = |of: fn(&super::Quantile) -> f64| found.quantiles.iter().map(of).collect::<Vec<_>>();
     let (value, share) = (quantiles(|quantile| quantile.value), quantiles(|quantile| quantile.share));
     let error = quantiles(|quantile| 2.0 * quantile.standard_error.unwrap_or(0.0));
-    let of_output = || axis_of_result(output);
+    let of_output = || Axis { integers: whole, ..axis_of_result(output) };
     let histogram = Panel::new(of_output(), Axis::new("share of the draws")).with(Series::step(&edges, &shares));
     let cumulative = Panel::new(of_output(), Axis::new("share below").limits(0.0, 1.0))
-        .with(Series::line(&edges, &below))
+        .with(below)
         .with(Series::level_error_bars(&value, &share, &error, Marker::Dot).label("quantiles"));
     let title = format!("Distribution of {}", label(output));
     let figure = Figure::new(title).row([histogram, cumulative]).width(860.0);
@@ -128,10 +136,8 @@ fn over_two(
         panel.map(HeatMap::new(&columns, &lines, rows, value))
     };
     let width = |found: &Option<OutputDistribution>| found.as_ref().map_or(f64::NAN, |it| it.width_90.value);
-    let of_output = axis_of_result(output);
-    let of_output = if output == "restitution" { of_output.limits(0.0, 1.0) } else { of_output };
     let panels = [
-        map("(a) median", of_output, &|found| at(found, 0.5)),
+        map("(a) median", axis_of_result(output), &|found| at(found, 0.5)),
         map("(b) width of the interval of 9 draws of 10", axis_of_result(output), &width),
     ];
     let (name, _) = label_and_unit(&x.field);

@@ -32,6 +32,14 @@ pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String
     };
     let OutputDistribution { draws, with_value, quantiles, indices, .. } = found;
     line(output, format!("of {with_value} of {draws} draws; every figure ± its standard error"));
+    if let (Some(requested), Some(false)) = (found.requested_error, found.reached) {
+        let largest = match found.largest_error() {
+            error if error.is_finite() => format!("the largest standard error is {}", significant(error, 2)),
+            _ => "some replicates have no value".to_owned(),
+        };
+        let told = format!("NOT REACHED: {largest}, and {requested} was requested; allow more draws (sampling.draws)");
+        line("sampling error", told);
+    }
     line("mean", told(found.mean));
     line("standard deviation", told(found.standard_deviation));
     for quantile in quantiles {
@@ -40,6 +48,9 @@ pub(in crate::sweep) fn text(output: &str, found: &OutputDistribution) -> String
     }
     for (field, indices) in indices.iter().flatten() {
         line(field, format!("first index {}, total {}", told(indices.first), told(indices.total)));
+    }
+    if let Some(groups) = found.index_groups.filter(|_| with_value < draws) {
+        line("indices", format!("of the {groups} groups of draws in which every draw has a value"));
     }
     lines
 }
